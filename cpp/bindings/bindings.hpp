@@ -28,6 +28,7 @@ void bind_errors(py::module_& m);
 void bind_coating(py::module_& m);
 void bind_lens(py::module_& m);
 void bind_lens_edits(py::module_& m);
+void bind_tolerance(py::module_& m);
 void bind_device_array(py::module_& m);
 void bind_trace(py::module_& m);
 void bind_derivatives(py::module_& m);

@@ -19,6 +19,7 @@ PYBIND11_MODULE(_core, m) {
     bind_psf(m);
     bind_bundle(m);
     bind_transmission(m);
+    bind_tolerance(m);
     bind_camera(m);
     bind_camera_rays(m);
     bind_projection(m);

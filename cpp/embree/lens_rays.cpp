@@ -124,11 +124,11 @@ void generate_camera_rays(const CameraSetup& setup, std::uint32_t spp, std::uint
     });
 }
 
-RayLoop parallel_ray_loop(KeepGoing keep_going) {
+RayLoop parallel_ray_loop(KeepGoing keep_going, std::size_t grain) {
     return {std::move(keep_going),
-            [](std::size_t first, std::size_t last, const RayTask& task) {
+            [grain](std::size_t first, std::size_t last, const RayTask& task) {
                 tbb::parallel_for(
-                    tbb::blocked_range<std::size_t>(first, last, 64),
+                    tbb::blocked_range<std::size_t>(first, last, grain),
                     [&](const tbb::blocked_range<std::size_t>& range) { task(range.begin(), range.end()); });
             },
             [](const AimRequest& request) { kernels().aim_rays(&request); }};

@@ -29,8 +29,8 @@ std::int64_t find_film_points(const LensSystem& lens, double wavelength_nm, cons
                               EntryPattern pattern, Precision precision, std::int64_t count, double film_distance,
                               float* at, const KeepGoing& keep_going = {});
 
-/// A loop over rays on all cores.
-RayLoop parallel_ray_loop(KeepGoing keep_going);
+/// A loop over rays on all cores. `grain`: as many as are worth a task of their own.
+RayLoop parallel_ray_loop(KeepGoing keep_going, std::size_t grain = 64);
 
 /// Some of the camera's own rays, spp for each pixel, row by row: origins (metres, scene), unit directions, and weights
 /// (irradiance on the film for unit radiance; 0: the ray does not leave the lens). Arrays of range.count rays.

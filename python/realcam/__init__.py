@@ -86,6 +86,15 @@ from .render import render
 from .session import ReachedNoise, Session
 from .shot import Shot
 from .variable import Variable
+from .tolerance import (
+    CopyFigures,
+    ElementShift,
+    Sensitivity,
+    Tolerance,
+    Tolerances,
+    ToleranceStudy,
+    tolerance_study,
+)
 from .vision import CameraModelFit, camera_json, fit_camera_model, save_camera_json, save_colmap
 
 if TYPE_CHECKING:
@@ -105,12 +114,14 @@ __all__ = [
     "Coating",
     "CoatingLayer",
     "CoatingResponse",
+    "CopyFigures",
     "CrossSection",
     "DepthOfField",
     "Device",
     "DeviceArray",
     "DeviceError",
     "EffectInfo",
+    "ElementShift",
     "FieldOfView",
     "Film",
     "FilmPupil",
@@ -149,6 +160,7 @@ __all__ = [
     "Scene",
     "SceneFileError",
     "Seidel",
+    "Sensitivity",
     "Sensor",
     "Session",
     "Shot",
@@ -156,6 +168,9 @@ __all__ = [
     "Stop",
     "Surface",
     "Targets",
+    "Tolerance",
+    "ToleranceStudy",
+    "Tolerances",
     "TraceResult",
     "Variable",
     "Wavefront",
@@ -181,6 +196,7 @@ __all__ = [
     "save_colmap",
     "sensor_names",
     "with_better_glasses",
+    "tolerance_study",
 ]
 
 

@@ -1314,6 +1314,33 @@ class RenderStats(_Value):
     @property
     def device(self) -> str: ...
 
+@final
+class _CopyJudge:
+    def __init__(
+        self,
+        lens: Lens,
+        fields_rad: NDArray[np.float64],
+        object_distance_m: float | None,
+        colours: NDArray[np.float64],
+        frequencies: Sequence[float],
+        rings: int,
+        refocus: bool,
+        film_tilt: bool,
+        sharp_at: float | None,
+        shift: tuple[int, int, bool, float] | None,
+    ) -> None: ...
+    def judge(
+        self, errors: Sequence[tuple[str, int, int]], sizes: NDArray[np.float64]
+    ) -> dict[str, NDArray[np.float64]]: ...
+    def copy(
+        self,
+        errors: Sequence[tuple[str, int, int]],
+        sizes: NDArray[np.float64],
+        film_shift_mm: float,
+        film_slope: tuple[float, float],
+        element_shift_mm: tuple[float, float, float],
+    ) -> Lens: ...
+
 def _read_environment(path: bytes) -> tuple[NDArray[np.float32], list[str]]: ...
 def _read_film(path: bytes) -> tuple[NDArray[np.float32], list[tuple[str, str]]]: ...
 def _write_picture(path: bytes, image: object, film_tone: bool) -> None: ...

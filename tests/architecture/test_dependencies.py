@@ -36,7 +36,7 @@ MAY_INCLUDE = {
 
 # The folders within a folder, from the one that needs none of the others upwards.
 ORDER = {
-    "optics": ("prescription", "trace", "coating", "pupil", "lens", "ghost", "analysis", "derivatives"),
+    "optics": ("prescription", "trace", "coating", "pupil", "lens", "ghost", "analysis", "derivatives", "tolerance"),
     "io": ("files", "text", "lens", "lens/formats", "sensor", "scene", "mesh", "gltf", ""),
 }
 

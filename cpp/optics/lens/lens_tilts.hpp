@@ -3,6 +3,15 @@
 
 namespace REALCAM_NAMESPACE {
 
+/// Moves surfaces `first` to `last`, counted from 0, together as one rigid piece; all others and the film stay in their
+/// places. The motion is seen from the axis in front of the first surface. Throws InputError where placements that the
+/// surfaces have leave no room for another.
+void move_element(LensSystem& lens, int first, int last, const Affine<double>& motion);
+
+/// The same by a placement of each surface, which moves nothing else. False, and nothing is done, where the axis turns
+/// at one of them.
+bool move_each_alone(LensSystem& lens, int first, int last, const Affine<double>& motion);
+
 /// The lens with surfaces `first` to `last`, counted from 0, moved together as one rigid piece; all others and the film
 /// stay in their places. The placement is seen from the axis in front of the first surface, and turns the piece about
 /// the point that lies `pivot` mm behind that surface's vertex on it. Throws InputError where there are no such

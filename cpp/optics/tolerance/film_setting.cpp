@@ -1,0 +1,165 @@
+#include "film_setting.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "../../math/least_squares.hpp"
+
+namespace realcam {
+
+namespace {
+
+constexpr int kPlanes = 49;  ///< an eighth of the depth of focus from each other
+
+/// How far off the axis the spots are, mm.
+double reach_of(const std::vector<FieldSpot>& spots) {
+    double reach = 0;
+    for (const FieldSpot& spot : spots)
+        if (!spot.rays.empty()) reach = std::max(reach, std::hypot(spot.chief_at(0).x, spot.chief_at(0).y));
+    return reach > 0 ? reach : 1;
+}
+
+/// The contrast of each field on planes at equal distances, read between them by parabolas.
+struct FocusCurves {
+    double first, step;
+    std::vector<std::vector<double>> fields;
+    std::vector<Vec2<double>> points;
+
+    double mean(const FilmSetting& film) const {
+        double sum = 0;
+        for (std::size_t f = 0; f < fields.size(); ++f) sum += value(fields[f], film.at(points[f]));
+        return sum / static_cast<double>(fields.size());
+    }
+
+private:
+    double value(const std::vector<double>& curve, double z) const {
+        const double last = static_cast<double>(curve.size() - 1), at = std::clamp((z - first) / step, 0.0, last);
+        const double middle = std::clamp(std::round(at), 1.0, last - 1), t = at - middle;
+        const std::size_t k = static_cast<std::size_t>(middle);
+        const double rise = 0.5 * (curve[k + 1] - curve[k - 1]), bend = 0.5 * (curve[k + 1] + curve[k - 1]) - curve[k];
+        return curve[k] + t * (rise + t * bend);
+    }
+};
+
+/// Steps that become shorter, of one number of the film at a time.
+void climb(const FocusCurves& curves, FilmSetting& film, const std::vector<double*>& numbers,
+           std::vector<double> steps) {
+    double best = curves.mean(film);
+    for (int halving = 0; halving < 12; ++halving) {
+        bool better = true;
+        for (int round = 0; better && round < 20; ++round) {
+            better = false;
+            for (std::size_t k = 0; k < numbers.size(); ++k)
+                for (const double by : {steps[k], -steps[k]}) {
+                    *numbers[k] += by;
+                    if (const double now = curves.mean(film); now > best) {
+                        best = now;
+                        better = true;
+                    } else {
+                        *numbers[k] -= by;
+                    }
+                }
+        }
+        for (double& step : steps) step *= 0.5;
+    }
+}
+
+}  // namespace
+
+FilmSetting film_of_small_spots(const std::vector<FieldSpot>& spots, FilmFreedom freedom) {
+    const auto [moves, tilts] = freedom;
+    FilmSetting film;
+    if (!moves && !tilts) return film;
+    const double reach = reach_of(spots);
+    // Each square is c (z + b / c)^2 and a constant.
+    std::vector<std::vector<double>> columns(static_cast<std::size_t>(moves) + (tilts ? 2 : 0)), targets(1);
+    for (const FieldSpot& spot : spots) {
+        if (spot.rays.empty()) continue;
+        const FieldSpot::Square square = spot.square();
+        if (!(square.c > 0)) continue;
+        const double root = std::sqrt(square.c);
+        const Vec2<double> at = spot.chief_at(0);
+        std::size_t k = 0;
+        if (moves) columns[k++].push_back(root);
+        if (tilts) {
+            columns[k++].push_back(root * at.x / reach);
+            columns[k++].push_back(root * at.y / reach);
+        }
+        targets[0].push_back(-square.b / root);
+    }
+    if (targets[0].empty()) return film;
+    const std::vector<double> found = least_squares(columns, std::move(targets))[0];
+    std::size_t k = 0;
+    if (moves) film.shift = found[k++];
+    if (tilts) film.slope = {found[k] / reach, found[k + 1] / reach};
+    return film;
+}
+
+double mean_square(const std::vector<FieldSpot>& spots, const FilmSetting& film) {
+    double sum = 0;
+    for (const FieldSpot& spot : spots) {
+        if (spot.rays.empty()) return std::numeric_limits<double>::quiet_NaN();
+        const FieldSpot::Square square = spot.square();
+        const double z = film.at(spot.chief_at(0));
+        sum += square.a + (2 * square.b + square.c * z) * z;
+    }
+    return sum / static_cast<double>(spots.size());
+}
+
+FilmSetting film_of_high_contrast(const std::vector<FieldSpot>& spots, const std::vector<Vec2<double>>& outwards,
+                                  double frequency, FilmFreedom freedom) {
+    FilmSetting film = film_of_small_spots(spots, freedom);
+    if (!freedom.moves && !freedom.tilts) return film;
+    double half = 0;
+    for (const FieldSpot& spot : spots)
+        if (!spot.rays.empty()) half = std::max(half, spot.half_slope());
+    if (!(half > 0)) return film;
+    // A blur of one period, in which a perfect lens has lost its contrast.
+    const double depth = 1 / (2 * half * frequency), reach = reach_of(spots);
+    FocusCurves curves{0, 0.125 * depth, {}, {}};
+    const double to_middle = 0.5 * (kPlanes - 1) * curves.step;
+    curves.first = film.shift - to_middle;
+    for (std::size_t f = 0; f < spots.size(); ++f) {
+        if (spots[f].rays.empty()) continue;
+        std::vector<double> curve(kPlanes, 0.0);
+        for (const Vec2<double> along : {outwards[f], Vec2<double>{-outwards[f].y, outwards[f].x}})
+            spots[f].add_contrast(curves.first, curves.step, along, frequency, curve);
+        curves.fields.push_back(std::move(curve));
+        curves.points.push_back(spots[f].chief_at(0));
+    }
+    if (freedom.moves) {
+        FilmSetting trial = film;
+        double best = curves.mean(film);
+        for (int k = 0; k < kPlanes; ++k) {
+            trial.shift = curves.first + k * curves.step;
+            if (const double now = curves.mean(trial); now > best) {
+                best = now;
+                film = trial;
+            }
+        }
+    }
+    std::vector<double*> numbers;
+    std::vector<double> steps;
+    if (freedom.moves) numbers.push_back(&film.shift), steps.push_back(0.5 * curves.step);
+    if (freedom.tilts) {
+        numbers.insert(numbers.end(), {&film.slope.x, &film.slope.y});
+        steps.insert(steps.end(), {4 * curves.step / reach, 4 * curves.step / reach});
+    }
+    climb(curves, film, numbers, std::move(steps));
+    return film;
+}
+
+double mean_contrast(const std::vector<FieldSpot>& spots, const std::vector<Vec2<double>>& outwards, double frequency,
+                     const FilmSetting& film) {
+    double sum = 0;
+    for (std::size_t f = 0; f < spots.size(); ++f) {
+        if (spots[f].rays.empty()) return std::numeric_limits<double>::quiet_NaN();
+        const double z = film.at(spots[f].chief_at(0));
+        for (const Vec2<double> along : {outwards[f], Vec2<double>{-outwards[f].y, outwards[f].x}})
+            sum += spots[f].contrast(z, along, frequency);
+    }
+    return 0.5 * sum / static_cast<double>(spots.size());
+}
+
+}  // namespace realcam

@@ -1,0 +1,116 @@
+#include "lens_error.hpp"
+
+#include <map>
+#include <utility>
+
+#include "../lens/lens_changes.hpp"
+#include "../lens/lens_tilts.hpp"
+#include "glass_error.hpp"
+
+namespace realcam {
+
+namespace {
+
+constexpr double kFringe_mm = 0.5e-6 * kFringeLine_nm;
+
+void bend(Surface& surface, ErrorKind kind, double size) {
+    const double before = surface.curvature, rim = surface.clear_semi_diameter;
+    double after = before;
+    if (kind == ErrorKind::radius)
+        after = before / (1 + size * before);
+    else if (kind == ErrorKind::radius_percent)
+        after = before / (1 + 0.01 * size);
+    else
+        after = before + 2 * size * kFringe_mm / (rim * rim);
+    surface.curvature = after;
+    if (surface.form.base != BaseForm::conic) surface.form.curvature_x += after - before;
+}
+
+/// x^2 - y^2 and 2 x y have their extremes at the rim, one sign on each of two diameters.
+void make_irregular(Surface& surface, ErrorKind kind, double fringes) {
+    const double rim = surface.clear_semi_diameter, amplitude = 0.5 * fringes * kFringe_mm / (rim * rim);
+    if (kind == ErrorKind::irregularity_45) {
+        surface.form.xy.push_back({1, 1, 2 * amplitude});
+        return;
+    }
+    surface.form.xy.push_back({2, 0, amplitude});
+    surface.form.xy.push_back({0, 2, -amplitude});
+}
+
+void lengthen(LensSystem& lens, int index, double by) {
+    lens.surfaces[static_cast<std::size_t>(index)].thickness += by;
+    for (std::size_t i = 0; i < lens.zoom.surfaces.size(); ++i)
+        if (lens.zoom.surfaces[i] == index)
+            for (ZoomPosition& position : lens.zoom.positions) position.thicknesses[i] += by;
+}
+
+void add_to(SurfacePlacement& placement, ErrorKind kind, double size) {
+    switch (kind) {
+        case ErrorKind::surface_tilt_x:
+        case ErrorKind::element_tilt_x: placement.tilt_deg.x += size; break;
+        case ErrorKind::surface_tilt_y:
+        case ErrorKind::element_tilt_y: placement.tilt_deg.y += size; break;
+        case ErrorKind::surface_decentre_x:
+        case ErrorKind::element_decentre_x: placement.decentre.x += size; break;
+        default: placement.decentre.y += size;
+    }
+}
+
+bool moves_surface(ErrorKind kind) {
+    return kind >= ErrorKind::surface_tilt_x && kind <= ErrorKind::surface_decentre_y;
+}
+
+bool moves_element(ErrorKind kind) {
+    return kind >= ErrorKind::element_tilt_x && kind <= ErrorKind::element_decentre_y;
+}
+
+}  // namespace
+
+void move_pieces(LensSystem& lens, int first, int last, const Affine<double>& motion) {
+    if (!move_each_alone(lens, first, last, motion)) move_element(lens, first, last, motion);
+}
+
+LensSystem with_errors(const LensSystem& lens, const std::vector<LensError>& errors, const double* sizes) {
+    LensSystem result = lens;
+    std::map<int, std::pair<double, double>> melts;  // a surface's index and Abbe number
+    std::map<std::pair<int, int>, SurfacePlacement> surfaces, elements;
+    for (std::size_t i = 0; i < errors.size(); ++i) {
+        const auto [kind, first, last] = errors[i];
+        check_surface_exists(lens, first);
+        check_surface_exists(lens, last);
+        const double size = sizes[i];
+        if (size == 0) continue;
+        Surface& surface = result.surfaces[static_cast<std::size_t>(first)];
+        if (moves_surface(kind))
+            add_to(surfaces[{first, first}], kind, size);
+        else if (moves_element(kind))
+            add_to(elements[{first, last}], kind, size);
+        else if (kind == ErrorKind::thickness)
+            lengthen(result, first, size);
+        else if (kind == ErrorKind::index)
+            melts[first].first += size;
+        else if (kind == ErrorKind::abbe_percent)
+            melts[first].second += 0.01 * size;
+        else if (kind == ErrorKind::irregularity_0 || kind == ErrorKind::irregularity_45)
+            make_irregular(surface, kind, size);
+        else
+            bend(surface, kind, size);
+    }
+    for (const auto& [index, melt] : melts) {
+        Glass& glass = result.surfaces[static_cast<std::size_t>(index)].material;
+        glass = with_melt_error(glass, melt.first, melt.second);
+    }
+    for (const auto& [which, placement] : surfaces) move_pieces(result, which.first, which.second, placement.frame());
+    for (const auto& [which, placement] : elements) {
+        double length = 0;
+        for (int i = which.first; i < which.second; ++i)
+            length += result.surfaces[static_cast<std::size_t>(i)].thickness;
+        move_pieces(result, which.first, which.second,
+                    along_axis(0.5 * length) * placement.frame() * along_axis(-0.5 * length));
+    }
+    // Faces that touch at their rims do so in every lens that is made; a thousandth of a millimetre is no clash.
+    result.allow_crossing = true;
+    return result;
+}
+
+}  // namespace realcam

@@ -1,0 +1,74 @@
+"""What may be set on a finished lens."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .._core import InputError, Lens
+from .elements import check_element
+
+
+@dataclass(frozen=True)
+class ElementShift:
+    """An element, by its first and last surface from 0, that is moved until the picture is sharpest: "along" the axis
+    or "across" it, by range_mm to either side at most."""
+
+    first: int
+    last: int
+    direction: str = "across"
+    range_mm: float = 0.5
+
+
+Compensator = str | ElementShift
+NAMES = ("refocus", "film_tilt")
+
+
+@dataclass(frozen=True)
+class Chosen:
+    refocus: bool
+    film_tilt: bool
+    shift: ElementShift | None
+
+    @property
+    def shift_words(self) -> tuple[int, int, bool, float] | None:
+        s = self.shift
+        return None if s is None else (s.first, s.last, s.direction == "along", s.range_mm)
+
+
+def chosen(lens: Lens, compensators: Sequence[Compensator], fields_deg: NDArray[np.float64]) -> Chosen:
+    """Raises InputError for a compensator that is none, or that cannot compensate."""
+    if isinstance(compensators, str):
+        compensators = (compensators,)
+    names = [c for c in compensators if isinstance(c, str)]
+    shifts = [c for c in compensators if not isinstance(c, str)]
+    for name in names:
+        if name not in NAMES:
+            raise InputError(f'unknown compensator "{name:.40}"; refocus, film_tilt or an ElementShift is wanted')
+    if len(shifts) > 1:
+        raise InputError("at most one ElementShift is wanted")
+    if "film_tilt" in names and np.linalg.matrix_rank(fields_deg - fields_deg.mean(0), tol=1e-6) < 2:
+        raise InputError("film_tilt cannot compensate: the fields lie on one line; three that do not are wanted")
+    if names and math.isinf(lens.first_order().effective_focal_length_mm):
+        raise InputError(f"{names[0]} cannot compensate: the lens is afocal, and no film is its picture's place")
+    for shift in shifts:
+        _check_shift(lens, shift)
+    return Chosen("refocus" in names, "film_tilt" in names, shifts[0] if shifts else None)
+
+
+def _check_shift(lens: Lens, shift: ElementShift) -> None:
+    if not isinstance(shift, ElementShift):
+        raise InputError(f"{shift!r:.40} is no compensator; refocus, film_tilt or an ElementShift is wanted")
+    check_element(lens, shift.first, shift.last)
+    if shift.direction not in ("along", "across"):
+        raise InputError(f'ElementShift: unknown direction "{shift.direction!s:.40}"; along or across is wanted')
+    if not (0 < shift.range_mm < math.inf):
+        raise InputError(f"ElementShift: range_mm is {shift.range_mm!r:.40}; a positive length is wanted")
+    if all(s.curvature_per_mm == 0 for s in lens.surfaces[shift.first : shift.last + 1]):
+        raise InputError(
+            f"surfaces {shift.first} to {shift.last} cannot compensate: they are planes, which do nothing when moved"
+        )

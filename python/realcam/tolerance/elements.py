@@ -1,0 +1,42 @@
+"""The pieces of glass that a lens is put together from."""
+
+from __future__ import annotations
+
+from .._core import InputError, Lens
+
+
+def has_glass_behind(lens: Lens, surface: int) -> bool:
+    return lens.surfaces[surface].material.index(lens.wavelength_nm) != 1
+
+
+def elements_of(lens: Lens) -> list[tuple[int, int]]:
+    """First and last surface of each element, from 0. What is cemented is one element."""
+    found, first = [], None
+    for index, surface in enumerate(lens.surfaces):
+        if surface.type in ("stop", "aperture"):
+            continue
+        if has_glass_behind(lens, index):
+            first = index if first is None else first
+        elif first is not None:
+            found.append((first, index))
+            first = None
+    return found
+
+
+def check_surface(lens: Lens, surface: int) -> None:
+    """Raises InputError where there is no such surface."""
+    if not isinstance(surface, int) or isinstance(surface, bool):
+        raise InputError(f"{surface!r:.40} is no surface; a number from 0 is wanted")
+    if not 0 <= surface < len(lens.surfaces):
+        raise InputError(f"there is no surface {surface}; the lens has {len(lens.surfaces)}, counted from 0")
+
+
+def check_element(lens: Lens, first: int, last: int) -> None:
+    """Raises InputError where there is no element of these surfaces."""
+    check_surface(lens, first)
+    check_surface(lens, last)
+    if last <= first:
+        raise InputError(
+            f"surface {first} alone is no element; the numbers of its first and last face are wanted, or a tolerance "
+            "of the surface"
+        )

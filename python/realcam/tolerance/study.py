@@ -1,0 +1,284 @@
+"""Copies of a lens as they come from the factory, and what they are worth."""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from .._core import InputError, Lens, _CopyJudge
+from .compensators import Chosen, Compensator, chosen
+from .figures import CopyFigures, Doubles
+from .sensitivities import Sensitivity, inverse_sensitivities, sensitivities
+from .tolerances import Tolerance, Tolerances, drawn, errors_of
+
+Progress = Callable[[float], bool | None]
+
+MOST_COPIES = 1_000_000
+BLOCK = 64
+SHARES = (0.02, 0.1, 0.5, 0.9, 0.98)
+
+
+@dataclass(frozen=True)
+class ToleranceStudy:
+    """Copies of a lens with random errors.
+
+    lens, tolerances, seed: as given. items: each tolerance by itself. sizes: (C, E), the errors of each copy, in the
+    order of the items; directed ones have two. fields_deg: (F, 2), angles towards x and y. frequencies_per_mm: (K,),
+    of which the middle one counts where one does. nominal: figures of the lens as it was drawn, of one copy.
+    figures: of all copies. is_whole: False where the study was ended before all copies were looked at.
+    """
+
+    lens: Lens
+    tolerances: Tolerances
+    items: list[Tolerance]
+    seed: int
+    fields_deg: Doubles
+    frequencies_per_mm: Doubles
+    nominal: CopyFigures
+    figures: CopyFigures
+    sizes: Doubles
+    is_whole: bool
+    compensators: Chosen
+    _judge: _CopyJudge = field(repr=False, compare=False)
+
+    def __len__(self) -> int:
+        return len(self.figures)
+
+    @property
+    def main(self) -> int:
+        """The number of the middle frequency."""
+        return len(self.frequencies_per_mm) // 2
+
+    def copy(self, number: int) -> Lens:
+        """A copy as a lens that photographs, with its compensators set. Raises InputError for a number that is none."""
+        if not 0 <= number < len(self):
+            raise InputError(f"there is no copy {number}; there are {len(self)}, counted from 0")
+        f = self.figures
+        return self._judge.copy(
+            errors_of(self.items),
+            self.sizes[number],
+            float(f.film_shift_mm[number]),
+            (float(f.film_slope[number, 0]), float(f.film_slope[number, 1])),
+            (
+                float(f.element_shift_mm[number, 0]),
+                float(f.element_shift_mm[number, 1]),
+                float(f.element_shift_mm[number, 2]),
+            ),
+        )
+
+    def errors_of(self, number: int) -> list[tuple[Tolerance, Doubles]]:
+        """Each tolerance with a copy's error, in the unit of the tolerance: one number, or two for what has a
+        direction."""
+        found, column = [], 0
+        for item in self.items:
+            width = len(item.errors)
+            found.append((item, self.sizes[number, column : column + width] / item.scale))
+            column += width
+        return found
+
+    def measure(self, name: str) -> Doubles:
+        """(C,): "mtf", the mean over the fields at the middle frequency; "lowest_mtf", of the worst field; "spot_mm",
+        the largest RMS radius; "focal_length_mm"; "distortion", the largest with its sign. Raises InputError."""
+        return measured(self.figures, name, self.main)
+
+    def nominal_measure(self, name: str) -> float:
+        return float(measured(self.nominal, name, self.main)[0])
+
+    def quantiles(self, name: str, shares: ArrayLike = SHARES) -> Doubles:
+        """Of a measure: the values that these shares of the copies are below."""
+        quantiles: Doubles = np.quantile(self.measure(name), np.asarray(shares, float))
+        return quantiles
+
+    def yield_of(self, **limits: float) -> float:
+        """The share of the copies that meet all limits, 0 to 1.
+
+        Names are those of measures: mtf and lowest_mtf at least so much, spot_mm and distortion (without its sign) at
+        most, focal_length_mm off the one drawn by at most so much. Raises InputError.
+        """
+        if not limits:
+            raise InputError("yield_of wants at least one limit, as lowest_mtf=0.3")
+        good = np.ones(len(self), bool)
+        for name, limit in limits.items():
+            values = self.measure(name)
+            if not isinstance(limit, int | float) or math.isnan(limit):
+                raise InputError(f"{name}: {limit!r:.40} is no limit; a number is wanted")
+            if name.endswith("mtf"):
+                good &= values >= limit
+            elif name == "focal_length_mm":
+                good &= np.abs(values - self.nominal_measure(name)) <= limit
+            else:
+                good &= np.abs(values) <= limit
+        return float(good.mean())
+
+    def sensitivities(self) -> list[Sensitivity]:
+        """What each tolerance does alone at its limits, with the compensators set: those that cost most first."""
+        return sensitivities(self._judge, self.items, self.nominal, self.main)
+
+    def worst_offenders(self, count: int = 10) -> list[Sensitivity]:
+        """The tolerances that cost most contrast."""
+        return self.sensitivities()[:count]
+
+    def inverse_sensitivities(self, loss: float) -> list[Tolerance]:
+        """What each tolerance may be if it alone, at its worse limit, is to cost this much of the mean MTF: 0.02.
+
+        Raises InputError. One that costs less however large has the limit inf."""
+        return inverse_sensitivities(self._judge, self.items, self.nominal, self.main, loss)
+
+    def save_report(self, path: str | os.PathLike[str], *, theme: str | None = None) -> None:
+        """Writes .html or .pdf: distributions, yield, worst offenders and tables. Raises ImageFileError."""
+        from .report import save_tolerance_report  # brings matplotlib
+
+        save_tolerance_report(self, path, theme=theme)
+
+    def summary(self) -> dict[str, Any]:
+        """The study as plain values, for JSON."""
+        names = ("mtf", "lowest_mtf", "spot_mm", "focal_length_mm", "distortion")
+        return {
+            "lens": self.lens.name,
+            "copies": len(self),
+            "is_whole": self.is_whole,
+            "seed": self.seed,
+            "fields_deg": self.fields_deg,
+            "frequency_per_mm": float(self.frequencies_per_mm[self.main]),
+            "quantiles": {
+                name: {
+                    "nominal": self.nominal_measure(name),
+                    **{f"{share:g}": value for share, value in zip(SHARES, self.quantiles(name), strict=True)},
+                }
+                for name in names
+            },
+            "sensitivities": [s.as_values() for s in self.sensitivities()],
+        }
+
+
+def measured(figures: CopyFigures, name: str, frequency: int) -> Doubles:
+    if name == "mtf":
+        return figures.mean_mtf(frequency)
+    if name == "lowest_mtf":
+        return figures.lowest_mtf(frequency)
+    if name == "spot_mm":
+        spot: Doubles = figures.rms_spot_mm.max(1)
+        return spot
+    if name == "focal_length_mm":
+        return figures.focal_length_mm
+    if name == "distortion":
+        worst = np.abs(figures.distortion).argmax(1)
+        distortion: Doubles = figures.distortion[np.arange(len(worst)), worst]
+        return distortion
+    raise InputError(f'unknown measure "{name:.40}"; mtf, lowest_mtf, spot_mm, focal_length_mm or distortion is wanted')
+
+
+def tolerance_study(
+    lens: Lens,
+    tolerances: Tolerances | str,
+    copies: int = 1000,
+    *,
+    compensators: Sequence[Compensator] = ("refocus",),
+    sharpest_by: str = "mtf",
+    seed: int = 0,
+    fields_deg: ArrayLike | None = None,
+    frequencies_per_mm: ArrayLike | None = None,
+    wavelengths_nm: ArrayLike | None = None,
+    object_distance_m: float | None = None,
+    rings: int = 12,
+    progress: Progress | None = None,
+) -> ToleranceStudy:
+    """Makes copies of a lens with random errors, sets their compensators, and judges them, on all cores.
+
+    tolerances: or the name of a grade. compensators: "refocus", "film_tilt", an ElementShift. sharpest_by: what they
+    make good in the mean of all fields, "mtf" at the middle frequency, or "spot", the mean square radius.
+    seed: the same one gives the same copies, on any number of threads; the first ones of many are those of few.
+    fields_deg: angles towards +y, or (F, 2) towards x and y; None is the axis, and 0.7 of the way to each corner of the
+    film. frequencies_per_mm: None is 10, 20 and 40 on a film of 36 x 24 mm, as fine in proportion on others.
+    wavelengths_nm: all count alike; None is F line, design wavelength and C line. object_distance_m: to the front
+    vertex; None is the plane in focus. rings: of rays in the pupil.
+    progress: is told the share that is done; the study ends where it returns False. So does an interrupt after the
+    first copies: the study then has those that are done, and says so by is_whole.
+    Raises InputError for what is no tolerance or compensator of this lens, and for lenses that are not of revolution as
+    they were drawn.
+    """
+    drawing = Tolerances.grade(tolerances) if isinstance(tolerances, str) else tolerances
+    if not isinstance(drawing, Tolerances):
+        raise InputError("tolerances must be a realcam.Tolerances, or the name of a grade")
+    if isinstance(copies, bool) or not isinstance(copies, int) or not 1 <= copies <= MOST_COPIES:
+        raise InputError(f"copies is {copies!r:.40}; a whole number from 1 to {MOST_COPIES} is wanted")
+    if isinstance(seed, bool) or not isinstance(seed, int) or seed < 0:
+        raise InputError(f"seed is {seed!r:.40}; a whole number of 0 or more is wanted")
+    if sharpest_by not in ("mtf", "spot"):
+        raise InputError(f'sharpest_by: "{sharpest_by!s:.40}" is unknown; mtf or spot is wanted')
+    if not 2 <= rings <= 100:
+        raise InputError(f"rings is {rings!r:.40}; 2 to 100 are wanted")
+    items = drawing.of(lens)
+    from ..analysis.fields import default_frequencies_per_mm, numbers_of, wavelengths_of  # brings matplotlib
+
+    fields = _fields(lens, fields_deg)
+    frequencies = (
+        default_frequencies_per_mm(lens)
+        if frequencies_per_mm is None
+        else np.sort(numbers_of(frequencies_per_mm, "frequencies_per_mm"))
+    )
+    if not (frequencies > 0).all():
+        raise InputError("frequencies_per_mm must be positive numbers")
+    colours = wavelengths_of(lens, wavelengths_nm)
+    how = chosen(lens, compensators, fields)
+    judge = _CopyJudge(
+        lens,
+        np.deg2rad(fields),
+        object_distance_m,
+        np.column_stack([colours, np.ones_like(colours)]),
+        frequencies.tolist(),
+        rings,
+        how.refocus,
+        how.film_tilt,
+        float(frequencies[len(frequencies) // 2]) if sharpest_by == "mtf" else None,
+        how.shift_words,
+    )
+    errors = errors_of(items)
+    nominal = CopyFigures.joined([judge.judge(errors, np.zeros((1, len(errors))))])
+    sizes = drawn(items, drawing.distribution, copies, seed)
+    parts = _judged(judge, errors, sizes, progress)
+    figures = CopyFigures.joined(parts)
+    done = len(figures)
+    return ToleranceStudy(
+        lens, drawing, items, seed, fields, frequencies, nominal, figures, sizes[:done], done == copies, how, judge
+    )
+
+
+def _judged(
+    judge: _CopyJudge, errors: list[tuple[str, int, int]], sizes: Doubles, progress: Progress | None
+) -> list[dict[str, Doubles]]:
+    parts: list[dict[str, Doubles]] = []
+    for first in range(0, len(sizes), BLOCK):
+        try:
+            parts.append(judge.judge(errors, sizes[first : first + BLOCK]))
+            if progress is not None and progress(min(1.0, (first + BLOCK) / len(sizes))) is False:
+                break
+        except KeyboardInterrupt:
+            if not parts:
+                raise
+            break
+    return parts
+
+
+def _fields(lens: Lens, fields_deg: ArrayLike | None) -> Doubles:
+    """(F, 2), degrees towards x and y."""
+    if fields_deg is None:
+        from ..analysis.fields import field_angles_deg
+
+        angle = float(field_angles_deg(lens, [0.7])[0])
+        width, height = lens.film_mm
+        along = np.array([width, height]) / math.hypot(width, height)
+        signs = np.array([[0, 0], [1, 1], [-1, 1], [1, -1], [-1, -1]])
+        return np.asarray(angle * signs * along)
+    fields = np.atleast_1d(np.asarray(fields_deg, float))
+    if fields.ndim == 1:
+        fields = np.column_stack([np.zeros_like(fields), fields])
+    if fields.ndim != 2 or fields.shape[1] != 2 or len(fields) == 0 or not np.isfinite(fields).all():
+        raise InputError("fields_deg must be angles, or pairs of angles towards x and y: finite numbers, at least one")
+    return np.asarray(fields)
