@@ -30,7 +30,7 @@ Vec2<double> outwards(Vec2<double> field) {
 
 /// How much rays that are close to the axis and parallel to it converge, over the distance between them: the mean of
 /// both meridians. The power but for a sign, in a lens and in all that are nearly it.
-double convergence(const LensPath<double>& path, double distance) {
+double convergence(const CopyPath::At& path, double distance) {
     LensRays<double, 4> rays;
     for (int i = 0; i < 4; ++i) {
         const double h = i % 2 ? -distance : distance;
@@ -38,7 +38,7 @@ double convergence(const LensPath<double>& path, double distance) {
         rays.direction.set(i, {0, 0, path.entry_index});
         rays.status[i] = 0;
     }
-    trace_lens(path.view(), rays);
+    trace_lens(path.view, rays);
     const auto slope = [&](int i) {
         const Vec3d d = rays.direction[i];
         return (i < 2 ? d.x : d.y) / d.z;
@@ -64,6 +64,7 @@ LensSystem with_settings(const LensSystem& lens, const CopySettings& settings, c
 struct CopyJudge::Parts {
     LensSystem nominal;
     StudyRequest request;
+    std::vector<double> wavelengths;
     std::size_t main = 0;           ///< colour that is nearest to the design wavelength
     std::vector<Vec2<double>> towards;  ///< for each field, from the axis outwards
     std::vector<FieldFan> fans;     ///< for each field, for each colour
@@ -73,22 +74,16 @@ struct CopyJudge::Parts {
     double focal_length, close, convergence_drawn;
     double index;  ///< of refraction, behind the lens
 
-    std::vector<LensPath<double>> paths(const LensSystem& copy) const {
-        std::vector<LensPath<double>> made;
-        for (const StudyColour& colour : request.colours)
-            made.emplace_back(copy, LightDirection::to_film, colour.wavelength_nm);
-        return made;
-    }
-
-    std::vector<FieldSpot> spots(const std::vector<LensPath<double>>& paths, double film_shift) const {
+    std::vector<FieldSpot> spots(const CopyPath& path, double film_shift) const {
+        const std::size_t colours = wavelengths.size();
         std::vector<FieldSpot> all(request.fields.size());
         for (std::size_t f = 0; f < all.size(); ++f) {
             FieldSpot& spot = all[f];
             spot.film = film[f] + film_shift;
             spot.index = index;
             double passing = 0, sent = 0;
-            for (std::size_t c = 0; c < paths.size(); ++c) {
-                FieldFan::Traced traced = fans[f * paths.size() + c].through(paths[c], stop);
+            for (std::size_t c = 0; c < colours; ++c) {
+                FieldFan::Traced traced = fans[f * colours + c].through(path.at(c), stop);
                 if (c == main) spot.chief = traced.chief;
                 for (FieldFan::FilmRay& ray : traced.rays) {
                     ray.weight *= request.colours[c].weight;
@@ -96,7 +91,7 @@ struct CopyJudge::Parts {
                     passing += ray.weight;
                     spot.rays.push_back(ray);
                 }
-                sent += request.colours[c].weight * fans[f * paths.size() + c].full_weight();
+                sent += request.colours[c].weight * fans[f * colours + c].full_weight();
             }
             for (FieldFan::FilmRay& ray : spot.rays) ray.weight /= passing;
             spot.light = passing / sent;
@@ -106,17 +101,15 @@ struct CopyJudge::Parts {
 
     /// Of a lens whose element is moved.
     struct Look {
-        LensSystem lens;
-        std::vector<LensPath<double>> paths;
+        CopyPath path;
         std::vector<FieldSpot> spots;
         FilmSetting film;
         double blur;  ///< what compensators make small: a mean square, or what the contrast lacks
     };
 
     Look look(const LensSystem& copy, Vec3d shift) const {
-        Look result{with_settings(copy, {0, {0, 0}, shift}, request.compensators), {}, {}, {}, 0};
-        result.paths = paths(result.lens);
-        result.spots = spots(result.paths, copy.film_distance - nominal.film_distance);
+        Look result{CopyPath(with_settings(copy, {0, {0, 0}, shift}, request.compensators), wavelengths), {}, {}, 0};
+        result.spots = spots(result.path, copy.film_distance - nominal.film_distance);
         const FilmFreedom freedom{request.compensators.refocus, request.compensators.film_tilt};
         if (const std::optional<double> frequency = request.compensators.frequency) {
             result.film = film_of_high_contrast(result.spots, towards, *frequency, freedom);
@@ -166,6 +159,7 @@ CopyJudge::CopyJudge(const LensSystem& nominal, StudyRequest request, const RayL
     const auto distance = [&](const StudyColour& colour) {
         return std::fabs(colour.wavelength_nm - nominal.wavelength_nm);
     };
+    for (const StudyColour& colour : p.request.colours) p.wavelengths.push_back(colour.wavelength_nm);
     for (std::size_t c = 0; c < p.request.colours.size(); ++c)
         if (distance(p.request.colours[c]) < distance(p.request.colours[p.main])) p.main = c;
     const double main_nm = p.request.colours[p.main].wavelength_nm;
@@ -184,9 +178,9 @@ CopyJudge::CopyJudge(const LensSystem& nominal, StudyRequest request, const RayL
     p.index = nominal.indices(main_nm).back();
     p.close = kCloseRays * first.entrance_pupil_diameter;
     p.film.assign(p.request.fields.size(), nominal.film_distance);
-    const std::vector<LensPath<double>> paths = p.paths(nominal);
-    p.convergence_drawn = convergence(paths[p.main], p.close);
-    const std::vector<FieldSpot> spots = p.spots(paths, 0);
+    const CopyPath path(nominal, p.wavelengths);
+    p.convergence_drawn = convergence(path.at(p.main), p.close);
+    const std::vector<FieldSpot> spots = p.spots(path, 0);
     for (std::size_t f = 0; f < spots.size(); ++f) {
         if (spots[f].rays.empty())
             throw InputError("no light at a field angle of " +
@@ -216,7 +210,7 @@ CopyFigures CopyJudge::operator()(const LensSystem& copy) const {
     Vec3d shift{0, 0, 0};
     const Parts::Look look = p.sharpest(copy, shift);
     result.settings = {look.film.shift, look.film.slope, shift};
-    const LensPath<double>& path = look.paths[p.main];
+    const CopyPath::At path = look.path.at(p.main);
     result.focal_length = std::isfinite(p.focal_length)
                               ? p.focal_length * p.convergence_drawn / convergence(path, p.close)
                               : p.focal_length;

@@ -60,7 +60,7 @@ Vec2<double> FieldFan::turned_back(Vec2<double> v) const {
 }
 
 template <int N>
-void FieldFan::start(const LensPath<double>& copy, const Vec2<double>* entries, LensRays<double, N>& rays) const {
+void FieldFan::start(const CopyPath::At& copy, const Vec2<double>* entries, LensRays<double, N>& rays) const {
     for (int i = 0; i < N; ++i) {
         const Vec3d at = object_.at(entries[i]), direction = object_.direction(entries[i]);
         const Vec2<double> place = turned({at.x, at.y}), across = turned({direction.x, direction.y});
@@ -72,8 +72,8 @@ void FieldFan::start(const LensPath<double>& copy, const Vec2<double>* entries, 
 
 /// Where the nominal chief ray meets the copy's stop, seen from its middle. Two lanes, because a single ray stops at
 /// the first rim in its way.
-Vec2<double> FieldFan::miss(const LensPath<double>& copy, int stop) const {
-    LensView<double> to_stop = copy.view();
+Vec2<double> FieldFan::miss(const CopyPath::At& copy, int stop) const {
+    LensView<double> to_stop = copy.view;
     to_stop.count = stop + 1;
     const Vec2<double> entries[2] = {chief_, chief_};
     LensRays<double, 2> rays;
@@ -82,10 +82,10 @@ Vec2<double> FieldFan::miss(const LensPath<double>& copy, int stop) const {
     return turned_back({rays.origin.x[0], rays.origin.y[0]});
 }
 
-FieldFan::Traced FieldFan::through(const LensPath<double>& copy, int stop, bool with_rays) const {
+FieldFan::Traced FieldFan::through(const CopyPath::At& copy, int stop, bool with_rays) const {
     const Vec2<double> off = miss(copy, stop);
     const Vec2<double> move = {-(by_x_.x * off.x + by_y_.x * off.y), -(by_x_.y * off.x + by_y_.y * off.y)};
-    const LensView<double> view = copy.view();
+    const LensView<double> view = copy.view;
     const auto at_vertex = [](const auto& rays, int i, double weight) {
         const Vec3d o = rays.origin[i], d = rays.direction[i];
         const Vec2<double> slope{d.x / d.z, d.y / d.z};

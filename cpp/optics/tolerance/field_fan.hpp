@@ -2,8 +2,8 @@
 #include <vector>
 
 #include "../analysis/object_point.hpp"
-#include "../trace/lens_path.hpp"
 #include "../trace/ray_loop.hpp"
+#include "copy_path.hpp"
 
 namespace REALCAM_NAMESPACE {
 
@@ -27,8 +27,8 @@ public:
         std::vector<FilmRay> rays;
     };
 
-    /// Through a copy, whose path has this fan's wavelength. `rays`: false leaves all but the chief ray out.
-    Traced through(const LensPath<double>& copy, int stop, bool rays = true) const;
+    /// Through a copy, at this fan's wavelength. `rays`: false leaves all but the chief ray out.
+    Traced through(const CopyPath::At& copy, int stop, bool rays = true) const;
 
     /// The sum of all rays' weights.
     double full_weight() const;
@@ -37,8 +37,8 @@ private:
     Vec2<double> turned(Vec2<double> v) const;
     Vec2<double> turned_back(Vec2<double> v) const;
     template <int N>
-    void start(const LensPath<double>& copy, const Vec2<double>* entries, LensRays<double, N>& rays) const;
-    Vec2<double> miss(const LensPath<double>& copy, int stop) const;
+    void start(const CopyPath::At& copy, const Vec2<double>* entries, LensRays<double, N>& rays) const;
+    Vec2<double> miss(const CopyPath::At& copy, int stop) const;
 
     ObjectPoint object_;
     double cos_, sin_;  ///< of the turn about the axis from towards y
