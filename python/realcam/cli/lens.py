@@ -11,6 +11,7 @@ import typer
 from .._core import InputError
 from ..json_values import json_text
 from . import lens_figures, lens_options, lens_plots, optimise, options
+from . import lens_figures, lens_options, lens_plots, lens_tolerance, options
 from .commands_in_cpp import add_command_in_cpp
 from .completions import completion_of
 
@@ -29,6 +30,7 @@ add_command_in_cpp(app, "lens", "list")
 add_command_in_cpp(app, "lens", "info")
 lens_plots.register(app)
 app.command("optimise")(optimise.optimise)
+app.command("tolerance")(lens_tolerance.tolerance)
 
 
 @app.command("draw")

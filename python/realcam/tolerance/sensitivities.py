@@ -61,7 +61,7 @@ def sensitivities(judge: _CopyJudge, items: list[Tolerance], nominal: CopyFigure
 def inverse_sensitivities(
     judge: _CopyJudge, items: list[Tolerance], nominal: CopyFigures, frequency: int, loss: float
 ) -> list[Tolerance]:
-    """By halving an interval between 0 and a limit that costs more, for all tolerances at once."""
+    """In an interval that ends at a limit that costs more, for all tolerances at once."""
     before = float(nominal.mean_mtf(frequency)[0])
     if not 0 < loss < before:
         raise InputError(
@@ -78,17 +78,26 @@ def inverse_sensitivities(
 
     most = np.array([_most(item) for item in items])
     low, high = np.zeros(len(items)), np.minimum([item.limit for item in items], most)
-    for _ in range(24):
-        short = (losses(high) < loss) & (high < most)
+    below, above = np.zeros(len(items)), losses(high)
+    for _ in range(12):
+        short = (above < loss) & (high < most)
         if not short.any():
             break
-        low, high = np.where(short, high, low), np.minimum(np.where(short, 2 * high, high), most)
-    endless = losses(high) < loss
-    for _ in range(14):
-        middle = 0.5 * (low + high)
-        enough = losses(middle) >= loss
-        low, high = np.where(enough, low, middle), np.where(enough, middle, high)
-    limits = np.where(endless, math.inf, 0.5 * (low + high))
+        low, below = np.where(short, high, low), np.where(short, above, below)
+        high = np.minimum(np.where(short, 4 * high, high), most)
+        above = losses(high)
+    endless = above < loss
+    for step in range(8):
+        # Where a straight line reaches the loss, but by turns the middle: one end must not stay for ever.
+        share = np.clip((loss - below) / np.maximum(above - below, 1e-300), 0.02, 0.98) if step % 2 else 0.5
+        middle = low + share * (high - low)
+        found = losses(middle)
+        enough = found >= loss
+        low, below = np.where(enough, low, middle), np.where(enough, below, found)
+        high, above = np.where(enough, middle, high), np.where(enough, found, above)
+    limits = np.where(
+        endless, math.inf, low + (high - low) * np.clip((loss - below) / np.maximum(above - below, 1e-300), 0, 1)
+    )
     return [dataclasses.replace(item, limit=float(limit)) for item, limit in zip(items, limits, strict=True)]
 
 

@@ -119,8 +119,7 @@ class Tolerances:
     def of(self, lens: Lens) -> list[Tolerance]:
         """Each tolerance of that lens by itself, those of 0 left out. Raises InputError for surfaces that do not exist
         or cannot have it, and for limits that are none."""
-        if self.distribution not in ("uniform", "normal"):
-            raise InputError(f'unknown distribution "{self.distribution!s:.40}"; uniform or normal is wanted')
+        check_distribution(self.distribution)
         found = []
         for field in fields(self):
             limits = getattr(self, field.name)
@@ -163,6 +162,11 @@ class Tolerances:
             ),
             None,
         )
+
+
+def check_distribution(name: str) -> None:
+    if name not in ("uniform", "normal"):
+        raise InputError(f'unknown distribution "{name!s:.40}"; uniform or normal is wanted')
 
 
 def errors_of(tolerances: list[Tolerance]) -> list[tuple[str, int, int]]:

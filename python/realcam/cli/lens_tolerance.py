@@ -1,0 +1,107 @@
+"""realcam lens tolerance: what leaves the factory."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Optional
+
+import typer
+
+from .._core import InputError
+from ..json_values import json_text
+from ..progress import progress_bar
+from . import lens_options, options
+
+
+def tolerance(
+    name: lens_options.LensName,
+    grade: Annotated[
+        str, typer.Option("--grade", metavar="NAME", help="Of all tolerances: commercial, precision or high")
+    ] = "commercial",
+    output: Annotated[
+        Optional[Path],  # noqa: UP045
+        typer.Option("--output", "-o", metavar="FILE", help="A report, .html"),
+    ] = None,
+    copies: Annotated[int, typer.Option("--copies", metavar="N", help="How many lenses are made")] = 1000,
+    seed: Annotated[int, typer.Option("--seed", metavar="N", help="The same one makes the same copies")] = 0,
+    compensate: Annotated[
+        str,
+        typer.Option("--compensate", metavar="WHAT", help="refocus, film_tilt, both with a comma between, or nothing"),
+    ] = "refocus",
+    distribution: Annotated[
+        str,
+        typer.Option("--distribution", metavar="NAME", help="Of errors: uniform, or normal with the limit at 2 sigma"),
+    ] = "uniform",
+    frequency: Annotated[
+        Optional[float],  # noqa: UP045
+        typer.Option("--frequency", metavar="PER_MM", help="At which MTF counts [20 on a film of 36 x 24 mm]"),
+    ] = None,
+    at_least: Annotated[
+        Optional[float],  # noqa: UP045
+        typer.Option("--at-least", metavar="MTF", help="Of the worst field, for the yield [half of that as drawn]"),
+    ] = None,
+    f_number: lens_options.FNumber = None,
+    focus: lens_options.Focus = None,
+    zoom: lens_options.Zoom = None,
+    glass: lens_options.Glasses = None,
+    force: lens_options.Force = False,
+    pbrt_thickness: lens_options.PbrtThickness = None,
+    theme: Annotated[
+        Optional[str],  # noqa: UP045
+        typer.Option("--theme", metavar="NAME", help="light or dark [as the browser is set]"),
+    ] = None,
+    as_json: options.AsJson = False,
+    quiet: options.Quiet = False,
+) -> None:
+    """Make copies of a lens with errors within tolerances, and tell what they are worth.
+
+    Ctrl-C ends the study with the copies that are done.
+    """
+    from .. import files
+    from ..tolerance import Tolerances, tolerance_study
+    from ..tolerance.tolerances import check_distribution
+
+    tolerances = Tolerances.grade(grade, distribution=distribution)
+    check_distribution(distribution)
+    if output is not None:
+        if output.suffix.lower() != ".html":
+            raise InputError(f"{output}: unknown suffix; .html is wanted")
+        lens_options.check_not_the_lens(output, name)
+        files.check_target(output)
+    lens = options.lens(name, focus, f_number, zoom=zoom, glass=glass, force=force, pbrt_thickness=pbrt_thickness)
+    with progress_bar(f"{copies} copies", is_shown=not (quiet or as_json)) as bar:
+        study = tolerance_study(
+            lens,
+            tolerances,
+            copies,
+            compensators=() if compensate == "nothing" else compensate.split(","),
+            seed=seed,
+            frequencies_per_mm=None if frequency is None else [frequency],
+            progress=bar,
+        )
+    wanted = 0.5 * study.nominal_measure("lowest_mtf") if at_least is None else at_least
+    share = study.yield_of(lowest_mtf=wanted)
+    if output is not None:
+        study.save_report(output, theme=theme)
+    if as_json:
+        typer.echo(json_text({**study.summary(), "grade": grade, "yield": {"lowest_mtf": wanted, "share": share}}))
+        return
+    if quiet:
+        return
+    from ..tolerance.plots import MEASURES, with_limit
+
+    if not study.is_whole:
+        typer.echo(f"ended after {len(study)} of {copies} copies")
+    typer.echo(f"MTF at {study.frequencies_per_mm[study.main]:.4g} periods per mm")
+    typer.echo(f"{'':26}{'as drawn':>10}{'10 % below':>12}{'half below':>12}{'90 % below':>12}")
+    for measure, words in MEASURES.items():
+        scale = 100 if measure == "distortion" else 1
+        low, middle, high = scale * study.quantiles(measure, [0.1, 0.5, 0.9])
+        drawn = scale * study.nominal_measure(measure)
+        typer.echo(f"{words:26}{drawn:10.4f}{low:12.4f}{middle:12.4f}{high:12.4f}")
+    typer.echo(f"yield with an MTF of {wanted:.3g} in the worst field: {100 * share:.1f} %")
+    typer.echo("worst offenders, mean MTF lost at the limit:")
+    for offender in study.worst_offenders(8):
+        typer.echo(f"  {offender.loss:7.4f}  {with_limit(offender)}")
+    if output is not None:
+        options.say_written(output)

@@ -1,0 +1,122 @@
+"""A study as one page of HTML."""
+
+from __future__ import annotations
+
+import html
+import math
+import os
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+
+from .. import files
+from .._core import ImageFileError
+from ..analysis import style
+from ..drawing.themes import theme_named
+from ..drawing.web_page import colour_variables, inline_svg
+from .plots import MEASURES, study_figure, with_limit
+from .study import SHARES, ToleranceStudy
+
+STYLE = """
+body { font: 15px/1.45 system-ui, sans-serif; max-width: 60rem; margin: 2rem auto; padding: 0 1rem;
+  background: var(--page); color: var(--text); }
+h1 { margin-bottom: 0.2rem; } h1 + p, .note { color: var(--quiet); }
+svg { width: 100%; height: auto; }
+table { border-collapse: collapse; font-size: 0.85rem; font-variant-numeric: tabular-nums; }
+th, td { padding: 0.15rem 0.6rem; text-align: right; white-space: nowrap; }
+th:first-child, td:first-child { text-align: left; }
+thead th { border-bottom: 1px solid var(--faint); }
+.wide { overflow-x: auto; }
+@media print { body { font-size: 9pt; max-width: none; margin: 0; } svg, tr { break-inside: avoid; } }
+"""
+SHOWN = 12
+LOSS = 0.02
+
+
+def save_tolerance_report(
+    study: ToleranceStudy, path: str | os.PathLike[str], *, theme: str | None = None, loss: float = LOSS
+) -> None:
+    """theme: "light" or "dark"; None is as its reader has set the browser. loss: of mean MTF, for which the page says
+    what each tolerance may be. Raises ImageFileError, and InputError for a theme that is none."""
+    target = Path(path)
+    if target.suffix.lower() != ".html":
+        raise ImageFileError(f"{target}: unknown suffix; .html is wanted")
+    files.check_target(target)
+    if theme is not None:
+        theme_named(theme)
+    files.write_whole(target, page_of(study, theme, loss).encode())
+
+
+def page_of(study: ToleranceStudy, theme: str | None, loss: float) -> str:
+    offenders = study.sensitivities()
+    may_be = {}
+    if loss < study.nominal_measure("mtf"):
+        may_be = {(t.kind, t.first, t.last): t.limit for t in study.inverse_sensitivities(loss)}
+    with style.themed("light", 7.0):
+        figure = inline_svg(study_figure(study, offenders[:SHOWN]), "tolerance")
+    title = html.escape(f"{study.lens.title or study.lens.name or 'lens'}: tolerances")
+    rows = [
+        (
+            with_limit(o),
+            f"{o.mtf[0]:+.4f}",
+            f"{o.mtf[1]:+.4f}",
+            f"{o.lowest_mtf[0]:+.4f}",
+            f"{o.lowest_mtf[1]:+.4f}",
+            f"{1000 * max(o.spot_mm):+.2f}",
+            f"{o.focal_length_mm[1]:+.4f}",
+            _limit(may_be.get((o.tolerance.kind, o.tolerance.first, o.tolerance.last))),
+        )
+        for o in offenders
+    ]
+    sensitivities = _table(
+        ["tolerance", "mean MTF −", "+", "worst field −", "+", "spot / µm", "focal length / mm", "may be"], rows
+    )
+    whole = "" if study.is_whole else " The study was ended before all copies were looked at."
+    return f"""<!doctype html>
+<html lang="en">
+<meta charset="utf-8">
+<meta name="viewport" content="width=device-width">
+<title>{title}</title>
+<style>
+{colour_variables(theme)}{STYLE}</style>
+<h1>{title}</h1>
+<p>{len(study)} copies, seed {study.seed}; {html.escape(_compensators(study))}.{whole}</p>
+{figure}
+<h2>Copies</h2>
+<div class="wide">{_table(["", "as drawn", *(f"{100 * share:g} % below" for share in SHARES)], _quantiles(study))}</div>
+<h2>Each tolerance alone</h2>
+<div class="wide">{sensitivities}</div>
+<p class="note">Changes at the lower and the upper limit, with the compensators set; what has a direction, in that which
+costs more. MTF is that of rays at {study.frequencies_per_mm[study.main]:.4g} periods per mm, times what diffraction
+leaves of a perfect lens. "May be": the limit at which a tolerance alone costs {loss:g} of the mean MTF.</p>
+</html>
+"""
+
+
+def _quantiles(study: ToleranceStudy) -> Iterable[tuple[str, ...]]:
+    for name, words in MEASURES.items():
+        scale, digits = (100, 3) if name == "distortion" else (1, 4)
+        values = [study.nominal_measure(name), *study.quantiles(name)]
+        yield (words, *(f"{scale * value:.{digits}f}" for value in values))
+
+
+def _compensators(study: ToleranceStudy) -> str:
+    chosen = study.compensators
+    words = ["refocused"] if chosen.refocus else []
+    if chosen.film_tilt:
+        words.append("film tilted")
+    if chosen.shift is not None:
+        s = chosen.shift
+        words.append(f"surfaces {s.first + 1} to {s.last + 1} moved {s.direction} the axis")
+    return ", ".join(words) or "nothing is compensated"
+
+
+def _limit(value: float | None) -> str:
+    return "" if value is None else "any" if math.isinf(value) else f"{value:.3g}"
+
+
+def _table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    def row(cells: Sequence[str], tag: str) -> str:
+        return "<tr>" + "".join(f"<{tag}>{html.escape(cell)}</{tag}>" for cell in cells) + "</tr>"
+
+    body = "\n".join(row(cells, "td") for cells in rows)
+    return f"<table><thead>{row(head, 'th')}</thead>\n<tbody>\n{body}\n</tbody></table>"

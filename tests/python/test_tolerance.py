@@ -1,0 +1,335 @@
+"""Copies of lenses with errors. Truth: lensmaker's equation, prisms, third-order theory, and the same numbers twice."""
+
+import dataclasses
+import os
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+import realcam as rc
+from realcam import Lens, Stop, Surface, Tolerances, analysis, tolerance_study
+
+N = 1.5
+
+
+def singlet(radius=100.0, thickness=0.01, semi_diameter=2.5, **options):
+    """A thin equiconvex lens right behind its stop."""
+    surfaces = [
+        Stop(clear_semi_diameter_mm=semi_diameter),
+        Surface(
+            radius_of_curvature_mm=radius,
+            thickness_mm=thickness,
+            material=(N, 60.0),
+            clear_semi_diameter_mm=4 * semi_diameter,
+        ),
+        Surface(radius_of_curvature_mm=-radius, clear_semi_diameter_mm=4 * semi_diameter),
+    ]
+    return Lens(
+        surfaces=surfaces,
+        film_distance_mm=radius / (2 * (N - 1)),
+        allow_crossing=True,
+        wavelength_nm=587.5618,
+        **options,
+    )
+
+
+def study_of(lens, copies=5, **options):
+    limits = {name: options.pop(name) for name in list(options) if name in Tolerances.__dataclass_fields__}
+    options = {"fields_deg": [0.0], "wavelengths_nm": [587.5618], "compensators": (), **options}
+    return tolerance_study(lens, Tolerances(**limits), copies, **options)
+
+
+def focal_length(r1, r2, n, d):
+    return 1 / ((n - 1) * (1 / r1 - 1 / r2 + (n - 1) * d / (n * r1 * r2)))
+
+
+def test_the_focal_length_is_the_lensmakers():
+    lens = singlet(60, 5)
+    study = study_of(lens, radius_mm={1: 0.5}, thickness_mm={1: 0.2}, index={1: 0.001})
+    for sizes, found in zip(study.sizes, study.figures.focal_length_mm, strict=True):
+        radius, thickness, index = sizes
+        # Rays at a thousandth of the pupil: their aberration is 1e-6 of what f/24 has, 1e-3 of f.
+        assert found == pytest.approx(focal_length(60 + radius, -60, N + index, 5 + thickness), rel=1e-8)
+
+
+def test_radius_in_percent_and_fringes():
+    percent = study_of(singlet(), radius_percent={1: 1.0})
+    for (size,), found in zip(percent.sizes, percent.figures.focal_length_mm, strict=True):
+        assert found == pytest.approx(focal_length(100 * (1 + size / 100), -100, N, 0.01), rel=1e-8)
+    fringes = study_of(singlet(), radius_fringes={1: 10.0})
+    for (size,), found in zip(fringes.sizes, fringes.figures.focal_length_mm, strict=True):
+        # Half wavelengths in the sag c r^2 / 2 at the rim of 10 mm.
+        curvature = 1 / 100 + 2 * size * 0.5 * 546.07e-6 / 10**2
+        assert found == pytest.approx(focal_length(1 / curvature, -100, N, 0.01), rel=1e-8)
+
+
+def test_a_wedge_deviates_as_a_prism_does():
+    plate = [
+        Surface(thickness_mm=4, material=(N, 60.0), clear_semi_diameter_mm=10),
+        Surface(thickness_mm=2, clear_semi_diameter_mm=10),
+    ]
+    lens = singlet().inserted(0, plate)
+    study = study_of(lens, copies=8, wedge_arcmin={1: 30.0})
+    f = lens.first_order().effective_focal_length_mm
+    wedge = np.deg2rad(study.sizes)  # about x and y
+    for (about_x, about_y), at in zip(wedge, study.figures.chief_ray_mm[:, 0], strict=True):
+        angle = np.hypot(about_x, about_y)
+        deviation = np.arcsin(N * np.sin(angle)) - angle
+        assert deviation == pytest.approx((N - 1) * angle, rel=1e-3)
+        # A lens that is thin to 1e-4 of its focal length.
+        assert np.hypot(*at) == pytest.approx(f * np.tan(deviation), rel=1e-3)
+        # The rear face turned about x looks up with its glass, which is thickest below.
+        turn = np.array([about_y, -about_x]) / angle
+        assert abs(turn @ at) == pytest.approx(np.hypot(*at), rel=1e-6)
+
+
+def test_the_picture_moves_with_a_lens_that_is_decentred():
+    study = study_of(singlet(), element_decentre_mm={(1, 2): 0.5})
+    assert np.abs(study.figures.chief_ray_mm[:, 0] - study.sizes).max() < 2e-3  # its aberration at f/20
+
+
+def thin_lens_w040(height, f, n, bending, conjugate=-1.0):
+    """Wavefront spherical aberration of a thin lens, mm (W. T. Welford, "Aberrations of Optical Systems", 1986)."""
+    shape = bending + 2 * (n * n - 1) / (n + 2) * conjugate
+    terms = (n / (n - 1)) ** 2 + (n + 2) / (n * (n - 1) ** 2) * shape**2 - n / (n + 2) * conjugate**2
+    return height**4 / f**3 / 32 * terms
+
+
+def test_the_coma_of_a_decentred_singlet_is_that_of_the_third_order():
+    lens = singlet()
+    study = study_of(lens, copies=6, element_decentre_mm={(1, 2): 0.4})
+    a, f = 2.5, lens.first_order().effective_focal_length_mm
+    w040 = thin_lens_w040(a, f, N, 0.0)
+    for number in range(len(study)):
+        decentre = study.sizes[number]
+        along = decentre / np.hypot(*decentre)
+        copy = study.copy(number)
+        starts = np.array([[*(0.9 * k * a * along), -1.0] for k in (-1, 0, 1)])
+        rays = copy.trace(starts, np.tile([0.0, 0.0, 1.0], (3, 1)), start="scene")
+        to_film = (copy.film_position_mm - rays.origins_mm[:, 2]) / rays.directions[:, 2]
+        on_film = (rays.origins_mm + to_film[:, None] * rays.directions)[:, :2] @ along
+        coma = 0.5 * (on_film[0] + on_film[2]) - on_film[1]
+        # W = W040 (rho - delta / a)^4: its odd part is -4 W040 delta / a rho^3, and a ray is off by -f / a dW/drho.
+        # The fifth order is (a / f)^2 of the third, the lens thin to 1e-4.
+        assert coma == pytest.approx(0.9**2 * 12 * w040 * np.hypot(*decentre) * f / a**2, rel=0.01)
+
+
+def close_focus(lens, axis):
+    height = 1e-3
+    starts = np.array([[height, 0, -1], [0, height, -1]])[axis]
+    ray = lens.trace(starts[None], [[0.0, 0.0, 1.0]], start="scene")
+    return -ray.origins_mm[0, axis] / ray.directions[0, axis] * ray.directions[0, 2] + ray.origins_mm[0, 2]
+
+
+def test_irregularity_makes_two_foci():
+    lens = singlet()
+    study = study_of(lens, irregularity_fringes={1: 4.0}, seed=2)
+    f = lens.first_order().effective_focal_length_mm
+    for number, (straight, _) in enumerate(study.sizes):
+        # x^2 - y^2 from valley to peak over the rim of 10 mm: curvatures of +-2 A, with A r^2 half of that.
+        bend = 2 * 0.5 * straight * 0.5 * 546.07e-6 / 10**2
+        apart = close_focus(study.copy(number), 0) - close_focus(study.copy(number), 1)
+        assert apart == pytest.approx(-(f**2) * (N - 1) * 2 * bend, rel=2e-3)
+
+
+def test_a_melt_has_the_index_and_the_abbe_number_asked_for():
+    for name in ("double-gauss-50mm", "tessar"):
+        lens = next(Lens.load(bundled) for bundled in rc.lens_names() if name in bundled)
+        surface = next(k for k, s in enumerate(lens.surfaces) if s.material.index(486.1) > s.material.index(656.3))
+        study = study_of(lens, copies=3, index={surface: 0.002}, abbe_percent={surface: 2.0})
+        before = lens.surfaces[surface].material
+        for number, (index, percent) in enumerate(study.sizes):
+            d, f, c = (study.copy(number).surfaces[surface].material.index(nm) for nm in (587.5618, 486.1327, 656.2725))
+            d0, f0, c0 = (before.index(nm) for nm in (587.5618, 486.1327, 656.2725))
+            assert d == pytest.approx(d0 + index, abs=1e-12)
+            assert (d - 1) / (f - c) == pytest.approx((d0 - 1) / (f0 - c0) * (1 + percent / 100), rel=1e-9)
+
+
+def test_the_film_tilts_with_a_lens_that_is_tilted():
+    """All glass turned as one piece: the plane of infinity turns with it."""
+    lens = Lens.load("double-gauss-50mm").stopped_down(8)
+    last = len(lens.surfaces) - 1
+    study = tolerance_study(
+        lens,
+        Tolerances(element_tilt_arcmin={(0, last): 30.0}),
+        4,
+        compensators=("refocus", "film_tilt"),
+        sharpest_by="spot",
+        fields_deg=[(0, 0), (4, 4), (-4, 4), (4, -4), (-4, -4)],
+        object_distance_m=np.inf,
+    )
+    slope = np.tan(np.deg2rad(study.sizes))
+    # To the curvature of the field, whose parts on the two sides differ by a share of the tilt.
+    assert np.abs(study.figures.film_slope[:, 1] - slope[:, 0]).max() < 0.1 * np.abs(slope).max()
+    assert np.abs(study.figures.film_slope[:, 0] + slope[:, 1]).max() < 0.1 * np.abs(slope).max()
+
+
+def test_the_lens_as_drawn_has_the_mtf_of_the_analysis():
+    lens = Lens.load("double-gauss-50mm").stopped_down(4)
+    study = study_of(lens, 1, radius_percent=0.01, fields_deg=[0, 8], frequencies_per_mm=[10, 20])
+    true = analysis.mtf(lens, [0, 8], [10, 20], wavelengths_nm=[587.5618])
+    for way, name in enumerate(("tangential", "sagittal")):
+        # Rays and the limit of a pupil that is taken for an ellipse stand for waves.
+        assert np.abs(study.nominal.mtf[0, :, way] - getattr(true, name)[0]).max() < 0.03
+
+
+def test_an_element_is_moved_back_to_its_place():
+    lens = Lens.load("double-gauss-50mm").stopped_down(2.8)
+    errors = Tolerances(element_decentre_mm={(0, 1): 0.2})
+    options = {"sharpest_by": "spot", "rings": 6, "wavelengths_nm": [587.5618]}
+    free = tolerance_study(lens, errors, 6, compensators=("refocus",), **options)
+    centred = tolerance_study(lens, errors, 6, compensators=("refocus", rc.ElementShift(0, 1)), **options)
+    nominal = free.nominal_measure("spot_mm")
+    left = np.abs(centred.figures.rms_spot_mm - free.nominal.rms_spot_mm).max(1)
+    lost = np.abs(free.figures.rms_spot_mm - free.nominal.rms_spot_mm).max(1)
+    assert (left < 0.2 * lost + 1e-3 * nominal).all()
+
+
+def test_the_same_seed_makes_the_same_copies():
+    lens = Lens.load("double-gauss-50mm")
+    few, many = (tolerance_study(lens, "precision", copies, rings=4, seed=3) for copies in (5, 70))
+    assert np.array_equal(few.sizes, many.sizes[:5])
+    assert np.array_equal(few.figures.mtf, many.figures.mtf[:5])
+    assert not np.array_equal(few.sizes, tolerance_study(lens, "precision", 5, rings=4, seed=4).sizes)
+
+
+@pytest.mark.skipif(not hasattr(os, "sched_setaffinity"), reason="threads are limited by the processors they may use")
+def test_one_thread_finds_what_many_find():
+    program = """
+import os, hashlib
+os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})
+import realcam as rc
+study = rc.tolerance_study(rc.Lens.load("double-gauss-50mm"), "precision", 20, rings=4)
+print(hashlib.sha256(study.figures.mtf.tobytes()).hexdigest())
+"""
+    import hashlib
+
+    one = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True).stdout.strip()
+    study = tolerance_study(Lens.load("double-gauss-50mm"), "precision", 20, rings=4)
+    assert one == hashlib.sha256(study.figures.mtf.tobytes()).hexdigest()
+
+
+def test_errors_keep_within_their_limits():
+    tolerances = Tolerances(radius_percent={1: 1.0}, element_decentre_mm={(1, 2): 0.3})
+    for distribution, share in (("uniform", 0.5), ("normal", 0.6827 / 0.9545)):
+        study = tolerance_study(
+            singlet(), dataclasses.replace(tolerances, distribution=distribution), 4000, rings=2, fields_deg=[0]
+        )
+        radius, decentre = study.sizes[:, 0], np.hypot(*study.sizes[:, 1:].T)
+        assert np.abs(radius).max() <= 1 and decentre.max() <= 0.3
+        # 4000 draws: a standard deviation of 0.8%.
+        assert (np.abs(radius) < 0.5).mean() == pytest.approx(share, abs=0.03)
+    assert (decentre < 0.15).mean() == pytest.approx((1 - np.exp(-0.5)) / (1 - np.exp(-2)), abs=0.03)
+
+
+def test_a_tolerance_may_be_as_large_as_its_loss_allows():
+    lens = Lens.load("double-gauss-50mm").stopped_down(2.8)
+    study = tolerance_study(lens, Tolerances(radius_percent=0.1, wedge_arcmin=1.0), 1, rings=6)
+    limits = study.inverse_sensitivities(0.02)
+    assert len(limits) == len(study.items)
+    some = [item for item in limits if np.isfinite(item.limit)]
+    again = tolerance_study(
+        lens,
+        Tolerances(
+            radius_percent={t.first: t.limit for t in some if t.kind == "radius_percent"},
+            wedge_arcmin={t.first: t.limit for t in some if t.kind == "wedge_arcmin"},
+        ),
+        1,
+        rings=6,
+    )
+    # Eight steps in an interval: some percent of the limit, and as much of the loss.
+    for sensitivity in again.sensitivities():
+        assert sensitivity.loss == pytest.approx(0.02, rel=0.05)
+    losses = [s.loss for s in study.sensitivities()]
+    assert losses == sorted(losses, reverse=True)
+
+
+def test_a_copy_photographs():
+    study = tolerance_study(Lens.load("double-gauss-50mm"), "commercial", 3, rings=4)
+    copy = study.copy(2)
+    assert not copy.is_rotational
+    rays = rc.Camera(copy, film=rc.Film(36, 24, (6, 4))).generate_rays(spp=16)
+    assert (rays.weights > 0).mean() > 0.9
+    assert np.isfinite(study.figures.mtf).all()
+
+
+def test_a_study_that_is_ended_has_what_is_done():
+    lens = Lens.load("double-gauss-50mm")
+    told = []
+
+    def end(share):
+        told.append(share)
+        return len(told) < 2
+
+    study = tolerance_study(lens, Tolerances(radius_percent=0.1), 1000, rings=4, progress=end)
+    assert 0 < len(study) < 1000 and not study.is_whole
+    assert study.sizes.shape[0] == len(study) == len(study.measure("mtf"))
+
+    def interrupt(share):
+        raise KeyboardInterrupt
+
+    study = tolerance_study(lens, Tolerances(radius_percent=0.1), 1000, rings=4, progress=interrupt)
+    assert 0 < len(study) < 1000 and not study.is_whole
+
+
+@pytest.mark.parametrize(
+    ("limits", "options", "message"),
+    [
+        ({"radius_mm": {1: -0.1}}, {}, r"radius_mm of surface 1 is -0\.1; a number of 0 or more"),
+        ({"radius_mm": float("nan")}, {}, "radius_mm is nan; a number of 0 or more"),
+        ({"radius_mm": {99: 0.1}}, {}, "no surface 99; the lens has 11, counted from 0"),
+        ({"radius_mm": {5: 0.1}}, {}, "radius_mm: surface 5 is a stop, which bends no light"),
+        ({"thickness_mm": {10: 0.1}}, {}, "surface 10 is the last; the film follows it"),
+        ({"index": {1: 0.1}}, {}, "no glass behind surface 1"),
+        ({"wedge_arcmin": {0: 1}}, {}, "no glass in front of surface 0, and no wedge; surface_tilt_arcmin is wanted"),
+        ({"element_tilt_arcmin": {(3, 3): 1}}, {}, "surface 3 alone is no element"),
+        ({"element_tilt_arcmin": {3: 1}}, {}, "surface 3 alone is no element"),
+        ({"wedge_arcmin": 700.0}, {}, "wedge_arcmin is 700; at most 600"),
+        ({}, {}, "there is no tolerance"),
+        ({"radius_mm": 0.1}, {"copies": 0}, "copies is 0; a whole number from 1"),
+        ({"radius_mm": 0.1}, {"seed": -1}, "seed is -1; a whole number of 0 or more"),
+        ({"radius_mm": 0.1}, {"compensators": ("tilt",)}, 'unknown compensator "tilt"; refocus, film_tilt'),
+        ({"radius_mm": 0.1}, {"compensators": ("film_tilt",), "fields_deg": [0, 5]}, "the fields lie on one line"),
+        ({"radius_mm": 0.1}, {"compensators": (rc.ElementShift(4, 4),)}, "surface 4 alone is no element"),
+        ({"radius_mm": 0.1}, {"compensators": (rc.ElementShift(0, 1, range_mm=0),)}, "range_mm is 0; a positive"),
+        ({"radius_mm": 0.1}, {"fields_deg": [np.nan]}, "fields_deg must be angles"),
+        ({"radius_mm": 0.1}, {"frequencies_per_mm": [-1]}, "frequencies_per_mm must be positive"),
+    ],
+)
+def test_bad_input_has_one_message(limits, options, message):
+    lens = Lens.load("double-gauss-50mm")
+    with pytest.raises(rc.InputError, match=message) as caught:
+        tolerance_study(lens, Tolerances(**limits), **options)
+    assert "\n" not in str(caught.value)
+
+
+def test_names_that_are_none():
+    lens = Lens.load("double-gauss-50mm")
+    with pytest.raises(rc.InputError, match="unknown grade"):
+        tolerance_study(lens, "cheap")
+    with pytest.raises(rc.InputError, match="unknown distribution"):
+        tolerance_study(lens, Tolerances(radius_mm=0.1, distribution="even"))
+    study = tolerance_study(lens, Tolerances(radius_mm=0.1), 2, rings=4)
+    with pytest.raises(rc.InputError, match="no copy 2; there are 2"):
+        study.copy(2)
+    with pytest.raises(rc.InputError, match="unknown measure"):
+        study.yield_of(contrast=1.0)
+    with pytest.raises(rc.InputError, match=r"loss is 2\.0"):
+        study.inverse_sensitivities(2.0)
+    plates = Tolerances(radius_mm=0.1)
+    with pytest.raises(rc.InputError, match="cannot compensate: they are planes"):
+        plate = [
+            Surface(thickness_mm=4, material=(N, 60.0), clear_semi_diameter_mm=10),
+            Surface(thickness_mm=2, clear_semi_diameter_mm=10),
+        ]
+        tolerance_study(singlet().inserted(0, plate), plates, compensators=(rc.ElementShift(0, 1),))
+
+
+@pytest.mark.parametrize("name", ["commercial", "precision", "high"])
+def test_better_grades_make_better_lenses(name):
+    lens = Lens.load("double-gauss-50mm").stopped_down(4)
+    study = tolerance_study(lens, name, 40, rings=4)
+    spread = np.ptp(study.quantiles("focal_length_mm", [0.1, 0.9]))
+    assert {"commercial": 0.4, "precision": 0.1, "high": 0.01}[name] < spread
+    assert spread < {"commercial": 3.0, "precision": 0.6, "high": 0.1}[name]
