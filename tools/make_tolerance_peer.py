@@ -26,7 +26,7 @@ ROWS = [
 ]
 STOP = 3  # in front of this row's surface, at no distance
 APERTURE_MM, FIELDS_DEG, WAVELENGTH_UM, FREQUENCY = 10.0, (0.0, 7.0, 14.0), 0.5875618, 20.0
-COPIES, SEED = 100, 5
+COPIES, SEED = 60, 5
 RADIUS_PERCENT, THICKNESS_MM, INDEX, TILT_ARCMIN = 0.2, 0.05, 5e-4, 3.0
 
 
@@ -65,7 +65,7 @@ def optic():
 def mtfs(lens) -> list[list[float]]:
     from optiland.mtf import GeometricMTF
 
-    found = GeometricMTF(lens, num_rays=64, num_points=2048, max_freq=2 * FREQUENCY, scale=True)
+    found = GeometricMTF(lens, num_rays=64, num_points=401, max_freq=2 * FREQUENCY, scale=True)
     at = int(np.argmin(np.abs(np.asarray(found.freq) - FREQUENCY)))
     return [[float(tangential[at]), float(sagittal[at])] for tangential, sagittal in found.mtf]
 

@@ -21,6 +21,17 @@ GROUPS = {
         "with_better_glasses",
     ),
     "Derivatives": ("Gradient", "RayDerivatives", "ray_derivatives"),
+    "Changing a lens": ("Optimisation", "Targets", "Variable", "optimised"),
+    "Tolerances": (
+        "Tolerances",
+        "tolerance_study",
+        "ToleranceStudy",
+        "Tolerance",
+        "Sensitivity",
+        "CopyFigures",
+        "ElementShift",
+        "random_copy",
+    ),
     "Photographers' figures": (
         "DepthOfField", "FieldOfView", "PhotographicFigures", "depth_of_field", "photographic_figures",
     ),

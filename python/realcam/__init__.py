@@ -93,6 +93,7 @@ from .tolerance import (
     Tolerance,
     Tolerances,
     ToleranceStudy,
+    random_copy,
     tolerance_study,
 )
 from .vision import CameraModelFit, camera_json, fit_camera_model, save_camera_json, save_colmap
@@ -190,6 +191,7 @@ __all__ = [
     "photographic_figures",
     "plan",
     "ray_derivatives",
+    "random_copy",
     "read_environment",
     "render",
     "save_camera_json",

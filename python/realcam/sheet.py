@@ -7,6 +7,9 @@ import os
 import re
 import textwrap
 from collections.abc import Sequence
+from typing import Any
+
+from numpy.typing import NDArray
 
 from ._core import InputError
 from .analysis.style import new_figure, themed
@@ -29,12 +32,23 @@ def save_sheet(
 
     Raises ImageFileError, and InputError for no pictures, no columns or an unknown theme.
     """
+    save_labelled([(label, image.developed(tone)) for label, image in pictures], path, columns, theme=theme)
+
+
+def save_labelled(
+    pictures: Sequence[tuple[str, NDArray[Any]]],
+    path: str | os.PathLike[str],
+    columns: int,
+    *,
+    theme: str = "light",
+) -> None:
+    """The same for pixels as matplotlib shows them, (rows, columns, 3)."""
     target = check_figure_target(path)
     if not pictures or columns < 1:
         raise InputError("a sheet needs at least one picture and one column")
     columns = min(columns, len(pictures))
     rows = math.ceil(len(pictures) / columns)
-    width, height = (max(size) / DPI for size in zip(*(image.depth.shape[::-1] for _, image in pictures), strict=True))
+    width, height = (max(size) / DPI for size in zip(*(pixels.shape[1::-1] for _, pixels in pictures), strict=True))
     letters = max(8, int(width * 72 / (0.6 * FONT_PT)))  # of average width
     labels = [_wrapped(label, letters) for label, _ in pictures]
     gap, line = 0.12, 0.1 + 1.3 * FONT_PT / 72 * (1 + max(label.count("\n") for label in labels))
@@ -42,11 +56,11 @@ def save_sheet(
     with themed(theme, FONT_PT):
         figure = new_figure(*size)
         figure.set_layout_engine("none")
-        for index, (label, (_, image)) in enumerate(zip(labels, pictures, strict=True)):
+        for index, (label, (_, pixels)) in enumerate(zip(labels, pictures, strict=True)):
             row, column = divmod(index, columns)
             left, bottom = gap + column * (width + gap), size[1] - (row + 1) * (height + line + gap) + line
             axes = figure.add_axes((left / size[0], bottom / size[1], width / size[0], height / size[1]))
-            axes.imshow(image.developed(tone), interpolation="nearest")
+            axes.imshow(pixels, interpolation="nearest")
             axes.set_axis_off()
             # Names of lenses are text, and a dollar sign in one begins no formula.
             figure.text(left / size[0], (bottom - 0.06) / size[1], label, va="top", parse_math=False)

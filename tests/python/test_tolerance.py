@@ -1,6 +1,8 @@
 """Copies of lenses with errors. Truth: lensmaker's equation, prisms, third-order theory, and the same numbers twice."""
 
 import dataclasses
+import hashlib
+import json
 import os
 import subprocess
 import sys
@@ -203,7 +205,6 @@ import realcam as rc
 study = rc.tolerance_study(rc.Lens.load("double-gauss-50mm"), "precision", 20, rings=4)
 print(hashlib.sha256(study.figures.mtf.tobytes()).hexdigest())
 """
-    import hashlib
 
     one = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True).stdout.strip()
     study = tolerance_study(Lens.load("double-gauss-50mm"), "precision", 20, rings=4)
@@ -333,3 +334,43 @@ def test_better_grades_make_better_lenses(name):
     spread = np.ptp(study.quantiles("focal_length_mm", [0.1, 0.9]))
     assert {"commercial": 0.4, "precision": 0.1, "high": 0.01}[name] < spread
     assert spread < {"commercial": 3.0, "precision": 0.6, "high": 0.1}[name]
+
+
+def command(*words):
+    return subprocess.run(
+        [sys.executable, "-m", "realcam", "lens", "tolerance", *words], capture_output=True, text=True, check=False
+    )
+
+
+def test_the_command_writes_a_report_and_json(tmp_path):
+    report = tmp_path / "report.html"
+    asked = command("tessar-50mm", "--copies", "20", "--grade", "precision", "--seed", "4", "-o", str(report), "--json")
+    assert asked.returncode == 0, asked.stderr
+    told = json.loads(asked.stdout)
+    assert (told["copies"], told["grade"], told["is_whole"]) == (20, "precision", True)
+    study = tolerance_study(Lens.load("tessar-50mm"), "precision", 20, seed=4)
+    assert told["quantiles"]["mtf"]["0.5"] == pytest.approx(study.quantiles("mtf", [0.5])[0])
+    page = report.read_text()
+    assert "Worst offenders" in page and page.count("<tr>") > len(study.items)
+
+
+def test_the_command_prints_what_it_found():
+    asked = command("tessar-50mm", "--copies", "8", "--grade", "high")
+    assert asked.returncode == 0, asked.stderr
+    assert "worst offenders" in asked.stdout and "yield" in asked.stdout
+    assert command("tessar-50mm", "--copies", "8", "--quiet").stdout == ""
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (("--grade", "cheap"), 'unknown grade "cheap"'),
+        (("--copies", "0"), "copies is 0; a whole number from 1"),
+        (("--compensate", "hope"), 'unknown compensator "hope"'),
+        (("-o", "report.doc"), ".html is wanted"),
+    ],
+)
+def test_the_command_names_a_mistake_in_one_line(words, message):
+    asked = command("tessar-50mm", *words)
+    assert asked.returncode != 0
+    assert message in asked.stderr and len(asked.stderr.strip().splitlines()) == 1

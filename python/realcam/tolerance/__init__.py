@@ -3,7 +3,7 @@
 from .compensators import ElementShift
 from .figures import CopyFigures
 from .sensitivities import Sensitivity
-from .study import ToleranceStudy, tolerance_study
+from .study import ToleranceStudy, random_copy, tolerance_study
 from .tolerances import Tolerance, Tolerances
 
 __all__ = [
@@ -13,5 +13,6 @@ __all__ = [
     "Tolerance",
     "ToleranceStudy",
     "Tolerances",
+    "random_copy",
     "tolerance_study",
 ]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import os
+import random
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
@@ -248,6 +249,13 @@ def tolerance_study(
     return ToleranceStudy(
         lens, drawing, items, seed, fields, frequencies, nominal, figures, sizes[:done], done == copies, how, judge
     )
+
+
+def random_copy(lens: Lens, tolerances: Tolerances | str, *, seed: int | None = None) -> Lens:
+    """One copy of a lens with random errors, refocused as in a study. seed: None is another one each time. Raises
+    InputError as tolerance_study does."""
+    drawn_seed = random.SystemRandom().randrange(1 << 32) if seed is None else seed
+    return tolerance_study(lens, tolerances, 1, seed=drawn_seed, rings=6).copy(0)
 
 
 def _judged(

@@ -12,6 +12,7 @@ from .._core import Film, InputError, Lens, LensFileError, Plan, RealcamError
 from ..denoiser import GUIDES
 from ..image import Image
 from ..shot import Shot
+from ..tolerance import random_copy
 from .bench_state import restored
 from .camera_controls import CameraControls, Mount, of_width
 from .comparison import Comparison
@@ -46,6 +47,7 @@ class LensBench:
         self.why_no_denoiser = why_missing(device)
         self.denoises = not self.why_no_denoiser
         self.hovered: tuple[float, float] | None = None
+        self._copied_from, self._copy = self.controls.lens, self.controls.lens
         self.comparison = Comparison()
         self._lock = threading.Lock()  # of controls, which the picture's thread changes, too
         self._frame: Frame | None = None
@@ -163,6 +165,14 @@ class LensBench:
             return with_value(lens, surface, field, wanted)
 
         return self.edit(edited, gesture)
+
+    def another_copy(self, grade: str) -> bool:
+        """The lens with random errors of a grade; a copy is replaced by another one of the same lens."""
+        drawn = self._copied_from if self.controls.lens == self._copy else self.controls.lens
+        if not self.edit(lambda _: random_copy(drawn, grade)):
+            return False
+        self._copied_from, self._copy = drawn, self.controls.lens
+        return True
 
     def undo(self) -> bool:
         return self.history.can_undo and self._step(self.history.undo, self.history.redo)

@@ -127,6 +127,10 @@ def _swap(message: Message, bench: LensBench) -> None:
     bench.edit(lambda lens: lens_edits.swapped(lens, surface, other))
 
 
+def _another_copy(message: Message, bench: LensBench) -> None:
+    bench.another_copy(_text(message, "grade"))
+
+
 def _known(action: Callable[[Message, LensBench], Any]) -> Callable[[Message, LensBench], Any]:
     """An action whose InputErrors report requests that none of our pages sends."""
 
@@ -168,6 +172,7 @@ _ACTIONS: dict[str, Callable[[Message, LensBench], Any]] = {
     "insert": _insert,
     "remove": _remove,
     "swap": _swap,
+    "another_copy": _another_copy,
     "undo": lambda m, bench: bench.undo(),
     "redo": lambda m, bench: bench.redo(),
     "turn": _turn,

@@ -31,6 +31,10 @@ export default {
     <h2>{{ view ? view.title || view.name : "No lens yet" }}</h2>
     <button type="button" @click="send('undo')" :disabled="!history.can_undo" title="Take the last change of the lens back (Ctrl+Z)">Undo</button>
     <button type="button" @click="send('redo')" :disabled="!history.can_redo" title="Do it again (Ctrl+Y)">Redo</button>
+    <label title="Another copy of this lens, with errors as a shop of this grade makes them. Undo goes back to the one before">
+      <select v-model="grade" aria-label="Grade of copies"><option>commercial</option><option>precision</option><option>high</option></select>
+    </label>
+    <button type="button" @click="send('another_copy', { grade })">Another copy</button>
     <label title="Blue faces have their centre of curvature on the film's side, red ones on the object's"><input type="checkbox" v-model="colours"> Signs of radii</label>
     <label title="Pupils, principal planes and focal points"><input type="checkbox" v-model="showsMarks"> Marks</label>
   </div>
@@ -104,7 +108,7 @@ export default {
 </section>`,
   data: () => ({
     view: null, rays: { bundles: [], note: "" }, problem: null, chosen: null, typed: null, dragged: null, box: [0, 0, 1, 1], colours: false, showsMarks: false,
-    history: { can_undo: false, can_redo: false }, figures: FIGURES,
+    history: { can_undo: false, can_redo: false }, grade: "commercial", figures: FIGURES,
   }),
   computed: {
     // As SVG wants them, once for each lens and not for each step of a drag.

@@ -1,0 +1,59 @@
+"""Copies of a triplet with the same errors, judged by Optiland (tools/make_tolerance_peer.py)."""
+
+from __future__ import annotations
+
+import gzip
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+import realcam as rc
+from realcam._core import _CopyJudge
+
+PEER = json.loads(gzip.decompress((Path(__file__).parent / "tolerance_peer.json.gz").read_bytes()))
+
+
+def judged() -> tuple[rc.Lens, np.ndarray]:
+    """(copies, fields, 2): tangential and sagittal MTF."""
+    surfaces, place = [], {}
+    for row, (radius, thickness, index) in enumerate(PEER["rows"]):
+        if row == PEER["stop"]:
+            surfaces.append(rc.Stop(clear_semi_diameter_mm=10))
+        place[row] = len(surfaces)
+        surfaces.append(
+            rc.Surface(
+                radius_of_curvature_mm=radius,
+                thickness_mm=thickness if row + 1 < len(PEER["rows"]) else 0,
+                material=None if index == 1 else index,
+                clear_semi_diameter_mm=12,
+            )
+        )
+    lens = rc.Lens(
+        surfaces=surfaces,
+        film_distance_mm=PEER["rows"][-1][1],
+        wavelength_nm=PEER["wavelength_nm"],
+        allow_crossing=True,
+    )
+    lens = lens.stopped_down(lens.first_order().effective_focal_length_mm / PEER["aperture_mm"])
+    fields = np.column_stack([np.zeros(3), np.deg2rad(PEER["fields_deg"])])
+    colours = np.array([[PEER["wavelength_nm"], 1.0]])
+    judge = _CopyJudge(lens, fields, np.inf, colours, [PEER["frequency_per_mm"]], 16, True, False, None, None)
+    # Optiland counts tilts about x the other way.
+    signs = np.array([1.0 for kind, _ in PEER["errors"]])
+    errors = [(kind, place[row], place[row]) for kind, row in PEER["errors"]]
+    return lens, judge.judge(errors, np.array(PEER["sizes"]) * signs)["mtf"][..., 0]
+
+
+def test_quantiles_of_mtf_are_optilands() -> None:
+    _, ours = judged()
+    theirs = np.array(PEER["mtf"])
+    for share in (0.1, 0.25, 0.5, 0.75, 0.9):
+        mine, true = (np.quantile(mtf.mean((1, 2)), share) for mtf in (ours, theirs))
+        assert mine == pytest.approx(true, rel=0.02)
+
+
+def test_each_copy_is_optilands() -> None:
+    _, ours = judged()
+    theirs = np.array(PEER["mtf"])
+    assert np.corrcoef(ours.ravel(), theirs.ravel())[0, 1] > 0.99
