@@ -15,7 +15,7 @@ import realcam as rc
 
 pytest.importorskip("simplejpeg")
 
-from realcam.viewer import lens_edits, saving
+from realcam.viewer import lens_edits, messages, saving
 from realcam.viewer.camera_controls import CameraControls
 from realcam.viewer.effect_switches import EFFECTS
 from realcam.viewer.lens_bench import LensBench
@@ -503,3 +503,21 @@ def test_a_thickness_is_typed_as_it_is_shown(shot_path: Path) -> None:
             assert lengths[1] - lengths[0] == pytest.approx(more, abs=1e-9)
     finally:
         bench.close()
+
+
+def test_another_copy_is_one_of_the_lens_and_is_undone(bench: LensBench) -> None:
+    drawn = bench.controls.lens
+    messages.perform({"type": "another_copy", "grade": "precision"}, bench)
+    first = bench.controls.lens
+    assert first != drawn
+    assert bench.another_copy("precision")
+    second = bench.controls.lens
+    # Both are of the lens as it was drawn: errors do not add up, but for the limit of 0.1% of each radius.
+    for copy in (first, second):
+        for surface, before in zip(copy.surfaces, drawn.surfaces, strict=True):
+            assert surface.curvature_per_mm == pytest.approx(before.curvature_per_mm, rel=1.01e-3, abs=1e-4)
+    assert first != second
+    assert bench.undo() and bench.controls.lens == first
+    assert bench.undo() and bench.controls.lens == drawn
+    with pytest.raises(messages.BadMessage, match="commercial, precision, high"):
+        messages.perform({"type": "another_copy", "grade": "cheap"}, bench)

@@ -10,6 +10,7 @@ from typing import Any
 
 from .._core import InputError
 from ..json_values import json_value
+from ..tolerance.grades import GRADES
 from . import lens_edits
 from .lens_bench import LensBench
 
@@ -128,7 +129,10 @@ def _swap(message: Message, bench: LensBench) -> None:
 
 
 def _another_copy(message: Message, bench: LensBench) -> None:
-    bench.another_copy(_text(message, "grade"))
+    grade = _text(message, "grade")
+    if grade not in GRADES:
+        raise BadMessage('"grade" is to be one of ' + ", ".join(GRADES))
+    bench.another_copy(grade)
 
 
 def _known(action: Callable[[Message, LensBench], Any]) -> Callable[[Message, LensBench], Any]:
