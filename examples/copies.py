@@ -74,7 +74,7 @@ def main() -> None:
 def label_of(study: rc.ToleranceStudy, number: int, worst: int) -> str:
     """Least and largest MTF of the fields."""
     mtf = study.figures.mtf[number, :, :, study.main].mean(1)
-    return f"{number}: {mtf.min():.2f} to {mtf.max():.2f}{' *' if number == worst else ''}"
+    return f"{number}{'*' if number == worst else ''}: {mtf.min():.2f} to {mtf.max():.2f}"
 
 
 def stars(scene, lens, places_mm, side_mm, distance_m, wanted) -> np.ndarray:
