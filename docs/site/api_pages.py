@@ -21,7 +21,6 @@ GROUPS = {
         "with_better_glasses",
     ),
     "Derivatives": ("Gradient", "RayDerivatives", "ray_derivatives"),
-    "Changing a lens": ("Optimisation", "Targets", "Variable", "optimised"),
     "Tolerances": (
         "Tolerances",
         "tolerance_study",

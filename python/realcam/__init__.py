@@ -85,7 +85,6 @@ from .raw_image import RawImage
 from .render import render
 from .session import ReachedNoise, Session
 from .shot import Shot
-from .variable import Variable
 from .tolerance import (
     CopyFigures,
     ElementShift,
@@ -96,6 +95,7 @@ from .tolerance import (
     random_copy,
     tolerance_study,
 )
+from .variable import Variable
 from .vision import CameraModelFit, camera_json, fit_camera_model, save_camera_json, save_colmap
 
 if TYPE_CHECKING:
@@ -190,15 +190,15 @@ __all__ = [
     "optimised",
     "photographic_figures",
     "plan",
-    "ray_derivatives",
     "random_copy",
+    "ray_derivatives",
     "read_environment",
     "render",
     "save_camera_json",
     "save_colmap",
     "sensor_names",
-    "with_better_glasses",
     "tolerance_study",
+    "with_better_glasses",
 ]
 
 

@@ -10,8 +10,7 @@ import typer
 
 from .._core import InputError
 from ..json_values import json_text
-from . import lens_figures, lens_options, lens_plots, optimise, options
-from . import lens_figures, lens_options, lens_plots, lens_tolerance, options
+from . import lens_figures, lens_options, lens_plots, lens_tolerance, optimise, options
 from .commands_in_cpp import add_command_in_cpp
 from .completions import completion_of
 
