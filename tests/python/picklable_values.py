@@ -76,6 +76,8 @@ MAKERS: dict[str, list[Callable[[], Any]]] = {
     "Camera": [camera, lambda: rc.Camera(lens())],
     "Material": [lambda: rc.Material(), lambda: rc.Material(emission=(1, 0, 0))],
     "Scene": [scene, floor_scene, lambda: scene().moved("chair 1", np.eye(4))],
+    "Meridian": [lambda: lens().meridians()[0], lambda: lens().stopped_down(8).meridians()[0]],
+    "FilmPupil": [lambda: lens().film_pupil(), lambda: lens().film_pupil((0, 9))],
     "Spot": [lambda: lens().spot(10), lambda: lens().spot(10, samples=3), lambda: lens().spot(11)],
     "Wavefront": [lambda: lens().wavefront(10, samples=8), lambda: lens().wavefront(11, samples=8)],
     "PSF": [lambda: lens().psf(10, size=16), lambda: lens().psf(11, size=16), lambda: lens().psf(10, 500, size=16)],

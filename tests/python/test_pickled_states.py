@@ -91,9 +91,9 @@ def test_maps_have_a_place_for_each_ray() -> None:
     assert columns == 8
     for wrong in (7, 1, -8, 10**6):
         assert "it is damaged" in refused(wavefront, (inner, *rest, wrong))
-    (angle, pattern, rays, chief), opd, *others = inner
-    assert "it is damaged" in refused(wavefront, ((((angle, pattern[:1], rays, chief)), opd, *others), *rest, columns))
-    assert "it is damaged" in refused(wavefront, ((((angle, pattern, rays, chief)), opd[:1], *others), *rest, columns))
+    (*field, pattern, rays, chief), opd, *others = inner
+    assert "it is damaged" in refused(wavefront, ((((*field, pattern[:1], rays, chief)), opd, *others), *rest, columns))
+    assert "it is damaged" in refused(wavefront, ((((*field, pattern, rays, chief)), opd[:1], *others), *rest, columns))
 
 
 def test_a_glass_is_made_as_others_are() -> None:

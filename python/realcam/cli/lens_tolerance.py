@@ -82,7 +82,9 @@ def tolerance(
     wanted = 0.5 * study.nominal_measure("lowest_mtf") if at_least is None else at_least
     share = study.yield_of(lowest_mtf=wanted)
     if output is not None:
-        study.save_report(output, theme=theme)
+        from ..tolerance.report import save_tolerance_report  # brings matplotlib
+
+        save_tolerance_report(study, output, theme=theme)
     if as_json:
         typer.echo(json_text({**study.summary(), "grade": grade, "yield": {"lowest_mtf": wanted, "share": share}}))
         return

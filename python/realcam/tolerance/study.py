@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import os
 import random
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
@@ -130,12 +129,6 @@ class ToleranceStudy:
 
         Raises InputError. One that costs less however large has the limit inf."""
         return inverse_sensitivities(self._judge, self.items, self.nominal, self.main, loss)
-
-    def save_report(self, path: str | os.PathLike[str], *, theme: str | None = None) -> None:
-        """Writes .html or .pdf: distributions, yield, worst offenders and tables. Raises ImageFileError."""
-        from .report import save_tolerance_report  # brings matplotlib
-
-        save_tolerance_report(self, path, theme=theme)
 
     def summary(self) -> dict[str, Any]:
         """The study as plain values, for JSON."""
