@@ -19,9 +19,9 @@
 namespace realcam::io {
 namespace {
 
-class Writer {
+class TomlWriter {
 public:
-    explicit Writer(const LensSystem& lens) : lens_(lens) {}
+    explicit TomlWriter(const LensSystem& lens) : lens_(lens) {}
 
     std::string write() {
         for (const Surface& surface : lens_.surfaces) write_surface(surface);
@@ -274,7 +274,7 @@ std::string exact_number(double value) {
 }
 
 std::string lens_as_toml(const LensSystem& lens) {
-    return Writer(lens).write();
+    return TomlWriter(lens).write();
 }
 
 LensText lens_text_for(const LensSystem& lens, const std::string& path) {

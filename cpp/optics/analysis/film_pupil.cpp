@@ -83,7 +83,7 @@ std::vector<std::array<Vec2<double>, 2>> outline_of(const FilmPointLight& light,
 
 FilmPupil film_pupil(const LensSystem& lens, double wavelength_nm, Vec2<double> film, const RayLoop& loop) {
     constexpr int kSpokes = 128;
-    if (!chief_ray_of_film_point(FilmRays(lens, wavelength_nm), film)) return {};
+    if (!chief_ray_of_film_point(RaysFromFilm(lens, wavelength_nm), film)) return {};
     const FilmPointLight light(lens, wavelength_nm, film);
     const std::vector<LitSpoke> spokes = lit_spokes(light, kSpokes, loop);
     double squares = 0;

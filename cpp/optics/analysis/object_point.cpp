@@ -78,7 +78,7 @@ void ObjectPoint::set_by_chief_ray(const LensSystem& lens, const FieldPoint& fie
     // In the frame of the camera. It is the film, not the front surface, from which a lens is focused.
     const double plane =
         field.object_distance ? -object_distance_of(lens, field) : camera_film_position(lens) - lens.focus_distance;
-    const FilmRays rays(lens, lens.wavelength_nm);
+    const RaysFromFilm rays(lens, lens.wavelength_nm);
     const std::optional<ChiefRay> chief =
         field.film ? chief_ray_of_film_point(rays, *field.film) : chief_ray_of_angle(rays, field.angle_rad);
     if (!chief)

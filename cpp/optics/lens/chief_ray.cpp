@@ -13,7 +13,7 @@
 
 namespace realcam {
 
-FilmRays::FilmRays(const LensSystem& lens, double wavelength_nm)
+RaysFromFilm::RaysFromFilm(const LensSystem& lens, double wavelength_nm)
     : ends_(film_path_ends(lens, LightDirection::to_scene)),
       path_(lens, LightDirection::to_scene, wavelength_nm, ends_),
       open_(AimingPath::open(path_)),
@@ -27,11 +27,11 @@ FilmRays::FilmRays(const LensSystem& lens, double wavelength_nm)
     if (ends_.entry) frame_of_last_ = inverse_motion(*ends_.entry) * surface_frames(lens).surfaces.back();
 }
 
-Vec3d FilmRays::film_point(Vec2<double> film) const {
+Vec3d RaysFromFilm::film_point(Vec2<double> film) const {
     return FilmSurface<double>{film_distance_, film_curvature_}.place(film);
 }
 
-Vec3d FilmRays::on_last_surface(Vec2<double> share) const {
+Vec3d RaysFromFilm::on_last_surface(Vec2<double> share) const {
     const double x = last_.clear_semi_diameter * share.x, y = last_.clear_semi_diameter * share.y;
     const double sag = last_.sag(x, y);
     return frame_of_last_.point({x, y, std::isfinite(sag) ? sag : 0.0});
@@ -42,7 +42,7 @@ namespace {
 /// Directions, as optical cosines l and m, from one film point to the stop.
 class StopAim {
 public:
-    StopAim(const FilmRays& rays, Vec3d film) : rays_(rays), film_(film) {}
+    StopAim(const RaysFromFilm& rays, Vec3d film) : rays_(rays), film_(film) {}
 
     template <int N>
     LensRays<double, N> from_film(const Vec2<double> (&cosines)[N]) const {
@@ -121,12 +121,12 @@ private:
         return {low, high};
     }
 
-    const FilmRays& rays_;
+    const RaysFromFilm& rays_;
     Vec3d film_;
 };
 
 /// From a direction on, by Newton's method; nothing where it leads to no ray that leaves the lens.
-std::optional<ChiefRay> followed(const FilmRays& rays, const StopAim& aim, Vec3d film, Vec2<double> at) {
+std::optional<ChiefRay> followed(const RaysFromFilm& rays, const StopAim& aim, Vec3d film, Vec2<double> at) {
     constexpr int kMostSteps = 40, kMostHalvings = 24;
     // Through aspheres rounding leaves more than through spheres; what is not near enough then is no ray.
     const double close = 1e-11 * rays.stop_radius(), near_enough = 1e-7 * rays.stop_radius();
@@ -157,7 +157,7 @@ std::optional<ChiefRay> followed(const FilmRays& rays, const StopAim& aim, Vec3d
 
 }  // namespace
 
-std::optional<ChiefRay> chief_ray_of_film_point(const FilmRays& rays, Vec2<double> film) {
+std::optional<ChiefRay> chief_ray_of_film_point(const RaysFromFilm& rays, Vec2<double> film) {
     const Vec3d from = rays.film_point(film);
     const StopAim aim(rays, from);
     // Rays far beyond the rims may come to the middle of the stop by other ways than the lens's image.
@@ -176,7 +176,7 @@ Vec2<double> direction_error(const ChiefRay& ray, double angle_rad) {
 }
 
 /// Newton's method in the film point, with differences.
-std::optional<ChiefRay> chief_ray_at(const FilmRays& rays, Vec2<double>& film, double angle_rad) {
+std::optional<ChiefRay> chief_ray_at(const RaysFromFilm& rays, Vec2<double>& film, double angle_rad) {
     constexpr int kMost = 20;
     constexpr double kClose = 1e-13, kStep = 1e-5;
     std::optional<ChiefRay> best;
@@ -203,7 +203,7 @@ std::optional<ChiefRay> chief_ray_at(const FilmRays& rays, Vec2<double>& film, d
 
 }  // namespace
 
-std::optional<ChiefRay> chief_ray_of_angle(const FilmRays& rays, double angle_rad) {
+std::optional<ChiefRay> chief_ray_of_angle(const RaysFromFilm& rays, double angle_rad) {
     constexpr double kLargest = 0.09;  // rad
     const int steps = std::max(1, static_cast<int>(std::ceil(std::fabs(angle_rad) / kLargest)));
     Vec2<double> film{0, 0};

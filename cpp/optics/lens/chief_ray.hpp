@@ -10,9 +10,9 @@ namespace REALCAM_NAMESPACE {
 ///
 /// They begin in the frame of the film, whose vertex stands at `film_distance` on its z axis, and end in that of the
 /// camera (film_path_ends). The two are the frames of the last and of the front vertex where the lens is centred.
-class FilmRays {
+class RaysFromFilm {
 public:
-    FilmRays(const LensSystem& lens, double wavelength_nm);
+    RaysFromFilm(const LensSystem& lens, double wavelength_nm);
 
     double film_index() const { return path_.entry_index; }
     double scene_index() const { return scene_index_; }
@@ -57,10 +57,10 @@ struct ChiefRay {
 
 /// Nothing where no ray is found: Newton's method, begun with the ray that comes nearest to the stop's middle of a grid
 /// of those to the last surface.
-std::optional<ChiefRay> chief_ray_of_film_point(const FilmRays& rays, Vec2<double> film);
+std::optional<ChiefRay> chief_ray_of_film_point(const RaysFromFilm& rays, Vec2<double> film);
 
 /// The chief ray that comes at an angle to the camera's axis, in its y-z plane: above 0 light rises towards +y. It is
 /// followed from the middle of the film in steps of at most 5 degrees.
-std::optional<ChiefRay> chief_ray_of_angle(const FilmRays& rays, double angle_rad);
+std::optional<ChiefRay> chief_ray_of_angle(const RaysFromFilm& rays, double angle_rad);
 
 }  // namespace REALCAM_NAMESPACE

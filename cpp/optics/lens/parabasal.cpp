@@ -33,7 +33,7 @@ using FilmFan = LensRays<double, kInputs * kOffsets>;
 
 /// Rays beside the chief ray, in each input by steps: of the derivative by four of them the errors are of the fourth
 /// order of the step.
-FilmFan fan_of(const FilmRays& rays, const Across& film, const std::array<double, kInputs>& steps) {
+FilmFan fan_of(const RaysFromFilm& rays, const Across& film, const std::array<double, kInputs>& steps) {
     const double n = rays.film_index();
     FilmFan fan;
     for (int i = 0; i < kInputs; ++i)
@@ -83,7 +83,7 @@ double largest(const Matrix2& m) {
 }  // namespace
 
 ParabasalRays parabasal_rays(const LensSystem& lens, double wavelength_nm, Vec2<double> film_point) {
-    const FilmRays rays(lens, wavelength_nm);
+    const RaysFromFilm rays(lens, wavelength_nm);
     const std::optional<ChiefRay> chief = chief_ray_of_film_point(rays, film_point);
     if (!chief) fail(lens);
     const Across film(chief->film, chief->film_direction), scene(chief->scene, chief->scene_direction);

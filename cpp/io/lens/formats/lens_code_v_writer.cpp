@@ -12,9 +12,9 @@
 namespace realcam::io {
 namespace {
 
-class Writer {
+class CodeVWriter {
 public:
-    explicit Writer(const LensSystem& lens) : lens_(lens) {}
+    explicit CodeVWriter(const LensSystem& lens) : lens_(lens) {}
 
     LensText write() {
         result_.warnings = left_out_of_foreign_files(lens_, "CODE V");
@@ -151,7 +151,7 @@ std::vector<Glass::TablePoint> indices_at_lines(const Glass& glass, double wavel
 }
 
 LensText lens_as_code_v(const LensSystem& lens) {
-    return Writer(lens).write();
+    return CodeVWriter(lens).write();
 }
 
 }  // namespace realcam::io

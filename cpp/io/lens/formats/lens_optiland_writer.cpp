@@ -17,9 +17,9 @@
 namespace realcam::io {
 namespace {
 
-class Writer {
+class OptilandWriter {
 public:
-    explicit Writer(const LensSystem& lens) : lens_(lens) {}
+    explicit OptilandWriter(const LensSystem& lens) : lens_(lens) {}
 
     LensText write() {
         result_.warnings = left_out_of_foreign_files(lens_, "Optiland");
@@ -291,7 +291,7 @@ private:
 }  // namespace
 
 LensText lens_as_optiland(const LensSystem& lens) {
-    return Writer(lens).write();
+    return OptilandWriter(lens).write();
 }
 
 }  // namespace realcam::io

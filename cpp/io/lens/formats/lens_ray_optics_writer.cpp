@@ -16,9 +16,9 @@ namespace {
 
 constexpr double kFarAway = 1e10;  // ray-optics' infinity
 
-class Writer {
+class RayOpticsWriter {
 public:
-    explicit Writer(const LensSystem& lens) : lens_(lens) {}
+    explicit RayOpticsWriter(const LensSystem& lens) : lens_(lens) {}
 
     LensText write() {
         result_.warnings = left_out_of_foreign_files(lens_, "ray-optics");
@@ -314,7 +314,7 @@ private:
 }  // namespace
 
 LensText lens_as_ray_optics(const LensSystem& lens) {
-    return Writer(lens).write();
+    return RayOpticsWriter(lens).write();
 }
 
 }  // namespace realcam::io

@@ -11,9 +11,9 @@
 namespace realcam::io {
 namespace {
 
-class Writer {
+class ZemaxWriter {
 public:
-    explicit Writer(const LensSystem& lens) : lens_(lens) {}
+    explicit ZemaxWriter(const LensSystem& lens) : lens_(lens) {}
 
     LensText write() {
         result_.warnings = left_out_of_foreign_files(lens_, "Zemax");
@@ -207,7 +207,7 @@ std::vector<std::string> left_out_of_foreign_files(const LensSystem& lens, const
 }
 
 LensText lens_as_zemax(const LensSystem& lens) {
-    return Writer(lens).write();
+    return ZemaxWriter(lens).write();
 }
 
 }  // namespace realcam::io
