@@ -390,7 +390,7 @@ class Ghost(_Value):
     def share(self) -> float | None: ...
 
 @final
-class FilmPupil:
+class FilmPupil(_LargeValue):
     @property
     def irradiance(self) -> float: ...
     @property

@@ -24,6 +24,7 @@ UNHASHABLE = {
     "RayBundle",
     "Seidel",
     "AimedRays",
+    "FilmPupil",
     "TraceResult",
     "CameraRays",
     "Image",

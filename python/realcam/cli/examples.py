@@ -26,6 +26,10 @@ EXAMPLES: dict[str, tuple[str, ...]] = {
         "realcam lens optimise tessar-50mm -o sharper.toml",
         "realcam lens optimise mine.zmx -o better.zmx --vary radii --vary thickness:3 --field 0 --field 14 --glasses",
     ),
+    "lens tolerance": (
+        "realcam lens tolerance double-gauss-50mm --f-number 2.8 --grade commercial -o report.html",
+        "realcam lens tolerance mine.toml --copies 200 --compensate refocus,film_tilt --json",
+    ),
     "sensor list": ("realcam sensor list",),
     "sensor info": ("realcam sensor info sony-imx071-color",),
     "expose": (

@@ -1,0 +1,53 @@
+"""The picture of docs/any-lens.md: the demo scene through lenses that are not of revolution."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import realcam as rc
+from realcam.sheet import save_sheet
+
+ROOT = Path(__file__).resolve().parents[1]
+HEIGHT = 240
+
+
+def save_pictures(path: Path) -> None:
+    shot = rc.Shot.load(ROOT / "scenes" / "demo.toml")
+    plain, focus_m = shot.camera.lens, shot.camera.lens.focus_distance_m
+
+    def through(lens: rc.Lens, width_mm: float, height_mm: float, squeeze: float = 1.0, stops: float = 0.0) -> rc.Image:
+        """With pixels as wide as an anamorphic picture is stretched by."""
+        film = rc.Film(width_mm, height_mm, (round(HEIGHT * squeeze * width_mm / height_mm), HEIGHT))
+        camera = rc.Camera(
+            lens,
+            film=film,
+            position=shot.camera.position,
+            look_at=shot.camera.look_at,
+            exposure_time_s=shot.camera.exposure_time_s,
+            iso=shot.camera.iso * 2**stops,
+        )
+        return rc.render(shot.scene, camera, effects=(), spp=512)
+
+    def loaded(name: str) -> rc.Lens:
+        return rc.Lens.load(ROOT / "examples" / "lenses" / f"{name}.toml")
+
+    slower = plain.stopped_down(2.8)
+    pictures = [
+        ("Double Gauss 50 mm", through(plain, 36, 24)),
+        (
+            "Anamorphic converter before a Tessar 50 mm",
+            through(loaded("scope-adapter-50mm").focused(focus_m), 30, 24, 1.327, 1),
+        ),
+        ("Periscope before a Tessar 50 mm", through(loaded("periscope-50mm").focused(focus_m), 36, 24, stops=1)),
+        ("Double Gauss tilted by 8 degrees: a wedge is sharp", through(slower.tilted(y_deg=8), 36, 24, stops=1)),
+        ("Double Gauss shifted by 6 mm", through(plain.shifted(y_mm=6), 36, 24)),
+        ("Human eye, with its curved retina", through(loaded("eye-22mm"), 16, 10.7, stops=2)),
+    ]
+    save_sheet(pictures, path, columns=2)
+
+
+if __name__ == "__main__":
+    if len(sys.argv) != 2:
+        sys.exit("usage: python tools/any_lens_picture.py PICTURE")
+    save_pictures(Path(sys.argv[1]))
