@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hypotenuse.hpp"
 #include "vec3.hpp"
 
 namespace REALCAM_NAMESPACE {
@@ -41,7 +42,7 @@ struct SingularValues {
 inline SingularValues singular_values(const Matrix2& m) {
     const double e = 0.5 * (m.first.x + m.second.y), f = 0.5 * (m.first.x - m.second.y);
     const double g = 0.5 * (m.second.x + m.first.y), h = 0.5 * (m.second.x - m.first.y);
-    const double q = std::hypot(e, h), r = std::hypot(f, g);
+    const double q = hypotenuse(e, h), r = hypotenuse(f, g);
     const double difference = r == 0 ? 0 : std::atan2(g, f), sum = q == 0 ? 0 : std::atan2(h, e);
     return {q + r, q - r, 0.5 * (sum + difference), 0.5 * (difference - sum)};
 }

@@ -164,6 +164,12 @@ def test_device_code_neither_allocates_nor_throws() -> None:
     fail_for(uses(headers, NOT_ON_DEVICE, "runs on devices, and uses"))
 
 
+def test_wheels_do_not_ask_for_a_newer_system() -> None:
+    """glibc has had its hypot of two numbers since 2.35 alone: math/hypotenuse.hpp has one that is as good."""
+    others = (path for path in SOURCES if path.name != "hypotenuse.hpp")
+    fail_for(uses(others, r"std::hypot\([^,;]*,[^,;]*\)", "calls std::hypot of two numbers"))
+
+
 def test_one_folder_knows_embree() -> None:
     fail_for(uses((path for path in SOURCES if folder_of(path) != "embree"), NOT_IN_CORE["Embree"], "knows Embree"))
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "../../math/hypotenuse.hpp"
 #include "../lens/parabasal.hpp"
 #include "../pupil/bundle_quadrature.hpp"
 #include "../pupil/film_surface.hpp"
@@ -30,8 +31,8 @@ public:
         const Vec3d x = film_.direction(at, {1, 0, 0}), y = film_.direction(at, {0, 1, 0});
         const Vec3d chief = -path_.entry_index * rays.chief.film_direction;
         middle = {dot(chief, x), dot(chief, y)};
-        reach = {radius * std::hypot(by_stop.first.x, by_stop.first.y),
-                 radius * std::hypot(by_stop.second.x, by_stop.second.y)};
+        reach = {radius * hypotenuse(by_stop.first.x, by_stop.first.y),
+                 radius * hypotenuse(by_stop.second.x, by_stop.second.y)};
     }
 
     template <int N>

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "../../math/hypotenuse.hpp"
 #include "../pupil/bundle_quadrature.hpp"
 #include "best_focus.hpp"
 #include "parabasal.hpp"
@@ -30,8 +31,8 @@ public:
           inverse_distance_(inverse_distance) {
         const double n = path_.entry_index, radius = std::min(lens.stop_semi_diameter, lens.stop().clear_semi_diameter);
         const Matrix2 entry = (rays.stop_by_place + n * inverse_distance * rays.stop_by_direction).inverse();
-        reach = {radius * std::hypot(entry.first.x, entry.first.y),
-                 radius * std::hypot(entry.second.x, entry.second.y)};
+        reach = {radius * hypotenuse(entry.first.x, entry.first.y),
+                 radius * hypotenuse(entry.second.x, entry.second.y)};
     }
 
     template <int N>

@@ -5,6 +5,8 @@
 #include <complex>
 #include <numbers>
 
+#include "../../math/hypotenuse.hpp"
+
 namespace realcam {
 
 FieldSpot::Square FieldSpot::square() const {
@@ -39,7 +41,7 @@ double FieldSpot::contrast(double shift, Vec2<double> along, double frequency) c
         real += ray.weight * std::cos(phase);
         imaginary += ray.weight * std::sin(phase);
     }
-    return std::hypot(real, imaginary);
+    return hypotenuse(real, imaginary);
 }
 
 void FieldSpot::add_contrast(double shift, double step, Vec2<double> along, double frequency,

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "../../math/hypotenuse.hpp"
 #include "../../math/least_squares.hpp"
 
 namespace realcam {
@@ -16,7 +17,7 @@ constexpr int kPlanes = 49;  ///< an eighth of the depth of focus from each othe
 double reach_of(const std::vector<FieldSpot>& spots) {
     double reach = 0;
     for (const FieldSpot& spot : spots)
-        if (!spot.rays.empty()) reach = std::max(reach, std::hypot(spot.chief_at(0).x, spot.chief_at(0).y));
+        if (!spot.rays.empty()) reach = std::max(reach, hypotenuse(spot.chief_at(0).x, spot.chief_at(0).y));
     return reach > 0 ? reach : 1;
 }
 
