@@ -21,11 +21,10 @@ public:
     bool mirrored = false;
     Entry middle, reach;
 
-    FilmPointLight(const LensSystem& lens, double wavelength_nm, Vec2<double> at)
+    FilmPointLight(const LensSystem& lens, double wavelength_nm, Vec2<double> at, const ParabasalRays& rays)
         : path_(lens, LightDirection::to_scene, wavelength_nm, film_path_ends(lens, LightDirection::to_scene)),
           film_{lens.film_distance, 1 / lens.film_radius_of_curvature},
           at_(at) {
-        const ParabasalRays rays = parabasal_rays(lens, wavelength_nm, at);
         const double radius = std::min(lens.stop_semi_diameter, lens.stop().clear_semi_diameter);
         const Matrix2 by_stop = rays.stop_by_film_direction.inverse();
         const Vec3d x = film_.direction(at, {1, 0, 0}), y = film_.direction(at, {0, 1, 0});
@@ -84,8 +83,10 @@ std::vector<std::array<Vec2<double>, 2>> outline_of(const FilmPointLight& light,
 
 FilmPupil film_pupil(const LensSystem& lens, double wavelength_nm, Vec2<double> film, const RayLoop& loop) {
     constexpr int kSpokes = 128;
-    if (!chief_ray_of_film_point(RaysFromFilm(lens, wavelength_nm), film)) return {};
-    const FilmPointLight light(lens, wavelength_nm, film);
+    const RaysFromFilm rays(lens, wavelength_nm);
+    const std::optional<ChiefRay> chief = chief_ray_of_film_point(rays, film);
+    if (!chief) return {};
+    const FilmPointLight light(lens, wavelength_nm, film, parabasal_rays(lens, rays, *chief));
     const std::vector<LitSpoke> spokes = lit_spokes(light, kSpokes, loop);
     double squares = 0;
     for (const LitSpoke& spoke : spokes)

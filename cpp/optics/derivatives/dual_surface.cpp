@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "../lens/lens_tilts.hpp"
 #include "../prescription/form_terms.hpp"
 
 namespace realcam {

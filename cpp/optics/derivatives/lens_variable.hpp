@@ -35,11 +35,6 @@ struct LensVariable {
     bool operator==(const LensVariable&) const = default;
 };
 
-/// Whether a surface alone is moved by its placement, or by one that it is about to get.
-inline bool moves_alone(const Surface& surface) {
-    return surface.placement.returns || surface.placement.is_in_place();
-}
-
 /// Throws InputError for a surface or number that the lens has not, and for variables without an effect.
 void check_variables(const LensSystem& lens, const std::vector<LensVariable>& variables);
 

@@ -16,10 +16,6 @@ void put_before(Surface& surface, const Affine<double>& motion, bool goes_on) {
     own.returns = !goes_on;
 }
 
-bool moves_alone(const Surface& surface) {
-    return surface.placement.returns || surface.placement.is_in_place();
-}
-
 bool goes_on(const Surface& surface) {
     return !surface.placement.returns || surface.placement.is_in_place();
 }

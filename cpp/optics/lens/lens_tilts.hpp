@@ -3,6 +3,11 @@
 
 namespace REALCAM_NAMESPACE {
 
+/// Whether a surface alone is moved by its placement, or by one that it is about to get.
+inline bool moves_alone(const Surface& surface) {
+    return surface.placement.returns || surface.placement.is_in_place();
+}
+
 /// Moves surfaces `first` to `last`, counted from 0, together as one rigid piece; all others and the film stay in their
 /// places. The motion is seen from the axis in front of the first surface. Throws InputError where placements that the
 /// surfaces have leave no room for another.

@@ -86,10 +86,14 @@ ParabasalRays parabasal_rays(const LensSystem& lens, double wavelength_nm, Vec2<
     const RaysFromFilm rays(lens, wavelength_nm);
     const std::optional<ChiefRay> chief = chief_ray_of_film_point(rays, film_point);
     if (!chief) fail(lens);
-    const Across film(chief->film, chief->film_direction), scene(chief->scene, chief->scene_direction);
+    return parabasal_rays(lens, rays, *chief);
+}
+
+ParabasalRays parabasal_rays(const LensSystem& lens, const RaysFromFilm& rays, const ChiefRay& chief) {
+    const Across film(chief.film, chief.film_direction), scene(chief.scene, chief.scene_direction);
     // First with tiny steps, which tell how far a ray moves on the stop. Then with such that it moves by a thousandth.
     std::array<double, kInputs> steps{1e-6, 1e-6, 1e-6, 1e-6};
-    ParabasalRays found{*chief, {}, {}, {}, {}, {}, {}, {}, {}};
+    ParabasalRays found{chief, {}, {}, {}, {}, {}, {}, {}, {}};
     for (int pass = 0; pass < 2; ++pass) {
         FilmFan at_stop = fan_of(rays, film, steps);
         rays.to_stop(at_stop);

@@ -17,6 +17,9 @@ struct ParabasalRays {
     Matrix2 stop_by_film_place, stop_by_film_direction;  ///< and on the film's
 };
 
+/// About a chief ray that is known already. Throws InputError where rays beside it do not leave the lens.
+ParabasalRays parabasal_rays(const LensSystem& lens, const RaysFromFilm& rays, const ChiefRay& chief);
+
 /// Throws InputError where no chief ray of that film point is found.
 ParabasalRays parabasal_rays(const LensSystem& lens, double wavelength_nm, Vec2<double> film = {0, 0});
 

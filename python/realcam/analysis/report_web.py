@@ -8,7 +8,7 @@ import re
 import matplotlib
 from matplotlib.transforms import Bbox
 
-from ..drawing.web_page import colour_variables, inline_svg
+from ..drawing.web_page import inline_svg, page_top
 from .report_facts import ReportFacts
 from .report_plots import PAGE_IN, PLOTS_TOP, ReportPlots
 
@@ -58,14 +58,7 @@ def page_of(facts: ReportFacts, plots: ReportPlots, theme: str | None) -> bytes:
     figures = "\n".join(
         f"<tr><th scope='row'>{html.escape(name)}</th><td>{html.escape(text)}</td></tr>" for name, text in facts.figures
     )
-    return f"""<!doctype html>
-<html lang="en">
-<meta charset="utf-8">
-<meta name="viewport" content="width=device-width">
-<title>{title}</title>
-<style>
-{colour_variables(theme)}{STYLE}</style>
-<h1>{title}</h1>
+    return f"""{page_top(title, STYLE, theme)}
 <p>{source}</p>
 <section>
 {drawing}

@@ -234,7 +234,7 @@ def convert(
     pbrt_thickness: lens_options.PbrtThickness = None,
     quiet: options.Quiet = False,
 ) -> None:
-    """Write a lens as a file of realcam (.toml), Zemax (.zmx) or CODE V (.seq)."""
+    """Write a lens as a file of realcam (.toml), Zemax (.zmx), CODE V (.seq), Optiland (.json) or ray-optics."""
     lens_options.check_not_the_lens(output, name)
     options.lens(name, zoom=zoom, glass=glass, force=force, pbrt_thickness=pbrt_thickness).save(output)
     options.say_written(output, quiet)

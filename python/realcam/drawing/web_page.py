@@ -21,6 +21,18 @@ def inline_svg(figure: Figure, salt: str, crop: Bbox | None = None) -> str:
     return text
 
 
+def page_top(title: str, style: str, theme: str | None) -> str:
+    """The beginning of a page, up to its heading. title: escaped. style: CSS, which may use the colours' variables."""
+    return f"""<!doctype html>
+<html lang="en">
+<meta charset="utf-8">
+<meta name="viewport" content="width=device-width">
+<title>{title}</title>
+<style>
+{colour_variables(theme)}{style}</style>
+<h1>{title}</h1>"""
+
+
 def colour_variables(theme: str | None) -> str:
     """CSS that gives the variables their values, and paper the light ones. theme: None follows the browser."""
     light, dark = (_declared(name) for name in ("light", "dark"))

@@ -12,7 +12,7 @@ from .. import files
 from .._core import ImageFileError
 from ..analysis import style
 from ..drawing.themes import theme_named
-from ..drawing.web_page import colour_variables, inline_svg
+from ..drawing.web_page import inline_svg, page_top
 from .plots import MEASURES, study_figure, with_limit
 from .study import SHARES, ToleranceStudy
 
@@ -71,14 +71,7 @@ def page_of(study: ToleranceStudy, theme: str | None, loss: float) -> str:
         ["tolerance", "mean MTF −", "+", "worst field −", "+", "spot / µm", "focal length / mm", "may be"], rows
     )
     whole = "" if study.is_whole else " The study was ended before all copies were looked at."
-    return f"""<!doctype html>
-<html lang="en">
-<meta charset="utf-8">
-<meta name="viewport" content="width=device-width">
-<title>{title}</title>
-<style>
-{colour_variables(theme)}{STYLE}</style>
-<h1>{title}</h1>
+    return f"""{page_top(title, STYLE, theme)}
 <p>{len(study)} copies, seed {study.seed}; {html.escape(_compensators(study))}.{whole}</p>
 {figure}
 <h2>Copies</h2>

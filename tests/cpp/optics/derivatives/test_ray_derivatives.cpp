@@ -8,6 +8,7 @@
 #include "doctest/doctest.h"
 #include "form_oracle.hpp"
 #include "optics/derivatives/dual_path.hpp"
+#include "optics/lens/lens_tilts.hpp"
 #include "refusal.hpp"
 #include "traced_ray.hpp"
 
