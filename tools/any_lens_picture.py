@@ -29,20 +29,17 @@ def save_pictures(path: Path) -> None:
         )
         return rc.render(shot.scene, camera, effects=(), spp=512)
 
-    def loaded(name: str) -> rc.Lens:
-        return rc.Lens.load(ROOT / "examples" / "lenses" / f"{name}.toml")
-
     slower = plain.stopped_down(2.8)
     pictures = [
         ("Double Gauss 50 mm", through(plain, 36, 24)),
         (
             "Anamorphic converter before a Tessar 50 mm",
-            through(loaded("scope-adapter-50mm").focused(focus_m), 30, 24, 1.327, 1),
+            through(rc.Lens.load("scope-adapter-50mm").focused(focus_m), 30, 24, 1.327, 1),
         ),
-        ("Periscope before a Tessar 50 mm", through(loaded("periscope-50mm").focused(focus_m), 36, 24, stops=1)),
+        ("Periscope before a Tessar 50 mm", through(rc.Lens.load("periscope-50mm").focused(focus_m), 36, 24, stops=1)),
         ("Double Gauss tilted by 8 degrees: a wedge is sharp", through(slower.tilted(y_deg=8), 36, 24, stops=1)),
         ("Double Gauss shifted by 6 mm", through(plain.shifted(y_mm=6), 36, 24)),
-        ("Human eye, with its curved retina", through(loaded("eye-22mm"), 16, 10.7, stops=2)),
+        ("Human eye, with its curved retina", through(rc.Lens.load("eye-22mm"), 16, 10.7, stops=2)),
     ]
     save_sheet(pictures, path, columns=2)
 

@@ -14,8 +14,8 @@ from matplotlib.axes import Axes
 from matplotlib.collections import QuadMesh
 from matplotlib.colors import LogNorm
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
-from float32_error import LIMIT_UM, ImagePointErrors, image_point_errors, rays_over_film_and_pupil
+sys.path.insert(0, str(Path(__file__).parents[1]))
+from tests.float32_error import LIMIT_UM, ImagePointErrors, image_point_errors, rays_over_film_and_pupil
 
 COLUMNS = 5
 STOP_BANDS = 24

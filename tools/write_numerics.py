@@ -21,9 +21,10 @@ from pathlib import Path
 
 import measurements
 import numerics_plot
-import realcam as rc
 from measurements import Figure, Run
 from tabulate import tabulate
+
+from tests.centred_lenses import CENTRED
 
 PAGE = Path(__file__).parents[1] / "docs" / "generated" / "numerics.md"
 PLOT = Path("images") / "float32-error.png"
@@ -178,7 +179,7 @@ def main() -> None:
         raise SystemExit(f"write_numerics: {error}") from error
     figures = [figure for of_file, _ in read for figure in of_file]
     runs = list(dict.fromkeys(run for _, of_file in read for run in of_file))
-    count = numerics_plot.save_error_plot(options.lens or rc.lens_names(), options.page.parent / PLOT)
+    count = numerics_plot.save_error_plot(options.lens or CENTRED, options.page.parent / PLOT)
     options.page.write_text(page(figures, runs, PLOT_TEXT.format(plot=PLOT.as_posix(), count=count)), encoding="utf-8")
 
 

@@ -109,8 +109,8 @@ py::array make_film_points(const LensSystem& lens, double field_deg, std::int64_
         const Unlocked unlocked;
         const PointBundle bundle(lens, wavelength, field, distance, parallel_ray_loop(heed_signals), kBundleLook);
         return find_film_points(lens, wavelength, bundle, pattern == "even" ? EntryPattern::even : EntryPattern::grid,
-                                type.itemsize() == 8 ? Precision::float64 : Precision::float32, count, distance, to,
-                                heed_signals);
+                                type.itemsize() == 8 ? Precision::float64 : Precision::float32, count, bundle.plane(),
+                                to, heed_signals);
     }();
     return points[py::slice(0, static_cast<py::ssize_t>(passed), 1)].cast<py::array>();
 }

@@ -65,19 +65,23 @@ def fields_along(lens: Lens, shares: Sequence[float], axis: int) -> tuple[Field,
     """
     if not all(-1 <= share <= 1 for share in shares):
         raise InputError("fields are shares of the film's side: numbers from -1 to 1 are wanted")
+    probes = _PROBES if axis == 1 else _PROBES[:, ::-1]
+    from_middle = np.abs(probes[:, axis])
     fields = []
     for share in shares:
         height = share * 0.5 * lens.film_mm[axis]
         for _ in range(20):  # the light may end before the film's edge
             place = (height, 0.0) if axis == 0 else (0.0, height)
             try:
-                way = lens.aim([[0.0, 0.0]], film_mm=place).directions[0]
+                rays = lens.aim(probes, film_mm=place)
             except InputError:
-                height *= 0.95
-                continue
-            if np.isfinite(way).all():
+                rays = None
+            if rays is not None and (rays.status == RayStatus.OK).any():
+                # The chief ray, or the one closest to it where the middle of the pupil is obstructed.
+                closest = np.argmin(np.where(rays.status == RayStatus.OK, from_middle, np.inf))
+                way = rays.directions[closest]
                 angle = math.degrees(math.atan2(way[axis], way[2]))
-                fields.append(Field(angle, height, share))
+                fields.append(Field(round(angle, 9) + 0.0, height, share))  # an axis of -1e-23 is one of 0
                 break
             height *= 0.95
     if not fields:

@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 import realcam as rc
 
+from ..centred_lenses import CENTRED
 from . import scenes, yardsticks
 
-LENSES = rc.lens_names()
+LENSES = CENTRED
 MODELS = ("pinhole", "thin", "thick", "full")
 # One of each kind: sums by force take seconds.
 UNLIKE = (

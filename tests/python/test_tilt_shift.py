@@ -104,6 +104,22 @@ def test_the_plane_in_focus_turns_by_scheimpflugs_rule(tilt):
     assert angles[0] == pytest.approx(angles[1], abs=0.1)
 
 
+def test_the_hinge_of_the_view_camera():
+    """H. M. Merklinger, 1993: wherever such a camera is focused, its plane in focus meets the front focal plane at
+    f / tan(tilt) below the axis. Narrow bundles close to the axis show it, where the lens's curved field is flat."""
+    lens = Lens.load("view-camera-210mm").focused(4.0)
+    data, frame = lens.first_order(), lens.film_frame
+    ring = 5 * np.array([[np.cos(a), np.sin(a), 0] for a in np.linspace(0, 6, 40)]) + [0, 0, lens.vertices_mm[-1]]
+    points = []
+    for height in (16.0, 20.0, 24.0):  # the film's middle is 20 mm below the axis
+        film = frame[3] + height * frame[1]
+        rays = lens.trace(np.tile(film, (40, 1)), ring - film)
+        points.append(sharp_point(rays.origins_mm, rays.directions))
+    _, y, z = np.transpose(points)
+    hinge = np.polyval(np.polyfit(z, y, 1), data.front_focal_distance_mm)
+    assert hinge == pytest.approx(-data.effective_focal_length_mm / np.tan(np.deg2rad(6)), rel=2e-3)
+
+
 def passing_area(lens, film, turn, count=700):
     """Integral of the direction cosines on the film over the rays that pass, from a fine grid of them."""
     edge = (np.arange(count) + 0.5) / count * 2 - 1

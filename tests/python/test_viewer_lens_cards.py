@@ -28,6 +28,7 @@ def test_kinds_are_those_of_the_lenses() -> None:
     assert kinds["zoom-70-200mm"] == "zoom"
     assert kinds["mirror-telephoto-500mm"] == "mirror lens"
     assert kinds["phone-4mm"] == "phone"
+    assert kinds["anamorphic-65mm"] == "anamorphic"
     assert kinds["tessar-50mm"] == "normal"
     assert kinds["sonnar-180mm"] == "long"
     assert kinds["fisheye-6mm-220deg"] == "very wide angle"

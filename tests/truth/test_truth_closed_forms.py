@@ -9,7 +9,9 @@ import numpy as np
 import pytest
 import realcam as rc
 
-LENSES = rc.lens_names()
+from ..centred_lenses import CENTRED
+
+LENSES = CENTRED
 Trace = Callable[..., rc.TraceResult]
 
 

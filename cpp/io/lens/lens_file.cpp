@@ -206,13 +206,12 @@ double film_radius(const TomlTable& file) {
 
 void set_film_distance(const TomlTable& file, LensSystem& lens) {
     const auto distance = file.number("film_distance_mm");
-    if (distance && !(*distance > 0) && lens.is_rotational())
-        file.fail("\"film_distance_mm\" must be positive: the film lies behind the last surface",
-                  file.find("film_distance_mm"));
     const bool zooms = !lens.zoom.positions.empty();
     if (!distance && zooms)
         lens.film_distance = lens.zoom.positions[static_cast<std::size_t>(lens.zoom.current)].film_distance;
-    if (distance) lens.film_distance = *distance;
+    if (distance && !(*distance > 0) && lens.is_rotational())
+        file.fail("\"film_distance_mm\" must be positive: the film lies behind the last surface",
+                  file.find("film_distance_mm"));
     if (!distance && !zooms) {
         const std::optional<double> found = film_distance_at_infinity(lens);
         if (!found)
@@ -307,6 +306,7 @@ LensSystem lens_from_table(const toml::table& root, const std::string& file, con
     read_iris(top, lens);
     read_focusing(top, lens);
     if (lens.stop_index() >= 0) zoom.apply(lens, has_thickness, keep_going);
+    lens.film_distance = top.number("film_distance_mm").value_or(0);
     check_lens(top, *surfaces, lens);
     lens.stop_semi_diameter = lens.stop().clear_semi_diameter;
     set_film_distance(top, lens);

@@ -104,11 +104,6 @@ void set_film(const Prescription& p, LensSystem& lens) {
     // The film counts its height along the light, which behind a mirror goes against the axis.
     const double direction = lens.film_distance < 0 ? -1 : 1;
     if (p.image_curvature != 0) lens.film_radius_of_curvature = direction / p.image_curvature;
-    if (lens.film_distance >= 0 || !lens.is_rotational()) return;
-    // Behind an odd number of mirrors a centred film lies before the last of them: the axis is turned round on the way.
-    const double way = 0.5 * lens.film_distance;
-    put_before_film(lens, {{0, 0, 0}, {0, 180, 0}, false}, way);
-    lens.film_distance = -way;
 }
 
 }  // namespace realcam::io

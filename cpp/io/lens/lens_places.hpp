@@ -25,8 +25,7 @@ void turn_about_axis(PrescriptionSurface& row);
 /// that blocks nothing.
 void set_places(const Prescription& prescription, const std::vector<KeptRow>& kept, LensSystem& lens);
 
-/// Gives the film the curvature of the image surface. Behind an odd number of mirrors a centred lens gets a plane that
-/// turns its axis round, so that the film lies behind it.
+/// Gives the film the curvature of the image surface.
 void set_film(const Prescription& prescription, LensSystem& lens);
 
 }  // namespace realcam::io

@@ -117,7 +117,8 @@ double largest_image_height(const LensSystem& lens, double object_distance, Fiel
         const LensSystem open = with_wide_rims(lens, angle);
         const AimedRay chief = RayAimer(open, lens.wavelength_nm, {angle, object_distance}).chief_ray();
         if (chief.status == RayStatus::ok) {
-            const double height = std::fabs(crossing(chief, lens.film_distance).y);
+            const FilmSurface<double> film{lens.film_distance, 1 / lens.film_radius_of_curvature};
+            const double height = std::fabs(film.landing(chief.origin, chief.direction).y);
             if (std::isfinite(height)) return height;
         }
     } catch (const InputError&) {

@@ -11,13 +11,13 @@ namespace realcam {
 FieldRays field_rays(const LensSystem& lens, double wavelength_nm, const FieldPoint& field,
                      std::vector<PupilPoint> pattern, const RayLoop& loop) {
     const RayAimer aim(lens, wavelength_nm, field);
-    FieldRays result{field.angle_rad, {}, std::move(pattern), {}, aim.chief_ray()};
+    FieldRays result{field.angle_rad, 1 / lens.film_radius_of_curvature, {}, std::move(pattern), {}, aim.chief_ray()};
     const std::string where = field.text();
     if (result.chief.status != RayStatus::ok)
         throw InputError("the ray " + where + " through the middle of the stop does not leave lens \"" + lens.name +
                          "\"");
     if (field.film || !lens.is_rotational()) {
-        const Vec3d at_film = crossing(result.chief, lens.film_distance);
+        const Vec3d at_film = result.on_film(result.chief, lens.film_distance);
         result.exit_pupil_distance = exit_pupil_distance(lens, wavelength_nm, {at_film.x, at_film.y});
     }
     result.rays = aim_all(aim, result.pattern, stop_reach(lens), loop);

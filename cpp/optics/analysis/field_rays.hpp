@@ -3,6 +3,7 @@
 
 #include "../../platform.hpp"
 #include "../prescription/lens_system.hpp"
+#include "../pupil/film_surface.hpp"
 #include "../pupil/pupil_pattern.hpp"
 #include "aim_request.hpp"
 #include "object_point.hpp"
@@ -13,6 +14,7 @@ namespace REALCAM_NAMESPACE {
 /// points relative to the last vertex.
 struct FieldRays {
     double field_angle_rad;
+    double film_curvature;  ///< 1/mm
     /// From the exit pupil on the chief ray to the film, mm along the ray: the mean of both meridians. Only where the
     /// field is named by its film point, or the lens is not of revolution.
     std::optional<double> exit_pupil_distance;
@@ -21,12 +23,13 @@ struct FieldRays {
     AimedRay chief;  ///< through the middle of the stop, even where the lens blocks it
 
     bool passes(std::size_t i) const { return rays[i].status == RayStatus::ok; }
-};
 
-/// Where a ray, as a straight line, crosses the plane at z behind the last vertex.
-inline Vec3d crossing(const AimedRay& ray, double z) {
-    return ray.origin + ((z - ray.origin.z) / ray.direction.z) * ray.direction;
-}
+    /// Where a ray, as a straight line, meets the film, whose vertex is at z.
+    Vec3d on_film(const AimedRay& ray, double z) const {
+        const FilmSurface<double> film{z, film_curvature};
+        return film.place(film.landing(ray.origin, ray.direction));
+    }
+};
 
 /// Aims a ray at every point of the pattern. Throws InputError where the field point makes no sense, or where the lens
 /// lets none of the rays pass, and what `loop` throws to stop it.

@@ -16,11 +16,11 @@ PointBundle::PointBundle(const LensSystem& lens, double wavelength_nm, const Fie
       object(in_known_glass(lens, wavelength_nm), wavelength_nm, field),
       path_(lens, LightDirection::to_film, wavelength_nm, film_path_ends(lens, LightDirection::to_film)),
       open_(AimingPath::open(path_)),
-      real_(AimingPath::real(path_)),
-      film_distance_(film_distance) {
+      real_(AimingPath::real(path_)) {
     index = lens.indices(wavelength_nm).back();
     wave_number = 2e6 * std::numbers::pi * index / wavelength_nm;
     const FieldRays rays = look_for(lens, wavelength_nm, field, look, loop);
+    plane_ = rays.on_film(rays.chief, film_distance).z;
     chief_entry = rays.chief.entry;
     const FilmRay at_chief = on_film(rays.chief.origin, rays.chief.direction, rays.chief.path);
     chief = {mirrored ? 0 : at_chief.at.x, at_chief.at.y};
@@ -94,7 +94,7 @@ void PointBundle::measure(const FieldRays& rays, int look) {
 }
 
 FilmRay PointBundle::on_film(Vec3d origin, Vec3d direction, double path) const {
-    const double parameter = (film_distance_ - origin.z) / direction.z, n = length(direction);
+    const double parameter = (plane_ - origin.z) / direction.z, n = length(direction);
     const Vec3d at = origin + parameter * direction;
     return {true, {at.x, at.y}, (1 / n) * direction, path / index + parameter * n};
 }

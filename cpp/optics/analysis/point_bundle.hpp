@@ -43,6 +43,9 @@ public:
     PointBundle(const LensSystem& lens, double wavelength_nm, const FieldPoint& field, double film_distance,
                 const RayLoop& loop = {}, int look = kLook);
 
+    /// Of the plane, mm behind the last vertex, on which rays land: the film, of a curved one where the chief ray does.
+    double plane() const { return plane_; }
+
     /// Whether the lens lets these rays pass.
     template <int N>
     void pass(const Entry (&entries)[N], bool (&passed)[N]) const {
@@ -100,7 +103,7 @@ private:
 
     LensPath<double> path_;
     AimingPath open_, real_;
-    double film_distance_;
+    double plane_;
     double chief_path_, curvature_;  ///< 1 / distance from the exit pupil to the chief ray's film point
     Vec3d chief_direction_;
 };

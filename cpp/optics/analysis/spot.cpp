@@ -29,11 +29,11 @@ SpotSize size_about(const Spot& spot, Vec2<double> middle, const RayLoop& loop) 
 
 Spot spot_of(FieldRays rays, double film_distance, const RayLoop& loop) {
     Spot spot{};
+    spot.rays = std::move(rays);
     const auto on_film = [&](const AimedRay& ray) {
-        const Vec3d at = crossing(ray, film_distance);
+        const Vec3d at = spot.rays.on_film(ray, film_distance);
         return Vec2<double>{at.x, at.y};
     };
-    spot.rays = std::move(rays);
     spot.chief = on_film(spot.rays.chief);
     spot.points.reserve(spot.rays.rays.size());
     double weight = 0;

@@ -8,7 +8,7 @@ struct SpotSize {
     double rms_radius, max_radius;
 };
 
-/// Where the rays of one object point meet a plane behind the lens, mm, x and y from the axis.
+/// Where the rays of one object point meet the film, mm, x and y from the axis.
 struct Spot {
     FieldRays rays;
     std::vector<Vec2<double>> points;  ///< NaN where the ray does not pass
@@ -17,7 +17,7 @@ struct Spot {
     SpotSize about_centroid, about_chief;
 };
 
-/// The spot on the plane `film_distance` mm behind the last vertex. Throws what `loop` throws to stop it.
+/// The spot on the film, whose vertex is put `film_distance` mm behind the last one. Throws what `loop` throws to stop it.
 Spot spot_of(FieldRays rays, double film_distance, const RayLoop& loop = {});
 
 }  // namespace REALCAM_NAMESPACE

@@ -14,16 +14,17 @@ namespace realcam {
 
 namespace wavefront_detail {
 
-double reference_curvature(const LensSystem& lens, double wavelength_nm, const FieldRays& rays, double z,
+double reference_curvature(const LensSystem& lens, double wavelength_nm, const FieldRays& rays, double film_distance,
                            ExitPupil exit_pupil) {
     const Vec3d direction = normalized(rays.chief.direction);
-    const Vec3d image = crossing(rays.chief, z);
-    if (rays.exit_pupil_distance) return 1 / (*rays.exit_pupil_distance + (z - lens.film_distance) / direction.z);
+    const Vec3d image = rays.on_film(rays.chief, film_distance);
+    if (rays.exit_pupil_distance)
+        return 1 / (*rays.exit_pupil_distance + (film_distance - lens.film_distance) / direction.z);
     // A chief ray on the axis does not cross it; one at 1e-6 crosses it within 1e-12 of the paraxial place, which is
     // what rounding leaves of a quotient of two such numbers.
     if (exit_pupil == ExitPupil::paraxial || std::fabs(rays.field_angle_rad) < 1e-6) {
         const double pupil = first_order(lens, wavelength_nm).exit_pupil_position - lens.last_vertex();
-        return direction.z / (z - pupil);
+        return direction.z / (image.z - pupil);
     }
     // With t along the ray from the axis: image.y = t direction.y.
     return direction.y / image.y;
@@ -96,11 +97,11 @@ Wavefront wavefront_of(const LensSystem& lens, double wavelength_nm, FieldRays r
                        SphereCentre centre, Removed removed, ExitPupil exit_pupil, const RayLoop& loop) {
     using namespace wavefront_detail;
     Wavefront result{};
-    result.centre = crossing(rays.chief, film_distance);
+    result.centre = rays.on_film(rays.chief, film_distance);
     result.reference_curvature = reference_curvature(lens, wavelength_nm, rays, film_distance, exit_pupil);
     if (centre == SphereCentre::centroid) {
         const Vec2<double> middle = spot_of(rays, film_distance, loop).centroid;
-        result.centre = {middle.x, middle.y, film_distance};
+        result.centre = FilmSurface<double>{film_distance, rays.film_curvature}.place(middle);
     }
     const double index = lens.indices(wavelength_nm).back(), curvature = result.reference_curvature;
     const double waves_per_mm = 1e6 / wavelength_nm;

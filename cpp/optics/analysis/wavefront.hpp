@@ -47,8 +47,8 @@ struct Wavefront {
 
 namespace wavefront_detail {
 
-/// One over the distance from the exit pupil to the point where the chief ray meets the plane z, along the ray.
-double reference_curvature(const LensSystem& lens, double wavelength_nm, const FieldRays& rays, double z,
+/// One over the distance from the exit pupil to the point where the chief ray meets the film, along the ray.
+double reference_curvature(const LensSystem& lens, double wavelength_nm, const FieldRays& rays, double film_distance,
                            ExitPupil exit_pupil);
 
 /// Solves the normal equations of a least-squares fit, a symmetric positive matrix of order n, by Cholesky's method.
@@ -73,9 +73,9 @@ std::array<double, N> solve_normal(std::array<std::array<double, N>, N> a, std::
 
 }  // namespace wavefront_detail
 
-/// The wavefront of the rays of one object point, with its reference sphere centred on the plane `film_distance` mm
-/// behind the last vertex. Throws InputError where there is no reference sphere: the exit pupil lies in that plane, or
-/// a ray passes the centre at more than the sphere's radius. Also throws where a fit has too few rays. Throws what
+/// The wavefront of the rays of one object point, with its reference sphere centred on the film, whose vertex is put
+/// `film_distance` mm behind the last one. Throws InputError where there is no reference sphere: the exit pupil lies in
+/// the film, or a ray passes the centre at more than the sphere's radius. Also throws where a fit has too few rays. Throws what
 /// `loop` throws to stop it.
 Wavefront wavefront_of(const LensSystem& lens, double wavelength_nm, FieldRays rays, double film_distance,
                        SphereCentre centre, Removed removed, ExitPupil exit_pupil = ExitPupil::real,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "../prescription/lens_axis.hpp"
 #include "parabasal.hpp"
 #include "tilt_shift.hpp"
 
@@ -15,7 +16,7 @@ double sum_or_zero(double a, double b) {
 }
 
 ParaxialRay trace_paraxial(const LensSystem& lens, double wavelength_nm, ParaxialRay ray, int first, int last) {
-    lens.require_rotational("first-order data");
+    if (!has_axis(lens)) lens.require_rotational("first-order data");
     const std::vector<double> index = lens.indices(wavelength_nm);
     double sign = 1;
     for (int i = 0; i < last; ++i) {

@@ -7,6 +7,7 @@
 #include "clearance.hpp"
 #include "coating_checks.hpp"
 #include "form_checks.hpp"
+#include "lens_axis.hpp"
 #include "lens_limits.hpp"
 
 namespace realcam {
@@ -117,21 +118,23 @@ void check_surfaces(const LensSystem& lens) {
         throw LensFileError("the lens has " + std::to_string(lens.surfaces.size()) + " surfaces; at most " +
                             std::to_string(kMaxSurfaces) + " are supported");
     double direction = 1;
-    const bool is_rotational = lens.is_rotational();
+    const bool is_on_axis = lens.film_placement.is_in_place() && has_axis(lens);
     std::size_t last_mirror = 0;
     for (std::size_t i = 0; i < lens.surfaces.size(); ++i) {
         const Surface& s = lens.surfaces[i];
         if (s.type == SurfaceType::mirror) direction = -direction, last_mirror = i;
         check_figure(s, i);
         check_rim(s, i);
-        check_thickness(s, i, is_rotational ? direction : 0);
+        check_thickness(s, i, is_on_axis ? direction : 0);
         if (const std::string why = placement_error(s.placement); !why.empty()) fail(i, why);
         check_material(s, i, lens.wavelength_nm);
         check_surface_coating(s, i);
     }
     check_stop(lens);
-    if (is_rotational && direction < 0)
-        fail(last_mirror, "the lens has an odd number of mirrors, so its light never reaches a film behind it");
+    if (is_on_axis && direction < 0 && !(lens.film_distance < 0))
+        fail(last_mirror,
+             "the lens has an odd number of mirrors, so its light never reaches a film behind it; a film before it, at "
+             "a film_distance_mm below 0, is wanted");
     if (lens.allow_crossing) return;
     if (const auto crossing = find_crossing(lens))
         fail(static_cast<std::size_t>(crossing->first),

@@ -1,5 +1,6 @@
 #include "lens_system.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace realcam {
@@ -14,7 +15,11 @@ std::string LensSystem::asymmetry() const {
     for (std::size_t i = 0; i < surfaces.size(); ++i)
         if (const std::string why = surfaces[i].asymmetry(); !why.empty())
             return "surface " + std::to_string(i + 1) + ' ' + why;
-    return film_placement.is_in_place() ? "" : "its film is tilted or moved";
+    if (!film_placement.is_in_place()) return "its film is tilted or moved";
+    const auto is_mirror = [](const Surface& s) { return s.type == SurfaceType::mirror; };
+    return film_distance < 0 && std::ranges::count_if(surfaces, is_mirror) % 2 == 1
+               ? "its film lies before its last mirror"
+               : "";
 }
 
 void LensSystem::require_rotational(const std::string& what) const {

@@ -17,8 +17,9 @@ double direction_behind(const LensSystem& lens) {
     return sign;
 }
 
+/// On the axis, and behind the lens: not before a single mirror.
 bool is_centred(const LensSystem& lens) {
-    return !path_frames_detail::has_placements(lens) && lens.film_placement.is_in_place();
+    return !path_frames_detail::has_placements(lens) && lens.film_placement.is_in_place() && lens.film_distance >= 0;
 }
 
 }  // namespace

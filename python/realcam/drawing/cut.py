@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from .._core import InputError, Lens
 
 Points = NDArray[np.float64]
-PLANES = ("yz", "xz")
+PLANES = {"yz": 1, "xz": 0}  #: and the axis of heights, in points of the lens frame
 
 
 class Cut:
@@ -23,7 +23,7 @@ class Cut:
         if plane not in PLANES:
             raise InputError(f'the plane of a drawing is "{plane}"; yz or xz is wanted')
         self.lens, self.plane = lens, plane
-        self.axis = 1 if plane == "yz" else 0  #: of heights, in points of the lens frame
+        self.axis = PLANES[plane]
 
     @cached_property
     def is_in_place(self) -> bool:

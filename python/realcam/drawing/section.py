@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from .._core import InputError, Lens
 from ..fields import Field, fields_along, fields_at, fields_of_angles
 from ..short_text import ShortText
-from .cut import Cut, Points
+from .cut import PLANES, Cut, Points
 from .marks import FocusGroup, Mark, focus_group_of, marks_of
 from .outlines import Blocker, Crossing, Element, Face, blockers_of, crossings_of, elements_of, faces_of
 from .ray_paths import RayBundle, bundles_from_film, bundles_from_object
@@ -44,7 +44,7 @@ class CrossSection(ShortText):
 
     def drawn(self, paths_mm: Points) -> Points:
         """(..., 2): points of the lens frame, (..., 3), as the drawing has them."""
-        return paths_mm[..., [2, 1 if self.plane == "yz" else 0]]
+        return paths_mm[..., [2, PLANES[self.plane]]]
 
     @property
     def wavelengths_nm(self) -> tuple[float, ...]:

@@ -23,6 +23,14 @@ PLOTS = {
     "relative-illumination": ("Relative illumination", "How dark the picture becomes towards its corner."),
     "pupil": ("Pupil shapes", "The outline of the light as the film sees it: cat's eyes towards the corner."),
 }
+# In place of them, for lenses that are not of revolution.
+MAPS = {
+    "spot-map": ("Spot sizes", "How far from each other the rays of one object point land, over the film."),
+    "mtf-x-map": ("Contrast across", "The contrast that is left of upright stripes, over the film."),
+    "mtf-y-map": ("Contrast upright", "The contrast that is left of level stripes, over the film."),
+    "distortion-map": ("Distortion map", "How far points appear from where a picture with straight lines has them."),
+    "illumination-map": ("Illumination", "How dark the picture becomes towards its corners."),
+}
 _OF_ONE_FIELD = ("spot", "ray-fan", "mtf")
 
 
@@ -33,6 +41,11 @@ class Look:
     kind: str
     lens: Lens
     height_mm: float
+
+
+def plots_of(lens: Lens) -> dict[str, tuple[str, str]]:
+    """What is offered for a lens: title and explanation by the name of the plot."""
+    return PLOTS if lens.is_rotational else MAPS
 
 
 def plot_svg(look: Look) -> str:

@@ -36,12 +36,12 @@ class FollowUps:
         for task in (*quick, self._planning, self._measuring_levels, self._measuring_depth):
             task.close()
 
-    def draw(self, lens: Lens) -> None:
-        self._drawing.submit(lambda: self._listeners.lens(lens_view(lens)))
+    def draw(self, lens: Lens, plane: str) -> None:
+        self._drawing.submit(lambda: self._listeners.lens(lens_view(lens, plane)))
 
-    def trace(self, lens: Lens, heights_mm: Sequence[float]) -> None:
+    def trace(self, lens: Lens, heights_mm: Sequence[float], plane: str) -> None:
         """The rays that end at heights on the film."""
-        self._tracing.submit(lambda: self._listeners.rays(ray_view(lens, heights_mm)))
+        self._tracing.submit(lambda: self._listeners.rays(ray_view(lens, heights_mm, plane)))
 
     def measure_depth_of_field(self, lens: Lens, film: Film) -> None:
         """By the diagonal of the film that is behind the lens."""

@@ -47,6 +47,7 @@ class LensBench:
         self.why_no_denoiser = why_missing(device)
         self.denoises = not self.why_no_denoiser
         self.hovered: tuple[float, float] | None = None
+        self._plane = "yz"
         self._copied_from, self._copy = self.controls.lens, self.controls.lens
         self.comparison = Comparison()
         self._lock = threading.Lock()  # of controls, which the picture's thread changes, too
@@ -203,6 +204,13 @@ class LensBench:
         """Draws the rays of what is at u, v of the picture."""
         self.hovered = u, v
         self._trace()
+
+    def cut(self, plane: str) -> None:
+        """Draws the lens in the plane "yz" or "xz". Raises InputError for another."""
+        if plane not in PLANES:
+            raise InputError(f'there is no plane "{plane:.10}"')
+        self._plane = plane
+        self._draw()
 
     # Effects, and what the picture is compared with.
 
@@ -367,12 +375,19 @@ class LensBench:
             self.report(Problem(f"the picture to compare with: {error}", of="picture"))
 
     def _draw(self) -> None:
-        self._follow_ups.draw(self.controls.lens_on_film)
+        self._follow_ups.draw(self.controls.lens_on_film, self._drawn_plane)
         self._follow_ups.measure_depth_of_field(self.controls.set_lens, self.controls.film)
         self._trace()
 
     def _trace(self) -> None:
-        self._follow_ups.trace(self.controls.lens_on_film, drawn_heights_mm(self.controls.film, self.hovered))
+        lens, plane = self.controls.lens_on_film, self._drawn_plane
+        axis = None if lens.is_rotational else PLANES[plane]
+        self._follow_ups.trace(lens, drawn_heights_mm(self.controls.film, self.hovered, axis), plane)
+
+    @property
+    def _drawn_plane(self) -> str:
+        """All planes of a lens of revolution are alike."""
+        return "yz" if self.controls.lens_on_film.is_rotational else self._plane
 
     def _keep(self) -> None:
         self._follow_ups.keep(self.controls, dict(self.switches.of))

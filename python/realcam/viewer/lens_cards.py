@@ -42,9 +42,18 @@ def kind_of(lens: Lens, angle_deg: float) -> str:
         return "zoom"
     if any(surface.type == "mirror" for surface in lens.surfaces):
         return "mirror lens"
+    if is_anamorphic(lens):
+        return "anamorphic"
     if math.hypot(*lens.film_mm) < _PHONE_DIAGONAL_MM:
         return "phone"
     return next(kind for kind, below in _BY_ANGLE if angle_deg < below)
+
+
+def is_anamorphic(lens: Lens) -> bool:
+    if lens.is_rotational:
+        return False
+    one, other = lens.meridians()
+    return abs(one.focal_length_mm / other.focal_length_mm - 1) > 0.05
 
 
 def year_of(source: str) -> int | None:

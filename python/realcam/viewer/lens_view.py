@@ -10,45 +10,63 @@ import numpy as np
 
 from .._core import Film, InputError, Lens
 from ..drawing import CrossSection, cross_section
-from ..drawing.cut import Points
+from ..drawing.cut import PLANES, Cut, Points
 from ..fields import angle_of_height
 
 _RAYS = 9
 
 
-def lens_view(lens: Lens) -> dict[str, Any]:
-    """Lengths in mm, lens frame."""
-    section = cross_section(lens, rays=0)
+def lens_view(lens: Lens, plane: str = "yz") -> dict[str, Any]:
+    """The section in a plane, "yz" or "xz", of points (z, height); lengths in mm, lens frame.
+
+    `is_rotational` tells that both planes are alike, `is_in_place` that all surfaces stand upright on one axis.
+    """
+    section = cross_section(lens, plane=plane, rays=0)
     return {
         "name": lens.name,
         "title": lens.title,
         "surfaces": [_row(lens, index) for index in range(len(lens.surfaces))],
-        "film": {"z": lens.film_position_mm, "half": section.film_semi_diagonal_mm},
+        "film": _points(section.film),
+        "plane": plane,
+        "is_rotational": lens.is_rotational,
+        "is_in_place": Cut(lens).is_in_place,
         "figures": _figures(lens),
         **_shapes(section),
     }
 
 
-def height_of(u: float, v: float, film: Film) -> float:
-    """Distance from the lens's axis, mm, of a place in the picture."""
+def place_of(u: float, v: float, film: Film) -> tuple[float, float]:
+    """(x, y) on the film, mm from the lens's axis, of a place in the picture, which a lens turns upside down."""
     right, up = film.shift_mm
-    return math.hypot((u - 0.5) * film.width_mm + right, (0.5 - v) * film.height_mm + up)
+    return (0.5 - u) * film.width_mm - right, (v - 0.5) * film.height_mm - up
 
 
-def drawn_heights_mm(film: Film, place: tuple[float, float] | None) -> tuple[float, ...]:
-    """Heights above the lens's axis: that of the axis, and that of a place of the picture (u and v, 0 to 1)."""
-    height = height_of(*(place or (0.5 + 0.35, 0.5 + 0.35)), film)
-    return (0.0, height) if height > 5e-4 * math.hypot(film.width_mm, film.height_mm) else (0.0,)
+def height_of(u: float, v: float, film: Film) -> float:
+    """Distance from the lens's axis, mm."""
+    return math.hypot(*place_of(u, v, film))
 
 
-def ray_view(lens: Lens, heights_mm: Sequence[float]) -> dict[str, Any]:
-    """Bundles of rays to heights on the film as paths of (z, y). Beyond the last height that gets light it is drawn
-    instead. Where no light passes there are none, and `note` says why.
+def drawn_heights_mm(film: Film, place: tuple[float, float] | None, axis: int | None = None) -> tuple[float, ...]:
+    """Heights above the lens's axis: that of the axis, and that of a place of the picture (u and v, 0 to 1).
+
+    axis: None is the distance in any direction; 0 and 1 take the height along x or y alone.
+    """
+    at = place_of(*(place or (0.5 - 0.35, 0.5 + 0.35)), film)
+    height = math.hypot(*at) if axis is None else at[axis]
+    return (0.0, height) if abs(height) > 5e-4 * math.hypot(film.width_mm, film.height_mm) else (0.0,)
+
+
+def ray_view(lens: Lens, heights_mm: Sequence[float], plane: str = "yz") -> dict[str, Any]:
+    """Bundles of rays to heights on the film as paths of (z, height). Beyond the last height that gets light it is
+    drawn instead. Where no light passes there are none, and `note` says why.
     """
     try:
-        _, last_mm = angle_of_height(lens, 0.5 * math.hypot(*lens.film_mm))
-        fields = [min(1.0, height / last_mm) for height in heights_mm]
-        section = cross_section(lens, rays=_RAYS, fields=fields)
+        if lens.is_rotational:
+            _, last_mm = angle_of_height(lens, 0.5 * math.hypot(*lens.film_mm))
+        else:
+            last_mm = 0.5 * lens.film_mm[PLANES[plane]]
+        fields = [max(-1.0, min(1.0, height / last_mm)) for height in heights_mm]
+        section = cross_section(lens, plane=plane, rays=_RAYS, fields=fields)
     except InputError as error:
         return {"bundles": [], "note": str(error)}
     return {
@@ -88,10 +106,7 @@ def _shapes(section: CrossSection) -> dict[str, Any]:
             {
                 "surface": b.surface,
                 "is_stop": b.is_stop,
-                "z": b.z_mm,
-                "opening": b.opening_mm,
-                "outer": b.outer_mm,
-                "obstruction": b.obstruction_mm,
+                "lines": [_points(line) for line in b.lines],
             }
             for b in section.blockers
         ],

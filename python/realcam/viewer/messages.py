@@ -161,6 +161,11 @@ def _restore(message: Message, bench: LensBench) -> None:
 
 
 @_known
+def _cut(message: Message, bench: LensBench) -> None:
+    bench.cut(_text(message, "plane"))
+
+
+@_known
 def _switch(message: Message, bench: LensBench) -> None:
     bench.switch(_text(message, "effect"), _text(message, "state"))
 
@@ -181,6 +186,7 @@ _ACTIONS: dict[str, Callable[[Message, LensBench], Any]] = {
     "redo": lambda m, bench: bench.redo(),
     "turn": _turn,
     "restore": _restore,
+    "cut": _cut,
     "rungs": lambda m, bench: bench.measure_rungs(),
     "switch": _switch,
 }

@@ -8,7 +8,7 @@ import html
 from nicegui import ui
 
 from .._core import RealcamError
-from .close_look import PLOTS, Look, plot_svg
+from .close_look import PLOTS, Look, plot_svg, plots_of
 from .lens_view import height_of
 from .newest_task import NewestTask
 from .server_loop import call_on_loop
@@ -52,13 +52,17 @@ class PlotsPanel:
 
     def update(self) -> None:
         """On the server's loop."""
-        kind, controls = self._kind.value, self._bench.controls
-        if kind not in PLOTS:
-            return
-        self._help.set_text(PLOTS[kind][1])
+        controls = self._bench.controls
+        lens = controls.lens_on_film
+        plots = plots_of(lens)
+        if self._kind.value not in plots:
+            self._kind.set_options({kind: title for kind, (title, _) in plots.items()}, value=next(iter(plots)))
+        kind = self._kind.value
+        self._help.set_text(plots[kind][1])
         height = height_of(*self._at, controls.film)
-        self._place.set_text(f"{height:.3g} mm from the lens's axis; in the plane in focus")
-        look = Look(kind, controls.lens_on_film, height)
+        place = f"{height:.3g} mm from the lens's axis" if lens.is_rotational else "over the film"
+        self._place.set_text(f"{place}; in the plane in focus")
+        look = Look(kind, lens, height)
         if look != self._look:
             self._look = look
             self._plot.set_content("")

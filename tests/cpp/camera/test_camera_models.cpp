@@ -3,6 +3,7 @@
 #include <cmath>
 #include <string>
 
+#include "optics/centred_lenses.hpp"
 #include "about.hpp"
 #include "camera/camera_setup.hpp"
 #include "doctest/doctest.h"
@@ -71,7 +72,7 @@ TEST_CASE("the circle of confusion of the thin lens is A f |d - s| / (d (s - f))
 }
 
 TEST_CASE("ideal models bring all rays of a film point together in the plane of focus") {
-    for (const std::string& name : io::lens_names()) {
+    for (const std::string& name : centred_lens_names()) {
         CAPTURE(name);
         LensSystem lens = focused(io::read_lens(name), near_focus(io::read_lens(name)));
         const double object = lens.focus_distance - lens.film_position();
@@ -95,7 +96,7 @@ TEST_CASE("ideal models bring all rays of a film point together in the plane of 
 }
 
 TEST_CASE("the thick lens is the real lens for rays close to the axis") {
-    for (const std::string& name : io::lens_names()) {
+    for (const std::string& name : centred_lens_names()) {
         CAPTURE(name);
         LensSystem lens = io::read_lens(name);
         for (Surface& s : lens.surfaces) s.inner_semi_diameter = 0;  // a mirror lens has no rays close to its axis
@@ -128,7 +129,7 @@ TEST_CASE("the thick lens is the real lens for rays close to the axis") {
 }
 
 TEST_CASE("all models have the same magnification near the axis") {
-    for (const std::string& name : io::lens_names()) {
+    for (const std::string& name : centred_lens_names()) {
         CAPTURE(name);
         const LensSystem lens = focused(io::read_lens(name), near_focus(io::read_lens(name)));
         const double object = lens.focus_distance - lens.film_position(), height = 0.01 * lens.film_height;
@@ -155,7 +156,7 @@ TEST_CASE("all models have the same magnification near the axis") {
 }
 
 TEST_CASE("all models have the same exposure on the axis") {
-    for (const std::string& name : io::lens_names()) {
+    for (const std::string& name : centred_lens_names()) {
         CAPTURE(name);
         const LensSystem open = focused(io::read_lens(name), kInfinity);
         const double real = axis_irradiance(open, CameraModel::full_lens);

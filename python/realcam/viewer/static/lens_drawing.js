@@ -36,6 +36,7 @@ export default {
     </label>
     <button type="button" @click="send('another_copy', { grade })">Another copy</button>
     <label title="Blue faces have their centre of curvature on the film's side, red ones on the object's"><input type="checkbox" v-model="colours"> Signs of radii</label>
+    <label v-if="view && !view.is_rotational" title="The section in the plane of x and z, instead of that of y and z"><input type="checkbox" :checked="view.plane === 'xz'" @change="send('cut', { plane: $event.target.checked ? 'xz' : 'yz' })"> From above</label>
     <label title="Pupils, principal planes and focal points"><input type="checkbox" v-model="showsMarks"> Marks</label>
   </div>
   <svg v-if="view" ref="svg" class="rc-section" :viewBox="box.join(' ')" preserveAspectRatio="xMidYMid meet"
@@ -52,11 +53,10 @@ export default {
         <polyline v-for="(part, k) in shapes.faces[f]" :key="'hit' + k" class="rc-hit" :points="part"
           :data-surface="face.surface" @pointerdown.stop="choose(face.surface)" />
       </g>
-      <g v-for="b in view.blockers" :key="'s' + b.surface" :class="b.is_stop ? 'rc-stop' : 'rc-blocker'">
-        <line :x1="b.z" :x2="b.z" :y1="b.opening" :y2="b.outer" /><line :x1="b.z" :x2="b.z" :y1="-b.opening" :y2="-b.outer" />
-        <line v-if="b.obstruction" :x1="b.z" :x2="b.z" :y1="-b.obstruction" :y2="b.obstruction" />
+      <g v-for="(b, k) in view.blockers" :key="'s' + b.surface" :class="b.is_stop ? 'rc-stop' : 'rc-blocker'">
+        <polyline v-for="(line, l) in shapes.blockers[k]" :key="l" :points="line" />
       </g>
-      <line class="rc-film" :x1="view.film.z" :x2="view.film.z" :y1="-view.film.half" :y2="view.film.half" />
+      <polyline class="rc-film" :points="shapes.film" />
       <g v-if="showsMarks">
         <g v-for="m in view.marks" :key="m.label" class="rc-mark">
           <line :x1="m.z" :x2="m.z" :y1="-(m.half || 0.04 * box[3])" :y2="m.half || 0.04 * box[3]" />
@@ -113,8 +113,11 @@ export default {
   computed: {
     // As SVG wants them, once for each lens and not for each step of a drag.
     shapes() {
-      const { elements, crossings, faces } = this.view;
-      return { elements: elements.map(text), crossings: crossings.map(text), faces: faces.map((f) => f.parts.map(text)) };
+      const { elements, crossings, faces, blockers, film } = this.view;
+      return {
+        elements: elements.map(text), crossings: crossings.map(text), faces: faces.map((f) => f.parts.map(text)),
+        blockers: blockers.map((b) => b.lines.map(text)), film: text(film),
+      };
     },
     paths() {
       return this.rays.bundles.map((bundle) => bundle.map(text));
@@ -125,7 +128,7 @@ export default {
     /// Of the chosen surface: what can be dragged, and where it is taken.
     handles() {
       const s = this.surface;
-      if (!s) return [];
+      if (!s || !this.view.is_in_place) return []; // a drag moves points along the axis and away from it
       const rim = s.semi_diameter_mm, bends = s.type !== "stop" && s.type !== "aperture";
       const list = [{ field: "semi_diameter_mm", at: [s.z + sag(s, rim), rim], title: "Drag the rim" }];
       if (bends) list.push({ field: "radius_mm", at: [s.z + sag(s, 0.7 * rim), -0.7 * rim], title: "Drag the curvature" });
@@ -171,10 +174,11 @@ export default {
     },
     /// Glass and film fill the drawing, wherever the film is.
     fit() {
-      const v = this.view, zs = [...v.surfaces.map((s) => s.z), v.film.z], rims = v.surfaces.map((s) => s.semi_diameter_mm);
-      const front = Math.min(...zs), back = Math.max(...zs), half = 1.12 * Math.max(...rims, v.film.half);
-      const length = Math.max(back - front, half), left = front - 0.25 * length;
-      this.box = [left, -half, back + 0.05 * length - left, 2 * half];
+      const v = this.view, points = [...v.film, ...v.faces.flatMap((f) => f.parts.flat()), ...v.blockers.flatMap((b) => b.lines.flat())];
+      const zs = points.map(([z]) => z), ys = points.map(([, y]) => y);
+      const front = Math.min(...zs), back = Math.max(...zs), low = Math.min(...ys), high = Math.max(...ys);
+      const length = Math.max(back - front, 0.5 * (high - low)), left = front - 0.25 * length, air = 0.06 * (high - low);
+      this.box = [left, -high - air, back + 0.05 * length - left, high - low + 2 * air];
     },
     faceClass(face) {
       const sign = !this.colours ? "" : face.sign > 0 ? "rc-positive" : face.sign < 0 ? "rc-negative" : "rc-plane";

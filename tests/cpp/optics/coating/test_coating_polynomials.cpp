@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "optics/centred_lenses.hpp"
 #include "camera/film_spectrum.hpp"
 #include "doctest/doctest.h"
 #include "io/lens/bundled_lenses.hpp"
@@ -79,7 +80,7 @@ void compare(const LensSystem& lens, LightDirection direction, double wavelength
 
 TEST_CASE("polynomials in the cosine follow all coatings at one wavelength") {
     Errors errors;
-    for (const std::string& name : io::lens_names())
+    for (const std::string& name : centred_lens_names())
         for (const Coating& coating : {bare_surface(), *named_coating("quarter_wave"), three_layers()})
             for (const LightDirection direction : {LightDirection::to_film, LightDirection::to_scene}) {
                 const LensSystem lens = coated(io::read_lens(name), coating);

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "optics/centred_lenses.hpp"
 #include "camera/camera_setup.hpp"
 #include "camera/field_of_view.hpp"
 #include "measurement.hpp"
@@ -136,7 +137,7 @@ void compare_pictures(const LensSystem& lens, const LensSystem& large, Differenc
 
 std::vector<LensSystem> lenses_to_scale() {
     std::vector<LensSystem> list;
-    for (const std::string& name : io::lens_names()) list.push_back(io::read_lens(name));
+    for (const std::string& name : centred_lens_names()) list.push_back(io::read_lens(name));
     for (const LensSystem& lens : {fisheye_270(), Cassegrain::lens(), FastLens::lens(), contact_doublet(true)})
         list.push_back(lens);
     return list;
