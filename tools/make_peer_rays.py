@@ -16,7 +16,6 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
-import realcam as rc
 
 from tests.centred_lenses import CENTRED
 from tests.truth import backends, peer_file, peers, random_lenses, random_rays

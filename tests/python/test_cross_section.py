@@ -9,10 +9,10 @@ import math
 import numpy as np
 import pytest
 import realcam as rc
-
-from ..centred_lenses import CENTRED
 from realcam.drawing import CrossSection, Element, cross_section
 from realcam.fields import fields_at
+
+from ..centred_lenses import CENTRED
 
 GAUSS = rc.Lens.load("double-gauss-50mm")
 FISHEYE = rc.Lens.load("fisheye-6mm-220deg")

@@ -11,7 +11,6 @@ from pathlib import Path
 from types import ModuleType
 
 import pytest
-import realcam as rc
 
 from ..centred_lenses import CENTRED
 

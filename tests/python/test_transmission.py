@@ -9,10 +9,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 import realcam as rc
-
-from ..centred_lenses import CENTRED
 from numpy.typing import NDArray
 
+from ..centred_lenses import CENTRED
 from ..measurement import Measurement, hold
 
 DOUBLE_GAUSS = "double-gauss-50mm"

@@ -117,7 +117,7 @@ def test_the_drawing_and_the_sharp_range_are_of_the_film_that_is_chosen(bench: L
     for width, height, half in ((12.0, 9.0, 7.5), (72.0, 54.0, 45.0), (36.0, 24.0, 0.5 * math.hypot(36, 24))):
         asked = len(sharp)
         assert bench.set_film_mm(width, height)
-        told.until(lambda half=half: told.lenses and told.lenses[-1]["film"]["half"] == pytest.approx(half))
+        told.until(lambda half=half: told.lenses and told.lenses[-1]["film"][-1][1] == pytest.approx(half, rel=1e-5))
         told.until(lambda asked=asked: len(sharp) > asked)
         wanted = rc.depth_of_field(bench.controls.set_lens, 2 * half / 1500).real
         told.until(lambda wanted=wanted: sharp[-1] == pytest.approx(wanted))

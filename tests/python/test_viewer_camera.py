@@ -158,7 +158,7 @@ def test_controls_of_a_camera_make_that_camera(name: str) -> None:
     wide = lens.first_order().f_number
     near = max(lens.nearest_focus_m * 1.2, 60e-3 * abs(lens.first_order().effective_focal_length_mm))
     made = lens.stopped_down(1.5 * wide).focused(near)
-    film = rc.Film.for_lens(lens, (90, 60))
+    film = rc.Film.for_lens(lens, resolution=(90, 60))
     camera = rc.Camera(made, film=film, position=(1, 2, 3), look_at=(0, 0, 1), exposure_time_s=0.1, iso=400)
     again = CameraControls.of(camera).camera
     assert again.position == camera.position

@@ -6,11 +6,11 @@ import math
 
 import pytest
 import realcam as rc
-
-from ..centred_lenses import CENTRED
 from realcam.viewer import lens_edits
 from realcam.viewer.history import History
 from realcam.viewer.lens_edits import glass_of, with_plate, with_value
+
+from ..centred_lenses import CENTRED
 
 LENS = rc.Lens.load("double-gauss-50mm")
 

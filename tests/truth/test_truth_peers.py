@@ -29,7 +29,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-import realcam as rc
 
 from ..centred_lenses import CENTRED
 from ..measurement import Measurement, breaks, hold

@@ -17,7 +17,8 @@ struct Spot {
     SpotSize about_centroid, about_chief;
 };
 
-/// The spot on the film, whose vertex is put `film_distance` mm behind the last one. Throws what `loop` throws to stop it.
+/// The spot on the film, whose vertex is put `film_distance` mm behind the last one. Throws what `loop` throws to stop
+/// it.
 Spot spot_of(FieldRays rays, double film_distance, const RayLoop& loop = {});
 
 }  // namespace REALCAM_NAMESPACE

@@ -75,8 +75,8 @@ std::array<double, N> solve_normal(std::array<std::array<double, N>, N> a, std::
 
 /// The wavefront of the rays of one object point, with its reference sphere centred on the film, whose vertex is put
 /// `film_distance` mm behind the last one. Throws InputError where there is no reference sphere: the exit pupil lies in
-/// the film, or a ray passes the centre at more than the sphere's radius. Also throws where a fit has too few rays. Throws what
-/// `loop` throws to stop it.
+/// the film, or a ray passes the centre at more than the sphere's radius. Also throws where a fit has too few rays.
+/// Throws what `loop` throws to stop it.
 Wavefront wavefront_of(const LensSystem& lens, double wavelength_nm, FieldRays rays, double film_distance,
                        SphereCentre centre, Removed removed, ExitPupil exit_pupil = ExitPupil::real,
                        const RayLoop& loop = {});

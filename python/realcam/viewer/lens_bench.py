@@ -10,6 +10,7 @@ from typing import Any
 
 from .._core import Film, InputError, Lens, LensFileError, Plan, RealcamError
 from ..denoiser import GUIDES
+from ..drawing.cut import PLANES
 from ..image import Image
 from ..shot import Shot
 from ..tolerance import random_copy

@@ -12,8 +12,8 @@ from .._core import Camera, Lens, lens_names
 # Angles of view over the diagonal, below which a lens is of this kind.
 _BY_ANGLE = (("long", 30.0), ("normal", 56.0), ("wide angle", 100.0), ("very wide angle", math.inf))
 _PHONE_DIAGONAL_MM = 12.0
-# A number of four digits that is no part of a patent's number.
-_YEAR = re.compile(r"(?<![\d,/.-])(?:1[89]|20)\d\d(?!\d|,\d)")
+# A number of four digits that is no part of a patent's number, and no page.
+_YEAR = re.compile(r"(?<![\d,/.-])(?:1[89]|20)\d\d(?!\d|,\d|-\d)")
 
 
 @cache

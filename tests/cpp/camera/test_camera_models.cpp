@@ -3,10 +3,10 @@
 #include <cmath>
 #include <string>
 
-#include "optics/centred_lenses.hpp"
 #include "about.hpp"
 #include "camera/camera_setup.hpp"
 #include "doctest/doctest.h"
+#include "optics/centred_lenses.hpp"
 #include "pixel_rays.hpp"
 #include "traced_ray.hpp"
 

@@ -3,13 +3,13 @@
 #include <cmath>
 #include <string>
 
-#include "optics/centred_lenses.hpp"
 #include "camera/dispersed_rays.hpp"
 #include "camera/film_spectrum.hpp"
 #include "doctest/doctest.h"
 #include "io/lens/bundled_lenses.hpp"
 #include "io/lens/lens_file.hpp"
 #include "measurement.hpp"
+#include "optics/centred_lenses.hpp"
 #include "optics/pupil/pupil.hpp"
 #include "optics/trace/lens_dispersion.hpp"
 
@@ -50,7 +50,8 @@ double worst_index_error(const LensSystem& lens) {
 
 TEST_CASE("cubics give the indices of all lenses") {
     double worst = 0;
-    for (const std::string& name : centred_lens_names()) worst = std::max(worst, worst_index_error(io::read_lens(name)));
+    for (const std::string& name : centred_lens_names())
+        worst = std::max(worst, worst_index_error(io::read_lens(name)));
     // A hundredth of what tells F from C in a glass of V = 60, 0.01; a lateral colour of two pixels is then right to a
     // fiftieth of one.
     hold({"Effects", "index of refraction from a cubic over the wavelength", "all lenses, 380 to 780 nm", "core",

@@ -1,8 +1,8 @@
 // Third-order sums: against another program's listing surface by surface, against closed forms, and against real rays
 // of small apertures and fields.
 
-#include "optics/centred_lenses.hpp"
 #include "optics/analysis/seidel.hpp"
+#include "optics/centred_lenses.hpp"
 
 #include <algorithm>
 #include <cmath>

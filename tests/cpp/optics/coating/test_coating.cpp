@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "optics/centred_lenses.hpp"
 #include "about.hpp"
 #include "doctest/doctest.h"
 #include "io/lens/lens_file.hpp"
 #include "measurement.hpp"
 #include "optics/analysis/ray_aiming.hpp"
 #include "optics/analysis/transmission.hpp"
+#include "optics/centred_lenses.hpp"
 #include "optics/coating/coated_faces.hpp"
 #include "optics/coating/coated_surface.hpp"
 #include "optics/coating/thin_film.hpp"

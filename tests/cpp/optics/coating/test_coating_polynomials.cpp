@@ -4,12 +4,12 @@
 #include <cmath>
 #include <string>
 
-#include "optics/centred_lenses.hpp"
 #include "camera/film_spectrum.hpp"
 #include "doctest/doctest.h"
 #include "io/lens/bundled_lenses.hpp"
 #include "io/lens/lens_file.hpp"
 #include "measurement.hpp"
+#include "optics/centred_lenses.hpp"
 #include "optics/coating/coated_faces.hpp"
 #include "optics/coating/fit_coatings.hpp"
 #include "optics/lens/lens_changes.hpp"

@@ -6,12 +6,12 @@
 #include <string>
 #include <vector>
 
-#include "optics/centred_lenses.hpp"
 #include "camera/ghost_tables.hpp"
 #include "doctest/doctest.h"
 #include "io/lens/bundled_lenses.hpp"
 #include "io/lens/lens_file.hpp"
 #include "measurement.hpp"
+#include "optics/centred_lenses.hpp"
 #include "optics/coating/coated_faces.hpp"
 #include "optics/ghost/ghost_coatings.hpp"
 #include "optics/prescription/named_coatings.hpp"

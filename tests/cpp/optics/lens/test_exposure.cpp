@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "optics/centred_lenses.hpp"
 #include "about.hpp"
 #include "doctest/doctest.h"
 #include "math/random.hpp"
+#include "optics/centred_lenses.hpp"
 #include "pupil_region.hpp"
 
 namespace {

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "optics/centred_lenses.hpp"
 #include "about.hpp"
 #include "doctest/doctest.h"
+#include "optics/centred_lenses.hpp"
 #include "optics/code_v_aberrations.hpp"
 #include "optics/lens/paraxial.hpp"
 #include "traced_ray.hpp"

@@ -4,9 +4,9 @@
 #include <limits>
 #include <string>
 
-#include "optics/centred_lenses.hpp"
 #include "about.hpp"
 #include "doctest/doctest.h"
+#include "optics/centred_lenses.hpp"
 #include "refusal.hpp"
 #include "traced_ray.hpp"
 

@@ -3,9 +3,9 @@
 #include <cmath>
 #include <string>
 
-#include "optics/centred_lenses.hpp"
 #include "about.hpp"
 #include "measurement.hpp"
+#include "optics/centred_lenses.hpp"
 #include "optics/hard_lens_list.hpp"
 #include "optics/lens/best_focus.hpp"
 #include "optics/oracle.hpp"

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "optics/centred_lenses.hpp"
 #include "camera/camera_setup.hpp"
 #include "camera/field_of_view.hpp"
 #include "measurement.hpp"
+#include "optics/centred_lenses.hpp"
 #include "optics/hard_lens_list.hpp"
 #include "optics/hard_rays.hpp"
 #include "optics/lens/best_focus.hpp"

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "optics/centred_lenses.hpp"
 #include "about.hpp"
 #include "doctest/doctest.h"
+#include "optics/centred_lenses.hpp"
 #include "pupil_region.hpp"
 
 namespace {

@@ -1,8 +1,8 @@
 // Every bundled lens in float64 against the oracle in 50 digits, by every backend: rays, and optical path in waves.
 // (Their float32 images are held by tests/truth/test_float32_error.py.)
 
-#include "optics/centred_lenses.hpp"
 #include "measurement.hpp"
+#include "optics/centred_lenses.hpp"
 #include "optics/hard_rays.hpp"
 
 using namespace realcam;

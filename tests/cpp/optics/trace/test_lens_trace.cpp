@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "optics/centred_lenses.hpp"
 #include "code_v_rays.hpp"
 #include "doctest/doctest.h"
+#include "optics/centred_lenses.hpp"
 #include "optics/trace/lens_trace.hpp"
 #include "traced_ray.hpp"
 
