@@ -97,6 +97,57 @@ def test_pictures_are_squeezed_as_first_order_says() -> None:
     assert apart_y / apart_x == pytest.approx(chief_ray_scale(made, 1) / chief_ray_scale(made, 0), rel=1e-3)
 
 
+def sine_of_the_cone(lens: rc.Lens, axis: int) -> float:
+    """Of the widest ray that leaves the film's middle for the scene in one section: by search, through the lens."""
+    sines = np.linspace(0, 0.4, 8001)
+    ways = np.zeros((len(sines), 3))
+    ways[:, axis], ways[:, 2] = sines, -np.sqrt(1 - sines**2)
+    passes = lens.trace(np.tile(lens.film_frame[3], (len(sines), 1)), ways).status == 0
+    return float(sines[passes].max())
+
+
+@pytest.mark.parametrize("name", ["anamorphic-31mm", "anamorphic-65mm", "scope-adapter-50mm"])
+def test_the_exposure_is_that_of_an_elliptical_cone(name: str) -> None:
+    """E = pi L sin a sin b under a sky of radiance L = 1. Stopped down, where the pupil is an ellipse to 0.1%."""
+    made = rc.Lens.load(name).stopped_down(11)
+    elliptical = math.pi * sine_of_the_cone(made, 0) * sine_of_the_cone(made, 1)
+    rays = rc.Camera(made, film=rc.Film(0.2, 0.2, (16, 16))).generate_rays(spp=256)
+    assert np.mean(rays.weights) == pytest.approx(elliptical, rel=5e-3)
+
+
+def test_a_point_out_of_focus_is_the_pupils_ellipse() -> None:
+    """A cylinder behind a stop of 4 mm, and a distant lamp: a ray at x in the stop meets the film, d behind the curved
+    face, at x (1 - d / f), and in the other section at y. An evenly lit ellipse has a mean square of a quarter of its
+    semi-axis'. Spherical aberration changes f by 0.1% (1.17 h^2 / 2f), and the noise of some 5e4 samples 0.2%."""
+    d, thickness, n = 60.0, 1.0, 1.5
+    made = rc.Lens(
+        surfaces=[
+            rc.Stop(clear_semi_diameter_mm=4, thickness_mm=1e-6),
+            rc.Surface(
+                form="toroid",
+                radius_of_curvature_x_mm=50,
+                thickness_mm=thickness,
+                material=n,
+                clear_semi_diameter_mm=6,
+            ),
+            rc.Surface(clear_semi_diameter_mm=6),
+        ],
+        film_distance_mm=d - thickness / n,
+    )
+    film = rc.Film(12, 12, (120, 120))
+    lamp = quad((0, 0, -1000.0), 4.0, emission=1e6)
+    picture = rc.render(
+        scene_of(lamp), rc.Camera(made, film=film, look_at=(0, 0, -1)), effects=(), spp=1024, device="cpu"
+    )
+    light = picture.pixels.sum(axis=2)
+    at = (np.arange(120) + 0.5) / 10 - 6
+    x2, y2 = ((light * axis**2).sum() / light.sum() for axis in np.meshgrid(at, at))
+    # The lamp, 8 mrad wide, and the pixels widen it: their squares over 12 are added.
+    blur = ((8e-3 * d) ** 2 + 0.1**2) / 12
+    assert math.sqrt(4 * (y2 - blur)) == pytest.approx(4.0, rel=0.01)
+    assert math.sqrt(4 * (x2 - blur)) == pytest.approx(4.0 * abs(1 - d / 100), rel=0.01)
+
+
 def test_the_eye() -> None:
     """Escudero-Sanz and Navarro (1999): 60.4 dioptres; an arc of a degree is 0.29 mm on the retina."""
     eye = rc.Lens.load("eye-22mm")
