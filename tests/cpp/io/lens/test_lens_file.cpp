@@ -303,7 +303,7 @@ TEST_CASE("every bundled lens is valid, cites its source, and has the focal leng
         CHECK(lens.name == name);
         CHECK(lens.source.size() > 20);
         CHECK(!lens.title.empty());
-        CHECK(lens.film_distance > 0);
+        CHECK(lens.film_distance != 0);
         CHECK(lens.is_wide_open());
     }
     for (const auto& [name, focal_length] : stated) {
