@@ -9,7 +9,7 @@ from functools import lru_cache
 
 from ._core import Glass, InputError, Lens, LensFileError, RealcamError, glass_names
 from .optimisation import Targets, optimised
-from .variable import Variable
+from .variable import Variable, check_surface_exists
 
 _G, _F, _D, _C = 435.8343, 486.1327, 587.5618, 656.2725  # nm
 
@@ -173,8 +173,7 @@ def _glass_surfaces(lens: Lens, surfaces: Sequence[int] | None) -> list[int]:
             raise InputError(f'lens "{lens.name}" has no glass with dispersion')
         return found
     for i in surfaces:
-        if not 0 <= i < len(lens.surfaces):
-            raise InputError(f"there is no surface {i}; the lens has {len(lens.surfaces)}, from 0")
+        check_surface_exists(lens, i)
         if not has_glass(i):
-            raise InputError(f"there is no glass with dispersion behind surface {i}")
+            raise InputError(f"there is no glass with dispersion behind surface {i + 1}")
     return list(surfaces)

@@ -11,7 +11,7 @@ import numpy as np
 from ._core import InputError, Lens, Surface
 from .derivatives.dual_array import Doubles
 from .derivatives.gradient import QUANTITIES as OF_RAYS
-from .variable import Variable
+from .variable import Variable, check_surface_exists
 
 OF_GLASS = ("centre_thickness_mm", "edge_thickness_mm")
 BOUNDS = ("equal", "least", "most")
@@ -22,7 +22,7 @@ class Operand:
     """A number that is to have a value, or to stay on one side of it.
 
     quantity: one of Lens.gradient's, or "centre_thickness_mm" or "edge_thickness_mm": from `surface` to the next, on
-      the axis, and at the larger of both rims.
+      the axis, and at the larger of both rims. surface: its index, from 0.
     target: in the unit of the quantity. bound: "equal", "least" or "most".
     weight: an error of 1 counts as so many mm of RMS radius of all spots.
     field_deg, wavelength_nm, frequency_per_mm: as for Lens.gradient. A telecentric lens has a chief_ray_angle_deg of 0.
@@ -45,8 +45,10 @@ class Operand:
             raise InputError(f'unknown bound "{self.bound}"; equal, least or most is wanted')
         if not (math.isfinite(self.target) and math.isfinite(self.weight) and self.weight > 0):
             raise InputError(f"the operand {self.quantity} wants a finite target and a positive weight")
-        if self.quantity in OF_GLASS and not 0 <= self.surface < len(lens.surfaces) - 1:
-            raise InputError(f"there is nothing to measure from surface {self.surface} to the next")
+        if self.quantity in OF_GLASS:
+            check_surface_exists(lens, self.surface)
+            if self.surface == len(lens.surfaces) - 1:
+                raise InputError(f"{self.quantity}: surface {self.surface + 1} is the last; the film follows it")
         return self
 
     def residual(self, value: float) -> float:

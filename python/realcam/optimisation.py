@@ -13,7 +13,7 @@ from ._core import InputError, Lens, LensFileError
 from .derivatives.field_light import field_light
 from .derivatives.focus import film_distance_by
 from .operands import Operand
-from .variable import Variable, checked
+from .variable import Variable, check_surface_exists, checked
 
 Progress = Callable[[int, float], bool | None]
 
@@ -317,18 +317,19 @@ def _check(lens: Lens, variables: list[Variable], targets: Targets) -> None:
                 f'an optimisation changes {", ".join(known)}; "{variable.quantity}" would be no number of the centred '
                 "lens that it looks at"
             )
-        if not 0 <= variable.surface < len(lens.surfaces):
-            raise InputError(f"there is no surface {variable.surface}; the lens has {len(lens.surfaces)}, from 0")
+        check_surface_exists(lens, variable.surface)
         if variable.quantity == "thickness" and variable.surface == len(lens.surfaces) - 1:
             raise InputError("the last surface has no thickness; the film follows it")
         surface = lens.surfaces[variable.surface]
         if variable.quantity != "thickness" and surface.type in ("stop", "aperture"):
-            raise InputError(f"surface {variable.surface} is a {surface.type}, a plane, and has no {variable.quantity}")
+            raise InputError(
+                f"surface {variable.surface + 1} is a {surface.type}, a plane, and has no {variable.quantity}"
+            )
         value = variable.of(surface)
         if not variable.lower < value < variable.upper:
             raise InputError(
-                f"the {variable.quantity} of surface {variable.surface} is {value:.6g} and does not lie between its "
-                f"bounds, {variable.lower:.6g} and {variable.upper:.6g}"
+                f"the {variable.quantity} of surface {variable.surface + 1} is {value:.6g} and does not lie between "
+                f"its bounds, {variable.lower:.6g} and {variable.upper:.6g}"
             )
     weights = targets.field_weights
     if not targets.fields_deg or (weights is not None and len(weights) != len(targets.fields_deg)):

@@ -87,6 +87,7 @@ class Variable:
         return self.quantity, self.surface, self.power, self.power_y
 
     def __str__(self) -> str:
+        """With the surface counted from 1, as in lens tables and messages."""
         if self.quantity == "film_distance":
             return "film distance"
         which = ""
@@ -98,7 +99,7 @@ class Variable:
             which = f" r^{self.power}"
         elif self.quantity in ("zernike", "forbes"):
             which = f" {self.power}"
-        return f"{self.quantity}{which} of surface {self.surface}"
+        return f"{self.quantity}{which} of surface {self.surface + 1}"
 
     def of(self, surface: Surface) -> float:
         if self.quantity == "curvature":
@@ -153,6 +154,12 @@ def _axis(name: str) -> int:
     if name not in ("x", "y", "z"):
         raise InputError(f'unknown axis "{name}"; x, y or z is wanted')
     return "xyz".index(name)
+
+
+def check_surface_exists(lens: Lens, surface: int) -> None:
+    """Raises InputError where the lens has no surface of this index."""
+    if not 0 <= surface < len(lens.surfaces):
+        raise InputError(f"there is no surface {surface}; the lens has {len(lens.surfaces)}, counted from 0")
 
 
 def checked(lens: Lens, variables: Sequence[Variable]) -> list[Variable]:

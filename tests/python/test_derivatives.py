@@ -276,7 +276,7 @@ def test_rays_keep_their_length_and_say_where_they_end() -> None:
             lambda lens: lens.with_surface(1, radius_of_curvature_mm=np.inf).gradient(
                 "spot_mm", [rc.Variable.conic(1)]
             ),
-            "surface 1 is a plane: its conic has no effect",
+            "surface 2 is a plane: its conic has no effect",
         ),
     ],
 )

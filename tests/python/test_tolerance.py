@@ -277,22 +277,22 @@ def test_a_study_that_is_ended_has_what_is_done():
 @pytest.mark.parametrize(
     ("limits", "options", "message"),
     [
-        ({"radius_mm": {1: -0.1}}, {}, r"radius_mm of surface 1 is -0\.1; a number of 0 or more"),
+        ({"radius_mm": {1: -0.1}}, {}, r"radius_mm of surface 2 is -0\.1; a number of 0 or more"),
         ({"radius_mm": float("nan")}, {}, "radius_mm is nan; a number of 0 or more"),
         ({"radius_mm": {99: 0.1}}, {}, "no surface 99; the lens has 11, counted from 0"),
-        ({"radius_mm": {5: 0.1}}, {}, "radius_mm: surface 5 is a stop, which bends no light"),
-        ({"thickness_mm": {10: 0.1}}, {}, "surface 10 is the last; the film follows it"),
-        ({"index": {1: 0.1}}, {}, "no glass behind surface 1"),
-        ({"wedge_arcmin": {0: 1}}, {}, "no glass in front of surface 0, and no wedge; surface_tilt_arcmin is wanted"),
-        ({"element_tilt_arcmin": {(3, 3): 1}}, {}, "surface 3 alone is no element"),
-        ({"element_tilt_arcmin": {3: 1}}, {}, "surface 3 alone is no element"),
+        ({"radius_mm": {5: 0.1}}, {}, "radius_mm: surface 6 is a stop, which bends no light"),
+        ({"thickness_mm": {10: 0.1}}, {}, "surface 11 is the last; the film follows it"),
+        ({"index": {1: 0.1}}, {}, "no glass behind surface 2"),
+        ({"wedge_arcmin": {0: 1}}, {}, "no glass in front of surface 1, and no wedge; surface_tilt_arcmin is wanted"),
+        ({"element_tilt_arcmin": {(3, 3): 1}}, {}, "surface 4 alone is no element"),
+        ({"element_tilt_arcmin": {3: 1}}, {}, "surface 4 alone is no element"),
         ({"wedge_arcmin": 700.0}, {}, "wedge_arcmin is 700; at most 600"),
         ({}, {}, "there is no tolerance"),
         ({"radius_mm": 0.1}, {"copies": 0}, "copies is 0; a whole number from 1"),
         ({"radius_mm": 0.1}, {"seed": -1}, "seed is -1; a whole number of 0 or more"),
         ({"radius_mm": 0.1}, {"compensators": ("tilt",)}, 'unknown compensator "tilt"; refocus, film_tilt'),
         ({"radius_mm": 0.1}, {"compensators": ("film_tilt",), "fields_deg": [0, 5]}, "the fields lie on one line"),
-        ({"radius_mm": 0.1}, {"compensators": (rc.ElementShift(4, 4),)}, "surface 4 alone is no element"),
+        ({"radius_mm": 0.1}, {"compensators": (rc.ElementShift(4, 4),)}, "surface 5 alone is no element"),
         ({"radius_mm": 0.1}, {"compensators": (rc.ElementShift(0, 1, range_mm=0),)}, "range_mm is 0; a positive"),
         ({"radius_mm": 0.1}, {"fields_deg": [np.nan]}, "fields_deg must be angles"),
         ({"radius_mm": 0.1}, {"frequencies_per_mm": [-1]}, "frequencies_per_mm must be positive"),
@@ -319,7 +319,7 @@ def test_names_that_are_none():
     with pytest.raises(rc.InputError, match=r"loss is 2\.0"):
         study.inverse_sensitivities(2.0)
     plates = Tolerances(radius_mm=0.1)
-    with pytest.raises(rc.InputError, match="cannot compensate: they are planes"):
+    with pytest.raises(rc.InputError, match="surfaces 1 to 2 cannot compensate: they are planes"):
         plate = [
             Surface(thickness_mm=4, material=(N, 60.0), clear_semi_diameter_mm=10),
             Surface(thickness_mm=2, clear_semi_diameter_mm=10),

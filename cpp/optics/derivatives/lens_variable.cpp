@@ -2,12 +2,15 @@
 
 #include <string>
 
+#include "../lens/lens_changes.hpp"
+
 namespace realcam {
 
 namespace {
 
+/// Messages name surfaces from 1.
 [[noreturn]] void refuse(int surface, const std::string& why) {
-    throw InputError("surface " + std::to_string(surface) + " " + why);
+    throw InputError("surface " + std::to_string(surface + 1) + " " + why);
 }
 
 void check_number(const LensVariable& v, int least, int most, const char* what) {
@@ -48,14 +51,12 @@ void check_form(const LensVariable& v, const SurfaceForm& form) {
 
 void check(const LensSystem& lens, const LensVariable& v) {
     if (v.quantity == LensQuantity::film_distance) return;
-    const int count = static_cast<int>(lens.surfaces.size());
-    if (v.surface < 0 || v.surface >= count)
-        throw InputError("there is no surface " + std::to_string(v.surface) + "; the lens has " +
-                         std::to_string(count) + ", from 0");
+    check_surface_exists(lens, v.surface);
     const Surface& surface = lens.surfaces[static_cast<std::size_t>(v.surface)];
     switch (v.quantity) {
         case LensQuantity::thickness:
-            if (v.surface + 1 == count) refuse(v.surface, "is the last and has no thickness; the film follows it");
+            if (v.surface + 1 == static_cast<int>(lens.surfaces.size()))
+                refuse(v.surface, "is the last and has no thickness; the film follows it");
             return;
         case LensQuantity::decentre:
         case LensQuantity::tilt: return check_number(v, 0, 2, "has axes");

@@ -26,7 +26,7 @@ def optimise(
             "--vary",
             metavar="WHAT",
             help="radii, thicknesses, conics, or one of them: radius:2, thickness:3, conic:2, aspheric:2:4 (surface "
-            "from 0, power); may be repeated [radii]",
+            "as lens info counts them, power); may be repeated [radii]",
         ),
     ] = None,
     field_deg: Annotated[
@@ -80,21 +80,26 @@ def optimise(
 
     def variables_of(text: str) -> list[Variable]:
         kind, *numbers = text.split(":")
-        try:
-            at = [int(number) for number in numbers]
-        except ValueError:
-            raise InputError(f'--vary: "{text}": a surface is a number, from 0') from None
         if text in WAYS:
             return _all_of(lens, text, least_radius, least_thickness, most)
-        if kind == "radius" and len(at) == 1:
-            return [Variable.radius(at[0], least_radius)]
-        if kind == "thickness" and len(at) == 1:
-            return [Variable.thickness(at[0], least_thickness, most)]
-        if kind == "conic" and len(at) == 1:
-            return [Variable.conic(at[0])]
-        if kind == "aspheric" and len(at) == 2:
-            return [Variable.aspheric(at[0], at[1])]
-        raise InputError(f'--vary: "{text}": {", ".join(WAYS)}, radius:2, conic:2 or aspheric:2:4 is wanted')
+        if len(numbers) != {"radius": 1, "thickness": 1, "conic": 1, "aspheric": 2}.get(kind):
+            raise InputError(
+                f'--vary: "{text}": {", ".join(WAYS)}, radius:2, thickness:3, conic:2 or aspheric:2:4 is wanted'
+            )
+        try:
+            number, *power = [int(part) for part in numbers]
+        except ValueError:
+            raise InputError(f'--vary: "{text}": whole numbers are wanted after the colon') from None
+        if not 1 <= number <= len(lens.surfaces):
+            raise InputError(f'--vary: "{text}": there is no surface {number}; the lens has {len(lens.surfaces)}')
+        surface = number - 1
+        if kind == "radius":
+            return [Variable.radius(surface, least_radius)]
+        if kind == "thickness":
+            return [Variable.thickness(surface, least_thickness, most)]
+        if kind == "conic":
+            return [Variable.conic(surface)]
+        return [Variable.aspheric(surface, *power)]
 
     variables = [v for text in vary or ["radii"] for v in variables_of(text)]
     fields = tuple(field_deg) if field_deg else _fields(lens)
@@ -159,7 +164,7 @@ def optimise(
                     "rms_spot_before_mm": found.rms_spot_before_mm,
                     "rms_spot_mm": found.rms_spot_mm,
                     "evaluations": found.evaluations,
-                    "glasses": {str(surface): glass_name for surface, glass_name in changed.items()},
+                    "glasses": {str(surface + 1): glass_name for surface, glass_name in changed.items()},
                     "message": found.message,
                     "file": str(output),
                 }
@@ -171,7 +176,7 @@ def optimise(
             f"{found.evaluations} looks: {found.message}"
         )
         for surface, glass_name in changed.items():
-            typer.echo(f"surface {surface}: {glass_name}")
+            typer.echo(f"surface {surface + 1}: {glass_name}")
     options.say_written(output, quiet or as_json)
     if found.message == "interrupted":
         raise typer.Exit(130)

@@ -70,5 +70,6 @@ def _check_shift(lens: Lens, shift: ElementShift) -> None:
         raise InputError(f"ElementShift: range_mm is {shift.range_mm!r:.40}; a positive length is wanted")
     if all(s.curvature_per_mm == 0 for s in lens.surfaces[shift.first : shift.last + 1]):
         raise InputError(
-            f"surfaces {shift.first} to {shift.last} cannot compensate: they are planes, which do nothing when moved"
+            f"surfaces {shift.first + 1} to {shift.last + 1} cannot compensate: they are planes, which do nothing "
+            "when moved"
         )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from .._core import InputError, Lens
+from ..variable import check_surface_exists
 
 
 def has_glass_behind(lens: Lens, surface: int) -> bool:
@@ -27,8 +28,7 @@ def check_surface(lens: Lens, surface: int) -> None:
     """Raises InputError where there is no such surface."""
     if not isinstance(surface, int) or isinstance(surface, bool):
         raise InputError(f"{surface!r:.40} is no surface; a number from 0 is wanted")
-    if not 0 <= surface < len(lens.surfaces):
-        raise InputError(f"there is no surface {surface}; the lens has {len(lens.surfaces)}, counted from 0")
+    check_surface_exists(lens, surface)
 
 
 def check_element(lens: Lens, first: int, last: int) -> None:
@@ -37,6 +37,6 @@ def check_element(lens: Lens, first: int, last: int) -> None:
     check_surface(lens, last)
     if last <= first:
         raise InputError(
-            f"surface {first} alone is no element; the numbers of its first and last face are wanted, or a tolerance "
-            "of the surface"
+            f"surface {first + 1} alone is no element; the numbers of its first and last face are wanted, or a "
+            "tolerance of the surface"
         )

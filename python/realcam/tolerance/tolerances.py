@@ -129,7 +129,7 @@ class Tolerances:
                 given = {_key(key): limit for key, limit in limits.items()}
                 for (first, last), limit in given.items():
                     _check_place(lens, field.name, first, last)
-                    _check_limit(field.name, limit, f" of surface {first}")
+                    _check_limit(field.name, limit, f" of surface {first + 1}")
             else:
                 _check_limit(field.name, limits, "")
                 given = dict.fromkeys(self._places(lens, field.name), limits)
@@ -242,17 +242,17 @@ def _why_not(lens: Lens, kind: str, surface: int) -> str:
     s = lens.surfaces[surface]
     if kind == "thickness_mm":
         if surface == len(lens.surfaces) - 1:
-            return f"surface {surface} is the last; the film follows it, which is refocused"
+            return f"surface {surface + 1} is the last; the film follows it, which is refocused"
         return ""
     if s.type in ("stop", "aperture"):
-        return f"surface {surface} is a {s.type}, which bends no light"
+        return f"surface {surface + 1} is a {s.type}, which bends no light"
     if kind in ("radius_mm", "radius_percent") and s.curvature_per_mm == 0:
-        return f"surface {surface} is a plane and has no radius; radius_fringes is wanted"
+        return f"surface {surface + 1} is a plane and has no radius; radius_fringes is wanted"
     if kind in ("index", "abbe_percent"):
         if not has_glass_behind(lens, surface):
-            return f"there is no glass behind surface {surface}"
+            return f"there is no glass behind surface {surface + 1}"
         if kind == "abbe_percent" and not s.material.index(486.1327) > s.material.index(656.2725):
-            return f"the dispersion of the glass behind surface {surface} is not known"
+            return f"the dispersion of the glass behind surface {surface + 1} is not known"
     if kind == "wedge_arcmin" and (surface == 0 or not has_glass_behind(lens, surface - 1)):
-        return f"there is no glass in front of surface {surface}, and no wedge; surface_tilt_arcmin is wanted"
+        return f"there is no glass in front of surface {surface + 1}, and no wedge; surface_tilt_arcmin is wanted"
     return ""

@@ -283,8 +283,8 @@ TEST_CASE("variables that make no sense are refused with one line") {
     const auto refused = [&](const LensVariable& v, const std::string& why) {
         CHECK(message_of([&] { check_variables(lens, {v}); }).find(why) != std::string::npos);
     };
-    refused({LensQuantity::curvature, 9}, "there is no surface 9; the lens has 6, from 0");
-    refused({LensQuantity::conic, 5}, "is a plane: its conic has no effect");
+    refused({LensQuantity::curvature, 9}, "there is no surface 9; the lens has 6, counted from 0");
+    refused({LensQuantity::conic, 5}, "surface 6 is a plane: its conic has no effect");
     refused({LensQuantity::curvature, 3}, "only blocks light");
     refused({LensQuantity::index, 3}, "the same medium on both sides");
     refused({LensQuantity::thickness, 5}, "is the last");
