@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
+import numpy as np
 import pytest
 
 pytest.importorskip("nicegui")
@@ -64,3 +67,29 @@ def test_what_cannot_be_stays_to_be_mended_until_its_cell_is_left(bench: BenchPa
     assert cell.input_value() == "1"
     cell.press("Tab")
     until(cell.input_value, lambda value: value == before, "as the lens has it")
+
+
+def test_another_copy_is_one_of_the_lens_as_drawn(bench: BenchPage) -> None:
+    """Whatever copies have been before it: a radius is within the grade's 0.01% or 0.5% of that of the drawing."""
+    cell, page = bench.cell(0, "radius_mm"), bench.page
+    grade, button = page.get_by_label("Grade of copies"), page.get_by_role("button", name="Another copy")
+    undo = page.get_by_role("button", name="Undo")
+
+    def after(action: Callable[[], None]) -> str:
+        before = cell.input_value()
+        action()
+        return until(cell.input_value, lambda value: value != before, "another lens")
+
+    drawn, picture = cell.input_value(), bench.picture()
+    commercial = after(button.click)
+    assert float(commercial) == pytest.approx(float(drawn), rel=5.01e-3)
+    assert np.abs(bench.picture().astype(float) - picture).max() > 8
+    assert page.get_by_role("img", name="Section of").is_visible()
+    grade.select_option("high")
+    assert float(after(button.click)) == pytest.approx(float(drawn), rel=1.01e-4)
+    assert after(undo.click) == commercial
+    # What undo has brought back is a copy, too, and no drawing.
+    assert float(after(button.click)) == pytest.approx(float(drawn), rel=1.01e-4)
+    assert after(undo.click) == commercial
+    assert after(undo.click) == drawn
+    bench.check()

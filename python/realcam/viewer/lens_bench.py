@@ -49,7 +49,7 @@ class LensBench:
         self.denoises = not self.why_no_denoiser
         self.hovered: tuple[float, float] | None = None
         self._plane = "yz"
-        self._copied_from, self._copy = self.controls.lens, self.controls.lens
+        self._copies: list[tuple[Lens, Lens]] = []  # with the lens that each is a copy of
         self.comparison = Comparison()
         self._lock = threading.Lock()  # of controls, which the picture's thread changes, too
         self._frame: Frame | None = None
@@ -170,10 +170,11 @@ class LensBench:
 
     def another_copy(self, grade: str) -> bool:
         """The lens with random errors of a grade; a copy is replaced by another one of the same lens."""
-        drawn = self._copied_from if self.controls.lens == self._copy else self.controls.lens
+        lens = self.controls.lens
+        drawn = next((drawn for copy, drawn in self._copies if copy == lens), lens)
         if not self.edit(lambda _: random_copy(drawn, grade)):
             return False
-        self._copied_from, self._copy = drawn, self.controls.lens
+        self._copies.append((self.controls.lens, drawn))
         return True
 
     def undo(self) -> bool:
