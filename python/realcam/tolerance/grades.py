@@ -1,10 +1,9 @@
 """Tolerances as optical shops print them, by grade.
 
 Radius and thickness: Edmund Optics, "Understanding Optical Specifications" (its typical, precision and high quality).
-Index, Abbe number, irregularity and the power of planes: Optimax, "Manufacturing Tolerance Chart" (commercial,
-precision, high precision); of glass that is bought with its melt's data, what those leave is ours, from their four
-digits. Wedge: 3 and 1 arc minutes as in the former, and half of one. Such charts end at the element: tilt and decentre
-of elements in their mount are ours, for turned barrels, better ones, and cells that are centred one by one.
+Index and Abbe number: Optimax, "Manufacturing Tolerance Chart" (commercial, precision). What a melt's data leave is
+assumed, from their four digits. Planes, irregularity and wedge are assumed. Such charts end at the element: tilt and
+decentre of elements in their mount are assumed, for turned barrels, better ones, and cells that are centred one by one.
 """
 
 from __future__ import annotations
