@@ -83,7 +83,10 @@ py::tuple ray_derivatives(const LensSystem& lens, const InputArray<double>& orig
     if (start != "film" && start != "scene") throw InputError("start must be \"film\" or \"scene\"");
     const DualPath path(lens, start == "film" ? LightDirection::to_scene : LightDirection::to_film,
                         wavelength_or_design(lens, wavelength_nm), variables_from(variables),
-                        frame == "lens" ? ExitFrame::lens : ExitFrame::last_axis, rims);
+                        frame == "lens"   ? ExitFrame::lens
+                        : frame == "film" ? ExitFrame::film
+                                          : ExitFrame::last_axis,
+                        rims);
     const int all = path.surface_count(), surfaces = surface_count.value_or(all);
     if (surfaces < 1 || surfaces > all) throw InputError("surface_count must lie between 1 and " + std::to_string(all));
     constexpr py::ssize_t kNumbers = RayDerivatives::kNumbers;
@@ -144,9 +147,10 @@ void bind_derivatives(py::module_& m) {
              "rims"_a = true,
              "For realcam.derivatives, which says more. variables: tuples of a quantity, a surface from 0, and two "
              "numbers.\n"
-             "frame: \"lens\", or \"axis\" for that of the axis behind the last surface. With surface_count the frame "
-             "of the\n"
-             "last surface crossed. Returns status (N,); origin, optical direction and optical path (N, 7); their\n"
+             "frame: \"lens\", \"axis\" for that of the axis behind the last surface, or \"film\". With surface_count "
+             "the frame\n"
+             "of the last surface crossed. Returns status (N,); origin, optical direction and optical path (N, 7); "
+             "their\n"
              "derivatives by the variables (N, 7, V), and by the given origin and direction (N, 7, 6).");
 }
 

@@ -638,6 +638,7 @@ class Lens(_Value):
         *,
         field_deg: float = 0.0,
         object_distance_m: float | None = None,
+        film_mm: tuple[float, float] | None = None,
         wavelength_nm: float | None = None,
         frequency_per_mm: float | None = None,
         remove: str | None = None,

@@ -135,7 +135,9 @@ class _Search:
         self.failed = 1e3 * (1 + float(np.abs(self.of_start).max()))
         if not np.isfinite(self.of_start).all():
             raise InputError(f'no light passes lens "{lens.name}" from one of the fields')
-        self.is_exact = not (targets.refocuses and _focuses_by_group(lens)) and self._has_chief_rays()
+        self.is_exact = (
+            lens.is_rotational and not (targets.refocuses and _focuses_by_group(lens)) and self._has_chief_rays()
+        )
 
     def _has_chief_rays(self) -> bool:
         """Derivatives of a field begin with its chief ray, which a secondary mirror blocks."""
@@ -221,7 +223,7 @@ class _Search:
                     object_distance_m=targets.object_distance_m,
                     samples=self.samples,
                 )
-                points = light.on_plane(light.first_order.film_distance_mm)[:-1]
+                points = light.on_film()[:-1]
                 at.append(points.value)
                 by.append(following(points.by))
                 share.append(part * light.weights)

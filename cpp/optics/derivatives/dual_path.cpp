@@ -97,10 +97,13 @@ DualPath::DualPath(const LensSystem& lens, LightDirection direction, double wave
     entry_index_ = path.entry_index, entry_position_ = path.entry_position, entry_reach_ = path.entry_reach;
     const bool to_film = direction == LightDirection::to_film;
     add_surfaces(lens, wavelength_nm, to_film);
+    leaves_along_axis_ &= exit != ExitFrame::film;
     const int last = views_.back().surface_index;
     for (std::size_t first = 0; first < variables_.size() || first == 0; first += kDualLanes) {
         const DualLens dual(lens, wavelength_nm, variables_, first);
-        exits_.push_back(exit == ExitFrame::lens ? dual.frame(lens, last) : dual.last_axis(lens));
+        exits_.push_back(exit == ExitFrame::lens   ? dual.frame(lens, last)
+                         : exit == ExitFrame::film ? dual.film(lens)
+                                                   : dual.last_axis(lens));
         entry_positions_.push_back(to_film ? Dual8(0) : dual.vertices[lens.surfaces.size() - 1]);
         entry_indices_.push_back(to_film ? dual.indices.front() : dual.indices.back());
     }

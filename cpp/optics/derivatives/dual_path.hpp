@@ -9,6 +9,7 @@ namespace REALCAM_NAMESPACE {
 enum class ExitFrame {
     lens,       ///< the lens frame
     last_axis,  ///< that of the axis behind the last surface, from its vertex on: the film stands there
+    film,       ///< that of film_path_ends, shifted to the film, whose vertex is in the origin
 };
 
 /// A ray where it leaves, and the derivatives of seven numbers: its origin, its optical direction and its optical path

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "../lens/lens_tilts.hpp"
 #include "../prescription/form_terms.hpp"
+#include "../trace/film_frame.hpp"
 
 namespace realcam {
 
@@ -152,6 +154,18 @@ Affine<Dual8> DualLens::frame(const LensSystem& lens, int surface) const {
 
 Affine<Dual8> DualLens::last_axis(const LensSystem& lens) const {
     return moves_alone(lens.surfaces.back()) ? inverse(placements.back()) : Affine<Dual8>{};
+}
+
+Affine<Dual8> DualLens::film(const LensSystem& lens) const {
+    const SurfacePlacement& own = lens.film_placement;
+    const Affine<Dual8> on_axis = along_axis(film_distance) * frame_of(static_cast<Vec3<Dual8>>(own.decentre),
+                                                                       static_cast<Vec3<Dual8>>(own.tilt_deg));
+    Affine<Dual8> film = inverse(on_axis) * last_axis(lens);
+    // Where light comes from behind, the frame is turned about y.
+    const std::optional<Affine<double>> exit = film_path_ends(lens, LightDirection::to_film).exit;
+    if (exit && dot(exit->z, (surface_frames(lens).last_axis * own.frame()).z) < 0)
+        film = Affine<Dual8>{{-1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, -1.0}, {0.0, 0.0, 0.0}} * film;
+    return film;
 }
 
 DualSurface::DualSurface(const SurfaceView<double>& from, const Surface& surface,

@@ -28,6 +28,8 @@ public:
     Affine<Dual8> frame(const LensSystem& lens, int surface) const;
     /// From the last surface's frame to that of the axis that goes on from its vertex.
     Affine<Dual8> last_axis(const LensSystem& lens) const;
+    /// From the last surface's frame to that of film_path_ends, shifted to the film.
+    Affine<Dual8> film(const LensSystem& lens) const;
 };
 
 /// As FrameChange, which has code for devices.

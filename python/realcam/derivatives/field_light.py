@@ -1,45 +1,56 @@
 """The rays of one object point that fill the real stop, with derivatives: the stop stays full while the lens changes.
 
-A ray is aimed at its place on the stop. Where a number of the lens changes, so does the point of the entrance pupil's
-plane that the ray has to cross: by the implicit function theorem, from the derivatives at the stop.
+A ray is aimed at its place on the stop. Where a number of the lens changes, so does the point that the ray has to cross
+in front of the lens: by the implicit function theorem, from the derivatives at the stop.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .._core import InputError, Lens
+from .._core import AimedRays, InputError, Lens
 from ..variable import Variable
 from .dual_array import Doubles, DualArray
+from .exit_pupil import ChiefRayNeighbours, exit_pupil_distance
 from .first_order import FirstOrderDuals, first_order_duals
 
 
 @dataclass(frozen=True)
 class FieldLight:
-    """Rays behind the lens, relative to the last vertex, mm. The last of them is the chief ray.
+    """Rays behind the lens, mm. The last of them is the chief ray.
 
     weights: (N - 1,), shares of the stop's area, 0 where a ray does not pass. pupil: (N, 2), places on the stop.
-    origins, directions: (N, 3), optical; paths: (N,).
+    origins, directions: (N, 3), optical; paths: (N,). Of a field that is named by its angle, in a lens of revolution,
+    z counts from the last vertex, and first_order is known. Of others z counts from the film, in its frame, and
+    exit_pupil has the distance from the exit pupil to it.
     """
 
     field_deg: float
-    first_order: FirstOrderDuals
+    first_order: FirstOrderDuals | None
     weights: Doubles
     pupil: Doubles
     passes: NDArray[np.bool_]
     origins: DualArray
     directions: DualArray
     paths: DualArray
+    exit_pupil: Callable[[], DualArray] | None = None
 
-    def on_plane(self, film_distance: DualArray) -> DualArray:
-        """(N, 2): where the rays meet a plane behind the last vertex."""
+    @property
+    def film_z(self) -> DualArray:
+        if self.first_order is not None:
+            return self.first_order.film_distance_mm
+        return DualArray.constant(0.0, self.origins.count)
+
+    def on_film(self) -> DualArray:
+        """(N, 2): where the rays meet the film, or its tangent plane in the middle."""
         o, p = self.origins, self.directions
-        way = (film_distance - o[:, 2]) / p[:, 2]
+        way = (self.film_z - o[:, 2]) / p[:, 2]
         x, y = o[:, 0] + way * p[:, 0], o[:, 1] + way * p[:, 1]
         return DualArray(np.stack([x.value, y.value], 1), np.stack([x.by, y.by], 1))
 
@@ -51,22 +62,32 @@ def field_light(
     wavelength_nm: float,
     *,
     object_distance_m: float | None = None,
+    film_mm: tuple[float, float] | None = None,
     samples: int = 6,
     pattern: str = "hexapolar",
 ) -> FieldLight:
     """Raises InputError where no light passes, or the middle of the stop is dark."""
     count = len(variables)
-    spot = lens.spot(
-        field_deg, object_distance_m=object_distance_m, wavelength_nm=wavelength_nm, samples=samples, pattern=pattern
-    )
+    named: dict[str, Any] = {
+        "object_distance_m": object_distance_m,
+        "film_mm": film_mm,
+        "wavelength_nm": wavelength_nm,
+    }
+    spot = lens.spot(field_deg, samples=samples, pattern=pattern, **named)
     pupil = np.vstack([spot.pupil, [[0.0, 0.0]]])
-    aimed = lens.aim(pupil, field_deg, object_distance_m=object_distance_m, wavelength_nm=wavelength_nm)
+    aimed = lens.aim(pupil, field_deg, **named)
     passes = aimed.status == 0
     if not passes[-1]:
-        raise InputError(f"the ray at {field_deg:.6g} deg through the middle of the stop is blocked")
+        where = f"at {field_deg:.6g} deg" if film_mm is None else f"of the film point {film_mm}"
+        raise InputError(f"the ray {where} through the middle of the stop is blocked")
     weights = np.where(passes[:-1], spot.weights, 0.0)
-    first_order = first_order_duals(lens, variables, wavelength_nm)
-    start, path = _start(lens, first_order, aimed.origins_mm, field_deg, object_distance_m, count)
+    first_order, frame = None, "film"
+    if lens.is_rotational and film_mm is None:
+        first_order, frame = first_order_duals(lens, variables, wavelength_nm), "axis"
+        start, path = _start(lens, first_order, aimed.origins_mm, field_deg, object_distance_m, count)
+    else:
+        distance = lens.focus_distance_m if object_distance_m is None else object_distance_m
+        start, path = _start_from_a_fixed_point(aimed, math.isfinite(distance), count)
     value = start.value
     listed = [v.as_tuple() for v in variables]
     _, _, at_stop, at_stop_by_ray = lens._ray_derivatives(
@@ -80,7 +101,7 @@ def field_light(
         rims=False,
     )
     _, numbers, by, by_ray = lens._ray_derivatives(
-        value[:, :3], value[:, 3:], listed, wavelength_nm=wavelength_nm, start="scene", frame="axis"
+        value[:, :3], value[:, 3:], listed, wavelength_nm=wavelength_nm, start="scene", frame=frame
     )
     at_stop_by = at_stop_by_ray[:, :2] @ start.by
     at_stop_by[..., 2:] += at_stop[:, :2]
@@ -92,16 +113,48 @@ def field_light(
     all_by[..., 2:] += by
     all_by[:, 6] += path.by
     total = all_by[..., 2:] + all_by[..., :2] @ entry_by
+    origins = DualArray(numbers[:, :3], total[:, :3])
+    directions = DualArray(numbers[:, 3:6], total[:, 3:6])
+
+    def exit_pupil() -> DualArray:
+        chief_by = start.by[-1][:, :2]  # of its six numbers by the two that aim it
+        across = chief_by[:3].T
+        moves = np.vstack([entry_by[-1], (across @ chief_by[3:]) @ entry_by[-1]])
+        rays = ChiefRayNeighbours(lens, variables, wavelength_nm, value[-1], across, moves)
+        return exit_pupil_distance(rays, origins[-1], directions[-1])
+
     return FieldLight(
         field_deg,
         first_order,
         weights,
         pupil,
         passes,
-        DualArray(numbers[:, :3], total[:, :3]),
-        DualArray(numbers[:, 3:6], total[:, 3:6]),
+        origins,
+        directions,
         DualArray(numbers[:, 6] + path.value, total[:, 6]),
+        None if first_order is not None else exit_pupil,
     )
+
+
+def _start_from_a_fixed_point(aimed: AimedRays, is_finite: bool, count: int) -> tuple[DualArray, DualArray]:
+    """The same for an object point that stays where it is: (N, 6), whose first two derivatives are by the place along
+    two axes across the ray, mm, and (N,) paths."""
+    o, d = aimed.origins_mm, aimed.directions
+    good = aimed.status == 0
+    x = np.cross(np.where(np.abs(d[:, 1:2]) < 0.9, [[0.0, 1.0, 0.0]], [[1.0, 0.0, 0.0]]), d)
+    x /= np.linalg.norm(x, axis=1, keepdims=True)
+    y = np.cross(d, x)
+    by = np.zeros((len(o), 6, count + 2))
+    by[:, :3, 0], by[:, :3, 1] = x, y
+    path = np.zeros(len(o))
+    if is_finite:
+        # Where all rays come from: the point that is nearest to them.
+        off = np.eye(3) - d[good, :, None] * d[good, None, :]
+        point = np.linalg.solve(off.sum(0), np.einsum("nij,nj->i", off, o[good]))
+        distance = np.linalg.norm(o - point, axis=1)
+        by[:, 3:, 0], by[:, 3:, 1] = x / distance[:, None], y / distance[:, None]
+        path = np.einsum("ni,ni->n", o - o[-1], o + o[-1] - 2 * point) / (distance + distance[-1])
+    return DualArray(np.hstack([o, d]), by), DualArray(path, np.zeros((len(o), count + 2)))
 
 
 def _start(

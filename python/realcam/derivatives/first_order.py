@@ -31,7 +31,9 @@ class FirstOrderDuals:
 
 def first_order_duals(lens: Lens, variables: Sequence[Variable], wavelength_nm: float) -> FirstOrderDuals:
     if not lens.is_rotational:
-        raise InputError("derivatives of fields and of first order need a centred lens of revolution; rays need none")
+        raise InputError(
+            "derivatives of first order need a centred lens of revolution; those of spots and wavefronts need none"
+        )
     lens.first_order(wavelength_nm)  # refuses what has none
     count = len(variables)
     surfaces = lens.surfaces

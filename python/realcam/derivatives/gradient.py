@@ -35,6 +35,9 @@ QUANTITIES = (
 )
 
 
+OF_ANY_LENS = ("spot_mm", "wavefront_waves", "mtf_tangential", "mtf_sagittal", "chief_ray_height_mm")
+
+
 @dataclass(frozen=True, repr=False)
 class Gradient(ShortText):
     """A number and its derivatives.
@@ -56,6 +59,7 @@ def gradient(
     *,
     field_deg: float = 0.0,
     object_distance_m: float | None = None,
+    film_mm: tuple[float, float] | None = None,
     wavelength_nm: float | None = None,
     frequency_per_mm: float | None = None,
     remove: str | None = None,
@@ -68,6 +72,9 @@ def gradient(
       "distortion_percent" (against the paraxial height on the film), "length_mm" (front vertex to film), and of
       first_order(): effective_focal_length_mm, back_focal_distance_mm, front_focal_distance_mm, f_number,
       entrance_pupil_position_mm.
+    film_mm: names the field by the film point of its chief ray, as in Lens.spot. Tangential is then away from the
+      film's middle, and the object point stays where it is. So it does in lenses that are not of revolution. Those have
+      only spot_mm, wavefront_waves, the MTF and chief_ray_height_mm (its y on the film).
     remove: None, "tilt" or "focus", of the wavefront. samples: hexapolar rings of rays.
     The film stays at its distance from the last vertex, the stop keeps its size, and rays go on to fill it. What a rim
     cuts off counts as if it stayed the same rays. Raises InputError for what the lens or its variables have not.
@@ -86,23 +93,38 @@ def gradient(
             else getattr(first_order, quantity)
         )
     else:
-        light = field_light(self, listed, field_deg, nm, object_distance_m=object_distance_m, samples=samples)
-        number = _of_light(quantity, light, nm, frequency_per_mm, remove)
+        if quantity not in OF_ANY_LENS and (film_mm is not None or not self.is_rotational):
+            raise InputError(
+                f"derivatives of {quantity} need a centred lens of revolution and a field angle; those of "
+                f"{', '.join(OF_ANY_LENS)} do not"
+            )
+        light = field_light(
+            self, listed, field_deg, nm, object_distance_m=object_distance_m, film_mm=film_mm, samples=samples
+        )
+        x, y = film_mm if film_mm is not None and any(film_mm) else (0.0, 1.0)
+        tangential = x / math.hypot(x, y), y / math.hypot(x, y)
+        number = _of_light(quantity, light, nm, frequency_per_mm, remove, tangential)
     return Gradient(quantity, float(number.value), tuple(listed), np.asarray(number.by))
 
 
 def _of_light(
-    quantity: str, light: FieldLight, wavelength_nm: float, frequency_per_mm: float | None, remove: str | None
+    quantity: str,
+    light: FieldLight,
+    wavelength_nm: float,
+    frequency_per_mm: float | None,
+    remove: str | None,
+    tangential: tuple[float, float],
 ) -> DualArray:
     if quantity == "wavefront_waves":
         return wavefront_rms(light, wavelength_nm, remove)
-    at = light.on_plane(light.first_order.film_distance_mm)
+    at = light.on_film()
     if quantity == "spot_mm":
         return spot_rms(light, at)
     if quantity in ("mtf_tangential", "mtf_sagittal"):
         if frequency_per_mm is None or not frequency_per_mm >= 0:
             raise InputError("an MTF is that of a frequency: frequency_per_mm is wanted")
-        return transfer(light, at[:, 1 if quantity == "mtf_tangential" else 0], frequency_per_mm)
+        x, y = tangential if quantity == "mtf_tangential" else (tangential[1], -tangential[0])
+        return transfer(light, x * at[:, 0] + y * at[:, 1], frequency_per_mm)
     if quantity == "chief_ray_angle_deg":
         return chief_ray_angle_deg(light)
     height = at[-1, 1]
@@ -112,6 +134,7 @@ def _of_light(
         raise InputError("there is no distortion on the axis")
     if not abs(light.field_deg) < 90:
         raise InputError("there is no paraxial height at 90 deg and beyond")
+    assert light.first_order is not None
     paraxial = math.tan(math.radians(light.field_deg)) * light.first_order.paraxial_height_mm
     return 100 * (height / paraxial - 1.0)
 
@@ -166,15 +189,16 @@ def wavefront_rms(light: FieldLight, wavelength_nm: float, remove: str | None) -
 
 def opd_waves(light: FieldLight, wavelength_nm: float) -> DualArray:
     """(N,) in waves, positive where the wavefront is ahead of the sphere."""
-    first_order, o = light.first_order, light.origins
-    film = first_order.film_distance_mm
-    n = first_order.index_behind
-    p = light.directions
+    o, p, film = light.origins, light.directions, light.film_z
     size = (p[:, 0] * p[:, 0] + p[:, 1] * p[:, 1] + p[:, 2] * p[:, 2]).sqrt()
+    n = size[-1]
     d = [p[:, i] / size for i in range(3)]
-    at = light.on_plane(film)[-1]
-    if abs(light.field_deg) < 1e-6 * 180 / math.pi:
-        curvature = d[2][-1] / (film - first_order.exit_pupil_position_mm)
+    at = light.on_film()[-1]
+    if light.first_order is None:
+        assert light.exit_pupil is not None
+        curvature = 1.0 / light.exit_pupil()
+    elif abs(light.field_deg) < 1e-6 * 180 / math.pi:
+        curvature = d[2][-1] / (film - light.first_order.exit_pupil_position_mm)
     else:
         curvature = d[1][-1] / at[1]
     b = [o[:, 0] - at[0], o[:, 1] - at[1], o[:, 2] - film]

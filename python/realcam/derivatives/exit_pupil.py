@@ -1,0 +1,109 @@
+"""How far the exit pupil is from the film, for lenses of any kind: by rays close to a chief ray, with derivatives."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from .._core import Lens
+from ..variable import Variable
+from .dual_array import Doubles, DualArray
+
+# Four neighbours to either side of a ray, for derivatives with an error of the fourth order of the step.
+OFFSETS = np.array([-2.0, -1.0, 1.0, 2.0])
+WEIGHTS = np.array([1.0, -8.0, 8.0, -1.0]) / 12
+
+
+class ChiefRayNeighbours:
+    """What rays close to a chief ray do, to first order, with derivatives by the variables of the lens.
+
+    A ray is four numbers at its start: the place along two axes across the chief ray, mm, and the direction along
+    them. start: (6,), origin and unit direction of the chief ray in front of the lens. across: (2, 3), those axes.
+    start_by: (4, V): how the chief ray's own four numbers follow the variables.
+    """
+
+    def __init__(
+        self,
+        lens: Lens,
+        variables: Sequence[Variable],
+        wavelength_nm: float,
+        start: Doubles,
+        across: Doubles,
+        start_by: Doubles,
+    ) -> None:
+        self._lens, self._variables = lens, [v.as_tuple() for v in variables]
+        self._wavelength_nm = wavelength_nm
+        self._start, self._start_by = start, start_by
+        self._basis = np.zeros((6, 4))
+        self._basis[:3, :2] = self._basis[3:, 2:] = across.T
+        to_stop: dict[str, Any] = {"frame": "axis", "surface_count": lens.stop_index + 1, "rims": False}
+        # A thousandth of the stop's radius away, there the fifth derivative is far below rounding.
+        on_stop = (self._traced(start[None], **to_stop)[1][0] @ self._basis)[:2]
+        reach = 1e-3 * lens.surfaces[lens.stop_index].clear_semi_diameter_mm
+        self._steps = reach / np.linalg.norm(on_stop, axis=0)
+        self.stop = self._derivatives(2, **to_stop)
+        film = self._derivatives(6, frame="film", rims=False)
+        self.place, self.direction = film[:3], film[3:]
+
+    def _traced(self, rays: Doubles, **options: Any) -> tuple[Doubles, Doubles]:
+        """Their derivatives by the variables, and by the rays."""
+        o, d = rays[:, :3], rays[:, 3:]
+        return self._lens._ray_derivatives(
+            o, d, self._variables, wavelength_nm=self._wavelength_nm, start="scene", **options
+        )[2:]
+
+    def _derivatives(self, rows: int, **options: Any) -> DualArray:
+        """(rows, 4): of the ray's numbers behind the lens, or on the stop, by the four at its start."""
+        offsets = np.einsum("k,j,rj->jkr", OFFSETS, self._steps, self._basis).reshape(-1, 6)
+        by, by_ray = self._traced(np.vstack([self._start[None], self._start + offsets]), **options)
+        first = by_ray[:, :rows] @ self._basis
+        weights = WEIGHTS / self._steps[:, None]
+        of_neighbours = (4, len(OFFSETS), rows)
+        # The second derivatives: by start and variable, and by start and start.
+        mixed = np.einsum("jk,jkrv->rjv", weights, by[1:, :rows].reshape(*of_neighbours, -1))
+        bend = np.einsum("ik,ikrj->rji", weights, first[1:].reshape(*of_neighbours, 4))
+        return DualArray(first[0], mixed + bend @ self._start_by)
+
+
+def exit_pupil_distance(rays: ChiefRayNeighbours, origin: DualArray, direction: DualArray) -> DualArray:
+    """From the exit pupil on the chief ray to the film, mm along the ray, as the C++ function of that name.
+
+    origin, direction: (3,), of the chief ray behind the lens, in the film's frame; the direction is optical. The
+    pupil is the image of the stop: with places q and optical directions p across the chief ray at the film, a ray meets
+    the stop in A q + B p, and the distance is the mean of the matrix -n A^-1 B over both meridians.
+    """
+    square = direction * direction
+    index = (square[0] + square[1] + square[2]).sqrt()
+    z = [direction[i] / index for i in range(3)]
+    width = (z[0] * z[0] + z[2] * z[2]).sqrt()
+    none = DualArray.constant(0.0, direction.count)
+    x = [z[2] / width, none, -z[0] / width]
+    y = [-(z[0] * z[1]) / width, width, -(z[1] * z[2]) / width]
+    way = -origin[2] / direction[2]
+    at_film = [rays.place[i] + way * rays.direction[i] for i in range(3)]
+    rows = [
+        axis[0] * part[0] + axis[1] * part[1] + axis[2] * part[2]
+        for part in (at_film, [rays.direction[i] for i in range(3)])
+        for axis in (x, y)
+    ]
+    film = DualArray(np.array([row.value for row in rows]), np.array([row.by for row in rows]))
+    by_film = _solved_right(rays.stop, film)
+    return -0.5 * index * _trace_of_quotient(by_film[:, :2], by_film[:, 2:])
+
+
+def _solved_right(a: DualArray, b: DualArray) -> DualArray:
+    """a b^-1"""
+    inverse = np.linalg.inv(b.value)
+    value = a.value @ inverse
+    change = a.by - np.einsum("ij,jkv->ikv", value, b.by)
+    return DualArray(value, np.einsum("ijv,jk->ikv", change, inverse))
+
+
+def _trace_of_quotient(a: DualArray, b: DualArray) -> DualArray:
+    """The trace of a^-1 b."""
+    inverse = np.linalg.inv(a.value)
+    value = inverse @ b.value
+    change = b.by - np.einsum("ijv,jk->ikv", a.by, value)
+    return DualArray(np.trace(value), np.einsum("ij,jiv->v", inverse, change))
