@@ -7,6 +7,7 @@
 #include "../render/session.hpp"
 #include "arrays.hpp"
 #include "bindings.hpp"
+#include "film_parts.hpp"
 #include "picture.hpp"
 
 namespace realcam::bindings {
@@ -41,24 +42,25 @@ public:
         camera_ = camera;
     }
 
-    void add(int spp) {
+    /// take(progress), of what was set last.
+    template <class Take>
+    auto taken(Take&& take) {
         const Assembly scene = scene_;
         const Camera camera = camera_;
         const Unlocked unlocked;
         session_->set(scene, camera, settings_, heed_signals);  // anew, after what failed
-        session_->add(spp, [](double) { return heed_signals(); });
+        return take([](double) { return heed_signals(); });
+    }
+
+    void add(int spp) {
+        taken([&](const Progress& progress) { session_->add(spp, progress); });
     }
 
     /// `wanted`: the settings of which the goal of the noise counts.
     py::dict add_until(const RenderSettings& wanted) {
         const NoiseGoal goal = wanted.noise.value_or(NoiseGoal());
-        const Assembly scene = scene_;
-        const Camera camera = camera_;
-        const ReachedNoise reached = [&] {
-            const Unlocked unlocked;
-            session_->set(scene, camera, settings_, heed_signals);  // anew, after what failed
-            return session_->add_until(goal, [](double) { return heed_signals(); });
-        }();
+        const ReachedNoise reached =
+            taken([&](const Progress& progress) { return session_->add_until(goal, progress); });
         return py::dict("noise"_a = reached.noise, "is_reached"_a = reached.is_reached,
                         "spp_wanted"_a = reached.samples_wanted);
     }
@@ -70,6 +72,40 @@ public:
         }();
         return picture_from(std::move(image), settings_.layers);
     }
+
+    py::dict expose_region(const RegionNumbers& numbers, std::int64_t first, int count,
+                           const std::optional<InputArray<std::uint32_t>>& counts) {
+        const FilmRegion region = region_from(numbers);
+        std::vector<std::uint32_t> of_pixels;
+        if (counts) of_pixels.assign(counts->data(), counts->data() + counts->size());
+        return region_sums_to(taken([&](const Progress& progress) {
+                                  return session_->expose_region(region, first, count, of_pixels, progress);
+                              }),
+                              region);
+    }
+
+    py::array see_region(const RegionNumbers& numbers, std::int64_t first, int count) {
+        const FilmRegion region = region_from(numbers);
+        return layer_sums_to(
+            taken([&](const Progress& progress) { return session_->see_region(region, first, count, progress); }),
+            region);
+    }
+
+    py::list expose_splats(std::int64_t first, int count) {
+        return splats_to(
+            taken([&](const Progress& progress) { return session_->expose_splats(first, count, progress); }));
+    }
+
+    py::dict picture_of(const FilmArrays& arrays, const StatNumbers& stats) {
+        CollectedFilm film = arrays.film();
+        film.stats = stats_from(stats);
+        film.stats.device = session_->name();
+        Image image =
+            taken([&](const Progress& progress) { return session_->picture_of(film, [&] { return progress(0.0); }); });
+        return picture_from(std::move(image), settings_.layers);
+    }
+
+    std::string device() const { return session_->name(); }
 
     py::array_t<std::int64_t> samples() {
         SampleCounts samples = [&] {
@@ -101,7 +137,17 @@ void bind_session(py::module_& m) {
         .def("add", &PythonSession::add, "spp"_a)
         .def("add_until", &PythonSession::add_until, "wanted"_a)
         .def("picture", &PythonSession::picture)
+        .def("expose_region", &PythonSession::expose_region, "region"_a, "first"_a, "count"_a, "counts"_a = py::none())
+        .def("see_region", &PythonSession::see_region, "region"_a, "first"_a, "count"_a)
+        .def("expose_splats", &PythonSession::expose_splats, "first"_a, "count"_a)
+        .def(
+            "picture_of",
+            [](PythonSession& self, const InputArray<PixelSum>& pixels,
+               const std::optional<InputArray<LayerSum>>& layers, const py::list& splats,
+               const StatNumbers& stats) { return self.picture_of({pixels, layers, splats}, stats); },
+            "pixels"_a, "layers"_a, "splats"_a, "stats"_a)
         .def("cancel", &PythonSession::cancel, py::call_guard<Unlocked>())
+        .def_property_readonly("device", &PythonSession::device)
         .def_property_readonly("samples", &PythonSession::samples)
         .def_property_readonly("scene", &PythonSession::scene)
         .def_property_readonly("camera", &PythonSession::camera);

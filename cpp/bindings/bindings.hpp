@@ -52,6 +52,7 @@ void bind_view(py::module_& m);
 void bind_shot(py::module_& m);
 void bind_live(py::module_& m);
 void bind_session(py::module_& m);
+void bind_film_parts(py::module_& m);
 void bind_sensor(py::module_& m);
 void bind_denoiser(py::module_& m);
 void bind_bench(py::module_& m);

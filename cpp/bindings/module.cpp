@@ -31,6 +31,7 @@ PYBIND11_MODULE(_core, m) {
     bind_view(m);
     bind_shot(m);
     bind_live(m);
+    bind_film_parts(m);
     bind_session(m);
     bind_sensor(m);
     bind_denoiser(m);

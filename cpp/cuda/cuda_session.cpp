@@ -67,12 +67,16 @@ private:
         set_splats(view);
     }
 
-    void set_splats(const CameraView& camera) {
+    void set_splats(const CameraView& camera) { front().set_splats(splat_sources(camera)); }
+
+    std::vector<SplatSource> splat_sources(const CameraView& camera) const {
         std::vector<SplatSource> sources;
         for (const GhostView& light : splatted_lights(*setup_, traced_lights_))
             sources.push_back({light, ghost_units_per_lux(scene_.placed().view(), camera, light)});
-        front().set_splats(sources);
+        return sources;
     }
+
+    int splat_films() const { return settings().layers.has(Layer::variance) ? 2 : 1; }
 
     void clear() override {
         rows_ = 0;
@@ -82,7 +86,7 @@ private:
             renderer->clear_counts();
             renderer->forget_pupils(settings().pupil_sampling == PupilSampling::pixel);
         }
-        front().clear_splats(width(), height(), settings().layers.has(Layer::variance) ? 2 : 1);
+        front().clear_splats(width(), height(), splat_films());
     }
 
     void take(const SampleRange& range, const PixelCounts& counts, std::atomic<std::int64_t>& done,
@@ -102,28 +106,48 @@ private:
         stats_.seconds += seconds_since(exposing);
     }
 
-    void see_layers(const SampleRange& range, std::vector<LayerSum>& film, std::atomic<std::int64_t>& done,
-                    OwnStop& stop) override {
+    RegionSums take_region(const FilmRegion& region, const SampleRange& range, const PixelCounts& counts,
+                           std::atomic<std::int64_t>& done, OwnStop&) override {
+        const auto exposing = std::chrono::steady_clock::now();
+        const RenderCounts before = front().counts();
+        RegionSums sums{front().expose_region(region, range, settings_of(range), counts), {}};
+        set_stats(sums.stats, front().counts() - before, seconds_since(exposing));
+        done += static_cast<std::int64_t>(region.pixels()) * range.count;
+        return sums;
+    }
+
+    std::vector<SplatFilm> take_splats(const SampleRange& range, OwnStop&) override {
+        CameraView camera = placed_camera().view;
+        camera.traced_lights = traced_lights_.view();
+        return front().splats_apart(splat_sources(camera), splat_films(), range, settings().path());
+    }
+
+    void see_layers(const FilmRegion& region, const SampleRange& range, std::vector<LayerSum>& film,
+                    std::atomic<std::int64_t>& done, OwnStop& stop) override {
         std::vector<LayerSum> seen;
-        for_bands(stop, [&](int row, int rows, std::size_t first, std::size_t pixels) {
-            seen.resize(pixels);
+        for_bands(region.row, region.height, stop, [&](int row, int rows) {
+            const auto columns = static_cast<std::size_t>(width());
+            seen.resize(static_cast<std::size_t>(rows) * columns);
             front().see_layers({row, rows, range.first, range.count}, range.seed, seen.data(), done);
-            for (std::size_t i = 0; i < pixels; ++i) film[first + i] += seen[i];
+            for (int r = 0; r < rows; ++r)
+                for (int column = region.column; column < region.column + region.width; ++column)
+                    film[region.place(column, row + r)] +=
+                        seen[static_cast<std::size_t>(r) * columns + static_cast<std::size_t>(column)];
         });
     }
 
     void see_middle_surfaces(std::vector<MiddleSurface>& film, OwnStop& stop) override {
-        for_bands(stop, [&](int row, int rows, std::size_t first, std::size_t) {
-            front().see_middle_surfaces({row, rows, 0, 1}, &film[first]);
+        for_bands(0, height(), stop, [&](int row, int rows) {
+            front().see_middle_surfaces({row, rows, 0, 1}, &film[whole_film().place(0, row)]);
         });
     }
 
     LayerImage develop_variance() override {
-        const DeviceRenderer::SplatsOnHost splats = front().download_splats();
-        if (!fits()) return developed_variance(film_, camera().exposure_time_s, splats.view());
+        const std::vector<SplatFilm> splats = front().download_splats();
+        if (!fits()) return developed_variance(film_, camera().exposure_time_s, view_of(splats));
         FilmSums sums(static_cast<std::size_t>(width()) * static_cast<std::size_t>(height()));
         front().download_film(sums.data());
-        return developed_variance(sums, camera().exposure_time_s, splats.view());
+        return developed_variance(sums, camera().exposure_time_s, view_of(splats));
     }
 
     std::shared_ptr<LiveFrame> start(const std::vector<SampleRange>& ranges, ToneCurve curve,
@@ -155,9 +179,10 @@ private:
             image.depth = depths_.take(pixels);
             front().develop(camera().exposure_time_s, image.exposure.data(), image.depth.data());
         } else {
-            image = developed(film_, width(), height(), camera().exposure_time_s, front().download_splats().view());
+            const std::vector<SplatFilm> splats = front().download_splats();
+            image = developed(film_, width(), height(), camera().exposure_time_s, view_of(splats));
         }
-        collect_counts();
+        set_stats(stats_, all_counts(), stats_.seconds);
         image.stats = stats_;
         image.stats.device = name();
         return image;
@@ -214,16 +239,12 @@ private:
         rows_ = rows;
     }
 
-    /// f(first row, rows, first pixel, pixels) for bands of the picture, of some 100 MB of layers each.
+    /// f(first row, rows) for bands of some rows of the picture, of some 100 MB of layers each.
     template <class F>
-    void for_bands(OwnStop& stop, F&& f) {
+    void for_bands(int first_row, int row_count, OwnStop& stop, F&& f) {
         constexpr int kPixels = 1 << 20;
-        const int most = std::max(1, kPixels / width());
-        const auto columns = static_cast<std::size_t>(width());
-        for (int row = 0; row < height() && !stop; row += most) {
-            const int rows = std::min(most, height() - row);
-            f(row, rows, static_cast<std::size_t>(row) * columns, static_cast<std::size_t>(rows) * columns);
-        }
+        const int most = std::max(1, kPixels / width()), end = first_row + row_count;
+        for (int row = first_row; row < end && !stop; row += most) f(row, std::min(most, end - row));
     }
 
     /// How many rows of the picture fit into every GPU's memory at once.
@@ -293,25 +314,22 @@ private:
                 share(std::move(depth), front().ordinal(), {rows, columns})};
     }
 
-    /// Since the film was empty.
-    void collect_counts() {
+    /// Of all GPUs, since the film was empty.
+    RenderCounts all_counts() const {
         RenderCounts sum{};
-        for (const auto& renderer : renderers_) {
-            const RenderCounts counts = renderer->counts();
-            sum.sampled_rays += counts.sampled_rays;
-            sum.passed_rays += counts.passed_rays;
-            sum.scene_rays += counts.scene_rays;
-            sum.lens_clocks += counts.lens_clocks;
-            sum.scene_clocks += counts.scene_clocks;
-            sum.all_clocks += counts.all_clocks;
-        }
-        stats_.sampled_rays = sum.sampled_rays;
-        stats_.passed_rays = sum.passed_rays;
-        stats_.scene_rays = sum.scene_rays;
-        const double per_clock = sum.all_clocks > 0 ? stats_.seconds / static_cast<double>(sum.all_clocks) : 0;
-        stats_.lens_seconds = per_clock * static_cast<double>(sum.lens_clocks);
-        stats_.scene_seconds = per_clock * static_cast<double>(sum.scene_clocks);
-        stats_.other_seconds = stats_.seconds - stats_.lens_seconds - stats_.scene_seconds;
+        for (const auto& renderer : renderers_) sum += renderer->counts();
+        return sum;
+    }
+
+    static void set_stats(RenderStats& stats, const RenderCounts& counts, double seconds) {
+        stats.seconds = seconds;
+        stats.sampled_rays = counts.sampled_rays;
+        stats.passed_rays = counts.passed_rays;
+        stats.scene_rays = counts.scene_rays;
+        const double per_clock = counts.all_clocks > 0 ? seconds / static_cast<double>(counts.all_clocks) : 0;
+        stats.lens_seconds = per_clock * static_cast<double>(counts.lens_clocks);
+        stats.scene_seconds = per_clock * static_cast<double>(counts.scene_clocks);
+        stats.other_seconds = seconds - stats.lens_seconds - stats.scene_seconds;
     }
 
     PupilTracer tracer_;

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "../render/collected_film.hpp"
 #include "../render/sample_range.hpp"
 #include "cuda_stream.hpp"
 #include "device_array.hpp"
@@ -66,30 +67,13 @@ public:
     }
 
     /// Copies all to the host, and waits for it.
-    struct OnHost {
-        GhostLight light = GhostLight::of_lights;
-        std::vector<GhostSum> sums;
-        std::vector<unsigned long long> blocks;  ///< in each film
-        double units_per_lux = 1;
-        int width = 0, height = 0;
-
-        GhostFilmView view() const {
-            return {light,
-                    sums.empty() ? nullptr : sums.data(),
-                    static_cast<int>(blocks.size()),
-                    units_per_lux,
-                    blocks.data(),
-                    width,
-                    height};
-        }
-    };
-    OnHost download(const CudaStream& stream) const {
-        OnHost here{view_.light,
-                    std::vector<GhostSum>(sums_.size()),
-                    std::vector<unsigned long long>(blocks_done_.size()),
-                    units_per_lux_,
-                    width_,
-                    height_};
+    SplatFilm download(const CudaStream& stream) const {
+        SplatFilm here{view_.light,
+                       std::vector<GhostSum>(sums_.size()),
+                       std::vector<unsigned long long>(blocks_done_.size()),
+                       units_per_lux_,
+                       width_,
+                       height_};
         sums_.download(here.sums.data(), stream);
         blocks_done_.download(here.blocks.data(), stream);
         stream.wait("copying ghosts from it");

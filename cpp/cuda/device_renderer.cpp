@@ -105,11 +105,51 @@ void DeviceRenderer::splat(const SampleRange& range, const PathSettings& setting
     for (DeviceGhosts& light : splats_) light.add(scene_, camera_, stop_, range, settings, stream_);
 }
 
-DeviceRenderer::SplatsOnHost DeviceRenderer::download_splats() {
+std::vector<SplatFilm> DeviceRenderer::download_splats() {
     const CurrentDevice current(ordinal_);
-    SplatsOnHost here;
-    for (std::size_t i = 0; i < splats_.size(); ++i) here.films[i] = splats_[i].download(stream_);
+    std::vector<SplatFilm> here;
+    for (const DeviceGhosts& light : splats_) here.push_back(light.download(stream_));
     return here;
+}
+
+std::vector<SplatFilm> DeviceRenderer::splats_apart(const std::vector<SplatSource>& sources, int films,
+                                                    const SampleRange& range, const PathSettings& settings) {
+    const CurrentDevice current(ordinal_);
+    std::vector<SplatFilm> here;
+    for (const SplatSource& source : sources) {
+        DeviceGhosts light;
+        light.set(&source, stream_);
+        light.clear(camera_.width, camera_.height, films, stream_);
+        light.add(scene_, camera_, stop_, range, settings, stream_);
+        here.push_back(light.download(stream_));
+    }
+    return here;
+}
+
+FilmSums DeviceRenderer::expose_region(const FilmRegion& region, const SampleRange& range,
+                                       const RenderSettings& settings, const PixelCounts& counts) {
+    const CurrentDevice current(ordinal_);
+    const FilmPart part{region.row, region.height, range.first, range.count};
+    const auto columns = static_cast<std::size_t>(camera_.width), pixels = static_cast<std::size_t>(pixels_of(part));
+    // A launch is of whole rows.
+    std::vector<std::uint32_t> of_pixels(pixels);
+    for (int row = region.row; row < region.row + region.height; ++row)
+        for (int column = region.column; column < region.column + region.width; ++column)
+            of_pixels[static_cast<std::size_t>(row - region.row) * columns + static_cast<std::size_t>(column)] =
+                counts.of(region.place(column, row), range);
+    sample_counts_.upload(of_pixels.data(), pixels, stream_);
+    region_sums_.resize(pixels);
+    region_sums_.clear(stream_);
+    launch(part, settings, region_sums_.data(), {sample_counts_.data(), 0}, film_pixels());
+    FilmSums rows(pixels), sums;
+    region_sums_.download(rows.data(), stream_);
+    stream_.wait("rendering");
+    sums.reserve(region.pixels());
+    for (int row = 0; row < region.height; ++row) {
+        const auto first = rows.begin() + static_cast<std::ptrdiff_t>(row) * camera_.width + region.column;
+        sums.insert(sums.end(), first, first + region.width);
+    }
+    return sums;
 }
 
 SplattedLight DeviceRenderer::splatted() const {
@@ -129,17 +169,17 @@ void DeviceRenderer::reserve_film(std::int64_t pixels, bool merges) {
 }
 
 void DeviceRenderer::rehearse() {
-    launch({0, 0, 0, 0}, {}, sums_.data(), {});
+    launch({0, 0, 0, 0}, {}, sums_.data(), {}, 0);
     launch_develop(sums_.data(), {}, 0, 1, exposure_.data(), depth_.data(), stream_);
     launch_merge(sums_.data(), others_.data(), 0, stream_);
 }
 
 void DeviceRenderer::launch(const FilmPart& part, const RenderSettings& settings, PixelSum* sums,
-                            const PixelCounts& counts) {
+                            const PixelCounts& counts, std::int64_t pixels) {
     launch_render({scene_.view(), scene_.bvh(), camera_, sums, counts_.data(), stop_.data(), settings.path(),
                    settings.seed, part.first_sample, part.sample_count, counts.counts, counts.taken, part.first_row,
                    part.row_count, settings.layers.has(Layer::variance)},
-                  stream_);
+                  pixels, stream_);
 }
 
 void DeviceRenderer::clear_film(std::int64_t pixels) {
@@ -175,7 +215,7 @@ void DeviceRenderer::expose(const FilmPart& part, const RenderSettings& settings
         const std::int64_t first = static_cast<std::int64_t>(piece.first_row - part.first_row) * camera_.width;
         const PixelCounts here{counts.counts ? sample_counts_.data() + first : nullptr,
                                counts.taken + (piece.first_sample - part.first_sample)};
-        launch(piece, settings, sums_.data() + first, here);
+        launch(piece, settings, sums_.data() + first, here, pixels_of(piece));
         const std::size_t i = started++ % 3;
         ends[i].record(stream_);
         sizes[i] = static_cast<std::int64_t>(piece.sample_count) * piece.row_count * camera_.width;
@@ -185,7 +225,7 @@ void DeviceRenderer::expose(const FilmPart& part, const RenderSettings& settings
 
 void DeviceRenderer::add(const FilmPart& part, const RenderSettings& settings) {
     const CurrentDevice current(ordinal_);
-    launch(part, settings, sums_.data(), {});
+    launch(part, settings, sums_.data(), {}, pixels_of(part));
 }
 
 void DeviceRenderer::develop_codes(double exposure_time_s, double iso, ToneCurve curve, std::uint8_t* codes) {

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "../render/collected_film.hpp"
+#include "../render/film_region.hpp"
 #include "../render/render_settings.hpp"
 #include "../render/sample_range.hpp"
 #include "device_ghosts.hpp"
@@ -46,16 +48,10 @@ public:
     void clear_splats(int width, int height, int films);
     /// Starts to add the samples that belong to those of pixels.
     void splat(const SampleRange& range, const PathSettings& settings);
-    struct SplatsOnHost {
-        std::array<DeviceGhosts::OnHost, kMostSplats> films;
-
-        SplattedLight view() const {
-            SplattedLight light;
-            std::transform(films.begin(), films.end(), light.films, [](const auto& film) { return film.view(); });
-            return light;
-        }
-    };
-    SplatsOnHost download_splats();
+    std::vector<SplatFilm> download_splats();
+    /// The samples that belong to those of pixels, in so many films each that no picture has.
+    std::vector<SplatFilm> splats_apart(const std::vector<SplatSource>& sources, int films, const SampleRange& range,
+                                        const PathSettings& settings);
 
     /// Makes room for all that exposing, merging and developing so many pixels takes. Throws OutOfDeviceMemory.
     void reserve_film(std::int64_t pixels, bool merges);
@@ -67,6 +63,11 @@ public:
     /// counts samples. `counts`: of the part's pixels; those of `counts.taken` were taken before its samples.
     void expose(const FilmPart& part, const RenderSettings& settings, const PixelCounts& counts,
                 std::atomic<std::int64_t>& done);
+
+    /// Samples of a region into the host's memory, apart from the film. They are summed in the order of the whole film,
+    /// whatever the region. `counts`: of the region's pixels.
+    FilmSums expose_region(const FilmRegion& region, const SampleRange& range, const RenderSettings& settings,
+                           const PixelCounts& counts);
 
     /// Starts to add samples, and returns at once.
     void add(const FilmPart& part, const RenderSettings& settings);
@@ -109,7 +110,14 @@ private:
     /// Starts everything on no pixels: the GPU loads the code and makes room for what threads keep in memory.
     void rehearse();
     /// Starts to add samples to `sums`, those of the part's first row. `counts`: in this GPU's memory.
-    void launch(const FilmPart& part, const RenderSettings& settings, PixelSum* sums, const PixelCounts& counts);
+    /// `pixels`: by which the threads of a pixel are chosen.
+    void launch(const FilmPart& part, const RenderSettings& settings, PixelSum* sums, const PixelCounts& counts,
+                std::int64_t pixels);
+
+    std::int64_t film_pixels() const { return static_cast<std::int64_t>(camera_.width) * camera_.height; }
+    std::int64_t pixels_of(const FilmPart& part) const {
+        return static_cast<std::int64_t>(part.row_count) * camera_.width;
+    }
 
     SplattedLight splatted() const;
 
@@ -122,7 +130,7 @@ private:
     DeviceArrays camera_arrays_;
     CameraView camera_{};
     std::array<DeviceGhosts, kMostSplats> splats_;
-    DeviceArray<PixelSum> sums_, others_;
+    DeviceArray<PixelSum> sums_, others_, region_sums_;
     DeviceArray<std::uint32_t> sample_counts_;
     DeviceArray<PixelPupil> known_, found_;  ///< of each pixel: PixelPupils
     DeviceArray<LayerSum> layer_sums_;

@@ -73,8 +73,8 @@ void check_render_code() {
     check_cuda(cudaFuncGetAttributes(&attributes, reinterpret_cast<const void*>(kernel)), "loading its code");
 }
 
-void launch_render(const RenderJob& job, cudaStream_t stream) {
-    const int lanes = lanes_per_pixel(static_cast<std::int64_t>(job.camera.width) * job.row_count, job.sample_count);
+void launch_render(const RenderJob& job, std::int64_t pixels, cudaStream_t stream) {
+    const int lanes = lanes_per_pixel(pixels, job.sample_count);
     const WarpTiles tiles(lanes);
     const unsigned blocks = blocks_for(tiles.across(job.camera.width) * tiles.down(job.row_count) * kWarpSize);
     const RenderKernel kernel = kernel_for(job);

@@ -17,6 +17,20 @@ namespace realcam {
 struct RenderCounts {
     unsigned long long sampled_rays, passed_rays, scene_rays;
     unsigned long long lens_clocks, scene_clocks, all_clocks;  ///< of the threads that counted them
+
+    RenderCounts& operator+=(const RenderCounts& other) {
+        sampled_rays += other.sampled_rays;
+        passed_rays += other.passed_rays;
+        scene_rays += other.scene_rays;
+        lens_clocks += other.lens_clocks;
+        scene_clocks += other.scene_clocks;
+        all_clocks += other.all_clocks;
+        return *this;
+    }
+    RenderCounts operator-(const RenderCounts& other) const {
+        return {sampled_rays - other.sampled_rays, passed_rays - other.passed_rays,   scene_rays - other.scene_rays,
+                lens_clocks - other.lens_clocks,   scene_clocks - other.scene_clocks, all_clocks - other.all_clocks};
+    }
 };
 
 /// One launch: some samples of some rows of pixels. All pointers are the device's.
@@ -38,8 +52,9 @@ struct RenderJob {
 /// Throws UnsupportedGpu where the current device cannot run this build's code.
 void check_render_code();
 
-/// Starts a job. Throws DeviceError.
-void launch_render(const RenderJob& job, cudaStream_t stream);
+/// Starts a job. `pixels`: of the job, or of the film where pixels are to be summed as in a job of all of it. Throws
+/// DeviceError.
+void launch_render(const RenderJob& job, std::int64_t pixels, cudaStream_t stream);
 
 /// Sums as exposure (3 per pixel, lux seconds) and depth (metres).
 void launch_develop(const PixelSum* sums, const SplattedLight& splatted, std::int64_t pixels, double exposure_time_s,

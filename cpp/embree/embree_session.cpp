@@ -5,7 +5,6 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <future>
 #include <mutex>
@@ -28,22 +27,11 @@ namespace realcam {
 namespace {
 
 constexpr int kTileSide = 32;
-/// Samples per pixel after which a tile is left and the next begins, so that the share done grows everywhere.
-constexpr std::uint32_t kSamplesPerVisit = 256;
 
 DeviceError rtc_error(RTCError code) {
     const std::string text = "Embree could not be started: ";
     return DeviceError(text + (code == RTC_ERROR_OUT_OF_MEMORY ? "out of memory" : "error " + std::to_string(code)));
 }
-
-/// What was traced apart from the samples of pixels, of one light.
-struct SplatFilm {
-    GhostLight light;
-    std::vector<GhostSum> sums;  ///< of all pixels, film by film
-    int films;
-    std::array<unsigned long long, 2> blocks{};  ///< in each film
-    double units_per_lux = 1;
-};
 
 class EmbreeSession final : public Session {
 public:
@@ -85,10 +73,7 @@ private:
         const Film& film = camera().film;
         const std::size_t pixels = static_cast<std::size_t>(film.width) * static_cast<std::size_t>(film.height);
         film_.assign(pixels, PixelSum{});
-        splats_.clear();
-        const std::size_t films = settings().layers.has(Layer::variance) ? 2 : 1;
-        for (const GhostView& light : splatted_lights(*setup_, traced_lights_))
-            splats_.push_back({light.light, std::vector<GhostSum>(films * pixels), static_cast<int>(films)});
+        splats_ = empty_splats();
         const bool learns = settings().pupil_sampling == PupilSampling::pixel;
         known_.assign(learns ? pixels : 0, PixelPupil{});
         found_ = known_;
@@ -99,34 +84,47 @@ private:
     void take(const SampleRange& range, const PixelCounts& counts, std::atomic<std::int64_t>& done, OwnStop&) override {
         if (camera_view_.pixel_pupils.known) {
             for (const SampleRange& pass : learning_passes(range)) {
-                expose(pass, counts.behind(pass.first - range.first), settings(), done);
+                expose_film(pass, counts.behind(pass.first - range.first), settings(), done);
                 known_ = found_;
             }
         } else {
-            expose(range, counts, settings(), done);
+            expose_film(range, counts, settings(), done);
         }
-        splat(range, settings());
+        splat(splats_, range, settings());
     }
 
-    void see_layers(const SampleRange& range, std::vector<LayerSum>& film, std::atomic<std::int64_t>& done,
-                    OwnStop&) override {
-        for_tiles(range, settings(), [&](int x, int y, const SampleRange& visit) {
-            realcam_tile tile = tile_at(x, y, visit);
+    RegionSums take_region(const FilmRegion& region, const SampleRange& range, const PixelCounts& counts,
+                           std::atomic<std::int64_t>& done, OwnStop&) override {
+        RegionSums sums{FilmSums(region.pixels()), {}};
+        expose(region, range, counts, settings(), done, sums.pixels, sums.stats);
+        return sums;
+    }
+
+    std::vector<SplatFilm> take_splats(const SampleRange& range, OwnStop&) override {
+        std::vector<SplatFilm> splats = empty_splats();
+        splat(splats, range, settings());
+        return splats;
+    }
+
+    void see_layers(const FilmRegion& region, const SampleRange& range, std::vector<LayerSum>& film,
+                    std::atomic<std::int64_t>& done, OwnStop&) override {
+        for_tiles(region, range, settings(), [&](const realcam_tile& place) {
+            realcam_tile tile = place;
             std::vector<LayerSum> sums(pixels_of(tile));
             tile.sums = sums.data();
             kernels().see_layers(&tile);
-            for_pixels(tile, [&](std::size_t here, std::size_t there) { film[there] += sums[here]; });
+            for_pixels(tile, region, [&](std::size_t here, std::size_t there) { film[there] += sums[here]; });
             done += samples_of_tile(tile);
         });
     }
 
     void see_middle_surfaces(std::vector<MiddleSurface>& film, OwnStop&) override {
-        for_tiles({settings().seed, 0, 1}, settings(), [&](int x, int y, const SampleRange& visit) {
-            realcam_tile tile = tile_at(x, y, visit);
+        for_tiles(whole_film(), {settings().seed, 0, 1}, settings(), [&](const realcam_tile& place) {
+            realcam_tile tile = place;
             std::vector<MiddleSurface> surfaces(pixels_of(tile));
             tile.sums = surfaces.data();
             kernels().see_middle_surfaces(&tile);
-            for_pixels(tile, [&](std::size_t here, std::size_t there) { film[there] = surfaces[here]; });
+            for_pixels(tile, whole_film(), [&](std::size_t here, std::size_t there) { film[there] = surfaces[here]; });
         });
     }
 
@@ -140,8 +138,8 @@ private:
             const std::shared_ptr<void> until_the_end = std::move(token);
             std::atomic<std::int64_t> done{0};
             for (const SampleRange& range : ranges) {
-                expose(range, {}, settings, done);
-                splat(range, settings);
+                expose_film(range, {}, settings, done);
+                splat(splats_, range, settings);
             }
             if (is_stopped()) throw Cancelled();
             return developed_codes(film_, dials.exposure_time_s, dials.iso, curve, splatted());
@@ -195,12 +193,18 @@ private:
         }
     }
 
-    void expose(const SampleRange& range, const PixelCounts& counts, const RenderSettings& settings,
-                std::atomic<std::int64_t>& done) {
+    void expose_film(const SampleRange& range, const PixelCounts& counts, const RenderSettings& settings,
+                     std::atomic<std::int64_t>& done) {
+        expose(whole_film(), range, counts, settings, done, film_, stats_);
+    }
+
+    /// Adds samples of a region to its pixels' sums. `counts`: of the region's pixels.
+    void expose(const FilmRegion& region, const SampleRange& range, const PixelCounts& counts,
+                const RenderSettings& settings, std::atomic<std::int64_t>& done, FilmSums& film, RenderStats& stats) {
         const PathSettings path = settings.path();
-        for_tiles(range, settings, [&](int x, int y, const SampleRange& visit) {
-            realcam_tile tile = tile_at(x, y, visit);
-            const std::vector<std::uint32_t> wanted = counts_of(tile, counts, visit, range);
+        for_tiles(region, range, settings, [&](const realcam_tile& place) {
+            realcam_tile tile = place;
+            const std::vector<std::uint32_t> wanted = counts_of(tile, region, counts, range);
             if (!wanted.empty() && *std::max_element(wanted.begin(), wanted.end()) == 0) return;
             tile.counts = wanted.empty() ? nullptr : wanted.data();
             tile.path_settings = &path;
@@ -208,31 +212,40 @@ private:
             FilmSums sums(pixels_of(tile));
             tile.sums = sums.data();
             kernels().render_tile(&tile);
-            for_pixels(tile, [&](std::size_t here, std::size_t there) { film_[there] += sums[here]; });
+            for_pixels(tile, region, [&](std::size_t here, std::size_t there) { film[there] += sums[here]; });
             done += samples_of_tile(tile);
-            count(tile);
+            count(tile, stats);
         });
     }
 
     /// The sample counts of a tile's pixels, for a part of a range; nothing where all take all samples.
-    std::vector<std::uint32_t> counts_of(const realcam_tile& tile, const PixelCounts& counts, const SampleRange& visit,
-                                         const SampleRange& range) const {
+    static std::vector<std::uint32_t> counts_of(const realcam_tile& tile, const FilmRegion& region,
+                                                const PixelCounts& counts, const SampleRange& range) {
         if (!counts.counts) return {};
-        const PixelCounts here{counts.counts, counts.taken + (visit.first - range.first)};
+        const SampleRange visit{tile.seed, tile.first_sample, tile.sample_count};
+        const PixelCounts here = counts.behind(visit.first - range.first);
         std::vector<std::uint32_t> wanted(pixels_of(tile));
-        for_pixels(tile, [&](std::size_t at, std::size_t pixel) { wanted[at] = here.of(pixel, visit); });
+        for_pixels(tile, region, [&](std::size_t at, std::size_t pixel) { wanted[at] = here.of(pixel, visit); });
         return wanted;
     }
 
+    std::vector<SplatFilm> empty_splats() const {
+        std::vector<SplatFilm> films;
+        for (const GhostView& light : splatted_lights(*setup_, traced_lights_))
+            films.push_back(SplatFilm::empty(light.light, camera_view_.width, camera_view_.height,
+                                             settings().layers.has(Layer::variance) ? 2 : 1,
+                                             ghost_units_per_lux(scene_->placed().view(), camera_view_, light)));
+        return films;
+    }
+
     /// Adds what belongs to these samples of each pixel.
-    void splat(const SampleRange& range, const RenderSettings& settings) {
+    void splat(std::vector<SplatFilm>& films, const SampleRange& range, const RenderSettings& settings) {
         const std::vector<GhostView> lights = splatted_lights(*setup_, traced_lights_);
-        for (std::size_t i = 0; i < lights.size(); ++i) splat_on(splats_[i], lights[i], range, settings);
+        for (std::size_t i = 0; i < lights.size(); ++i) splat_on(films[i], lights[i], range, settings);
     }
 
     void splat_on(SplatFilm& film, const GhostView& ghosts, const SampleRange& range, const RenderSettings& settings) {
         const SceneView scene = scene_->placed().view();
-        film.units_per_lux = ghost_units_per_lux(scene, camera_view_, ghosts);
         const GhostBlocks blocks = ghost_blocks(camera_view_, range, ghosts);
         const PathSettings path = settings.path();
         constexpr std::uint64_t kVisit = 64;
@@ -257,7 +270,7 @@ private:
             job.stopped = &is_raised;
             job.stop = &stop_.flag();
             job.sums = film.sums.data();
-            job.films = film.films;
+            job.films = static_cast<int>(film.blocks.size());
             kernels().splat_ghosts(&job);
             for (std::size_t k = 0; k < film.blocks.size(); ++k) std::atomic_ref(film.blocks[k]) += job.blocks_done[k];
         };
@@ -265,44 +278,38 @@ private:
             [&] { tbb::parallel_for(std::uint64_t{0}, (count + kVisit - 1) / kVisit, visit_blocks, group); });
     }
 
-    SplattedLight splatted() const {
-        SplattedLight splatted;
-        for (std::size_t i = 0; i < splats_.size(); ++i)
-            splatted.films[i] = {splats_[i].light,         splats_[i].sums.data(),   splats_[i].films,
-                                 splats_[i].units_per_lux, splats_[i].blocks.data(), camera_view_.width,
-                                 camera_view_.height};
-        return splatted;
-    }
+    SplattedLight splatted() const { return view_of(splats_); }
 
-    /// visit(x, y, some samples) of the tile with that first pixel, until all samples of all tiles were taken.
+    /// visit(tile, without sums) of the region's tiles and some of the samples, until all were taken. A tile is left
+    /// after some samples for the next, so that the share done grows everywhere.
     template <class Visit>
-    void for_tiles(const SampleRange& range, const RenderSettings& settings, Visit&& visit) {
-        const int width = camera_view_.width, height = camera_view_.height;
-        const int columns = (width + kTileSide - 1) / kTileSide, rows = (height + kTileSide - 1) / kTileSide;
+    void for_tiles(const FilmRegion& region, const SampleRange& range, const RenderSettings& settings, Visit&& visit) {
+        const int columns = (region.width + kTileSide - 1) / kTileSide,
+                  rows = (region.height + kTileSide - 1) / kTileSide;
         scene_view_ = scene_->placed().view();
         arena(settings).execute([&] {
             for (std::uint32_t first = 0; first < range.count && !is_stopped();) {
-                const std::uint32_t count = std::min(kSamplesPerVisit, range.count - first);
+                const std::uint32_t count = std::min(kSamplesPerSum, range.count - first);
                 tbb::parallel_for(0, columns * rows, [&](int tile) {
                     if (!is_stopped())
-                        visit(tile % columns * kTileSide, tile / columns * kTileSide,
-                              SampleRange{range.seed, range.first + first, count});
+                        visit(tile_at(region, tile % columns * kTileSide, tile / columns * kTileSide,
+                                      {range.seed, range.first + first, count}));
                 });
                 first += count;
             }
         });
     }
 
-    /// Without sums.
-    realcam_tile tile_at(int x, int y, const SampleRange& range) const {
+    /// With its first pixel so far from the region's.
+    realcam_tile tile_at(const FilmRegion& region, int right, int down, const SampleRange& range) const {
         realcam_tile tile{};
         tile.scene_view = &scene_view_;
         tile.camera_view = &camera_view_;
         tile.embree_scene = scene_->handle();
-        tile.x = x;
-        tile.y = y;
-        tile.width = std::min(kTileSide, camera_view_.width - x);
-        tile.height = std::min(kTileSide, camera_view_.height - y);
+        tile.x = region.column + right;
+        tile.y = region.row + down;
+        tile.width = std::min(kTileSide, region.width - right);
+        tile.height = std::min(kTileSide, region.height - down);
         tile.first_sample = range.first;
         tile.sample_count = range.count;
         tile.seed = range.seed;
@@ -320,24 +327,22 @@ private:
         return static_cast<std::int64_t>(tile.sample_count) * tile.width * tile.height;
     }
 
-    /// f(pixel of the tile, pixel of the film).
+    /// f(pixel of the tile, pixel of the region).
     template <class F>
-    void for_pixels(const realcam_tile& tile, F&& f) const {
+    static void for_pixels(const realcam_tile& tile, const FilmRegion& region, F&& f) {
         for (int row = 0; row < tile.height; ++row)
             for (int column = 0; column < tile.width; ++column)
-                f(static_cast<std::size_t>(row * tile.width + column),
-                  static_cast<std::size_t>(tile.y + row) * static_cast<std::size_t>(camera_view_.width) +
-                      static_cast<std::size_t>(tile.x + column));
+                f(static_cast<std::size_t>(row * tile.width + column), region.place(tile.x + column, tile.y + row));
     }
 
-    void count(const realcam_tile& tile) {
+    void count(const realcam_tile& tile, RenderStats& stats) {
         const std::lock_guard lock(stats_mutex_);
-        stats_.lens_seconds += tile.lens_seconds;
-        stats_.scene_seconds += tile.scene_seconds;
-        stats_.other_seconds += tile.other_seconds;
-        stats_.sampled_rays += tile.sampled_rays;
-        stats_.passed_rays += tile.passed_rays;
-        stats_.scene_rays += tile.scene_rays;
+        stats.lens_seconds += tile.lens_seconds;
+        stats.scene_seconds += tile.scene_seconds;
+        stats.other_seconds += tile.other_seconds;
+        stats.sampled_rays += tile.sampled_rays;
+        stats.passed_rays += tile.passed_rays;
+        stats.scene_rays += tile.scene_rays;
     }
 
     RTCDevice device_;

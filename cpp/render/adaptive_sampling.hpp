@@ -25,6 +25,12 @@ class AdaptiveSampling {
 public:
     static constexpr int kTileSide = 16;
 
+    /// What every pixel gets at the beginning. Fewer would tell nothing of how noisy they are; more would be too many
+    /// where all is even.
+    static std::int64_t first_samples(const NoiseGoal& goal) {
+        return std::min(std::int64_t{8}, goal.most_samples / 2);
+    }
+
     /// `exposure`: of the picture so far, 3 per pixel, lux seconds; `samples`: of each pixel.
     AdaptiveSampling(int width, int height, const NoiseGoal& goal, double iso, std::span<const float> exposure,
                      const std::vector<std::int64_t>& samples);

@@ -12,6 +12,10 @@ struct SampleRange {
     std::uint32_t seed, first, count;
 };
 
+/// A picture on a CPU adds its samples up in pieces of so many, beginning with the first, so that parts of this size
+/// that are exposed apart give the same sums.
+inline constexpr std::uint32_t kSamplesPerSum = 256;
+
 /// How many samples of a range single pixels take: the first ones, up to their number.
 struct PixelCounts {
     const std::uint32_t* counts = nullptr;  ///< of the film's pixels, row by row; none: all samples

@@ -106,12 +106,94 @@ Image Session::picture(const KeepGoing& keep_going) {
             if (stop) throw Cancelled();
         }
         Image image = develop();
-        add_layers(image);
+        add_layers(image, layer_film_, [&] { return develop_variance(); }, [&] { return count_samples(); });
         image.spp = mean_samples_ == samples_ ? samples_ : mean_of(count_samples());
         image.stats.setup_seconds = setup_seconds_;
         image.stats.seconds = setup_seconds_ + exposing_seconds_;
         return image;
     });
+}
+
+template <class Work>
+void Session::take_part(std::int64_t first, int count, const Progress& progress, const std::atomic<std::int64_t>& done,
+                        std::size_t pixels, Work&& work) {
+    if (count < 0 || count > static_cast<int>(kSamplesPerSum))
+        throw InputError("a part of a picture has 0 to " + std::to_string(kSamplesPerSum) + " samples of each pixel");
+    if (first < 0 || first > std::numeric_limits<std::uint32_t>::max() - kSamplesPerSum)
+        throw InputError("the number of a part's first sample must lie between 0 and 4294967039");
+    const KeepGoing keep_going = progress ? KeepGoing([&] { return progress(0.0); }) : KeepGoing();
+    const Turn turn(mutex_, keep_going);
+    if (!ready_) throw InputError("nothing is set that could be photographed; set() prepares it");
+    settle(keep_going);
+    OwnStop stop(*this);
+    const double total = static_cast<double>(count) * static_cast<double>(pixels);
+    run_with_progress([&] { work(next_samples(settings_.seed, first, first + count), stop); },
+                      [&] { return std::min(1.0, static_cast<double>(done) / total); }, progress, stop);
+    if (stop) throw Cancelled();
+}
+
+RegionSums Session::expose_region(const FilmRegion& region, std::int64_t first, int count,
+                                  const std::vector<std::uint32_t>& counts, const Progress& progress) {
+    if (!counts.empty() && counts.size() != region.pixels())
+        throw InputError("a sample count is wanted for each pixel of the region");
+    RegionSums sums;
+    std::atomic<std::int64_t> done{0};
+    take_part(first, count, progress, done, region.pixels(), [&](const SampleRange& range, OwnStop& stop) {
+        check_region(region);
+        if (settings_.pupil_sampling == PupilSampling::pixel)
+            throw InputError("pixels that learn their pupils from earlier samples cannot be taken in parts");
+        sums = take_region(region, range, {counts.empty() ? nullptr : counts.data(), 0}, done, stop);
+    });
+    return sums;
+}
+
+std::vector<LayerSum> Session::see_region(const FilmRegion& region, std::int64_t first, int count,
+                                          const Progress& progress) {
+    std::vector<LayerSum> sums;
+    std::atomic<std::int64_t> done{0};
+    take_part(first, count, progress, done, region.pixels(), [&](const SampleRange& range, OwnStop& stop) {
+        check_region(region);
+        sums.resize(region.pixels());
+        see_layers(region, range, sums, done, stop);
+    });
+    return sums;
+}
+
+std::vector<SplatFilm> Session::expose_splats(std::int64_t first, int count, const Progress& progress) {
+    std::vector<SplatFilm> films;
+    const std::atomic<std::int64_t> done{0};
+    take_part(first, count, progress, done, 1,
+              [&](const SampleRange& range, OwnStop& stop) { films = take_splats(range, stop); });
+    return films;
+}
+
+Image Session::picture_of(const CollectedFilm& film, const KeepGoing& keep_going) {
+    const Turn turn(mutex_, keep_going);
+    if (!ready_) throw InputError("nothing is set that could be photographed; set() prepares it");
+    settle(keep_going);
+    const LayerSet wanted = settings_.layers;
+    const auto is_of_film = [&](const auto& sums) { return sums.size() == pixel_count(); };
+    if (!is_of_film(film.pixels) || (wanted.has_any(kSampledLayers) && !is_of_film(film.layers)))
+        throw InputError("the film has other pixels or layers than the picture");
+    for (const SplatFilm& splats : film.splats)
+        if (splats.blocks.empty() || splats.sums.size() != splats.blocks.size() * pixel_count())
+            throw InputError("the film has other pixels than the picture");
+    const auto [width, height] = std::pair(camera_.film.width, camera_.film.height);
+    const SplattedLight splatted = view_of(film.splats);
+    LayerFilm layers{film.layers, {}};
+    if (wanted.has_any(kMiddleLayers)) {
+        layers.middle.resize(pixel_count());
+        OwnStop stop(*this);
+        run_heeding([&] { see_middle_surfaces(layers.middle, stop); }, keep_going, stop);
+        if (stop) throw Cancelled();
+    }
+    Image image = developed(film.pixels, width, height, camera_.exposure_time_s, splatted);
+    add_layers(
+        image, layers, [&] { return developed_variance(film.pixels, camera_.exposure_time_s, splatted); },
+        [&] { return samples_of(film.pixels); });
+    image.spp = mean_of(samples_of(film.pixels));
+    image.stats = film.stats;
+    return image;
 }
 
 SampleCounts Session::sample_counts(const KeepGoing& keep_going) {
@@ -141,6 +223,16 @@ void Session::check_all(const Assembly& scene, const Camera& camera, const Rende
     validate(camera);
     validate_effects(settings, camera);
     checks_.check(scene, {}, keep_going);
+}
+
+void Session::check_region(const FilmRegion& region) const {
+    const auto is_inside = [](int first, int count, int end) {
+        return first >= 0 && count >= 1 && first < end && count <= end - first;
+    };
+    if (!is_inside(region.column, region.width, camera_.film.width) ||
+        !is_inside(region.row, region.height, camera_.film.height))
+        throw InputError("a region must lie on the film, which has " + std::to_string(camera_.film.width) + " x " +
+                         std::to_string(camera_.film.height) + " pixels");
 }
 
 void Session::wait_for_oldest(const KeepGoing& keep_going) {
@@ -218,7 +310,7 @@ void Session::see_what_is_missing(std::atomic<std::int64_t>& done, OwnStop& stop
             while (layer_samples_ < mean_samples_ && !stop) {
                 const SampleRange range = next_samples(settings_.seed, layer_samples_, mean_samples_);
                 layer_samples_ += range.count;
-                see_layers(range, layer_film_.sums, done, stop);
+                see_layers(whole_film(), range, layer_film_.sums, done, stop);
             }
         }
     } catch (...) {
@@ -229,33 +321,32 @@ void Session::see_what_is_missing(std::atomic<std::int64_t>& done, OwnStop& stop
     if (stop) forget_layers();
 }
 
-void Session::add_layers(Image& image) {
+template <class Variance, class Counts>
+void Session::add_layers(Image& image, const LayerFilm& layers, Variance&& variance, Counts&& counts) {
     const LayerSet wanted = settings_.layers;
     if (wanted.has_any(kSampledLayers) || wanted.has_any(kMiddleLayers)) {
         const SurfaceIds ids(scene_);
-        image.layers = developed(layer_film_, wanted, ids);
+        image.layers = developed(layers, wanted, ids);
         if (wanted.has(Layer::motion)) {
             const PlacedCamera placed = placed_camera();
-            image.layers.push_back(motion_vectors(layer_film_.middle, scene_, camera_, placed.view, placed.origin_m));
+            image.layers.push_back(motion_vectors(layers.middle, scene_, camera_, placed.view, placed.origin_m));
         }
         if (wanted.has(Layer::object_id)) image.object_names = ids.object_names();
         if (wanted.has(Layer::material_id)) image.material_names = ids.names_of_materials();
     }
-    if (wanted.has(Layer::variance)) image.layers.push_back(develop_variance());
+    if (wanted.has(Layer::variance)) image.layers.push_back(variance());
     if (wanted.has(Layer::sample_count)) {
         constexpr std::int64_t kMost = std::numeric_limits<std::uint32_t>::max();
-        LayerImage counts{Layer::sample_count, {}, {}};
-        for (const std::int64_t count : count_samples())
-            counts.numbers.push_back(static_cast<std::uint32_t>(std::min(count, kMost)));
-        image.layers.push_back(std::move(counts));
+        LayerImage image_of_counts{Layer::sample_count, {}, {}};
+        for (const std::int64_t count : counts())
+            image_of_counts.numbers.push_back(static_cast<std::uint32_t>(std::min(count, kMost)));
+        image.layers.push_back(std::move(image_of_counts));
     }
     std::sort(image.layers.begin(), image.layers.end(),
               [](const LayerImage& a, const LayerImage& b) { return a.layer < b.layer; });
 }
 
 ReachedNoise Session::take_until(const NoiseGoal& goal, std::atomic<double>& share, OwnStop& stop) {
-    // Fewer would tell nothing of how noisy they are; more would be too many where all is even.
-    constexpr std::int64_t kFirst = 8;
     const auto begin = std::chrono::steady_clock::now();
     std::atomic<std::int64_t> done{0};
     const auto take_round = [&](std::int64_t count, const std::uint32_t* counts) {
@@ -267,7 +358,7 @@ ReachedNoise Session::take_until(const NoiseGoal& goal, std::atomic<double>& sha
     };
     const bool is_new = is_blank_;
     if (is_new) {
-        mean_samples_ = std::min(kFirst, goal.most_samples / 2);
+        mean_samples_ = AdaptiveSampling::first_samples(goal);
         take_round(mean_samples_, nullptr);
     }
     AdaptiveSampling tiles(camera_.film.width, camera_.film.height, goal, camera_.iso, develop().exposure,
@@ -278,7 +369,8 @@ ReachedNoise Session::take_until(const NoiseGoal& goal, std::atomic<double>& sha
         double affordable = kInfinity;
         if (std::isfinite(goal.seconds)) {
             const double spent = seconds_since(begin);
-            affordable = taken > 0 ? taken / spent * (goal.seconds - spent) : kFirst * pixels;
+            affordable = taken > 0 ? taken / spent * (goal.seconds - spent)
+                                   : static_cast<double>(AdaptiveSampling::first_samples(goal)) * pixels;
         }
         const std::vector<std::uint32_t> counts = tiles.next(affordable);
         const std::uint32_t most = *std::max_element(counts.begin(), counts.end());

@@ -10,6 +10,8 @@
 #include "../camera/camera.hpp"
 #include "../camera/develop.hpp"
 #include "../scene/scene_checks.hpp"
+#include "collected_film.hpp"
+#include "film_region.hpp"
 #include "image.hpp"
 #include "layer_film.hpp"
 #include "live_frame.hpp"
@@ -77,6 +79,26 @@ public:
     /// meanwhile.
     Image picture(const KeepGoing& keep_going = {});
 
+    /// What some samples of a region's pixels collect, apart from this picture, which stays as it is: those with
+    /// numbers from `first`, at most kSamplesPerSum of them. On a CPU, such sums of all regions and samples, added in
+    /// the order of the samples, have the same bits as the picture that takes them all at once. `counts`: how many of
+    /// the samples each pixel of the region takes, row by row; empty: all of them. Throws InputError, and Cancelled.
+    RegionSums expose_region(const FilmRegion& region, std::int64_t first, int count,
+                             const std::vector<std::uint32_t>& counts = {}, const Progress& progress = {});
+
+    /// The same of the layers: what these samples see first. Throws as `expose_region`.
+    std::vector<LayerSum> see_region(const FilmRegion& region, std::int64_t first, int count,
+                                     const Progress& progress = {});
+
+    /// What light that is traced apart from the samples of pixels brings to the whole film, for so many samples of each
+    /// pixel: a film for each such light of the picture, also for 0 samples. The sums are of integers, and so the same
+    /// in any order. Throws as `expose_region`.
+    std::vector<SplatFilm> expose_splats(std::int64_t first, int count, const Progress& progress = {});
+
+    /// The picture that `picture` would be if this session had collected all of `film`. Throws InputError where it is
+    /// no film of this picture, and Cancelled.
+    Image picture_of(const CollectedFilm& film, const KeepGoing& keep_going = {});
+
     /// The sample counts of the film that is set. Waits for frames under way.
     SampleCounts sample_counts(const KeepGoing& keep_going = {});
 
@@ -123,9 +145,15 @@ protected:
     virtual Image develop() = 0;
     /// Layer::variance of a film whose samples were taken while the settings asked for it.
     virtual LayerImage develop_variance() = 0;
-    /// Adds what the samples of all pixels see first to the film; ends early where it is stopped. `done` counts them.
-    virtual void see_layers(const SampleRange& range, std::vector<LayerSum>& film, std::atomic<std::int64_t>& done,
-                            OwnStop& stop) = 0;
+    /// Samples of a region apart from the film. `counts`: of the region's pixels.
+    virtual RegionSums take_region(const FilmRegion& region, const SampleRange& range, const PixelCounts& counts,
+                                   std::atomic<std::int64_t>& done, OwnStop& stop) = 0;
+    /// Light that is traced apart from samples of pixels, and apart from the film.
+    virtual std::vector<SplatFilm> take_splats(const SampleRange& range, OwnStop& stop) = 0;
+    /// Adds what the samples of a region's pixels see first to `sums`, row by row; ends early where it is stopped.
+    /// `done` counts them.
+    virtual void see_layers(const FilmRegion& region, const SampleRange& range, std::vector<LayerSum>& sums,
+                            std::atomic<std::int64_t>& done, OwnStop& stop) = 0;
     /// The surface in the middle ray of each pixel; ends early where it is stopped.
     virtual void see_middle_surfaces(std::vector<MiddleSurface>& film, OwnStop& stop) = 0;
     virtual std::vector<std::int64_t> count_samples() = 0;
@@ -153,6 +181,7 @@ protected:
     }
 
     const Camera& camera() const { return camera_; }
+    FilmRegion whole_film() const { return {0, 0, camera_.film.width, camera_.film.height}; }
     const RenderSettings& settings() const { return settings_; }
     std::int64_t samples() const { return samples_; }  ///< of the pixel that has most, since the film was empty
 
@@ -173,6 +202,8 @@ private:
 
     void check_all(const Assembly& scene, const Camera& camera, const RenderSettings& settings,
                    const KeepGoing& keep_going);
+
+    void check_region(const FilmRegion& region) const;
 
     void make_way(const KeepGoing& keep_going) {
         while (frames_.size() >= frames_in_flight()) wait_for_oldest(keep_going);
@@ -205,7 +236,14 @@ private:
     /// Brings the layers that are wanted up to the samples of the picture. Where it is stopped they begin anew.
     void see_what_is_missing(std::atomic<std::int64_t>& done, OwnStop& stop);
 
-    void add_layers(Image& image);
+    /// `variance`, `counts`: functions that make these of the same film.
+    template <class Variance, class Counts>
+    void add_layers(Image& image, const LayerFilm& layers, Variance&& variance, Counts&& counts);
+
+    /// work(range, stop) on the samples of a part of the picture, with nothing else under way.
+    template <class Work>
+    void take_part(std::int64_t first, int count, const Progress& progress, const std::atomic<std::int64_t>& done,
+                   std::size_t pixels, Work&& work);
 
     ReachedNoise take_until(const NoiseGoal& goal, std::atomic<double>& share, OwnStop& stop);
 

@@ -40,6 +40,7 @@ GROUPS = {
         "render", "RenderSettings", "RenderStats", "Image", "Shot", "Session", "ReachedNoise", "LiveView", "LiveFrame",
         "Device", "DeviceArray", "devices",
     ),
+    "Many machines": ("FilmPart",),
     "Effects and accuracy": (
         "effects", "EffectInfo", "plan", "Plan", "PlanDecision", "accuracy_cost", "AccuracyCost",
     ),

@@ -72,6 +72,7 @@ from .accuracy import AccuracyCost, accuracy_cost
 from .cuda_plugin import path_of_plugin as _path_of_plugin
 from .derivatives import Gradient, RayDerivatives, ray_derivatives
 from .drawing import CrossSection, cross_section
+from .film_part import FilmPart
 from .glass_search import GlassMatch, GlassSearch, nearest_glasses, with_better_glasses
 from .image import Image
 from .image_file import read_environment
@@ -125,6 +126,7 @@ __all__ = [
     "ElementShift",
     "FieldOfView",
     "Film",
+    "FilmPart",
     "FilmPupil",
     "FirstOrder",
     "Ghost",

@@ -29,11 +29,14 @@ def check_target(path: str | os.PathLike[str]) -> None:
         raise ImageFileError(f"{os.fspath(path)}: {why}")
 
 
-def write_whole(path: str | os.PathLike[str], content: bytes, *, replaces: bool = True) -> bool:
+def write_whole(
+    path: str | os.PathLike[str], content: bytes, *, replaces: bool = True, is_durable: bool = False
+) -> bool:
     """Writes a file through links, as a whole or not at all; one that is replaced keeps its mode.
 
     replaces: False where no file may be replaced; then a name that is taken is left as it is, and False is returned.
-    Raises ImageFileError.
+    is_durable: the content is on the disk before the file has its name, so that a machine that loses power leaves no
+    empty file. Raises ImageFileError.
     """
     check_target(path)
     with _errors_named(path):
@@ -45,6 +48,9 @@ def write_whole(path: str | os.PathLike[str], content: bytes, *, replaces: bool 
                 with suppress(FileNotFoundError):
                     os.fchmod(file.fileno(), stat.S_IMODE(target.stat().st_mode))
                 file.write(content)
+                if is_durable:
+                    file.flush()
+                    os.fsync(file.fileno())
                 file.close()
                 if replaces:
                     temporary.replace(target)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -10,6 +11,7 @@ from numpy.typing import NDArray
 
 from . import _core
 from ._core import Camera, RenderSettings, Scene
+from .film_part import NO_STATS, CollectedFilm, FilmPart
 from .image import Image
 from .planning import Settled, settled
 from .render import warn_of_effects, warn_of_no_light
@@ -18,7 +20,7 @@ from .settings import setting, settings_of
 if TYPE_CHECKING:
     from typing_extensions import Unpack
 
-    from ._core import _SettingWords
+    from ._core import _Region, _SettingWords
 
 
 @dataclass(frozen=True)
@@ -85,6 +87,11 @@ class Session:
         return self._settled.settings
 
     effects = setting("effects")
+
+    @property
+    def device(self) -> str:
+        """What it computes with, for people: as RenderStats.device."""
+        return self._core.device
 
     def set(self, *, scene: Scene | None = None, camera: Camera | None = None) -> None:
         """Another scene or camera; None keeps the one that was set last.
@@ -153,6 +160,58 @@ class Session:
         settings = self.settings
         return Image(**picture, camera=self.camera, seed=settings.seed, settings=settings, plan=self._settled.summary)
 
+    def expose(
+        self, region: _Region, first: int = 0, spp: int = 256, counts: NDArray[np.uint32] | None = None
+    ) -> FilmPart:
+        """What some samples of a region of the film collect, apart from the picture of this session, which stays.
+
+        region: column and row of its first pixel, from the upper left corner, its width and its height. first, spp: the
+        samples with numbers from first on, at most 256. counts: (height, width), how many of them single pixels take.
+        Parts of all regions and samples make the picture (image_of), on whatever machines they were exposed. Where a
+        CPU took them in steps of 256 samples, it has the same bits as that of one session.
+        Raises InputError, and what add raises.
+        """
+        found = self._core.expose_region(region, first, spp, counts)
+        layers = None
+        if counts is None and self.has_sampled_layers:
+            layers = self._core.see_region(region, first, spp)
+        return FilmPart(_region(region), first, spp, found["pixels"], layers, stats=found["stats"])
+
+    def expose_layers(self, region: _Region, first: int = 0, spp: int = 256) -> FilmPart:
+        """The layers alone of what expose gives without counts. Raises what expose raises."""
+        return FilmPart(_region(region), first, spp, layers=self._core.see_region(region, first, spp))
+
+    def expose_traced_light(self, first: int = 0, spp: int = 256) -> FilmPart:
+        """Ghosts and other light that is traced apart from the samples of pixels, as it belongs to so many of them.
+
+        It falls on the whole film. A picture needs this of all of its samples, or of none where part.splats is empty,
+        which a part of 0 samples tells. Raises InputError, and what add raises.
+        """
+        return FilmPart(None, first, spp, splats=self._core.expose_splats(first, spp))
+
+    def image_of(self, parts: Iterable[FilmPart]) -> Image:
+        """The picture that has all parts, and none twice; those of later samples of a pixel come later.
+
+        Raises InputError for parts of another picture.
+        """
+        film = CollectedFilm(*self.camera.film.resolution)
+        for part in parts:
+            film.add(part)
+        return self._image_of(film)
+
+    def _image_of(self, film: CollectedFilm) -> Image:
+        layers = film.layers
+        if layers is None and self.has_sampled_layers:
+            layers = np.zeros(film.pixels.shape, _core._LAYER_SUM)
+        picture = self._core.picture_of(film.pixels, layers, film.splats, NO_STATS | film.stats)
+        settings = self.settings
+        return Image(**picture, camera=self.camera, seed=settings.seed, settings=settings, plan=self._settled.summary)
+
+    @property
+    def has_sampled_layers(self) -> bool:
+        """Whether the settings want layers that are means over the samples, which parts then have."""
+        return not _core._SAMPLED_LAYERS.isdisjoint(self.settings.layers)
+
     @property
     def samples(self) -> NDArray[np.int64]:
         """(H, W) int64: the number of samples that each pixel has."""
@@ -161,3 +220,8 @@ class Session:
     def cancel(self) -> None:
         """Ends what another thread does with this session, within the time of a sample: it raises Cancelled."""
         self._core.cancel()
+
+
+def _region(region: Sequence[int]) -> _Region:
+    column, row, width, height = region
+    return column, row, width, height

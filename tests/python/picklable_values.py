@@ -34,6 +34,10 @@ def scene() -> rc.Scene:
     )
 
 
+def session() -> rc.Session:
+    return rc.Session(floor_scene().with_environment(100), camera(), effects=(), device="cpu")
+
+
 def image() -> rc.Image:
     return rc.render(floor_scene().with_environment(100), camera(), effects=(), spp=2, device="cpu")
 
@@ -96,6 +100,7 @@ MAKERS: dict[str, list[Callable[[], Any]]] = {
         lambda: lens().bundle(11, spokes=8, nodes=2),
     ],
     "RawImage": [lambda: rc.Sensor.load().expose(image()), lambda: rc.Sensor.load().expose(image(), seed=1)],
+    "FilmPart": [lambda: session().expose((2, 1, 3, 4), 0, 2), lambda: session().expose((2, 1, 3, 4), 2, 2)],
     "Image": [
         image,
         lambda: rc.render(floor_scene().with_environment(100), camera(), effects=(), spp=2, seed=1, device="cpu"),

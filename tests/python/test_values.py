@@ -29,6 +29,7 @@ UNHASHABLE = {
     "CameraRays",
     "Image",
     "RawImage",
+    "FilmPart",
 }
 each_kind = pytest.mark.parametrize("kind", sorted(MAKERS))
 

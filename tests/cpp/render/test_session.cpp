@@ -73,8 +73,20 @@ private:
     }
     Image develop() override { return {}; }
     LayerImage develop_variance() override { return {Layer::variance, {0, 0, 0}, {}}; }
-    void see_layers(const SampleRange& range, std::vector<LayerSum>& film, std::atomic<std::int64_t>& done,
-                    OwnStop&) override {
+    RegionSums take_region(const FilmRegion& region, const SampleRange& range, const PixelCounts&,
+                           std::atomic<std::int64_t>&, OwnStop&) override {
+        notes.push_back("take region");
+        taken.push_back(range);
+        if (while_taking) while_taking();
+        return {FilmSums(region.pixels()), {}};
+    }
+    std::vector<SplatFilm> take_splats(const SampleRange& range, OwnStop&) override {
+        notes.push_back("take splats");
+        taken.push_back(range);
+        return {};
+    }
+    void see_layers(const FilmRegion&, const SampleRange& range, std::vector<LayerSum>& film,
+                    std::atomic<std::int64_t>& done, OwnStop&) override {
         notes.push_back("see layers");
         seen.push_back(range);
         if (while_seeing) while_seeing();
@@ -337,4 +349,78 @@ TEST_CASE("the variance of a pixel is that of the mean of its samples") {
     CHECK(variance.values[1] == 0);
     CHECK(variance.values[2] == 0);
     for (std::size_t i = 3; i < 6; ++i) CHECK(std::isnan(variance.values[i]));
+}
+
+TEST_CASE("parts of a picture are exposed apart from it, in steps that whole pictures add up in") {
+    const Assembly scene(test::bare_scene());
+    Camera camera = small_camera();
+    camera.film.width = 5;
+    camera.film.height = 4;
+    NotedSession session;
+    CHECK_THROWS_WITH_AS(session.expose_region({0, 0, 1, 1}, 0, 1),
+                         "nothing is set that could be photographed; set() prepares it", InputError);
+    RenderSettings settings{.seed = 9, .effects = {}};
+    session.set(scene, camera, settings);
+    session.add(3);
+    session.notes.clear();
+    CHECK(session.expose_region({3, 1, 2, 3}, 256, 44).pixels.size() == 6);
+    CHECK(session.taken.back().seed == 9);
+    CHECK(session.taken.back().first == 256);
+    CHECK(session.taken.back().count == 44);
+    CHECK(session.see_region({3, 1, 2, 3}, 0, 256).size() == 6);
+    CHECK(session.expose_splats(0, 0).empty());
+    CHECK(session.notes == std::vector<std::string>{"take region", "see layers", "take splats"});
+    CHECK(session.picture().spp == 3);
+
+    const char* kOutside = "a region must lie on the film, which has 5 x 4 pixels";
+    for (const FilmRegion region : {FilmRegion{-1, 0, 2, 2},
+                                    {0, -1, 2, 2},
+                                    {4, 0, 2, 2},
+                                    {0, 3, 1, 2},
+                                    {0, 0, 0, 2},
+                                    {0, 0, 2147483647, 2},
+                                    {2147483647, 0, 2147483647, 1}}) {
+        CHECK_THROWS_WITH_AS(session.expose_region(region, 0, 1), kOutside, InputError);
+        CHECK_THROWS_WITH_AS(session.see_region(region, 0, 1), kOutside, InputError);
+    }
+    CHECK_THROWS_AS(session.expose_region({0, 0, 1, 1}, 0, 257), InputError);
+    CHECK_THROWS_AS(session.expose_region({0, 0, 1, 1}, -1, 1), InputError);
+    CHECK_THROWS_AS(session.expose_region({0, 0, 1, 1}, std::int64_t{1} << 32, 1), InputError);
+    CHECK_THROWS_AS(session.expose_region({0, 0, 1, 1}, 0, 2, {1, 1}), InputError);
+    CHECK_THROWS_AS(session.picture_of({FilmSums(19), {}, {}, {}}), InputError);
+    settings.pupil_sampling = PupilSampling::pixel;
+    session.set(scene, camera, settings);
+    CHECK_THROWS_AS(session.expose_region({0, 0, 1, 1}, 0, 1), InputError);
+}
+
+TEST_CASE("a part that is stopped is no part, and the session goes on") {
+    NotedSession session;
+    session.set(Assembly(test::bare_scene()), small_camera(), {.effects = {}});
+    session.while_taking = [&] {
+        while (!session.stop_flag) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    };
+    CHECK_THROWS_AS(session.expose_region({0, 0, 1, 1}, 0, 1, {}, [](double) { return false; }), Cancelled);
+    session.while_taking = {};
+    CHECK(session.expose_region({0, 0, 1, 1}, 0, 1).pixels.size() == 1);
+}
+
+TEST_CASE("a picture is developed of what was collected elsewhere") {
+    Camera camera = small_camera();
+    camera.exposure_time_s = 2;
+    RenderSettings settings{.layers = {Layer::variance, Layer::sample_count, Layer::depth_middle}, .effects = {}};
+    NotedSession session;
+    session.set(Assembly(test::bare_scene()), camera, settings);
+    CollectedFilm film{FilmSums(1), {}, {}, {}};
+    film.pixels[0] = {{9, 0, 3}, {41, 0, 3}, 0, 0, 3};
+    film.stats.sampled_rays = 77;
+    const Image image = session.picture_of(film);
+    CHECK(image.exposure[0] == 6);  // 9 lux over 3 samples, 2 s
+    CHECK(image.exposure[2] == 2);
+    CHECK(image.spp == 3);
+    CHECK(image.stats.sampled_rays == 77);
+    REQUIRE(image.layers.size() == 3);
+    CHECK(image.layers[0].numbers == std::vector<std::uint32_t>{3});
+    CHECK(double(image.layers[1].values[0]) == doctest::Approx(28.0 / 3));
+    CHECK(image.layers[2].values == std::vector<float>{1.5f});
+    CHECK_THROWS_AS(session.picture(), InputError);  // of its own it has none
 }

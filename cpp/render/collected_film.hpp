@@ -1,0 +1,57 @@
+#pragma once
+#include <cstddef>
+#include <vector>
+
+#include "film_sums.hpp"
+#include "ghost_film.hpp"
+#include "image.hpp"
+#include "layer_sum.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// One light of a picture that was traced apart from the samples of its pixels, in the host's memory.
+struct SplatFilm {
+    GhostLight light = GhostLight::of_lights;
+    std::vector<GhostSum> sums;  ///< of all pixels, film by film (GhostFilmView)
+    std::vector<unsigned long long> blocks;  ///< in each film
+    double units_per_lux = 1;
+    int width = 0, height = 0;  ///< pixels
+
+    /// So many films without light.
+    static SplatFilm empty(GhostLight light, int width, int height, int films, double units_per_lux) {
+        const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height),
+                          count = static_cast<std::size_t>(films);
+        return {
+            light, std::vector<GhostSum>(count * pixels), std::vector<unsigned long long>(count), units_per_lux, width,
+            height};
+    }
+
+    GhostFilmView view() const {
+        return {light,
+                sums.empty() ? nullptr : sums.data(),
+                static_cast<int>(blocks.size()),
+                units_per_lux,
+                blocks.data(),
+                width,
+                height};
+    }
+};
+
+/// Views of at most kMostSplats films, which must outlive them.
+SplattedLight view_of(const std::vector<SplatFilm>& films);
+
+/// What the pixels of a region have collected.
+struct RegionSums {
+    FilmSums pixels;
+    RenderStats stats;
+};
+
+/// What all parts of a film have collected together, wherever they were exposed.
+struct CollectedFilm {
+    FilmSums pixels;
+    std::vector<LayerSum> layers;  ///< of all pixels; empty: no layer is wanted that needs them
+    std::vector<SplatFilm> splats;
+    RenderStats stats;
+};
+
+}  // namespace REALCAM_NAMESPACE

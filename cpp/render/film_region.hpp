@@ -1,0 +1,21 @@
+#pragma once
+#include <cstddef>
+
+#include "../platform.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// A rectangle of the film, in pixels from the upper left corner of the picture.
+struct FilmRegion {
+    int column = 0, row = 0, width = 0, height = 0;
+
+    std::size_t pixels() const { return static_cast<std::size_t>(width) * static_cast<std::size_t>(height); }
+
+    /// The place in the region of a pixel of the film, row by row.
+    std::size_t place(int film_column, int film_row) const {
+        return static_cast<std::size_t>(film_row - row) * static_cast<std::size_t>(width) +
+               static_cast<std::size_t>(film_column - column);
+    }
+};
+
+}  // namespace REALCAM_NAMESPACE
