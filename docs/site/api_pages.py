@@ -40,7 +40,7 @@ GROUPS = {
         "render", "RenderSettings", "RenderStats", "Image", "Shot", "Session", "ReachedNoise", "LiveView", "LiveFrame",
         "Device", "DeviceArray", "devices",
     ),
-    "Many machines": ("FilmPart",),
+    "Many machines": ("Job", "JobStatus", "FilmPart"),
     "Effects and accuracy": (
         "effects", "EffectInfo", "plan", "Plan", "PlanDecision", "accuracy_cost", "AccuracyCost",
     ),

@@ -76,6 +76,7 @@ from .film_part import FilmPart
 from .glass_search import GlassMatch, GlassSearch, nearest_glasses, with_better_glasses
 from .image import Image
 from .image_file import read_environment
+from .job import Job, JobStatus
 from .lens import Mirror, Stop
 from .live_view import LiveView
 from .operands import Operand
@@ -137,6 +138,8 @@ __all__ = [
     "Image",
     "ImageFileError",
     "InputError",
+    "Job",
+    "JobStatus",
     "Lens",
     "LensFileError",
     "LiveFrame",

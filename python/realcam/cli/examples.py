@@ -43,6 +43,20 @@ EXAMPLES: dict[str, tuple[str, ...]] = {
         "realcam compare shot.toml --vary f_number=2,4,8 -o sheet.png",
         "realcam compare shot.toml --vary lens=wide-24mm,double-gauss-50mm,sonnar-180mm -o sheet.png",
     ),
+    "job make": (
+        "realcam job make terrace.toml -o terrace.job",
+        "realcam job make *.toml -o night.job --spp 1024 --sbatch night.sbatch --tasks 40",
+    ),
+    "job work": (
+        "realcam job work terrace.job",
+        "realcam job work terrace.job --scheduler tcp://head:8786",
+        "realcam job work terrace.job --cluster slurm --workers 40",
+    ),
+    "job status": ("realcam job status terrace.job --json",),
+    "job finish": (
+        "realcam job finish terrace.job -o terrace.exr -o terrace.png",
+        "realcam job finish night.job -o pictures --format png",
+    ),
     "view": (
         "realcam view",
         "realcam view shot.toml --port 8081 --no-browser",

@@ -1,0 +1,243 @@
+"""realcam job: pictures on many machines."""
+
+from __future__ import annotations
+
+import logging
+import os
+from dataclasses import replace
+from pathlib import Path
+from typing import Annotated, Optional
+
+import typer
+
+from .._core import ImageFileError, InputError
+from ..json_values import json_text
+from ..progress import progress_bar
+from ..shot import Shot
+from . import options
+from .completions import completion_of
+
+app = typer.Typer(help="Take pictures on many machines, in a folder that all of them see.", no_args_is_help=True)
+
+Folder = Annotated[Path, typer.Argument(help="The job's folder, as `realcam job make` made it", metavar="FOLDER")]
+Threads = Annotated[int, typer.Option(metavar="N", help="Of each process; 0: all cores", min=0, max=4096)]
+
+
+@app.command()
+def make(
+    shots: Annotated[list[Path], typer.Argument(help="Shot files, .toml", metavar="SHOT...")],
+    output: Annotated[Path, typer.Option("--output", "-o", metavar="FOLDER", help="Of the job; it must not be there")],
+    spp: Annotated[
+        Optional[str],  # noqa: UP045
+        typer.Option("--spp", metavar="N", help="Samples per pixel, or auto [those of the shots]"),
+    ] = None,
+    device: Annotated[
+        str,
+        typer.Option(
+            metavar="DEVICE",
+            help="What all processes compute with: auto (a GPU if there is one), cpu or cuda",
+            autocompletion=completion_of("DEVICE"),
+        ),
+    ] = "auto",
+    tile: Annotated[
+        Optional[str],  # noqa: UP045
+        typer.Option("--tile", metavar="PIXELS", help="Of a unit: 128, or 128x64 [a second of one core]"),
+    ] = None,
+    sbatch: Annotated[
+        Optional[Path],  # noqa: UP045
+        typer.Option("--sbatch", metavar="FILE", help="Also write a script for Slurm's sbatch"),
+    ] = None,
+    openjd: Annotated[
+        Optional[Path],  # noqa: UP045
+        typer.Option("--openjd", metavar="FILE", help="Also write a template of Open Job Description, .json"),
+    ] = None,
+    tasks: Annotated[
+        int, typer.Option("--tasks", metavar="N", help="Processes that these files start", min=1, max=100000)
+    ] = 8,
+    quiet: options.Quiet = False,
+) -> None:
+    """Make a job's folder of shots.
+
+    Everything is decided here, with the settings of the shot files; no file that they name is needed afterwards.
+    """
+    from .. import files
+    from ..job import Job
+    from ..job.farm_files import openjd_template, sbatch_script
+    from ..job.making import check_is_new
+
+    check_is_new(output)
+    size = _tile(tile)
+    for target in filter(None, (sbatch, openjd)):
+        files.check_target(target)
+    job = Job.make(output, _named_shots(shots, spp, device), device=device, tile=size)
+    if not quiet:
+        typer.echo(f"{output}: {_count(job.status().units_known, 'unit')} of {_count(len(job.names), 'picture')}")
+    if sbatch is not None:
+        files.write_whole(sbatch, sbatch_script(output, tasks).encode())
+        options.say_written(sbatch, quiet)
+    if openjd is not None:
+        files.write_whole(openjd, openjd_template(output, tasks).encode())
+        options.say_written(openjd, quiet)
+
+
+@app.command()
+def work(
+    folder: Folder,
+    workers: Annotated[
+        Optional[int],  # noqa: UP045
+        typer.Option("--workers", metavar="N", help="Processes [one for each 4 cores]", min=1, max=10000),
+    ] = None,
+    threads: Threads = 0,
+    here: Annotated[bool, typer.Option("--here", help="In this process alone, without Dask")] = False,
+    scheduler: Annotated[
+        Optional[str],  # noqa: UP045
+        typer.Option("--scheduler", metavar="ADDRESS", help="Of a Dask scheduler: tcp://head:8786, or its .json file"),
+    ] = None,
+    cluster: Annotated[
+        Optional[str],  # noqa: UP045
+        typer.Option("--cluster", metavar="NAME", help="slurm or pbs: workers are jobs there, by dask-jobqueue"),
+    ] = None,
+    device: Annotated[
+        Optional[str],  # noqa: UP045
+        typer.Option("--device", metavar="DEVICE", help="cuda:1, say, where a job is for GPUs; wants --here"),
+    ] = None,
+    quiet: options.Quiet = False,
+) -> None:
+    """Take samples until all units of a job are done.
+
+    As many of these as you like may run at the same time, on any machines that see the folder. Ctrl-C, a machine that
+    stops or a disk that is full lose the units in hand and nothing else; start the command again to go on.
+    """
+    from ..job import Job
+    from ..job.clusters import dask_executor, has_dask
+
+    if sum([here, scheduler is not None, cluster is not None]) > 1:
+        raise InputError("--here, --scheduler and --cluster exclude each other; one of them is wanted")
+    logging.disable(logging.CRITICAL)  # what Dask writes of connections that end; the job says what matters
+    if device is not None and not here:
+        raise InputError("--device is for one process; --here is wanted with it")
+    job = Job.load(folder)
+    wants_dask = not here and (has_dask() or scheduler or cluster or workers)
+    with progress_bar(f"{folder}", is_shown=not quiet) as bar:
+        if not wants_dask:
+            job.work(threads=threads, device=device, progress=bar)
+        else:
+            cores = len(os.sched_getaffinity(0))
+            count = workers or max(1, cores // 4)
+            is_local = scheduler is None and cluster is None
+            with dask_executor(workers=count, scheduler=scheduler, batch_system=cluster) as executor:
+                share = threads or (max(1, cores // count) if is_local else 0)
+                job.work(executor, threads=share, progress=bar)
+    if not quiet:
+        typer.echo(f"{folder}: all units are done; realcam job finish {folder} -o FILE makes the pictures")
+
+
+@app.command()
+def status(folder: Folder, as_json: options.AsJson = False) -> None:
+    """Tell how far a job is."""
+    from ..job import Job
+
+    found = Job.load(folder).status()
+    if as_json:
+        typer.echo(json_text(found))
+        return
+    lines = [
+        f"{100 * found.share:.1f} %",
+        f"{found.units_done} of {_count(found.units_known, 'unit')}"
+        + (" that are known so far" if found.is_adaptive and not found.is_done else ""),
+        f"{found.shots_done} of {_count(found.shots, 'picture')}",
+        f"{found.in_hand} in hand",
+    ]
+    if found.is_done:
+        lines.append("done")
+    elif found.seconds_left < float("inf"):
+        lines.append(f"about {_duration(found.seconds_left)} left at the pace of the last units")
+    typer.echo(", ".join(lines))
+
+
+@app.command()
+def finish(
+    folder: Folder,
+    output: Annotated[
+        list[Path],
+        typer.Option(
+            "--output",
+            "-o",
+            metavar="FILE",
+            help="Of one picture, .exr or .png, may be repeated; or a folder for all of them",
+        ),
+    ],
+    format: Annotated[
+        str, typer.Option("--format", metavar="NAME", help="Of pictures in a folder: exr or png")
+    ] = "exr",
+    device: Annotated[
+        Optional[str],  # noqa: UP045
+        typer.Option("--device", metavar="DEVICE", help="For layers of single rays [that of the job]"),
+    ] = None,
+    quiet: options.Quiet = False,
+) -> None:
+    """Add up the units of a job, and write its pictures. The same command writes them again."""
+    from .. import files
+    from ..job import Job
+
+    options.check_known(format, ("exr", "png"), "format")
+    job = Job.load(folder)
+    suffixes = (".exr", ".png")
+    to_files = all(path.suffix.lower() in suffixes for path in output)
+    if to_files and len(job.names) > 1:
+        raise InputError(f"the job has {len(job.names)} pictures; a folder is wanted for --output")
+    if not to_files and len(output) > 1:
+        raise InputError("one folder is wanted for --output, or files .exr and .png")
+    targets = {job.names[0]: output} if to_files else {name: [output[0] / f"{name}.{format}"] for name in job.names}
+    if not to_files:
+        try:
+            output[0].mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise ImageFileError(f"{output[0]}: the folder cannot be made: {error.strerror}") from None
+    for paths in targets.values():
+        for path in paths:
+            files.check_target(path)
+    with progress_bar("adding up", is_shown=not quiet) as bar:
+        for done, (name, paths) in enumerate(targets.items()):
+            bar(done / len(targets))
+            image = job.image(name, device=device)
+            for path in paths:
+                image.save(path, tone=job.tone(name))
+                options.say_written(path, quiet)
+
+
+def _named_shots(paths: list[Path], spp: str | None, device: str) -> dict[str, Shot]:
+    shots: dict[str, Shot] = {}
+    for path in paths:
+        if path.stem in shots:
+            raise InputError(f"{path}: two shots are called {path.stem}; other names are wanted")
+        shot = Shot.load(path, device=device)
+        if spp is not None:
+            shot = replace(shot, settings=shot.settings.with_(spp=_samples(spp)))
+        shots[path.stem] = shot
+    return shots
+
+
+def _samples(text: str) -> int | str:
+    return text if text == "auto" or not text.isdecimal() else int(text)
+
+
+def _tile(text: str | None) -> tuple[int, int] | None:
+    if text is None:
+        return None
+    across, _, down = text.partition("x")
+    down = down or across
+    if not (across.isdecimal() and down.isdecimal()):
+        raise InputError(f'--tile: "{text:.40}": pixels are wanted, 128 or 128x64')
+    return int(across), int(down)
+
+
+def _count(count: int, noun: str) -> str:
+    return f"{count} {noun}" + ("" if count == 1 else "s")
+
+
+def _duration(seconds: float) -> str:
+    for size, name in ((86400.0, "days"), (3600.0, "hours"), (60.0, "minutes")):
+        if seconds >= 2 * size:
+            return f"{seconds / size:.0f} {name}"
+    return f"{seconds:.0f} seconds"

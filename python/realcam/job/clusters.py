@@ -1,0 +1,84 @@
+"""Executors of Dask, which has schedulers for this machine, for clusters and for what is set up elsewhere."""
+
+from __future__ import annotations
+
+import concurrent.futures
+import logging
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
+from pathlib import Path
+from typing import Any
+
+from .._core import InputError
+
+_ANSWERS_WITHIN_S = 20
+
+
+@contextmanager
+def dask_executor(
+    *, workers: int, threads: int = 1, scheduler: str | None = None, batch_system: str | None = None
+) -> Iterator[concurrent.futures.Executor]:
+    """An executor whose processes each take one unit at a time.
+
+    scheduler: the address of one that runs already, "tcp://head:8786" or a scheduler file, .json; workers counts for
+    nothing then. batch_system: "slurm" or "pbs", whose workers are jobs of it, as the user's settings of dask-jobqueue
+    describe them. None: so many processes of this machine, each with so many threads.
+    Raises InputError where Dask is missing or no scheduler answers.
+    """
+    distributed = _imported("distributed")
+    with ExitStack() as stack:
+        # Workers that come and go are told of by the job itself.
+        logging.getLogger("distributed").setLevel(logging.CRITICAL)
+        try:
+            if scheduler is not None and scheduler.endswith(".json"):
+                Path(scheduler).stat()  # for which Dask would wait
+                source: Any = {"scheduler_file": scheduler}
+            elif scheduler is not None:
+                source = {"address": scheduler}
+            elif batch_system is not None:
+                source = {"address": stack.enter_context(_batch_cluster(batch_system, workers))}
+            else:
+                cluster = distributed.LocalCluster(
+                    n_workers=workers,
+                    threads_per_worker=1,
+                    processes=True,
+                    memory_limit=0,  # scenes are large, and a worker that is ended for it comes again and again
+                    dashboard_address=None,
+                    silence_logs=logging.CRITICAL,
+                )
+                source = {"address": stack.enter_context(cluster)}
+            client = stack.enter_context(distributed.Client(**source, timeout=_ANSWERS_WITHIN_S, set_as_default=False))
+        except (OSError, TimeoutError, ValueError) as error:
+            where = scheduler or batch_system or "this machine"
+            raise InputError(f"{where}: no Dask scheduler answers there: {_line_of(error)}") from None
+        yield client.get_executor(pure=False)
+
+
+def has_dask() -> bool:
+    from importlib.util import find_spec
+
+    return find_spec("distributed") is not None
+
+
+def _batch_cluster(batch_system: str, workers: int) -> Any:
+    jobqueue = _imported("dask_jobqueue")
+    kinds = {"slurm": "SLURMCluster", "pbs": "PBSCluster"}
+    if batch_system not in kinds:
+        raise InputError(f'unknown batch system "{batch_system:.40}"; one of {", ".join(kinds)} is wanted')
+    cluster = getattr(jobqueue, kinds[batch_system])()
+    cluster.scale(workers)
+    return cluster
+
+
+def _imported(name: str) -> Any:
+    from importlib import import_module
+
+    try:
+        return import_module(name)
+    except ImportError:
+        raise InputError(f"the Python package {name} is missing; pip install 'realcam[cluster]' brings it") from None
+
+
+def _line_of(error: BaseException) -> str:
+    text = error.strerror if isinstance(error, FileNotFoundError) else str(error)
+    return (text or "").strip().partition("\n")[0] or type(error).__name__

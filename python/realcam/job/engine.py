@@ -1,0 +1,87 @@
+"""What computes a job's samples: machines whose engines differ would not find the same bits."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import re
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+
+from .._core import InputError, __version__
+from ..session import Session
+
+# The kernels of these sets do the same arithmetic, with fused multiply-add; those of v2 have none.
+_ALIKE = frozenset({"v3", "v4"})
+
+
+@dataclass(frozen=True)
+class Engine:
+    """The version of realcam, and what it computes with: "CPU" or the GPU's name, Embree, the instruction set."""
+
+    realcam: str
+    device: str
+    embree: str = ""
+    instruction_set: str = ""
+
+    @classmethod
+    def of(cls, session: Session) -> Engine:
+        name = session.device
+        found = re.fullmatch(r"CPU \(Embree ([^,]+), x86-64-([^,]+), .*\)", name)
+        if not found:
+            # One GPU of several computes the samples of a part.
+            return cls(__version__, name.removeprefix("GPU (").removesuffix(")").partition(" + ")[0])
+        # A machine without v4 can work for one that has it.
+        instruction_set = "v3" if found[2] in _ALIKE else found[2]
+        return cls(__version__, "CPU", found[1], instruction_set)
+
+    @property
+    def is_cpu(self) -> bool:
+        return self.device == "CPU"
+
+    def __str__(self) -> str:
+        cpu = f", Embree {self.embree}, x86-64-{self.instruction_set}" if self.is_cpu else ""
+        return f"realcam {self.realcam} on {self.device}{cpu}"
+
+    def check_version(self, folder: str) -> None:
+        """Raises InputError where this is another version of realcam."""
+        if self.realcam != __version__:
+            raise InputError(
+                f"{folder}: realcam {self.realcam} made this job, and this is realcam {__version__}; all machines of a "
+                "job need the same version"
+            )
+
+    @contextmanager
+    def pinned(self) -> Iterator[None]:
+        """A session that is made here computes with v2 where the job wants that.
+
+        Of no effect where this process has computed something already; `check` tells then.
+        """
+        name = "REALCAM_INSTRUCTION_SET"
+        if self.instruction_set != "v2" or name in os.environ:
+            yield
+            return
+        os.environ[name] = "v2"
+        try:
+            yield
+        finally:
+            del os.environ[name]
+
+    def check(self, session: Session, folder: str) -> None:
+        """Raises InputError where this process computes with another engine."""
+        here = Engine.of(session)
+        if here != self:
+            raise InputError(f"{folder}: the job wants {self}, and here is {here}; their samples would differ")
+
+
+def probe_of(session: Session) -> str:
+    """A hash of some samples of a session's picture. Other bits here are other bits in all of the picture."""
+    width, height = session.camera.film.resolution
+    columns, rows = min(16, width), min(16, height)
+    digest = hashlib.sha256()
+    for column, row in ((0, 0), ((width - columns) // 2, (height - rows) // 2)):
+        part = session.expose((column, row, columns, rows), 0, 4)
+        assert part.pixels is not None
+        digest.update(part.pixels.tobytes())
+    return digest.hexdigest()
