@@ -92,7 +92,7 @@ py::tuple ray_derivatives(const LensSystem& lens, const InputArray<double>& orig
     constexpr py::ssize_t kNumbers = RayDerivatives::kNumbers;
     const py::ssize_t count = origins.shape(0), width = static_cast<py::ssize_t>(path.variable_count());
     py::array_t<int> status(count);
-    py::array_t<double> numbers({count, kNumbers}), by_variable({count, width, kNumbers}),
+    py::array_t<double> numbers({count, kNumbers}), by_variable({count, kNumbers, width}),
         by_ray({count, kNumbers, py::ssize_t{6}});
     int* to_status = status.mutable_data();
     double *to_numbers = numbers.mutable_data(), *to_variables = by_variable.mutable_data(),
@@ -130,12 +130,14 @@ py::tuple ray_derivatives(const LensSystem& lens, const InputArray<double>& orig
                                                     ray.direction.z,
                                                     ray.path + entry.optical_path};
                     std::copy(seven_numbers, seven_numbers + seven, to_numbers + seven * i);
-                    std::copy(ray.by_variable.begin(), ray.by_variable.end(), to_variables + many * i);
+                    double* row = to_variables + many * i;
+                    for (std::size_t k = 0; k < seven; ++k)
+                        for (std::size_t v = 0; v < many; v += seven) *row++ = ray.by_variable[v + k];
                     write_by_ray(ray, given, entry, path.entry_index(), from, to_ray + 6 * seven * i);
                 }
             });
     }
-    return py::make_tuple(status, numbers, by_variable.attr("swapaxes")(1, 2), by_ray);
+    return py::make_tuple(status, numbers, by_variable, by_ray);
 }
 
 }  // namespace

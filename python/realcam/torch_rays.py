@@ -15,6 +15,9 @@ if TYPE_CHECKING:
     import torch
 
 
+SETTABLE = ("curvature", "thickness", "conic", "aspheric", "index", "tilt", "decentre")
+
+
 def with_values(lens: Lens, variables: Sequence[Variable], values: Sequence[float]) -> Lens:
     """The lens with its variables set. Raises InputError for lenses that cannot be."""
     surfaces: dict[int, Surface] = {}
@@ -45,6 +48,9 @@ def trace_with_torch(
     import torch
 
     listed = checked(lens, variables)
+    for variable in listed:
+        if variable.quantity not in SETTABLE:
+            raise InputError(f'a lens cannot be given a value of "{variable.quantity}"; {", ".join(SETTABLE)} can')
     if tuple(values.shape) != (len(listed),):
         raise InputError(f"values must be {len(listed)} numbers, one for each variable")
     for tensor in (origins_mm, directions, values):

@@ -187,23 +187,19 @@ RayStatus DualPath::trace(Vec3d origin, Vec3d direction, Tape& tape, int surface
         step.origin = ray.origin[0];
         step.direction = ray.direction[0];
         step.path = record.optical_path[0];
-        std::size_t first_variable = 0;
-        std::size_t variables = 0;
-        for (const DualSurface& dual : duals_[k])
-            for (const int v : dual.variables) variables += v >= 0;
-        step.by_variable.resize(RayDerivatives::kNumbers * variables);
-        for (const DualSurface& dual : duals_[k]) {
-            write(dual, &dual == duals_[k].data(), o, p, step.origin, step, first_variable);
-            for (const int v : dual.variables) first_variable += v >= 0;
-        }
+        step.by.resize(duals_[k].size());
+        for (std::size_t i = 0; i < duals_[k].size(); ++i) write(duals_[k][i], i == 0, o, p, step.origin, step.by[i]);
     }
     return tape.status_;
 }
 
 DUAL_CLONES void DualPath::write(const DualSurface& surface, bool has_ray, Vec3d from, Vec3d along, Vec3d at,
-                                 Tape::Step& step, std::size_t first_variable) const {
+                                 Tape::Derivatives& by) const {
     Vec3<Dual8> o = static_cast<Vec3<Dual8>>(from), p = static_cast<Vec3<Dual8>>(along);
-    if (has_ray) over_ray(o, p, [](Dual8& number, int lane) { number.by[lane] = 1; });
+    if (has_ray) {
+        o.x.by[0] = o.y.by[1] = o.z.by[2] = 1;
+        p.x.by[3] = p.y.by[4] = p.z.by[5] = 1;
+    }
     if (surface.before.changes) {
         const DualFrame& frame = surface.before;
         o = o - frame.origin;
@@ -215,19 +211,10 @@ DUAL_CLONES void DualPath::write(const DualSurface& surface, bool has_ray, Vec3d
     const SurfaceHit<Dual8> hit = hit_of(surface, o, p, at);
     const Refraction<Dual8> refracted =
         refract(p, hit.normal, hit.along_normal, surface.view.squared_index_change, surface.view.direction_sign_out);
-    Vec3<Dual8> end = o + hit.parameter * p, way = refracted.direction;
-    const Dual8 path = surface.view.index_squared * hit.parameter;
-    const auto put = [&](const Dual8& number, int row) {
-        if (has_ray)
-            for (int lane = 0; lane < kRayLanes; ++lane) step.by_ray[row][lane] = number.by[lane];
-        std::size_t variable = first_variable;
-        for (int lane = 0; lane < kDualLanes; ++lane)
-            if (surface.variables[static_cast<std::size_t>(lane)] >= 0)
-                step.by_variable[RayDerivatives::kNumbers * variable++ + static_cast<std::size_t>(row)] =
-                    number.by[lane];
-    };
-    over_ray(end, way, put);
-    put(path, 6);
+    const Vec3<Dual8> end = o + hit.parameter * p, way = refracted.direction;
+    by.of[0] = end.x.by, by.of[1] = end.y.by, by.of[2] = end.z.by;
+    by.of[3] = way.x.by, by.of[4] = way.y.by, by.of[5] = way.z.by;
+    by.of[6] = (surface.view.index_squared * hit.parameter).by;
 }
 
 DUAL_CLONES void DualPath::derivatives_behind(const Tape& tape, int surfaces, RayDerivatives& ray) const {
@@ -244,22 +231,25 @@ DUAL_CLONES void DualPath::derivatives_behind(const Tape& tape, int surfaces, Ra
     for (int i = 0; i < kRayLanes; ++i) by[i][i] = 1;
     for (int k = surfaces - 1; k >= 0; --k) {
         const Tape::Step& step = tape.steps_[static_cast<std::size_t>(k)];
-        std::size_t local = 0;
-        for (const DualSurface& dual : duals_[static_cast<std::size_t>(k)])
-            for (const int v : dual.variables) {
+        const std::vector<DualSurface>& duals = duals_[static_cast<std::size_t>(k)];
+        for (std::size_t d = 0; d < duals.size(); ++d) {
+            const Numbers* change = step.by[d].of;
+            for (std::size_t lane = 0; lane < kDualLanes; ++lane) {
+                const int v = duals[d].variables[lane];
                 if (v < 0) continue;
-                const double* change = &step.by_variable[kNumbers * local++];
-                Numbers sum = change[0] * by[0];
-                for (int i = 1; i < kRayLanes; ++i) sum += change[i] * by[i];
-                sum[6] += change[6];
+                Numbers sum = change[0][lane] * by[0];
+                for (int i = 1; i < kRayLanes; ++i) sum += change[i][lane] * by[i];
+                sum[6] += change[6][lane];
                 double* to = &ray.by_variable[kNumbers * static_cast<std::size_t>(v)];
                 for (int row = 0; row < RayDerivatives::kNumbers; ++row) to[row] += sum[row];
             }
+        }
+        const Numbers* by_ray = step.by.front().of;
         Numbers next[kRayLanes];
         for (int j = 0; j < kRayLanes; ++j) {
-            next[j] = step.by_ray[0][j] * by[0];
-            for (int i = 1; i < kRayLanes; ++i) next[j] += step.by_ray[i][j] * by[i];
-            next[j][6] += step.by_ray[6][j];
+            next[j] = by_ray[0][j] * by[0];
+            for (int i = 1; i < kRayLanes; ++i) next[j] += by_ray[i][j] * by[i];
+            next[j][6] += by_ray[6][j];
         }
         for (int j = 0; j < kRayLanes; ++j) by[j] = next[j];
     }

@@ -45,11 +45,14 @@ public:
     /// What a ray leaves behind at each surface.
     class Tape {
         friend class DualPath;
+        /// Of a ray's seven numbers behind a surface, by the lanes of a dual surface.
+        struct Derivatives {
+            Dual8::Derivatives of[RayDerivatives::kNumbers];
+        };
         struct Step {
             Vec3d origin, direction;
             double path;
-            double by_ray[RayDerivatives::kNumbers][6];
-            std::vector<double> by_variable;  ///< seven numbers for each of the surface's variables
+            std::vector<Derivatives> by;  ///< for each dual surface
         };
         Vec3d start_direction_;
         std::vector<Step> steps_;
@@ -66,8 +69,7 @@ public:
 
 private:
     void add_surfaces(const LensSystem& lens, double wavelength_nm, bool to_film);
-    void write(const DualSurface& surface, bool has_ray, Vec3d o, Vec3d p, Vec3d at, Tape::Step& step,
-               std::size_t first_variable) const;
+    void write(const DualSurface& surface, bool has_ray, Vec3d o, Vec3d p, Vec3d at, Tape::Derivatives& by) const;
 
     std::vector<LensVariable> variables_;
     // The core's view, surface by surface.

@@ -60,10 +60,8 @@ def ray_derivatives(
     index = np.linalg.norm(optical, axis=1)[:, None]
     unit = optical / index
 
-    def unit_by(change: Doubles) -> Doubles:
-        along = np.einsum("ni,niv->nv", unit, change)
-        result: Doubles = (change - unit[:, :, None] * along[:, None, :]) / index[:, :, None]
-        return result
+    # A unit vector changes across itself.
+    across = (np.eye(3) - unit[:, :, None] * unit[:, None, :]) / index[:, :, None]
 
     return RayDerivatives(
         status,
@@ -71,9 +69,9 @@ def ray_derivatives(
         unit,
         numbers[:, 6],
         by[:, :3],
-        unit_by(by[:, 3:6]),
+        across @ by[:, 3:6],
         by[:, 6],
         by_start[:, :3],
-        unit_by(by_start[:, 3:6]),
+        across @ by_start[:, 3:6],
         by_start[:, 6],
     )
