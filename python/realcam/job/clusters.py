@@ -48,6 +48,8 @@ def dask_executor(
                 )
                 source = {"address": stack.enter_context(cluster)}
             client = stack.enter_context(distributed.Client(**source, timeout=_ANSWERS_WITHIN_S, set_as_default=False))
+        except InputError:  # which is a ValueError
+            raise
         except (OSError, TimeoutError, ValueError) as error:
             where = scheduler or batch_system or "this machine"
             raise InputError(f"{where}: no Dask scheduler answers there: {_line_of(error)}") from None
@@ -61,11 +63,10 @@ def has_dask() -> bool:
 
 
 def _batch_cluster(batch_system: str, workers: int) -> Any:
-    jobqueue = _imported("dask_jobqueue")
     kinds = {"slurm": "SLURMCluster", "pbs": "PBSCluster"}
     if batch_system not in kinds:
         raise InputError(f'unknown batch system "{batch_system:.40}"; one of {", ".join(kinds)} is wanted')
-    cluster = getattr(jobqueue, kinds[batch_system])()
+    cluster = getattr(_imported("dask_jobqueue"), kinds[batch_system])()
     cluster.scale(workers)
     return cluster
 
