@@ -6,6 +6,8 @@
 #include "../camera/last_setup.hpp"
 #include "../camera/pinhole_camera.hpp"
 #include "../camera/projection.hpp"
+#include "../camera/sight_grid.hpp"
+#include "../camera/sight_lines.hpp"
 #include "../embree/fast_pupil_tracer.hpp"
 #include "../embree/lens_rays.hpp"
 #include "arrays.hpp"
@@ -27,20 +29,26 @@ SightRay sight_ray_from(const std::string& name) {
 
 /// Keeps the last lines, because most programs ask again with the same lens and film. To be called without the
 /// interpreter's lock.
-std::shared_ptr<const SightLines> lines_of(const Camera& camera, SightRay ray) {
+std::shared_ptr<const LinesOfSight> lines_of(const Camera& camera, SightRay ray) {
     struct Last {
         LensSystem lens;
-        double film_radius_mm;
+        double film_radius_mm;  ///< all that counts for a lens of revolution
+        Vec2<double> film_mm, film_shift_mm;
         CameraModel model;
         SightRay ray;
         bool operator==(const Last&) const = default;
     };
     static std::mutex mutex;
     static std::optional<Last> last;
-    static std::shared_ptr<const SightLines> lines;
+    static std::shared_ptr<const LinesOfSight> lines;
     static LastSetup setups;
     validate(camera);
-    Last wanted = {camera.lens, camera.film.radius_mm(), camera.model, ray};
+    Last wanted = {camera.lens, camera.film.radius_mm(), {}, {}, camera.model, ray};
+    const bool is_round = has_radial_pupil(camera.lens) || !has_real_pupil(camera.model);
+    if (!is_round) {
+        wanted.film_mm = {camera.film.width_mm, camera.film.height_mm};
+        wanted.film_shift_mm = camera.film.shift_mm;
+    }
     {
         const std::lock_guard lock(mutex);
         if (last == wanted) return lines;
@@ -53,8 +61,13 @@ std::shared_ptr<const SightLines> lines_of(const Camera& camera, SightRay ray) {
         still.film.width_mm *= kMargin;
         still.film.height_mm *= kMargin;
     }
-    auto made = std::make_shared<const SightLines>(*setups.make(still, fast_pupil_tracer()), ray,
-                                                   parallel_ray_loop(heed_signals));
+    const auto setup = setups.make(still, fast_pupil_tracer());
+    const RayLoop loop = parallel_ray_loop(heed_signals);
+    std::shared_ptr<const LinesOfSight> made;
+    if (is_round)
+        made = std::make_shared<const SightLines>(*setup, ray, loop);
+    else
+        made = std::make_shared<const SightGrid>(*setup, ray, loop);
     const std::lock_guard lock(mutex);
     last = std::move(wanted);
     return lines = std::move(made);
@@ -117,16 +130,17 @@ py::tuple rays_through(const Camera& camera, const Doubles& pixels, const std::s
 PinholeCamera pinhole_of(const Camera& camera) {
     const std::optional<PinholeCamera> pinhole = pinhole_camera(camera, middle_pose(camera));
     if (!pinhole)
-        throw InputError("lens \"" + camera.lens.name +
-                         "\" has no centre of projection: its entrance pupil lies at infinity");
+        throw InputError(
+            "lens \"" + camera.lens.name + "\" has no centre of projection: its entrance pupil lies at infinity" +
+            (camera.lens.is_rotational() ? "" : ", or no ray goes from its film through its stop's middle"));
     return *pinhole;
 }
 
 py::array_t<double> camera_matrix(const Camera& camera) {
     const PinholeCamera pinhole = pinhole_of(camera);
-    return array_from(
-        std::vector<double>{pinhole.focal_x, 0, pinhole.centre_x, 0, pinhole.focal_y, pinhole.centre_y, 0, 0, 1},
-        {3, 3});
+    return array_from(std::vector<double>{pinhole.focal_x, pinhole.column_by_y, pinhole.centre_x, pinhole.row_by_x,
+                                          pinhole.focal_y, pinhole.centre_y, 0, 0, 1},
+                      {3, 3});
 }
 
 py::tuple world_to_camera(const Camera& camera) {

@@ -29,7 +29,14 @@ public:
     /// The polynomials of a camera with the model polynomial_lens; else null.
     const LensPolynomial* polynomial() const { return polynomial_ ? &*polynomial_ : nullptr; }
     const EffectTables& effects() const { return tables_; }
-    /// Of a camera whose lights can be followed through every surface of the lens; else null.
+    /// Of a camera whose lens is not of revolution; else null.
+    const PupilGrid* pupil_grid() const { return pupil_grid_.get(); }
+    FilmArea film_area() const;
+    /// Whether lights can be followed through every surface of the lens.
+    bool traces_lights() const {
+        return has_real_pupil(camera_.model) && camera_.model != CameraModel::polynomial_lens;
+    }
+    /// Of such a camera, if its lens is one of revolution; else null.
     const PupilEntries* pupil_entries() const { return pupil_entries_.get(); }
 
 private:
@@ -43,7 +50,6 @@ private:
     void set_pupil(const PupilTracer& tracer, const CameraSetup* last);
     /// Throws InputError where no light arrives.
     void check_light() const;
-    FilmArea film_area() const;
 
     void set_map(const PupilTracer& tracer, const CameraSetup* last);
 

@@ -2,21 +2,34 @@
 
 #include <cmath>
 
-#include "../optics/analysis/film_bundle.hpp"
-#include "../optics/analysis/psf.hpp"
-#include "../optics/analysis/scene_bundle.hpp"
+#include "../optics/pupil/pupil_view.hpp"
+#include "../optics/trace/film_frame.hpp"
 
 namespace realcam {
 
-MeanRays::MeanRays(const LensSystem& lens, const PupilView& pupil, double focus)
-    : to_scene_(lens, LightDirection::to_scene, lens.wavelength_nm),
-      to_film_(lens, LightDirection::to_film, lens.wavelength_nm),
-      pupil_(pupil),
-      film_distance_(lens.film_distance),
+MeanRays::MeanRays(const LensSystem& lens, double focus)
+    : to_scene_(lens, LightDirection::to_scene, lens.wavelength_nm, film_path_ends(lens, LightDirection::to_scene)),
+      to_film_(lens, LightDirection::to_film, lens.wavelength_nm, film_path_ends(lens, LightDirection::to_film)),
+      film_{lens.film_distance, 1 / lens.film_radius_of_curvature},
       focus_(focus) {}
 
-std::optional<MeanRay> MeanRays::at(double film_radius) const {
-    const std::vector<Part> parts = parts_at(film_radius);
+FilmBundle MeanRays::bundle(const PupilView& pupil, double film_radius) const {
+    const PupilRowPosition row = pupil_row_position(pupil, static_cast<float>(film_radius), 0);
+    const EntryRectangle in = {{0, static_cast<double>(row.centre)},
+                               {static_cast<double>(row.half_height), static_cast<double>(row.half_width)}};
+    return FilmBundle(to_scene_, film_, {0, film_radius}, in, true);
+}
+
+FilmBundle MeanRays::bundle(const PupilGridView& pupil, Vec2<double> film) const {
+    const PupilGridPlace at = pupil_grid_place(pupil, static_cast<float>(film.x), static_cast<float>(film.y));
+    const EntryRectangle in = {
+        {static_cast<double>(at.sign_l * at.box.centre_l), static_cast<double>(at.sign_m * at.box.centre_m)},
+        {static_cast<double>(at.box.half_width), static_cast<double>(at.box.half_height)}};
+    return FilmBundle(to_scene_, film_, film, in);
+}
+
+std::optional<MeanRay> MeanRays::of(const FilmBundle& bundle) const {
+    const std::vector<Part> parts = parts_of(bundle);
     Vec3d sum = {0, 0, 0};
     double area = 0;
     for (const Part& part : parts) {
@@ -24,23 +37,33 @@ std::optional<MeanRay> MeanRays::at(double film_radius) const {
         area += part.area;
     }
     if (!(area > 0)) return std::nullopt;
-    const Vec3d towards = normalized(Vec3d{sum.x, 0, sum.z});  // the other half of the bundle mirrors this one
-    const Vec3d across = across_from(towards);
-    double place = 0, slope = 0, start = 0;
+    if (bundle.mirrored) sum.x = 0;
+    const Vec3d towards = normalized(sum);
+    const AcrossRay across(towards);
+    Vec2<double> place = {0, 0}, slope = {0, 0};
+    double start = 0;
     for (const Part& part : parts) {
-        const double tangent = dot(part.ray.direction, across) / dot(part.ray.direction, towards);
-        slope += part.area * tangent;
-        place += part.area * (dot(part.ray.origin, across) - dot(part.ray.origin, towards) * tangent);
-        start += part.area * dot(part.ray.origin, towards);
+        const auto& [origin, direction] = part.ray;
+        const Vec2<double> at = across.of(origin), way = across.of(direction);
+        const double along = dot(origin, towards), ahead = dot(direction, towards), share = part.area / area;
+        const Vec2<double> tangent = {way.x / ahead, way.y / ahead};
+        slope = {slope.x + share * tangent.x, slope.y + share * tangent.y};
+        place = {place.x + share * (at.x - along * tangent.x), place.y + share * (at.y - along * tangent.y)};
+        start += share * along;
     }
-    slope /= area;
-    const SceneRay ray = {(place / area) * across + (start / area) * (towards + slope * across),
-                          normalized(towards + slope * across)};
-    return MeanRay{ray, middle_of_light(ray, parts), area};
+    if (bundle.mirrored) slope.x = place.x = 0;
+    const Vec3d way = towards + across.at(slope);
+    const SceneRay ray = {across.at(place) + start * way, normalized(way)};
+    return MeanRay{ray, middle_of_light(ray, parts, bundle.mirrored), area};
 }
 
-std::vector<MeanRays::Part> MeanRays::parts_at(double film_radius) const {
-    const FilmBundle bundle(to_scene_, film_distance_, pupil_, film_radius);
+double MeanRays::light_of(const FilmBundle& bundle) {
+    double area = 0;
+    for (const EntryPart& part : entry_parts(bundle, kSampling)) area += part.area;
+    return area;
+}
+
+std::vector<MeanRays::Part> MeanRays::parts_of(const FilmBundle& bundle) {
     std::vector<Part> parts;
     for (const EntryPart& entry : entry_parts(bundle, kSampling)) {
         const FilmBundle::Entry at[1] = {entry.entry};
@@ -51,30 +74,31 @@ std::vector<MeanRays::Part> MeanRays::parts_at(double film_radius) const {
     return parts;
 }
 
-double MeanRays::middle_of_light(const SceneRay& ray, const std::vector<Part>& parts) const {
-    const Vec3d across = across_from(ray.direction);
-    double area = 0, high = 0, wide = 0;
+Vec2<double> MeanRays::middle_of_light(const SceneRay& ray, const std::vector<Part>& parts, bool mirrored) const {
+    const AcrossRay across(ray.direction);
+    double area = 0;
+    Vec2<double> squares = {0, 0};
     for (const Part& part : parts) {
         const Vec3d from = part.ray.origin - ray.origin;
         const double way = -dot(from, ray.direction) / dot(part.ray.direction, ray.direction);
-        const Vec3d at = from + way * part.ray.direction;
+        const Vec2<double> at = across.of(from + way * part.ray.direction);
         area += part.area;
-        high += part.area * dot(at, across) * dot(at, across);
-        wide += part.area * at.y * at.y;
+        squares = {squares.x + part.area * at.x * at.x, squares.y + part.area * at.y * at.y};
     }
     // An even ellipse reaches out to twice the root of its mean square; spokes go on to 1.7 times this.
     constexpr double kReach = 2;
-    const SceneBundle bundle(to_film_, film_distance_, ray, focus_, {0, 0},
-                             {kReach * std::sqrt(wide / area), kReach * std::sqrt(high / area)});
-    double sum = 0, light = 0;
+    const EntryRectangle in = {{0, 0}, {kReach * std::sqrt(squares.x / area), kReach * std::sqrt(squares.y / area)}};
+    const SceneBundle bundle(to_film_, film_, ray, focus_, in, mirrored);
+    Vec2<double> sum = {0, 0};
+    double light = 0;
     for (const EntryPart& entry : entry_parts(bundle, kSampling)) {
-        const double height = bundle.film_height(entry.entry);
-        if (!std::isfinite(height)) continue;
+        const Vec2<double> at = bundle.landing(entry.entry);
+        if (!std::isfinite(at.x + at.y)) continue;
         const double share = entry.area * bundle.light(entry.entry);
-        sum += share * height;
+        sum = {sum.x + share * at.x, sum.y + share * at.y};
         light += share;
     }
-    return sum / light;
+    return {mirrored ? 0 : sum.x / light, sum.y / light};
 }
 
 }  // namespace realcam

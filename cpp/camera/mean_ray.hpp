@@ -2,9 +2,9 @@
 #include <optional>
 #include <vector>
 
-#include "../optics/analysis/film_chief_ray.hpp"
-#include "../optics/pupil/bundle_quadrature.hpp"
-#include "../optics/pupil/pupil_view.hpp"
+#include "../optics/analysis/film_bundle.hpp"
+#include "../optics/analysis/scene_bundle.hpp"
+#include "../optics/pupil/pupil_grid_view.hpp"
 
 namespace REALCAM_NAMESPACE {
 
@@ -12,18 +12,26 @@ namespace REALCAM_NAMESPACE {
 /// middles lie on this straight line, since each ray is one.
 struct MeanRay {
     SceneRay ray;  ///< from where it leaves the lens
-    double shows_at;  ///< film radius at which the light of the ray's point in focus has its middle, mm
+    Vec2<double> shows_at;  ///< film point at which the light of the ray's point in focus has its middle, mm
     double light;  ///< irradiance of the film point for unit radiance
 };
 
-/// Finds mean rays of film points on the +x axis, through a lens with a round stop.
+/// Finds mean rays of film points.
 class MeanRays {
 public:
     /// `focus`: from the entrance pupil to the plane in focus, mm; may be infinite.
-    MeanRays(const LensSystem& lens, const PupilView& pupil, double focus);
+    MeanRays(const LensSystem& lens, double focus);
+
+    /// The light of a film point on the +y axis, of a centred lens of revolution with a round stop.
+    FilmBundle bundle(const PupilView& pupil, double film_radius) const;
+    /// That of a film point of any lens. Bundles must not outlive this.
+    FilmBundle bundle(const PupilGridView& pupil, Vec2<double> film) const;
 
     /// Nothing where no light arrives.
-    std::optional<MeanRay> at(double film_radius) const;
+    std::optional<MeanRay> of(const FilmBundle& bundle) const;
+
+    /// Irradiance of the film point for unit radiance.
+    static double light_of(const FilmBundle& bundle);
 
 private:
     struct Part {
@@ -34,17 +42,15 @@ private:
     /// um.
     static constexpr BundleSampling kSampling = {24, 12};
 
-    static Vec3d across_from(Vec3d towards) { return {-towards.z, 0, towards.x}; }
-
-    std::vector<Part> parts_at(double film_radius) const;
+    static std::vector<Part> parts_of(const FilmBundle& bundle);
 
     /// The middle of the light of the point in focus on the ray. Its light enters about where that of the film point
     /// left.
-    double middle_of_light(const SceneRay& ray, const std::vector<Part>& parts) const;
+    Vec2<double> middle_of_light(const SceneRay& ray, const std::vector<Part>& parts, bool mirrored) const;
 
     LensPath<double> to_scene_, to_film_;
-    PupilView pupil_;
-    double film_distance_, focus_;
+    FilmSurface<double> film_;
+    double focus_;
 };
 
 }  // namespace REALCAM_NAMESPACE

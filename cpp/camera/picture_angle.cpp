@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "../math/hypotenuse.hpp"
+#include "pinhole_camera.hpp"
 
 namespace realcam {
 
@@ -36,7 +37,11 @@ FieldOfView field_of_view(const Camera& camera) {
 }
 
 std::optional<Vec3d> entrance_pupil_position_m(const Camera& camera) {
-    const LensSystem lens = centred(camera.lens);
+    const LensSystem& lens = camera.lens;
+    if (!lens.is_rotational()) {
+        const std::optional<PinholeCamera> pinhole = pinhole_camera(camera, camera.pose);
+        return pinhole ? std::optional(pinhole->centre_m) : std::nullopt;
+    }
     const double pupil_mm = first_order(lens, lens.wavelength_nm).entrance_pupil_position;
     if (!std::isfinite(pupil_mm)) return std::nullopt;
     const Vec3d backward = camera_detail::axes_of(camera.pose).backward;

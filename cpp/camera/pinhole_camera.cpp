@@ -1,6 +1,11 @@
 #include "pinhole_camera.hpp"
 
 #include <cmath>
+#include <limits>
+
+#include "../math/matrix2.hpp"
+#include "../optics/analysis/scene_bundle.hpp"
+#include "../optics/lens/chief_ray.hpp"
 
 namespace realcam {
 
@@ -17,23 +22,91 @@ CentralLens central_lens(const LensSystem& lens, CameraModel model) {
     return {data.entrance_pupil_position, std::fabs(chief.height + lens.film_distance * chief.slope)};
 }
 
+/// A lens before a film to first order: places on the film, mm, right and down as the picture shows them, are
+/// scale (x / z, y / z) + middle, in the axes of computer vision.
+struct FilmPinhole {
+    Vec3d centre;  ///< of projection, from the middle of the film in the camera's axes, mm
+    Matrix2 scale;
+    Vec2<double> middle;
+};
+
+FilmPinhole pinhole_of_round_lens(const Camera& camera) {
+    const CentralLens lens = central_lens(camera.lens, camera.model);
+    const double f = lens.image_distance;
+    return {{0, 0, lens.position - camera.lens.film_position()}, {{f, 0}, {0, f}}, {0, 0}};
+}
+
+/// By chief rays of film points close to the middle. Of differences over four of them the errors are of the fourth
+/// order. Where there are none it holds no numbers.
+FilmPinhole pinhole_of_any_lens(const LensSystem& lens) {
+    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+    const RaysFromFilm rays(lens, lens.wavelength_nm);
+    const std::optional<ChiefRay> middle = chief_ray_of_film_point(rays, {0, 0});
+    if (!middle) return {{kNone, kNone, kNone}, {}, {}};
+    const Vec3d towards = -middle->scene_direction;
+    const AcrossRay across(towards);
+    // As computer vision has it, x and y over z; and the place in the plane across the middle ray, with the slope
+    // there.
+    struct Seen {
+        Vec2<double> direction = {kNone, kNone}, place = direction, slope = direction;
+    };
+    const auto seen_from = [&](const std::optional<ChiefRay>& chief) {
+        if (!chief) return Seen{};
+        const Vec3d d = -chief->scene_direction, from = chief->scene - middle->scene;
+        const double ahead = dot(d, towards), along = dot(from, towards);
+        const Vec2<double> at = across.of(from), way = across.of(d), slope = {way.x / ahead, way.y / ahead};
+        return Seen{{-d.x / d.z, d.y / d.z}, {at.x - along * slope.x, at.y - along * slope.y}, slope};
+    };
+    const double step = 1e-3 * rays.film_distance();
+    Matrix2 direction, place, slope;  // by x and y on the film as the picture shows it, upside down
+    for (const bool is_y : {false, true}) {
+        const auto at = [&](double steps) {
+            return seen_from(
+                chief_ray_of_film_point(rays, is_y ? Vec2<double>{0, steps * step} : Vec2<double>{-steps * step, 0}));
+        };
+        const Seen near[] = {at(1), at(-1)}, far[] = {at(2), at(-2)};
+        const auto set = [&](Matrix2& to, Vec2<double> Seen::* value) {
+            const auto by = [&](double Vec2<double>::* part) {
+                const auto of = [&](const Seen& seen) { return seen.*value.*part; };
+                return (8 * (of(near[0]) - of(near[1])) - (of(far[0]) - of(far[1]))) / (12 * step);
+            };
+            (is_y ? to.first.y : to.first.x) = by(&Vec2<double>::x);
+            (is_y ? to.second.y : to.second.x) = by(&Vec2<double>::y);
+        };
+        set(direction, &Seen::direction);
+        set(place, &Seen::place);
+        set(slope, &Seen::slope);
+    }
+    // Where rays of all film points cross, the mean of both meridians.
+    const double ahead = -0.5 * (place * slope.inverse()).trace();
+    const Vec3d centre = middle->scene + ahead * towards - Vec3d{0, 0, camera_film_position(lens)};
+    const Matrix2 scale = direction.inverse();
+    const Vec2<double> shown = scale * seen_from(middle).direction;
+    return {centre, scale, {-shown.x, -shown.y}};
+}
+
 }  // namespace
 
 std::optional<PinholeCamera> pinhole_camera(const Camera& camera, const Pose& pose) {
-    const CentralLens lens = central_lens(centred(camera.lens), camera.model);
-    if (!std::isfinite(lens.position) || !std::isfinite(lens.image_distance)) return std::nullopt;
+    const FilmPinhole lens =
+        camera.lens.is_rotational() ? pinhole_of_round_lens(camera) : pinhole_of_any_lens(camera.lens);
+    if (!std::isfinite(lens.centre.z) || !std::isfinite(lens.scale.first.x + lens.scale.second.y)) return std::nullopt;
     const Film& film = camera.film;
+    const double columns = film.width / film.width_mm, rows = film.height / film.height_mm;
     PinholeCamera result{};
-    result.focal_x = lens.image_distance * film.width / film.width_mm;
-    result.focal_y = lens.image_distance * film.height / film.height_mm;
-    const Vec2<double> axis = film.pixel_of({0, 0});
+    result.focal_x = columns * lens.scale.first.x;
+    result.column_by_y = columns * lens.scale.first.y;
+    result.row_by_x = rows * lens.scale.second.x;
+    result.focal_y = rows * lens.scale.second.y;
+    const Vec2<double> axis = film.pixel_of({lens.middle.x, -lens.middle.y});
     result.centre_x = axis.x;
     result.centre_y = axis.y;
     const camera_detail::Axes axes = camera_detail::axes_of(pose);
     result.right = axes.right;
     result.down = -axes.up;
     result.forward = -axes.backward;
-    result.centre_m = pose.position_m - (0.001 * (camera.lens.film_position() - lens.position)) * axes.backward;
+    result.centre_m = pose.position_m +
+                      0.001 * (lens.centre.x * axes.right + lens.centre.y * axes.up + lens.centre.z * axes.backward);
     result.translation_m = {-dot(result.right, result.centre_m), -dot(result.down, result.centre_m),
                             -dot(result.forward, result.centre_m)};
     return result;

@@ -17,9 +17,12 @@ struct CentralLens {
 /// picture, so that the middle of the first pixel is (0.5, 0.5).
 struct PinholeCamera {
     double focal_x, focal_y, centre_x, centre_y;  ///< K, pixels
-    Vec3d right, down, forward;                   ///< the rows of R
-    Vec3d translation_m;                          ///< t
-    Vec3d centre_m;                               ///< of projection, in the scene
+    /// The others of K: column by y / z, and row by x / z. Of lenses alone whose meridians do not lie in the film's
+    /// axes.
+    double column_by_y = 0, row_by_x = 0;
+    Vec3d right, down, forward;  ///< the rows of R
+    Vec3d translation_m;  ///< t
+    Vec3d centre_m;  ///< of projection, in the scene
 };
 
 /// The pinhole of a camera with this pose. There is none for a lens whose entrance pupil lies at infinity: it has no

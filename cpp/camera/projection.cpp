@@ -3,11 +3,9 @@
 #include <cmath>
 #include <utility>
 
-#include "../math/hypotenuse.hpp"
-
 namespace realcam {
 
-Projection::Projection(const Camera& camera, std::shared_ptr<const SightLines> lines)
+Projection::Projection(const Camera& camera, std::shared_ptr<const LinesOfSight> lines)
     : film_(camera.film), lines_(std::move(lines)) {
     const TimeInterval exposure = camera.exposure();
     const double row_time = camera.moves() ? camera.shutter.readout_time_s / film_.height : 0;
@@ -35,31 +33,20 @@ ProjectedPoint Projection::pixel_of(Vec3d point_m) const {
 
 PixelRay Projection::ray_of(Vec2<double> pixel) const {
     const Affine<double>& place = places_[places_.size() == 1 ? 0 : static_cast<std::size_t>(row_of(pixel.y))];
-    // Seen from behind the camera, as the picture shows it.
-    const auto [x, y] = film_.place_of(pixel);
-    const double radius = hypotenuse(x, y);
-    if (!(radius <= lines_->reach())) return {kNowhere3, kNowhere3};
-    const std::optional<SightLine> line = lines_->at(radius);
-    if (!line) return {kNowhere3, kNowhere3};
-    const double turn = lines_->sign(), c = radius > 0 ? turn * x / radius : 1, s = radius > 0 ? turn * y / radius : 0;
-    const double cosine = std::cos(line->angle), sine = std::sin(line->angle);
-    const double away = 0.001 * (line->offset * cosine + line->start * sine);
-    const double ahead = 0.001 * (lines_->reference() + line->start * cosine - line->offset * sine);
-    return {place.origin + (c * away) * place.x + (s * away) * place.y - ahead * place.z,
-            (c * sine) * place.x + (s * sine) * place.y - cosine * place.z, line->light};
+    const std::optional<FilmSight> sight = lines_->from(film_.place_of(pixel));
+    if (!sight) return {kNowhere3, kNowhere3};
+    return {place.point(0.001 * sight->origin), place.direction(sight->direction), sight->light};
 }
 
 ProjectedPoint Projection::seen_from(const Affine<double>& place, Vec3d point_m) const {
     const Vec3d from = 1000.0 * (point_m - place.origin);
-    const double x = dot(from, place.x), y = dot(from, place.y), away = hypotenuse(x, y);
-    const double ahead = -dot(from, place.z) - lines_->reference();
-    const std::optional<double> radius = lines_->radius_towards({away, ahead});
-    if (!radius) {
-        if (!(ahead > 0)) return {kNowhere, ProjectionStatus::behind};
+    const Vec3d point = {dot(from, place.x), dot(from, place.y), dot(from, place.z)};
+    const std::optional<Vec2<double>> at = lines_->place_of(point);
+    if (!at) {
+        if (!lines_->is_in_front(point)) return {kNowhere, ProjectionStatus::behind};
         return {kNowhere, lines_->ends_in_film() ? ProjectionStatus::blocked : ProjectionStatus::outside_picture};
     }
-    const double share = away > 0 ? lines_->sign() * *radius / away : 0;
-    const Vec2<double> pixel = film_.pixel_of({share * x, share * y});
+    const Vec2<double> pixel = film_.pixel_of(*at);
     const bool inside = pixel.x >= 0 && pixel.x <= film_.width && pixel.y >= 0 && pixel.y <= film_.height;
     return {pixel, inside ? ProjectionStatus::ok : ProjectionStatus::outside_picture};
 }

@@ -1,9 +1,10 @@
 #pragma once
 #include <algorithm>
+#include <limits>
 #include <memory>
 #include <vector>
 
-#include "sight_lines.hpp"
+#include "lines_of_sight.hpp"
 
 namespace REALCAM_NAMESPACE {
 
@@ -32,7 +33,7 @@ struct PixelRay {
 /// pixels is seen from the camera's place in the middle of the row's exposure.
 class Projection {
 public:
-    Projection(const Camera& camera, std::shared_ptr<const SightLines> lines);
+    Projection(const Camera& camera, std::shared_ptr<const LinesOfSight> lines);
 
     ProjectedPoint pixel_of(Vec3d point_m) const;
 
@@ -49,7 +50,7 @@ private:
     ProjectedPoint seen_from(const Affine<double>& place, Vec3d point_m) const;
 
     Film film_;
-    std::shared_ptr<const SightLines> lines_;
+    std::shared_ptr<const LinesOfSight> lines_;
     std::vector<Affine<double>> places_;  ///< of the rows of pixels; one, if it is the same for all
 };
 

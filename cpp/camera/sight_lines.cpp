@@ -5,8 +5,9 @@
 #include <cstddef>
 #include <utility>
 
+#include "../math/hypotenuse.hpp"
 #include "../optics/analysis/film_bundle.hpp"
-#include "../optics/pupil/pupil_grid.hpp"
+#include "../optics/lens/chief_ray.hpp"
 #include "camera_setup.hpp"
 #include "generate_rays.hpp"
 #include "mean_ray.hpp"
@@ -16,7 +17,6 @@ namespace realcam {
 SightLines::SightLines(const CameraSetup& setup, SightRay ray, const RayLoop& loop) : lines_(kSteps + 1) {
     const Camera& camera = setup.camera();
     const LensSystem& lens = camera.lens;
-    require_radial_pupil(lens, "projection");
     const FirstOrder data = first_order(lens, lens.wavelength_nm);
     const double pupil = data.entrance_pupil_position;
     constexpr double kFar = 1e6;
@@ -45,6 +45,27 @@ SightLines::SightLines(const CameraSetup& setup, SightRay ray, const RayLoop& lo
         cosines_.push_back(std::cos(line.angle));
         sines_.push_back(std::sin(line.angle));
     }
+}
+
+std::optional<FilmSight> SightLines::from(Vec2<double> place) const {
+    const auto [x, y] = place;
+    const double radius = hypotenuse(x, y);
+    if (!(radius <= reach_)) return std::nullopt;
+    const std::optional<SightLine> line = at(radius);
+    if (!line) return std::nullopt;
+    const double c = radius > 0 ? sign_ * x / radius : 1, s = radius > 0 ? sign_ * y / radius : 0;
+    const double cosine = std::cos(line->angle), sine = std::sin(line->angle);
+    const double away = line->offset * cosine + line->start * sine;
+    const double ahead = reference_ + line->start * cosine - line->offset * sine;
+    return FilmSight{{c * away, s * away, -ahead}, {c * sine, s * sine, -cosine}, line->light};
+}
+
+std::optional<Vec2<double>> SightLines::place_of(Vec3d point) const {
+    const double away = hypotenuse(point.x, point.y);
+    const std::optional<double> radius = radius_towards({away, -point.z - reference_});
+    if (!radius) return std::nullopt;
+    const double share = away > 0 ? sign_ * *radius / away : 0;
+    return Vec2<double>{share * point.x, share * point.y};
 }
 
 std::optional<SightLine> SightLines::at(double film_radius) const {
@@ -80,8 +101,8 @@ void SightLines::set(int k, const std::optional<SceneRay>& ray, double light) {
     SightLine& line = lines_[static_cast<std::size_t>(k)];
     line = {kNone, kNone, kNone, light};
     if (!ray) return;
-    const double away = -ray->origin.x, ahead = vertex_ - ray->origin.z;
-    line.angle = k == 0 ? 0 : std::atan2(-ray->direction.x, -ray->direction.z);
+    const double away = -ray->origin.y, ahead = vertex_ - ray->origin.z;
+    line.angle = k == 0 ? 0 : std::atan2(-ray->direction.y, -ray->direction.z);
     const double cosine = std::cos(line.angle), sine = std::sin(line.angle);
     line.offset = k == 0 ? 0 : away * cosine - ahead * sine;
     line.start = away * sine + ahead * cosine;
@@ -89,16 +110,17 @@ void SightLines::set(int k, const std::optional<SceneRay>& ray, double light) {
 }
 
 void SightLines::follow_light(const LensSystem& lens, const PupilView& pupil, const RayLoop& loop) {
-    const MeanRays mean(lens, pupil, focus_);
+    const MeanRays mean(lens, focus_);
     std::vector<std::optional<MeanRay>> rays(lines_.size());
     loop.for_all(rays.size(), [&](std::size_t first, std::size_t last) {
-        for (std::size_t k = first; k < last; ++k) rays[k] = mean.at(radius_of(static_cast<double>(k)));
+        for (std::size_t k = first; k < last; ++k)
+            rays[k] = mean.of(mean.bundle(pupil, radius_of(static_cast<double>(k))));
     });
     std::vector<double> shown;
     for (int k = 0; k <= kSteps; ++k) {
         const std::optional<MeanRay>& ray = rays[static_cast<std::size_t>(k)];
         set(k, ray ? std::optional(ray->ray) : std::nullopt, ray ? ray->light : 0);
-        shown.push_back(k == 0 ? 0 : ray ? ray->shows_at : kNone);
+        shown.push_back(k == 0 ? 0 : ray ? ray->shows_at.y : kNone);
     }
     show_where_light_lands(shown);
 }
@@ -135,7 +157,7 @@ void SightLines::show_where_light_lands(const std::vector<double>& shown) {
 }
 
 void SightLines::follow_chief_rays(const LensSystem& lens, const PupilView& pupil) {
-    const FilmChiefRay chief(lens);
+    const RaysFromFilm from_film(lens, lens.wavelength_nm);
     double cosine = 0, change = 0;
     for (int k = 0; k <= kSteps; ++k) {
         // The search starts from the place to which the last two point. On the axis and after a gap, it starts from the
@@ -144,19 +166,20 @@ void SightLines::follow_chief_rays(const LensSystem& lens, const PupilView& pupi
         const double guesses[2] = {cosine + change, static_cast<double>(row.centre)};
         const double light = lines_[static_cast<std::size_t>(k)].light;
         set(k, std::nullopt, light);
-        for (double guess : guesses) {
-            const std::optional<SceneRay> ray = chief(radius_of(k), guess);
+        for (const double guess : guesses) {
+            const std::optional<ChiefRay> ray = chief_ray_near(from_film, {0, radius_of(k)}, {0, guess});
             if (!ray) continue;
-            set(k, ray, light);
-            change = guess - cosine;
-            cosine = guess;
+            set(k, SceneRay{ray->scene, -ray->scene_direction}, light);
+            const double found = -from_film.film_index() * ray->film_direction.y;
+            change = found - cosine;
+            cosine = found;
             break;
         }
     }
 }
 
 void SightLines::set_ideal(int k, const CameraView& view, ThinLensPlace thin) {
-    const Vec2f film = {static_cast<float>(radius_of(k)), 0}, middle = {0, 0};
+    const Vec2f film = {0, static_cast<float>(radius_of(k))}, middle = {0, 0};
     if (view.model == CameraModel::thick_lens) {
         const LensFrameRay ray = thick_lens_ray(view, film, middle);
         set(k, SceneRay{static_cast<Vec3d>(ray.origin_mm), normalized(static_cast<Vec3d>(ray.direction))},
@@ -169,7 +192,7 @@ void SightLines::set_ideal(int k, const CameraView& view, ThinLensPlace thin) {
         radius *= static_cast<double>(map.scale);
         light = static_cast<double>(map.light);
     }
-    const SceneRay ray = {{0, 0, thin.position}, normalized(Vec3d{-radius / thin.image_distance, 0, -1})};
+    const SceneRay ray = {{0, 0, thin.position}, normalized(Vec3d{0, -radius / thin.image_distance, -1})};
     set(k, light > 0 ? std::optional(ray) : std::nullopt, light);
 }
 

@@ -4,19 +4,11 @@
 #include <vector>
 
 #include "../math/odd_curve.hpp"
-#include "../optics/analysis/film_chief_ray.hpp"
+#include "../optics/analysis/scene_bundle.hpp"
 #include "../optics/trace/ray_loop.hpp"
-#include "camera.hpp"
+#include "lines_of_sight.hpp"
 
 namespace REALCAM_NAMESPACE {
-
-class CameraSetup;
-
-/// Which ray stands for all the light that a film point gets.
-enum class SightRay {
-    light,  ///< the mean of the rays of the point in focus whose light has its middle there (mean_ray.hpp)
-    chief,  ///< that through the middle of the stop, even where a rim blocks it
-};
 
 /// The line along which a film point looks into the scene, in the plane of the axis, mm.
 struct SightLine {
@@ -28,32 +20,15 @@ struct SightLine {
 
 /// The line of sight of each radius of the film, in front of the camera's lens or of the model that stands for it.
 /// Lenses are round, and blades are replaced by the circle of their area, so one radius stands for all.
-class SightLines {
+class SightLines : public LinesOfSight {
 public:
-    /// A place in the plane of the axis: away from it, and towards the scene from the reference point, mm.
-    struct Place {
-        double away, ahead;
-    };
-
     /// `setup`: of the camera. The lines go out to the corners of its film. Throws InputError.
     SightLines(const CameraSetup& setup, SightRay ray, const RayLoop& loop = {});
 
-    /// The reference point, the middle of the paraxial entrance pupil, or the front vertex where that is far away: mm
-    /// from the film towards the scene.
-    double reference() const { return reference_; }
-    /// Film radius beyond which nothing is known of lines, mm.
-    double reach() const { return reach_; }
-    /// Whether the lens's image ends there, and not the film.
-    bool ends_in_film() const { return ends_in_film_; }
-    /// -1 where the picture is upside down, as behind a lens with an image inside it.
-    int sign() const { return sign_; }
-
-    /// `film_radius` from 0 to reach(). Nothing where no light arrives.
-    std::optional<SightLine> at(double film_radius) const;
-
-    /// The film radius whose line goes through a place in front of the lens; the one nearest to the axis, if there are
-    /// several. Nothing where no line does.
-    std::optional<double> radius_towards(Place place) const;
+    bool ends_in_film() const override { return ends_in_film_; }
+    bool is_in_front(Vec3d point) const override { return -point.z > reference_; }
+    std::optional<FilmSight> from(Vec2<double> place) const override;
+    std::optional<Vec2<double>> place_of(Vec3d point) const override;
 
 private:
     static constexpr int kSteps = 256;
@@ -64,11 +39,23 @@ private:
         double position, image_distance;
     };
 
+    /// A place in the plane of the axis: away from it, and towards the scene from the reference point, mm.
+    struct Place {
+        double away, ahead;
+    };
+
+    /// `film_radius` from 0 to reach_. Nothing where no light arrives.
+    std::optional<SightLine> at(double film_radius) const;
+
+    /// The film radius whose line goes through a place in front of the lens; the one nearest to the axis, if there are
+    /// several. Nothing where no line does.
+    std::optional<double> radius_towards(Place place) const;
+
     double radius_of(double place) const { return reach_ * place / kSteps; }
 
     OddCurve curve_of(double SightLine::* value, bool rises = false) const;
 
-    /// What a film point at +x sees lies at -x.
+    /// What a film point at +y sees lies at -y.
     void set(int k, const std::optional<SceneRay>& ray, double light);
 
     void follow_light(const LensSystem& lens, const PupilView& pupil, const RayLoop& loop);
@@ -89,10 +76,13 @@ private:
     /// Share of the step at which its line meets the place: Newton's method, kept between the sides of the root.
     double root(int k, Place place) const;
 
-    double reference_, vertex_, focus_;  ///< vertex_: of the reference point; focus_: from it to the plane in focus
-    double reach_ = 0;
+    /// Of the reference point, the middle of the paraxial entrance pupil, or the front vertex where that is far away:
+    /// mm from the film towards the scene, and from the front vertex.
+    double reference_, vertex_;
+    double focus_;  ///< from it to the plane in focus
+    double reach_ = 0;  ///< film radius beyond which nothing is known of lines, mm
     bool ends_in_film_ = false;
-    int sign_ = 1;
+    int sign_ = 1;  ///< -1 where the picture is upside down, as behind a lens with an image inside it
     std::vector<SightLine> lines_;
     OddCurve angle_, offset_;
     std::vector<double> cosines_, sines_;

@@ -1,5 +1,6 @@
 #pragma once
-#include "../pupil/pupil_view.hpp"
+#include "../pupil/bundle_quadrature.hpp"
+#include "../pupil/film_surface.hpp"
 #include "../trace/lens_path.hpp"
 
 namespace REALCAM_NAMESPACE {
@@ -7,18 +8,25 @@ namespace REALCAM_NAMESPACE {
 /// The lens with a round stop of the same area: its light is then the same in every direction from the axis.
 LensSystem with_round_stop(LensSystem lens);
 
-/// All light that reaches one film point on the +x axis, by the optical direction cosines of its rays at the film: in
+/// All light that reaches one film point, by the optical direction cosines of its rays in the film's tangent plane: in
 /// them it is even (pupil_view.hpp).
 class FilmBundle {
 public:
-    /// x: beside the film point's radius; y: along it.
     using Entry = Vec2<double>;
 
-    bool mirrored = true;  ///< x and -x are alike
-    Entry middle, reach;  ///< of a rectangle that holds what passes
+    Entry middle, reach;  ///< of a rectangle that holds what passes, or nearly
+    bool mirrored;        ///< x and -x are alike
 
-    /// `path`: to the scene, of a lens with a round stop; it must outlive this. `film_distance`: from the last vertex.
-    FilmBundle(const LensPath<double>& path, double film_distance, const PupilView& pupil, double film_radius);
+    /// `path`: to the scene, from the frame of the film (film_path_ends); it must outlive this.
+    FilmBundle(const LensPath<double>& path, FilmSurface<double> film, Vec2<double> at, EntryRectangle in,
+               bool mirrored = false)
+        : middle(in.middle),
+          reach(in.reach),
+          mirrored(mirrored),
+          view_(path.view()),
+          index_(path.entry_index),
+          film_(film),
+          at_(at) {}
 
     /// Whether the lens lets these rays pass.
     template <int N>
@@ -28,13 +36,15 @@ public:
         for (int i = 0; i < N; ++i) passed[i] = rays.status[i] == 0;
     }
 
-    /// Rays in front of the lens, relative to its front vertex.
+    /// Rays in front of the lens.
     template <int N>
     void trace(const Entry (&entries)[N], LensRays<double, N>& rays) const {
+        const Vec3d from = film_.place(at_);
         for (int i = 0; i < N; ++i) {
-            const double l = entries[i].y, m = entries[i].x, rest = index_ * index_ - l * l - m * m;
-            rays.origin.set(i, origin_);
-            rays.direction.set(i, {l, m, -sqrt_or_zero(rest)});
+            const auto [l, m] = entries[i];
+            const double rest = index_ * index_ - l * l - m * m;
+            rays.origin.set(i, from);
+            rays.direction.set(i, film_.direction(at_, {l, m, -sqrt_or_zero(rest)}));
             rays.status[i] = rest > 0 ? 0 : static_cast<int>(RayStatus::missed);
         }
         trace_lens(view_, rays);
@@ -43,7 +53,8 @@ public:
 private:
     LensView<double> view_;
     double index_;
-    Vec3d origin_;
+    FilmSurface<double> film_;
+    Vec2<double> at_;
 };
 
 }  // namespace REALCAM_NAMESPACE

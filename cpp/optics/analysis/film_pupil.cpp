@@ -6,58 +6,25 @@
 
 #include "../../math/hypotenuse.hpp"
 #include "../lens/parabasal.hpp"
-#include "../pupil/bundle_quadrature.hpp"
-#include "../pupil/film_surface.hpp"
+#include "film_bundle.hpp"
 
 namespace realcam {
 
 namespace {
 
-/// All light of one film point, by its optical direction cosines in the film's tangent plane: in them it is even.
-class FilmPointLight {
-public:
-    using Entry = Vec2<double>;
-
-    bool mirrored = false;
-    Entry middle, reach;
-
-    FilmPointLight(const LensSystem& lens, double wavelength_nm, Vec2<double> at, const ParabasalRays& rays)
-        : path_(lens, LightDirection::to_scene, wavelength_nm, film_path_ends(lens, LightDirection::to_scene)),
-          film_{lens.film_distance, 1 / lens.film_radius_of_curvature},
-          at_(at) {
-        const double radius = std::min(lens.stop_semi_diameter, lens.stop().clear_semi_diameter);
-        const Matrix2 by_stop = rays.stop_by_film_direction.inverse();
-        const Vec3d x = film_.direction(at, {1, 0, 0}), y = film_.direction(at, {0, 1, 0});
-        const Vec3d chief = -path_.entry_index * rays.chief.film_direction;
-        middle = {dot(chief, x), dot(chief, y)};
-        reach = {radius * hypotenuse(by_stop.first.x, by_stop.first.y),
-                 radius * hypotenuse(by_stop.second.x, by_stop.second.y)};
-    }
-
-    template <int N>
-    void pass(const Entry (&entries)[N], bool (&passed)[N]) const {
-        LensRays<double, N> rays;
-        const double n = path_.entry_index;
-        const Vec3d from = film_.place(at_);
-        for (int i = 0; i < N; ++i) {
-            const auto [l, m] = entries[i];
-            const double rest = n * n - l * l - m * m;
-            rays.origin.set(i, from);
-            rays.direction.set(i, film_.direction(at_, {l, m, -sqrt_or_zero(rest)}));
-            rays.status[i] = rest > 0 ? 0 : static_cast<int>(RayStatus::missed);
-        }
-        trace_lens(path_.view(), rays);
-        for (int i = 0; i < N; ++i) passed[i] = rays.status[i] == 0;
-    }
-
-private:
-    LensPath<double> path_;
-    FilmSurface<double> film_;
-    Vec2<double> at_;
-};
+/// Of the light of a film point, by rays close to its chief ray.
+EntryRectangle rectangle_about(const ChiefRay& chief, const ParabasalRays& rays, double index, double stop_radius,
+                               const FilmSurface<double>& film, Vec2<double> at) {
+    const Matrix2 by_stop = rays.stop_by_film_direction.inverse();
+    const Vec3d x = film.direction(at, {1, 0, 0}), y = film.direction(at, {0, 1, 0});
+    const Vec3d direction = -index * chief.film_direction;
+    return {{dot(direction, x), dot(direction, y)},
+            {stop_radius * hypotenuse(by_stop.first.x, by_stop.first.y),
+             stop_radius * hypotenuse(by_stop.second.x, by_stop.second.y)}};
+}
 
 /// Pieces between the edges of neighbouring spokes. Where the light ends between two spokes, along the lit one.
-std::vector<std::array<Vec2<double>, 2>> outline_of(const FilmPointLight& light, const std::vector<LitSpoke>& spokes) {
+std::vector<std::array<Vec2<double>, 2>> outline_of(const FilmBundle& light, const std::vector<LitSpoke>& spokes) {
     std::vector<std::array<Vec2<double>, 2>> pieces;
     const auto towards_film = [&](const LitSpoke& spoke, double r) {
         const Vec2<double> entry = spoke.at(light, r);
@@ -86,7 +53,12 @@ FilmPupil film_pupil(const LensSystem& lens, double wavelength_nm, Vec2<double> 
     const RaysFromFilm rays(lens, wavelength_nm);
     const std::optional<ChiefRay> chief = chief_ray_of_film_point(rays, film);
     if (!chief) return {};
-    const FilmPointLight light(lens, wavelength_nm, film, parabasal_rays(lens, rays, *chief));
+    const LensPath<double> path(lens, LightDirection::to_scene, wavelength_nm,
+                                film_path_ends(lens, LightDirection::to_scene));
+    const FilmSurface<double> surface{lens.film_distance, 1 / lens.film_radius_of_curvature};
+    const FilmBundle light(path, surface, film,
+                           rectangle_about(*chief, parabasal_rays(lens, rays, *chief), path.entry_index,
+                                           rays.stop_radius(), surface, film));
     const std::vector<LitSpoke> spokes = lit_spokes(light, kSpokes, loop);
     double squares = 0;
     for (const LitSpoke& spoke : spokes)

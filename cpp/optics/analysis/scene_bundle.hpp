@@ -1,22 +1,50 @@
 #pragma once
-#include "film_chief_ray.hpp"
+#include "../pupil/bundle_quadrature.hpp"
+#include "../pupil/film_surface.hpp"
+#include "../trace/lens_path.hpp"
 
 namespace REALCAM_NAMESPACE {
 
-/// All light of a scene point in the plane of the axis (x and z) that reaches the film. It is described by where it
-/// crosses a plane perpendicular to one of its rays. There it is even, except for the obliquity of the other rays.
+/// A ray in front of the lens, relative to its front vertex, or in the frame of the camera (film_path_ends).
+struct SceneRay {
+    Vec3d origin, direction;
+};
+
+/// Unit vectors across a direction: x has nothing of the y axis, if the direction has nothing of the x axis.
+struct AcrossRay {
+    Vec3d x, y;
+
+    explicit AcrossRay(Vec3d unit) {
+        const Vec3d axis = std::fabs(unit.x) < 0.9 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0};
+        x = normalized(axis - dot(axis, unit) * unit);
+        y = cross(x, unit);
+    }
+    Vec2<double> of(Vec3d v) const { return {dot(v, x), dot(v, y)}; }
+    Vec3d at(Vec2<double> v) const { return v.x * x + v.y * y; }
+};
+
+/// All light of a scene point that reaches the film. It is described by where it crosses a plane perpendicular to one
+/// of its rays. There it is even, except for the obliquity of the other rays.
 class SceneBundle {
 public:
-    /// x: across the plane of the axis; y: in it. mm from where the ray leaves the lens.
-    using Entry = Vec2<double>;
+    using Entry = Vec2<double>;  ///< mm from where the ray leaves the lens, in the axes of AcrossRay
 
-    bool mirrored = true;  ///< x and -x are alike
-    Entry middle, reach;   ///< of a rectangle that holds what passes
+    Entry middle, reach;  ///< of a rectangle that holds what passes
+    bool mirrored;        ///< x and -x are alike
 
-    /// `path`: to the film, of a lens with a round stop; it must outlive this. `ray`: from the lens to the point, unit
-    /// direction. `distance`: of the point from the ray's origin, infinity allowed.
-    SceneBundle(const LensPath<double>& path, double film_distance, const SceneRay& ray, double distance, Entry middle,
-                Entry reach);
+    /// `path`: to the film and into its frame (film_path_ends); it must outlive this. `ray`: from the lens to the
+    /// point, unit direction. `distance`: of the point from the ray's origin, infinity allowed.
+    SceneBundle(const LensPath<double>& path, FilmSurface<double> film, const SceneRay& ray, double distance,
+                EntryRectangle in, bool mirrored)
+        : middle(in.middle),
+          reach(in.reach),
+          mirrored(mirrored),
+          view_(path.view()),
+          index_(path.entry_index),
+          film_(film),
+          ray_(ray),
+          across_(ray.direction),
+          inverse_distance_(1 / distance) {}
 
     /// Whether the lens lets these rays pass.
     template <int N>
@@ -26,8 +54,8 @@ public:
         for (int i = 0; i < N; ++i) passed[i] = rays.status[i] == 0;
     }
 
-    /// How far beside the axis the light of an entry meets the film, mm; NaN where the lens blocks it.
-    double film_height(Entry entry) const;
+    /// Where the light of an entry meets the film, mm; NaN where the lens blocks it.
+    Vec2<double> landing(Entry entry) const;
 
     /// Light for each area of the entry plane, over that in its middle: even in solid angle.
     double light(Entry entry) const {
@@ -37,19 +65,20 @@ public:
 private:
     template <int N>
     void trace(const Entry (&entries)[N], LensRays<double, N>& rays) const {
-        const Vec3d towards = ray_.direction, across = {-towards.z, 0, towards.x}, beside = {0, 1, 0};
         for (int i = 0; i < N; ++i) {
-            const Vec3d offset = entries[i].y * across + entries[i].x * beside;
+            const Vec3d offset = across_.at(entries[i]);
             rays.origin.set(i, ray_.origin + offset);
-            rays.direction.set(i, index_ * normalized(inverse_distance_ * offset - towards));
+            rays.direction.set(i, index_ * normalized(inverse_distance_ * offset - ray_.direction));
             rays.status[i] = 0;
         }
         trace_lens(view_, rays);
     }
 
     LensView<double> view_;
-    double index_, film_distance_;
+    double index_;
+    FilmSurface<double> film_;
     SceneRay ray_;
+    AcrossRay across_;
     double inverse_distance_;  ///< 1/mm
 };
 

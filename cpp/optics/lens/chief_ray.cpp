@@ -157,6 +157,11 @@ std::optional<ChiefRay> followed(const RaysFromFilm& rays, const StopAim& aim, V
 
 }  // namespace
 
+std::optional<ChiefRay> chief_ray_near(const RaysFromFilm& rays, Vec2<double> film, Vec2<double> cosines) {
+    const Vec3d from = rays.film_point(film);
+    return followed(rays, StopAim(rays, from), from, cosines);
+}
+
 std::optional<ChiefRay> chief_ray_of_film_point(const RaysFromFilm& rays, Vec2<double> film) {
     const Vec3d from = rays.film_point(film);
     const StopAim aim(rays, from);

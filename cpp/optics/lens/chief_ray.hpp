@@ -59,6 +59,10 @@ struct ChiefRay {
 /// of those to the last surface.
 std::optional<ChiefRay> chief_ray_of_film_point(const RaysFromFilm& rays, Vec2<double> film);
 
+/// The same by Newton's method alone, begun with the ray of these optical direction cosines (x and y, towards the
+/// scene).
+std::optional<ChiefRay> chief_ray_near(const RaysFromFilm& rays, Vec2<double> film, Vec2<double> cosines);
+
 /// The chief ray that comes at an angle to the camera's axis, in its y-z plane: above 0 light rises towards +y. It is
 /// followed from the middle of the film in steps of at most 5 degrees.
 std::optional<ChiefRay> chief_ray_of_angle(const RaysFromFilm& rays, double angle_rad);

@@ -134,6 +134,11 @@ ParabasalRays parabasal_rays(const LensSystem& lens, const RaysFromFilm& rays, c
     return found;
 }
 
+Vec3d entrance_pupil_middle(const ParabasalRays& rays, double index) {
+    const double distance = index * 0.5 * (rays.stop_by_place.inverse() * rays.stop_by_direction).trace();
+    return rays.chief.scene + distance * rays.chief.scene_direction;
+}
+
 double exit_pupil_distance(const LensSystem& lens, double wavelength_nm, Vec2<double> film) {
     const ParabasalRays rays = parabasal_rays(lens, wavelength_nm, film);
     return -0.5 * lens.indices(wavelength_nm).back() *
@@ -188,8 +193,7 @@ ParabasalData parabasal_data(const LensSystem& lens, double wavelength_nm) {
     mean.f_number = std::fabs(mean.effective_focal_length) / mean.entrance_pupil_diameter;
     // Chief rays cross where their places in the reference plane and their directions cancel.
     const double front = rays.chief.scene.z, at_film = lens.film_position();
-    mean.entrance_pupil_position =
-        front + rays.chief.scene_direction.z * before * 0.5 * (pupil * rays.stop_by_direction).trace();
+    mean.entrance_pupil_position = entrance_pupil_middle(rays, before).z;
     const Matrix2 exit = rays.stop_by_film_place.inverse();
     mean.exit_pupil_position =
         at_film + rays.chief.film_direction.z * behind * 0.5 * (exit * rays.stop_by_film_direction).trace();

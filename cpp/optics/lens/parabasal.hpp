@@ -23,6 +23,10 @@ ParabasalRays parabasal_rays(const LensSystem& lens, const RaysFromFilm& rays, c
 /// Throws InputError where no chief ray of that film point is found.
 ParabasalRays parabasal_rays(const LensSystem& lens, double wavelength_nm, Vec2<double> film = {0, 0});
 
+/// The middle of the entrance pupil on the chief ray, mm in the frame of the camera: where rays to the middle of the
+/// stop cross, the mean of both meridians. `index`: of the medium before the lens. Not finite if that is at infinity.
+Vec3d entrance_pupil_middle(const ParabasalRays& rays, double index);
+
 /// From the exit pupil on the chief ray of a film point to that point, mm along the ray: where rays from the middle of
 /// the stop cross, the mean of both meridians. Throws InputError where no chief ray of the film point is found.
 double exit_pupil_distance(const LensSystem& lens, double wavelength_nm, Vec2<double> film);

@@ -137,10 +137,12 @@ def fit_camera_model(
     """Fits a camera model to the rays of the camera, by least squares of the distances on the film, in pixels.
 
     model: "pinhole", "opencv4", "opencv5", "opencv8" (OpenCV's with 2, 3 and 6 radial coefficients; the two of
-    tangential distortion are 0 for a lens, which is round), "fisheye" (Kannala and Brandt, cv2.fisheye), "f_theta" (a
-    polynomial of the angle). Its centre of projection is the middle of the paraxial entrance pupil, and its axis that
-    of the lens. distance_m: of the points that are matched, from there, infinity allowed; None: of the plane in focus.
-    through: as Camera.project has it. Where the film gets less than a tenth of the light in its middle does not count.
+    tangential distortion are 0), "fisheye" (Kannala and Brandt, cv2.fisheye), "f_theta" (a polynomial of the angle).
+    Its centre of projection is the middle of the paraxial entrance pupil, and its axis that of the lens. Of a lens that
+    is not of revolution both focal lengths and the principal point are fitted too; what no function of the angle can
+    say stays in the residuals. distance_m: of the points that are matched, from there, infinity allowed; None: of the
+    plane in focus. through: as Camera.project has it. Where the film gets less than a tenth of the light in its middle
+    does not count.
 
     Raises InputError; for models by the tangent of the angle also where the
     film sees 90 degrees to the side.
@@ -161,17 +163,27 @@ def fit_camera_model(
         )
     r = np.hypot(*((pixels - start[:2, 2]) / np.diag(start)[:2]).T)
 
+    is_round = camera.lens.is_rotational
+    of_matrix = 1 if is_round else 4  # the first so many parameters
+
     def matrix(parameters: Array) -> Array:
         scaled: Array = start.copy()
-        scaled[[0, 1], [0, 1]] *= parameters[0]
+        if is_round:
+            scaled[[0, 1], [0, 1]] *= parameters[0]
+        else:
+            scaled[[0, 1], [0, 1]] *= parameters[:2]
+            scaled[:2, 2] += parameters[2:4]
+            scaled[[0, 1], [1, 0]] = 0
         return scaled
 
     def residuals(parameters: Array) -> Array:
-        return _shown(from_model, matrix(parameters), parameters[1:], seen) - pixels
+        return _shown(from_model, matrix(parameters), parameters[of_matrix:], seen) - pixels
 
     # To the last digit: the sum of squares is flat near its minimum, where coefficients trade for each other.
     tolerances = {"xtol": 1e-15, "ftol": 1e-15, "gtol": 1e-15}
     guesses = _first_guesses(from_model, s, r)
+    if not is_round:
+        guesses = [np.concatenate([[guess[0], guess[0], 0, 0], guess[1:]]) for guess in guesses]
     found = [
         optimize.least_squares(lambda p: residuals(p).ravel(), guess, method="lm", x_scale="jac", **tolerances).x
         for guess in guesses
@@ -180,18 +192,18 @@ def fit_camera_model(
     # guess without a denominator has none.
     candidates = [*found, *guesses]
     widest = _angles(seen).max()
-    sound = [p for p in candidates if from_model.largest_angle(p[1:]) >= widest] or candidates
+    sound = [p for p in candidates if from_model.largest_angle(p[of_matrix:]) >= widest] or candidates
     best = min(sound, key=lambda p: np.sum(residuals(p) ** 2))
     return CameraModelFit(
         model=model,
         camera=camera,
         camera_matrix=matrix(best),
-        coefficients=best[1:],
+        coefficients=best[of_matrix:],
         distance_m=distance_m,
         through=through,
         pixels=pixels,
         residuals=residuals(best),
-        largest_angle_deg=float(np.degrees(from_model.largest_angle(best[1:]))),
+        largest_angle_deg=float(np.degrees(from_model.largest_angle(best[of_matrix:]))),
     )
 
 
