@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from ..centred_lenses import CENTRED
 from ..measurement import Measurement, hold
+from .test_first_order_of_any_lens import anamorphic
 
 DOUBLE_GAUSS = "double-gauss-50mm"
 Vector = NDArray[np.float64]
@@ -510,3 +511,24 @@ def test_a_million_layers_are_refused(tmp_path: Path) -> None:
         lens_of(tmp_path, tables=f"[coating.a]\nlayers = [{layers}]")
     with pytest.raises(rc.LensFileError, match="larger than 16 MiB"):
         lens_of(tmp_path, tables=f"[coating.a]\nlayers = [{layers},{layers}]")
+
+
+def test_a_lens_of_any_kind_keeps_the_same_light_both_ways() -> None:
+    """Cylinders, and an element that is tilted in between: fields are turned from frame to frame."""
+    lens = anamorphic().with_element_tilted(6, 7, x_deg=1.5, y_deg=-0.7).with_coating("quarter_wave")
+    places = np.random.default_rng(3).uniform(-9, 9, (200, 2))
+    origins = np.column_stack([places, np.full(len(places), -5.0)])
+    directions = np.tile([0.05, -0.03, 1.0], (len(places), 1))
+    there = lens.trace(origins, directions, start="scene", transmission=True)
+    back = lens.trace(there.origins_mm, -there.directions, start="film", transmission=True)
+    passed = (there.status == 0) & (back.status == 0)
+    assert passed.sum() > 30
+    assert there.transmission is not None and back.transmission is not None
+    np.testing.assert_allclose(back.transmission[passed], there.transmission[passed], atol=1e-11)
+    assert 0.5 < lens.transmission() < 1
+    # Tilted by next to nothing, it is the centred lens.
+    centred = rc.Lens.load("double-gauss-50mm").with_coating("bare")
+    nearly = centred.with_element_tilted(2, 3, x_deg=1e-7)
+    kept = [one.trace(origins, directions, start="scene", transmission=True).transmission for one in (centred, nearly)]
+    assert kept[0] is not None and kept[1] is not None and kept[0].max() > 0.4
+    np.testing.assert_allclose(kept[1], kept[0], atol=1e-8)

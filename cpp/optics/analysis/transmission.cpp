@@ -7,13 +7,15 @@
 #include "../coating/polarised_ray.hpp"
 #include "../lens/axial_share.hpp"
 #include "../lens/paraxial.hpp"
+#include "../trace/film_frame.hpp"
 #include "ray_aiming.hpp"
 
 namespace realcam {
 
 BundleTransmission bundle_transmission(const LensSystem& lens, double wavelength_nm, const FieldPoint& field,
                                        std::vector<PupilPoint> pattern, const RayLoop& loop) {
-    const PolarisedTrace trace(lens, LightDirection::to_film, wavelength_nm);
+    const PolarisedTrace trace(lens, LightDirection::to_film, wavelength_nm, -1,
+                               film_path_ends(lens, LightDirection::to_film));
     const ObjectPoint object(lens, wavelength_nm, field);
     BundleTransmission result{field_rays(lens, wavelength_nm, field, std::move(pattern), loop), {}, {}, 0, 0};
     const std::size_t count = result.rays.rays.size();

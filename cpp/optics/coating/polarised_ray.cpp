@@ -8,9 +8,8 @@
 namespace realcam {
 
 PolarisedTrace::PolarisedTrace(const LensSystem& lens, LightDirection direction, double wavelength_nm,
-                               int surface_count)
-    : path_(lens, direction, wavelength_nm), surfaces_(coated_surfaces(lens, wavelength_nm, direction)) {
-    lens.require_rotational("transmission");
+                               int surface_count, const PathEnds& ends)
+    : path_(lens, direction, wavelength_nm, ends), surfaces_(coated_surfaces(lens, wavelength_nm, direction)) {
     check_wavelength_in_glasses(lens, wavelength_nm, "transmission");
     if (surface_count >= 0) surfaces_.erase(surfaces_.begin() + surface_count, surfaces_.end());
 }
@@ -28,9 +27,11 @@ RayTransmittance PolarisedTrace::operator()(Vec3d origin, Vec3d direction) const
     if (entry.status == RayStatus::ok) fields = unpolarised(normalized(entry.direction));
     for (std::size_t i = 0; i < surfaces_.size() && ray.status[0] == 0; ++i) {
         const SurfaceView<double>& surface = all.surfaces[i];
+        if (all.free.frames && all.free.frames[i].before.changes) change(all.free.frames[i].before, ray, fields);
         const Vec3d before = normalized(ray.direction[0]);
-        trace_lens(LensView<double>{&surface, 1, all.kind, all.iris, all.free.from(static_cast<int>(i))}, ray,
-                   PathRecord<double, 1>{});
+        FreeParts<double> free = all.free.from(static_cast<int>(i));
+        free.frames = nullptr;  // which would also lead out of the surface's frame
+        trace_lens(LensView<double>{&surface, 1, all.kind, all.iris, free}, ray, PathRecord<double, 1>{});
         if (ray.status[0] != 0 || !surfaces_[i]) continue;
         const Vec3d normal = normal_at(all, static_cast<int>(i), ray.origin[0]);
         const PolarisedResponse response = surfaces_[i]->at(std::fabs(dot(before, normal)));
@@ -43,6 +44,12 @@ RayTransmittance PolarisedTrace::operator()(Vec3d origin, Vec3d direction) const
     const auto status = static_cast<RayStatus>(ray.status[0]);
     if (status != RayStatus::ok) return {status, 0, 0};
     return {status, (power(fields.first) + power(fields.second)) / 2, averaged};
+}
+
+void PolarisedTrace::change(const FrameChange<double>& frame, LensRays<double, 1>& ray, Fields& fields) {
+    change_frame(frame, ray);
+    for (Field* field : {&fields.first, &fields.second})
+        *field = {frame.direction(field->real), frame.direction(field->imaginary)};
 }
 
 PolarisedTrace::Complex PolarisedTrace::scaled_to_power(const SurfaceResponse& response) {
