@@ -87,7 +87,7 @@ CameraSetup::CameraSetup(const Camera& camera, PupilTracer tracer, const CameraS
     check_light();
     if (camera.model == CameraModel::polynomial_lens)
         polynomial_.emplace(camera.lens, pupil_->view(), std::min(film_radius(), pupil_->image_radius()));
-    if (camera.model != CameraModel::polynomial_lens && traces_lights(camera.lens))
+    if (traces_lights() && is_round_lens(camera.lens))
         pupil_entries_ = last && last->pupil_entries_ && last->pupil_ == pupil_
                              ? last->pupil_entries_
                              : std::make_shared<const PupilEntries>(pupil_->view(), path_.view(), film_radius(),

@@ -3,28 +3,40 @@
 #include <numbers>
 
 #include "../math/hypotenuse.hpp"
-#include "../optics/analysis/film_bundle.hpp"
+#include "../optics/trace/film_frame.hpp"
 #include "../optics/trace/open_iris.hpp"
 
 namespace realcam {
 
-namespace entry_search_detail {
-
-double reach_of(const Surface& surface) {
-    return 1.02 * hypotenuse(surface.clear_semi_diameter, surface.sag(surface.clear_semi_diameter));
+double rim_depth(const Surface& surface) {
+    const double r = surface.clear_semi_diameter;
+    double depth = 0;
+    for (const double sag : {surface.sag(0, r), surface.sag(0, -r), surface.sag(r, 0), surface.sag(-r, 0)})
+        if (std::isfinite(sag)) depth = std::max(depth, std::fabs(sag));
+    return depth;
 }
 
-}  // namespace entry_search_detail
+double reach_of(const Surface& surface) {
+    return 1.02 * hypotenuse(surface.clear_semi_diameter, rim_depth(surface));
+}
+
+float entry_reach(const LensSystem& lens) {
+    Affine<double> front = surface_frames(lens).surfaces.front();
+    if (const auto camera = film_path_ends(lens, LightDirection::to_scene).exit)
+        front = inverse_motion(*camera) * front;
+    return static_cast<float>(length(front.origin) + reach_of(lens.surfaces.front()));
+}
 
 EntrySearch::EntrySearch(const LensSystem& lens, double film_radius, const PupilTracer& tracer)
     : film_radius(film_radius),
       film_distance(lens.film_distance),
       film_index(lens.indices(lens.wavelength_nm).back()),
-      rear_reach(exit_reach(lens)),
+      front_reach_(entry_reach(lens)),
+      rear_reach_(reach_of(lens.surfaces.back())),
       tracer(tracer) {}
 
 std::vector<FoundRay> EntrySearch::along(const LensSystem& lens, const std::vector<Crossing>& way) const {
-    const LensSystem round = with_round_stop(lens);
+    const LensSystem round = with_stop_around_blades(lens);
     LensSystem open = round;
     open.stop_semi_diameter = open.stop().clear_semi_diameter;
     Directions directions;
@@ -37,7 +49,7 @@ std::vector<FoundRay> EntrySearch::along(const LensSystem& lens, const std::vect
 EntrySearch::Rectangle EntrySearch::all_directions(int ring) const {
     const double r = radius_of(ring);
     const auto cosine_to = [&](double away) { return away / hypotenuse(away, film_distance); };
-    return {cosine_to(-rear_reach - r), cosine_to(rear_reach - r), cosine_to(rear_reach)};
+    return {cosine_to(-rear_reach_ - r), cosine_to(rear_reach_ - r), cosine_to(rear_reach_)};
 }
 
 void EntrySearch::start(const Rectangle& in, int rows, int square, int lane, PupilTracer::Rays& rays,
@@ -84,7 +96,7 @@ EntrySearch::Directions EntrySearch::around(const std::vector<FoundRay>& rays, c
     return around;
 }
 
-LensSystem EntrySearch::with_round_stop(LensSystem lens) {
+LensSystem with_stop_around_blades(LensSystem lens) {
     if (lens.iris.blades == 0 || lens.is_wide_open()) return lens;
     const double rim = lens.stop().clear_semi_diameter;
     const Iris<double> open = open_iris(lens.iris, lens.stop_semi_diameter, rim);

@@ -20,22 +20,18 @@ struct FoundRay {
     float etendue;          ///< mm^2 sr
 };
 
-namespace entry_search_detail {
+/// The largest distance of a surface's rim from its vertex plane, mm.
+double rim_depth(const Surface& surface);
 
 /// Radius of a circle in the vertex plane through which all light goes that meets the surface, mm.
 double reach_of(const Surface& surface);
 
-}  // namespace entry_search_detail
+/// Radius of a circle about the origin of the camera's frame (film_path_ends), across light from anywhere, that holds
+/// all places where light enters a lens of any kind, mm.
+float entry_reach(const LensSystem& lens);
 
-/// Radius of a circle in the plane of the last vertex through which all light goes to the film, mm.
-inline double exit_reach(const LensSystem& lens) {
-    return entry_search_detail::reach_of(lens.surfaces.back());
-}
-
-/// Radius of a circle that holds all places where light enters a lens, mm.
-inline float entry_reach(const LensSystem& lens) {
-    return static_cast<float>(entry_search_detail::reach_of(lens.surfaces.front()));
-}
+/// The lens with a round stop: the circle around what its blades leave open.
+LensSystem with_stop_around_blades(LensSystem lens);
 
 /// Sets what is known of a ray that has left the lens with origin o and unit direction d.
 void set_front(Vec3f o, Vec3f d, FoundRay& ray);
@@ -45,11 +41,17 @@ void set_front(Vec3f o, Vec3f d, FoundRay& ray);
 /// blades are taken for the circle around their opening. A ghost's bundle may be narrow: it is looked for with the stop
 /// wide open first, then with its own, and at last in the rectangle that holds what was found.
 struct EntrySearch {
+    using Found = FoundRay;
+
     /// `film_radius`: of a circle that holds the film, mm.
     EntrySearch(const LensSystem& lens, double film_radius, const PupilTracer& tracer);
 
     /// `way`: of light to the film; `lens`: to whose surfaces it belongs.
     std::vector<FoundRay> along(const LensSystem& lens, const std::vector<Crossing>& way) const;
+
+    /// Radii of circles that hold all places where light enters the lens, and through which it leaves it, mm.
+    float front_reach() const { return front_reach_; }
+    double rear_reach() const { return rear_reach_; }
 
 private:
     /// Rows of directions that are looked along; there are twice as many columns.
@@ -97,12 +99,10 @@ private:
     /// What holds the squares of all rays that were found in a ring or beside it; where there are none, as before.
     static Directions around(const std::vector<FoundRay>& rays, const Directions& before);
 
-    /// The lens with a round stop: the circle around what its blades leave open.
-    static LensSystem with_round_stop(LensSystem lens);
-
     double film_radius, film_distance;  ///< mm
     double film_index;  ///< of the medium before the film
-    double rear_reach;
+    float front_reach_;
+    double rear_reach_;
     const PupilTracer& tracer;
 };
 

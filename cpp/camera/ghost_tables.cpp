@@ -29,14 +29,9 @@ GhostTables::GhostTables(const LensSystem& of_lens, double film_radius, const Gh
                          const PupilTracer& tracer, const FilmSpectrum* spectrum)
     : effects_{.dispersion = spectrum != nullptr, .coatings = true},
       film_radius_(static_cast<float>(film_radius)),
-      film_index_(static_cast<float>(of_lens.indices(of_lens.wavelength_nm).back())),
-      entry_reach_(entry_reach(of_lens)),
-      exit_reach_(static_cast<float>(exit_reach(of_lens))) {
-    using namespace ghost_tables_detail;
-    check_traces_lights(LensPath<float>(of_lens, LightDirection::to_film, of_lens.wavelength_nm).view());
+      film_index_(static_cast<float>(of_lens.indices(of_lens.wavelength_nm).back())) {
     const LensSystem lens = with_film_mirror(of_lens, choice.film_reflectance, film_radius);
-    std::vector<GhostPair> pairs;
-    std::vector<double> axial;
+    std::vector<AxialPair> pairs;
     // For a spectrum the mean is taken: light that a coating stops at the design wavelength it reflects at another.
     std::vector<AxialShares> of_wavelengths;
     for (const double wavelength : spectrum ? spectrum->even_wavelengths() : std::vector{lens.wavelength_nm})
@@ -50,49 +45,86 @@ GhostTables::GhostTables(const LensSystem& of_lens, double film_radius, const Gh
         for (const GhostPair pair : wanted) {
             // A way that no more light can take than ten times what the lens itself takes is not worth the search.
             const double share = axial_share(crossings_of(of_lens, pair));
-            if (!(10 * share > choice.least_share)) continue;
-            pairs.push_back(pair);
-            axial.push_back(share);
+            if (10 * share > choice.least_share) pairs.push_back({pair, share});
         }
     };
     if (choice.of_lens) look_at(ghost_pairs(of_lens));
     if (choice.film_reflectance > 0) look_at(film_ghost_pairs(of_lens));
-    const EntrySearch search(of_lens, film_radius, tracer);
-    std::vector<std::vector<FoundRay>> found(pairs.size() + 1);  // the last of the lens itself
-    tracer.for_each(static_cast<int>(found.size()), [&](int i) {
-        const auto k = static_cast<std::size_t>(i);
-        const auto way = k < pairs.size() ? crossings_of(of_lens, pairs[k]) : crossings_of(of_lens);
-        found[k] = search.along(lens, way);
-    });
-    for (const std::vector<FoundRay>& rays : found)
-        largest_half_tangent_ = std::max(largest_half_tangent_, largest_half_tangent_of(rays));
     make_crossings(lens, spectrum);
-    for (std::size_t k = 0; k < pairs.size(); ++k) {
-        const double share = axial[k] * etendue_of(found[k]) / etendue_of(found.back());
-        if (!(share > choice.least_share)) continue;
-        pairs_.push_back(pairs[k]);
-        shares_.push_back(share);
-        const std::vector<Crossing> way = crossings_of(of_lens, pairs[k]);
-        const auto path = [&](LightDirection direction) {
-            return LensPath<float>(lens, way, direction, lens.wavelength_nm);
-        };
-        add(to_film_, path(LightDirection::to_film), way, entries_of(found[k], largest_half_tangent_));
-        add(to_scene_, path(LightDirection::to_scene), reversed(way), exits_of(found[k]));
-    }
+    if (is_round_lens(of_lens))
+        find_ways(EntrySearch(of_lens, film_radius, tracer), of_lens, lens, pairs, choice.least_share, tracer);
+    else
+        find_ways(FreeEntrySearch(of_lens, film_radius, tracer), of_lens, lens, pairs, choice.least_share, tracer);
     set_probabilities();
     const LensPath<float> straight(of_lens, LightDirection::to_film, lens.wavelength_nm);
     iris_ = straight.view().iris;
-    kind_ = straight.view().kind;
+    kind_ = is_round_lens(of_lens) ? straight.view().kind : LensKind::any;
+}
+
+template <class Search>
+void GhostTables::find_ways(const Search& search, const LensSystem& of_lens, const LensSystem& lens,
+                            const std::vector<AxialPair>& pairs, double least_share, const PupilTracer& tracer) {
+    std::vector<std::vector<typename Search::Found>> found(pairs.size() + 1);  // the last of the lens itself
+    tracer.for_each(static_cast<int>(found.size()), [&](int i) {
+        const auto k = static_cast<std::size_t>(i);
+        const auto way = k < pairs.size() ? crossings_of(of_lens, pairs[k].pair) : crossings_of(of_lens);
+        found[k] = search.along(lens, way);
+    });
+    set_range(search, found);
+    for (std::size_t k = 0; k < pairs.size(); ++k) {
+        const double share = pairs[k].share * etendue_of(found[k]) / etendue_of(found.back());
+        if (!(share > least_share)) continue;
+        pairs_.push_back(pairs[k].pair);
+        shares_.push_back(share);
+        const std::vector<Crossing> way = crossings_of(of_lens, pairs[k].pair);
+        const auto path = [&](LightDirection direction) {
+            return LensPath<float>(lens, way, direction, lens.wavelength_nm, film_path_ends(of_lens, direction));
+        };
+        add(to_film_, path(LightDirection::to_film), way);
+        add(to_scene_, path(LightDirection::to_scene), reversed(way));
+        add_entries(found[k]);
+    }
+}
+
+void GhostTables::set_range(const EntrySearch& search, const std::vector<std::vector<FoundRay>>& found) {
+    for (const std::vector<FoundRay>& rays : found)
+        largest_half_tangent_ = std::max(largest_half_tangent_, largest_half_tangent_of(rays));
+    entry_reach_ = search.front_reach();
+    exit_reach_ = static_cast<float>(search.rear_reach());
+}
+
+void GhostTables::set_range(const FreeEntrySearch& search, const std::vector<std::vector<FreeFoundRay>>& found) {
+    directions_ = grid_of_directions(found);
+    film_grid_ = search.film_grid();
+    entry_reach_ = search.front_reach();
+    exit_reach_ = search.rear_reach();
+}
+
+void GhostTables::add_entries(const std::vector<FoundRay>& found) {
+    const auto append = [](std::vector<GhostEntry>& to, const GhostEntries& entries) {
+        to.insert(to.end(), entries.begin(), entries.end());
+    };
+    append(to_film_.entries, entries_of(found, largest_half_tangent_));
+    append(to_scene_.entries, exits_of(found));
+}
+
+void GhostTables::add_entries(const std::vector<FreeFoundRay>& found) {
+    const auto append = [](std::vector<FreeGhostEntry>& to, const std::vector<FreeGhostEntry>& entries) {
+        to.insert(to.end(), entries.begin(), entries.end());
+    };
+    append(to_film_.free_entries, FreeEntrySearch::entries_of(found, directions_));
+    append(to_scene_.free_entries, FreeEntrySearch::exits_of(found));
 }
 
 GhostView GhostTables::view_of_objects() const {
     double share = 0;
     for (const double of_pair : shares_) share += of_pair;
     const auto samples = static_cast<std::int32_t>(std::clamp(0.5 / share, 16.0, 256.0));
-    return view_of(to_scene_, GhostLight::of_objects, samples, exit_reach_);
+    return view_of(to_scene_, GhostLight::of_objects, samples, exit_reach_, film_grid_);
 }
 
-GhostView GhostTables::view_of(const Ways& of, GhostLight light, std::int32_t pixel_samples, float reach) const {
+GhostView GhostTables::view_of(const Ways& of, GhostLight light, std::int32_t pixel_samples, float reach,
+                               const GhostGrid& grid) const {
     const auto data_of = [](const auto& list) { return list.empty() ? nullptr : list.data(); };
     return {light,
             effects_,
@@ -100,7 +132,7 @@ GhostView GhostTables::view_of(const Ways& of, GhostLight light, std::int32_t pi
             of.ways.data(),
             static_cast<int>(of.ways.size()),
             cdf_.data(),
-            of.entries.data(),
+            data_of(of.entries),
             static_cast<int>(of.surfaces.size()),
             of.surfaces.data(),
             data_of(of.coatings),
@@ -111,7 +143,10 @@ GhostView GhostTables::view_of(const Ways& of, GhostLight light, std::int32_t pi
             film_index_,
             reach,
             iris_,
-            kind_};
+            kind_,
+            data_of(of.free_entries),
+            grid,
+            {data_of(of.frames), data_of(of.freeforms), data_of(of.apertures)}};
 }
 
 void GhostTables::make_crossings(const LensSystem& lens, const FilmSpectrum* spectrum) {
@@ -129,12 +164,20 @@ void GhostTables::make_crossings(const LensSystem& lens, const FilmSpectrum* spe
         range);
 }
 
-void GhostTables::add(Ways& to, const LensPath<float>& path, const std::vector<Crossing>& crossings,
-                      const GhostEntries& entries) {
+void GhostTables::add(Ways& to, const LensPath<float>& path, const std::vector<Crossing>& crossings) {
     const LensView<float> way = path.view();
-    to.ways.push_back({static_cast<std::int32_t>(to.surfaces.size()), way.count, 0});
+    const std::size_t first = to.surfaces.size();
+    to.ways.push_back({static_cast<std::int32_t>(first), way.count, 0});
     to.surfaces.insert(to.surfaces.end(), way.surfaces, way.surfaces + way.count);
-    to.entries.insert(to.entries.end(), entries.begin(), entries.end());
+    // What all crossings of one way do without, those of another may need.
+    const auto append = [&](auto& list, const auto* from) {
+        if (list.empty() && !from) return;
+        list.resize(to.surfaces.size());
+        if (from) std::copy(from, from + way.count, list.begin() + static_cast<std::ptrdiff_t>(first));
+    };
+    append(to.frames, way.free.frames);
+    append(to.freeforms, way.free.freeforms);
+    append(to.apertures, way.free.apertures);
     for (const Crossing& crossing : crossings) {
         const std::size_t number = ghost_tables_detail::number_of(crossing);
         if (!all_coatings_.empty()) to.coatings.push_back(all_coatings_[number]);

@@ -18,6 +18,47 @@ struct GhostEntry {
     float low, high, half_width;  ///< half_width 0: nowhere
 };
 
+/// The same for a lens that is not of revolution. Of light, in the axes that light_axes gives; of places on the film,
+/// in the axes of the film, and the plane is that of its z = 0.
+struct FreeGhostEntry : GhostEntry {
+    float across;  ///< in y, the middle between -half_width and half_width; low and high are in x
+};
+
+/// For such a lens directions or places on the film are looked at on a grid.
+inline constexpr int kGhostColumns = 16, kGhostCells = kGhostColumns * kGhostColumns;
+
+struct GhostGrid {
+    Vec2f corner;  ///< where x and y are least
+    Vec2f cells_per_unit;
+
+    /// The cell of a place; -1: beyond the grid.
+    REALCAM_INLINE int cell_of(Vec2f place) const {
+        const float x = (place.x - corner.x) * cells_per_unit.x, y = (place.y - corner.y) * cells_per_unit.y;
+        const float end = static_cast<float>(kGhostColumns);
+        const bool inside = (x >= 0.0f) & (x < end) & (y >= 0.0f) & (y < end);
+        const int column = static_cast<int>(select(inside, x, 0.0f)), row = static_cast<int>(select(inside, y, 0.0f));
+        return select(inside, row * kGhostColumns + column, -1);
+    }
+};
+
+/// Unit vectors across light from a direction in front of the lens: x and y of the lens, after the shortest turn that
+/// brings -z there.
+struct LightAxes {
+    Vec3f x, y;
+};
+
+/// `from`: unit, towards the light; not along +z.
+REALCAM_INLINE LightAxes light_axes(Vec3f from) {
+    const float scale = 1.0f / (1.0f - from.z), both = -from.x * from.y * scale;
+    return {{1.0f - from.x * from.x * scale, both, from.x}, {both, 1.0f - from.y * from.y * scale, from.y}};
+}
+
+/// By which the grid of a lens's directions names one: the tangent of half its angle to the axis is the length.
+REALCAM_INLINE Vec2f half_tangents(Vec3f from) {
+    const float scale = 1.0f / (1.0f - from.z);
+    return {scale * from.x, scale * from.y};
+}
+
 /// The way of one ghost through the lens.
 struct GhostWay {
     std::int32_t first, count;  ///< of its crossings in the arrays of GhostView
@@ -54,7 +95,10 @@ struct GhostView {
     float film_index;            ///< of the medium before the film
     float reach;  ///< radius of a circle that holds all places where samples enter the lens
     Iris<float> iris;
-    LensKind kind;
+    LensKind kind;  ///< any: the next three instead of `entries`, largest_half_tangent and film_radius
+    const FreeGhostEntry* free_entries;  ///< kGhostCells of each way
+    GhostGrid grid;  ///< of half_tangents, or of places on the film, mm
+    FreeParts<float> free;  ///< of all crossings of all ways
 };
 
 /// A ghost view with every array replaced by a copy elsewhere: `copy(pointer, count)` returns where to.
@@ -68,6 +112,8 @@ GhostView with_copied_arrays(GhostView view, Copy&& copy) {
     move(view.entries, view.way_count * kGhostBins);
     move(view.surfaces, view.crossing_count);
     move(view.coatings, view.crossing_count);
+    move(view.free_entries, view.way_count * kGhostCells);
+    view.free.move_arrays(view.crossing_count, move);
     move(view.indices, view.crossing_count);
     move(view.spectral_coatings, view.crossing_count);
     return view;

@@ -1,27 +1,21 @@
 #include "lens_way.hpp"
 
 #include "../optics/pupil/pupil_grid.hpp"
+#include "../optics/trace/film_frame.hpp"
 
 namespace realcam {
 
-bool traces_lights(const LensSystem& lens) {
+bool is_round_lens(const LensSystem& lens) {
     return has_radial_pupil(lens) &&
            LensPath<float>(lens, LightDirection::to_film, lens.wavelength_nm).view().kind != LensKind::any;
 }
 
-void check_traces_lights(const LensView<float>& lens) {
-    if (lens.kind == LensKind::any)
-        throw InputError(
-            "ghosts, starbursts and samples from the lights need a centred lens of conics and even aspheres with round "
-            "apertures; switch them off for this one");
-}
-
 LensWay::LensWay(const LensSystem& lens, const std::optional<FilmSpectrum>& spectrum, const Effects& effects)
     : effects_(effects),
-      path_(lens, LightDirection::to_film, lens.wavelength_nm),
+      path_(lens, LightDirection::to_film, lens.wavelength_nm, film_path_ends(lens, LightDirection::to_film)),
+      kind_(is_round_lens(lens) ? path_.view().kind : LensKind::any),
       way_{0, path_.view().count, 1},
       reach_(entry_reach(lens)) {
-    check_traces_lights(path_.view());
     const double design = lens.wavelength_nm;
     const std::vector<Crossing> way = crossings_of(lens);
     const WavelengthRange one{design, design};
@@ -57,7 +51,8 @@ GhostView LensWay::view(GhostLight light, std::int32_t pixel_samples) const {
     view.film_index = 1;
     view.reach = reach_;
     view.iris = lens.iris;
-    view.kind = lens.kind;
+    view.kind = kind_;
+    view.free = lens.free;
     return view;
 }
 

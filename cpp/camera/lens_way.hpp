@@ -11,11 +11,8 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Whether light is traced through a lens apart from the samples of pixels: not through one of the kind `any`.
-bool traces_lights(const LensSystem& lens);
-
-/// Throws InputError for a lens of that kind.
-void check_traces_lights(const LensView<float>& lens);
+/// Whether the code for lenses of revolution serves a lens and its film.
+bool is_round_lens(const LensSystem& lens);
 
 /// The way of light to the film that no surface reflects but mirrors. Owns the memory of its views.
 class LensWay {
@@ -33,6 +30,7 @@ private:
 
     Effects effects_;
     LensPath<float> path_;
+    LensKind kind_;
     GhostWay way_;
     float reach_;
     std::vector<IndexCubic> indices_;

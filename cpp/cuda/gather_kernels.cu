@@ -7,19 +7,23 @@ namespace realcam {
 namespace {
 
 /// For any scene: these samples are few, and kernels with whole paths take long to compile.
-template <bool has_wavelengths>
+template <LensKind lens_kind, bool has_wavelengths>
 __global__ void __launch_bounds__(kGhostBlock, 2) gather_ghosts_of(const __grid_constant__ GhostJob job) {
     if (is_stopped(job)) return;
     BvhScene<SceneKind::any, true> scene{job.scene, job.bvh, 0};
-    gather_ghosts<LensKind::rotational, SceneKind::any, has_wavelengths, 1>(
-        job.scene, job.camera, job.settings, job.ghosts, range_of(job), threadIdx.x, scene, GhostSplat{job});
+    gather_ghosts<lens_kind, SceneKind::any, has_wavelengths, 1>(job.scene, job.camera, job.settings, job.ghosts,
+                                                                 range_of(job), threadIdx.x, scene, GhostSplat{job});
     count_block(job);
 }
 
 }  // namespace
 
 void launch_gather_ghosts(const GhostJob& job, cudaStream_t stream) {
-    const auto kernel = job.ghosts.effects.have_wavelengths() ? gather_ghosts_of<true> : gather_ghosts_of<false>;
+    constexpr LensKind round = LensKind::rotational, any = LensKind::any;
+    auto* kernel =
+        job.ghosts.effects.have_wavelengths() ? gather_ghosts_of<round, true> : gather_ghosts_of<round, false>;
+    if (has_any_lens(job.camera))
+        kernel = job.ghosts.effects.have_wavelengths() ? gather_ghosts_of<any, true> : gather_ghosts_of<any, false>;
     kernel<<<job.block_count, kGhostBlock, 0, stream>>>(job);
     check_cuda(cudaGetLastError(), "starting to trace ghosts of objects");
 }

@@ -8,12 +8,12 @@ namespace realcam {
 namespace {
 
 /// A kernel of its own, because it needs other registers than that of ghosts.
-template <SceneKind scene_kind, bool instanced, bool has_wavelengths>
+template <LensKind lens_kind, SceneKind scene_kind, bool instanced, bool has_wavelengths>
 __global__ void __launch_bounds__(kGhostBlock, 2) trace_lights_of(const __grid_constant__ GhostJob job) {
     if (is_stopped(job)) return;
     BvhScene<scene_kind, instanced> scene{job.scene, job.bvh, 0};
-    trace_lights<LensKind::rotational, scene_kind, has_wavelengths, 1>(job.scene, job.camera, job.ghosts, range_of(job),
-                                                                       threadIdx.x, scene, GhostSplat{job});
+    trace_lights<lens_kind, scene_kind, has_wavelengths, 1>(job.scene, job.camera, job.ghosts, range_of(job),
+                                                            threadIdx.x, scene, GhostSplat{job});
     count_block(job);
 }
 
@@ -22,10 +22,14 @@ __global__ void __launch_bounds__(kGhostBlock, 2) trace_lights_of(const __grid_c
 void launch_trace_lights(const GhostJob& job, cudaStream_t stream) {
     const bool plain = kind_of(job.scene, job.camera) == SceneKind::plain && job.scene.instance_count == 0;
     const bool has_wavelengths = job.ghosts.effects.have_wavelengths();
-    const auto kernel = plain ? (has_wavelengths ? trace_lights_of<SceneKind::plain, false, true>
-                                                 : trace_lights_of<SceneKind::plain, false, false>)
-                              : (has_wavelengths ? trace_lights_of<SceneKind::any, true, true>
-                                                 : trace_lights_of<SceneKind::any, true, false>);
+    constexpr LensKind round = LensKind::rotational, any = LensKind::any;
+    auto* kernel = plain ? (has_wavelengths ? trace_lights_of<round, SceneKind::plain, false, true>
+                                            : trace_lights_of<round, SceneKind::plain, false, false>)
+                         : (has_wavelengths ? trace_lights_of<round, SceneKind::any, true, true>
+                                            : trace_lights_of<round, SceneKind::any, true, false>);
+    if (has_any_lens(job.camera))
+        kernel = has_wavelengths ? trace_lights_of<any, SceneKind::any, true, true>
+                                 : trace_lights_of<any, SceneKind::any, true, false>;
     kernel<<<job.block_count, kGhostBlock, 0, stream>>>(job);
     check_cuda(cudaGetLastError(), "starting to trace lights");
 }

@@ -224,42 +224,47 @@ void for_ghosts_of(realcam_ghosts* job, Take&& take) {
     job->rays += scene.rays_traced;
 }
 
-template <SceneKind scene_kind, bool has_wavelengths>
+template <LensKind lens_kind, SceneKind scene_kind, bool has_wavelengths>
 void splat_ghosts_with(realcam_ghosts* job) {
     for_ghosts_of<scene_kind>(
-        job, [](auto&... with) { splat_ghosts<LensKind::rotational, scene_kind, has_wavelengths, kLanes>(with...); });
+        job, [](auto&... with) { splat_ghosts<lens_kind, scene_kind, has_wavelengths, kLanes>(with...); });
 }
 
-template <SceneKind scene_kind, bool has_wavelengths>
+template <LensKind lens_kind, SceneKind scene_kind, bool has_wavelengths>
 void trace_lights_with(realcam_ghosts* job) {
     for_ghosts_of<scene_kind>(
-        job, [](auto&... with) { trace_lights<LensKind::rotational, scene_kind, has_wavelengths, kLanes>(with...); });
+        job, [](auto&... with) { trace_lights<lens_kind, scene_kind, has_wavelengths, kLanes>(with...); });
 }
 
-template <bool has_wavelengths>
+template <LensKind lens_kind, bool has_wavelengths>
 void gather_ghosts_with(realcam_ghosts* job) {
     const PathSettings settings = *static_cast<const PathSettings*>(job->path_settings);
     for_ghosts_of<SceneKind::any>(job, [&](const auto& view, const auto& camera, const auto& ghosts, const auto& range,
                                            std::uint32_t first, auto& scene, const auto& splat) {
-        gather_ghosts<LensKind::rotational, SceneKind::any, has_wavelengths, kLanes>(view, camera, settings, ghosts,
-                                                                                     range, first, scene, splat);
+        gather_ghosts<lens_kind, SceneKind::any, has_wavelengths, kLanes>(view, camera, settings, ghosts, range, first,
+                                                                          scene, splat);
     });
 }
 
 /// For the light that the job's GhostView names.
 template <bool has_wavelengths>
 void take_splats_with(realcam_ghosts* job) {
-    const bool is_plain = kind_of(*static_cast<const SceneView*>(job->scene_view),
-                                  *static_cast<const CameraView*>(job->camera_view)) == SceneKind::plain;
+    const auto& camera = *static_cast<const CameraView*>(job->camera_view);
+    const bool is_plain = kind_of(*static_cast<const SceneView*>(job->scene_view), camera) == SceneKind::plain;
+    constexpr LensKind round = LensKind::rotational;
     switch (static_cast<const GhostView*>(job->ghost_view)->light) {
         case GhostLight::of_lights:
         case GhostLight::starbursts:
-            return is_plain ? splat_ghosts_with<SceneKind::plain, has_wavelengths>(job)
-                            : splat_ghosts_with<SceneKind::any, has_wavelengths>(job);
+            if (has_any_lens(camera)) return splat_ghosts_with<LensKind::any, SceneKind::any, has_wavelengths>(job);
+            return is_plain ? splat_ghosts_with<round, SceneKind::plain, has_wavelengths>(job)
+                            : splat_ghosts_with<round, SceneKind::any, has_wavelengths>(job);
         case GhostLight::direct:
-            return is_plain ? trace_lights_with<SceneKind::plain, has_wavelengths>(job)
-                            : trace_lights_with<SceneKind::any, has_wavelengths>(job);
-        case GhostLight::of_objects: return gather_ghosts_with<has_wavelengths>(job);
+            if (has_any_lens(camera)) return trace_lights_with<LensKind::any, SceneKind::any, has_wavelengths>(job);
+            return is_plain ? trace_lights_with<round, SceneKind::plain, has_wavelengths>(job)
+                            : trace_lights_with<round, SceneKind::any, has_wavelengths>(job);
+        case GhostLight::of_objects:
+            return has_any_lens(camera) ? gather_ghosts_with<LensKind::any, has_wavelengths>(job)
+                                        : gather_ghosts_with<round, has_wavelengths>(job);
     }
 }
 

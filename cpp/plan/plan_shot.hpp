@@ -36,7 +36,7 @@ public:
           errors_(errors),
           facts_(facts),
           settings_(settings),
-          is_round_(traces_lights(camera.lens)) {}
+          is_round_(is_round_lens(camera.lens)) {}
 
     Plan plan() {
         plan_.effects = without_plan(settings_.effects);

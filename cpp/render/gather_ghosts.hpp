@@ -25,7 +25,49 @@ struct FilmRays {
     Lanes<float, N> weight;  ///< times radiance: irradiance on the film
 };
 
-template <int N>
+/// A ray from a film point to the last vertex plane, in which it goes to one place of the entry's rectangle.
+struct FilmRay {
+    Vec3f origin, direction;
+    float weight;
+};
+
+REALCAM_INLINE FilmRay round_film_ray(const CameraView& camera, const GhostView& ghosts, const GhostEntry* entries,
+                                      Vec2f film, Vec2f u) {
+    const auto [x, y] = film;
+    const float radius = std::sqrt(x * x + y * y), inverse = 1.0f / select(radius > 0.0f, radius, 1.0f);
+    const float out_x = select(radius > 0.0f, x * inverse, 1.0f), out_y = y * inverse;
+    const int bin = static_cast<int>(radius / ghosts.film_radius * static_cast<float>(kGhostBins));
+    const EntryPlace at = entry_place(entries[select(bin < kGhostBins, bin, kGhostBins - 1)], ghosts.reach, u);
+    const float to_x = at.along * out_x - at.across * out_y - x, to_y = at.along * out_y + at.across * out_x - y;
+    const float to_z = -camera.film_distance, squared = to_x * to_x + to_y * to_y + to_z * to_z;
+    const float scale = ghosts.film_index / std::sqrt(squared), cosine2 = to_z * to_z / squared;
+    return {{x, y, camera.film_distance},
+            {scale * to_x, scale * to_y, scale * to_z},
+            ghosts.film_index * ghosts.film_index * cosine2 / (squared * at.density)};
+}
+
+REALCAM_INLINE FilmRay free_film_ray(const CameraView& camera, const GhostView& ghosts, const FreeGhostEntry* entries,
+                                     Vec2f film, Vec2f u) {
+    const int cell = ghosts.grid.cell_of(film);
+    const EntryPlace at = entry_place(entries[select(cell < 0, 0, cell)], ghosts.reach, u);
+    const FilmSurface<float> surface = film_surface(camera);
+    const Vec3f from = surface.place(film), to = Vec3f{at.along, at.across, 0} - from;
+    const float squared = dot(to, to), index = ghosts.film_index, scale = index / std::sqrt(squared);
+    // The cosines, at the film and in the plane, times the squared distance.
+    const float cosines = -to.z * dot(to, surface.direction(film, {0, 0, -1}));
+    const float weight = index * index * cosines / (squared * squared * at.density);
+    return {from, scale * to, select((cell >= 0) & (cosines > 0.0f), weight, 0.0f)};
+}
+
+template <LensKind lens_kind>
+REALCAM_INLINE FilmRay film_ray(const CameraView& camera, const GhostView& ghosts, int way, Vec2f film, Vec2f u) {
+    if constexpr (lens_kind == LensKind::any)
+        return free_film_ray(camera, ghosts, ghosts.free_entries + way * kGhostCells, film, u);
+    else
+        return round_film_ray(camera, ghosts, ghosts.entries + way * kGhostBins, film, u);
+}
+
+template <LensKind lens_kind, int N>
 REALCAM_INLINE void start_film_rays(const CameraView& camera, const GhostView& ghosts, const GhostBlock& block,
                                     std::uint32_t first, FilmRays<N>& film) {
     REALCAM_LANES
@@ -40,18 +82,12 @@ REALCAM_INLINE void start_film_rays(const CameraView& camera, const GhostView& g
         film.block.row[i] = select(row < camera.height, row, camera.height - 1);
         const float x = camera.film_middle.x + (1.0f - 2.0f * u.x) * camera.film_half_width,
                     y = camera.film_middle.y + (2.0f * u.y - 1.0f) * camera.film_half_height;
-        const float radius = std::sqrt(x * x + y * y), inverse = 1.0f / select(radius > 0.0f, radius, 1.0f);
-        const float out_x = select(radius > 0.0f, x * inverse, 1.0f), out_y = y * inverse;
-        const int bin = static_cast<int>(radius / ghosts.film_radius * static_cast<float>(kGhostBins));
-        const EntryPlace at = entry_place(block.entries[select(bin < kGhostBins, bin, kGhostBins - 1)], ghosts.reach,
-                                          film.block.random(i, dimension::pupil));
-        const float to_x = at.along * out_x - at.across * out_y - x, to_y = at.along * out_y + at.across * out_x - y;
-        const float to_z = -camera.film_distance, squared = to_x * to_x + to_y * to_y + to_z * to_z;
-        const float scale = ghosts.film_index / std::sqrt(squared), cosine2 = to_z * to_z / squared;
-        film.rays.origin.set(i, {x, y, camera.film_distance});
-        film.rays.direction.set(i, {scale * to_x, scale * to_y, scale * to_z});
+        const FilmRay ray =
+            film_ray<lens_kind>(camera, ghosts, block.number, {x, y}, film.block.random(i, dimension::pupil));
+        film.rays.origin.set(i, ray.origin);
+        film.rays.direction.set(i, ray.direction);
         film.rays.status[i] = 0;
-        film.weight[i] = ghosts.film_index * ghosts.film_index * cosine2 / (squared * at.density);
+        film.weight[i] = ray.weight;
     }
 }
 
@@ -66,7 +102,7 @@ REALCAM_HD inline void gather_ghosts(const SceneView& view, const CameraView& ca
     using namespace gather_ghosts_detail;
     const GhostBlock block = ghost_block(ghosts, range);
     FilmRays<N> film;
-    start_film_rays(camera, ghosts, block, first, film);
+    start_film_rays<lens_kind>(camera, ghosts, block, first, film);
     [[maybe_unused]] Lanes<float, N> place, variable;  // of the wavelength
     if constexpr (has_wavelengths) {
         REALCAM_LANES

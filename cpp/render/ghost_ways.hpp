@@ -1,4 +1,6 @@
 #pragma once
+#include <type_traits>
+
 #include "../camera/ghost_view.hpp"
 #include "../math/cdf.hpp"
 #include "../math/random.hpp"
@@ -21,7 +23,7 @@ struct GhostRange {
 /// What the samples of a block have in common.
 struct GhostBlock {
     GhostWay way;
-    const GhostEntry* entries;   ///< of that way
+    std::int32_t number;  ///< of that way
     std::uint32_t stream, first_sample;
 };
 
@@ -30,8 +32,7 @@ REALCAM_INLINE GhostBlock ghost_block(const GhostView& ghosts, GhostRange range)
     const auto block = static_cast<std::uint32_t>(range.first_block);
     const std::uint32_t round = hash32(range.seed, static_cast<std::uint32_t>(range.first_block >> 24) + 1u);
     const int number = find_in_cdf(ghosts.cdf, ghosts.way_count, sample_2d(round, block, 0).x);
-    return {ghosts.ways[number], ghosts.entries + number * kGhostBins,
-            hash32(static_cast<std::uint32_t>(number), round), block * kGhostBlock};
+    return {ghosts.ways[number], number, hash32(static_cast<std::uint32_t>(number), round), block * kGhostBlock};
 }
 
 namespace ghost_ways_detail {
@@ -48,8 +49,10 @@ struct EntryPlace {
     float density;  ///< per mm^2
 };
 
-REALCAM_INLINE EntryPlace entry_place(const GhostEntry& entry, float reach, Vec2f u) {
+template <class Entry>
+REALCAM_INLINE EntryPlace entry_place(const Entry& entry, float reach, Vec2f u) {
     using namespace ghost_ways_detail;
+    constexpr bool is_free = std::is_same_v<Entry, FreeGhostEntry>;
     const bool known = entry.half_width > 0.0f;
     const float middle = 0.5f * (entry.low + entry.high), half_length = 0.5f * (entry.high - entry.low);
     const float anywhere = select(known, kAnywhere, 1.0f), around = select(known, kAround, 0.0f);
@@ -59,9 +62,13 @@ REALCAM_INLINE EntryPlace entry_place(const GhostEntry& entry, float reach, Vec2
     const float scale = select(is_around, kAroundScale, 1.0f), fresh = (u.x - begin) / share;
     const float along =
         select(is_anywhere, 0.0f, middle) + (2.0f * fresh - 1.0f) * select(is_anywhere, reach, scale * half_length);
-    const float across = (2.0f * u.y - 1.0f) * select(is_anywhere, reach, scale * entry.half_width);
+    float across = (2.0f * u.y - 1.0f) * select(is_anywhere, reach, scale * entry.half_width), beside = across;
+    if constexpr (is_free) {
+        across += select(is_anywhere, 0.0f, entry.across);
+        beside = across - entry.across;
+    }
     const auto is_within = [&](float factor) {
-        return (std::fabs(along - middle) <= factor * half_length) & (std::fabs(across) <= factor * entry.half_width);
+        return (std::fabs(along - middle) <= factor * half_length) & (std::fabs(beside) <= factor * entry.half_width);
     };
     const float per_area = 1.0f / select(known, 4.0f * half_length * entry.half_width, 1.0f);
     const float density =
@@ -75,7 +82,8 @@ REALCAM_INLINE EntryPlace entry_place(const GhostEntry& entry, float reach, Vec2
 template <LensKind lens_kind, bool has_wavelengths, int N>
 REALCAM_INLINE void pass_ghost_way(const GhostView& ghosts, const GhostWay& way, LensRays<float, N>& rays,
                                    const float (&variable)[N], PassedPower<N>& passed) {
-    const LensView<float> lens{ghosts.surfaces + way.first, way.count, ghosts.kind, ghosts.iris};
+    LensView<float> lens{ghosts.surfaces + way.first, way.count, ghosts.kind, ghosts.iris};
+    if constexpr (lens_kind == LensKind::any) lens.free = ghosts.free.from(way.first);
     if constexpr (has_wavelengths) {
         if (ghosts.effects.coatings)
             trace_lens<lens_kind>(

@@ -37,7 +37,7 @@ LightEntries::LightEntries(const SceneView& scene, const CameraView& camera, con
       camera_(camera),
       to_film_(setup.effects().lens_way().surfaces()),
       tracer_(tracer),
-      pupil_entries_(*setup.pupil_entries()),
+      pupil_entries_(setup.pupil_entries()),
       front_reach_(entry_reach(setup.camera().lens)) {}
 
 Vec3f LightEntries::place_of(const LightGroup& group, std::uint32_t number) const {
@@ -82,7 +82,7 @@ LightEntries::Probe LightEntries::probe(const Places& places, const TracedLight&
         tracer_.trace(to_film_, rays);
         for (int k = 0; k < kBlock; ++k) {
             if (rays.status[k] != 0) continue;
-            const Vec2f place = crossing_at(camera_.film_distance, rays.origin[k], rays.direction[k]);
+            const Vec2f place = film_surface(camera_).landing(rays.origin[k], rays.direction[k]);
             const Vec2f film = {place.x - camera_.film_middle.x, place.y - camera_.film_middle.y};
             // A pixel more, for what other wavelengths and diffraction bring there.
             if (!(std::fabs(film.x) <= camera_.film_half_width + 1 / columns_per_mm) ||
@@ -117,8 +117,12 @@ std::optional<FoundLight> LightEntries::of(const LightGroup& group) const {
         const float beside = hypotenuse(nearest.x, nearest.y);
         nearest = {std::max(0.0f, beside - front_reach_), 0, nearest.z};
     }
-    if (!(half_tangent_of(normalized(nearest)) < 1.5f * pupil_entries_.largest_half_tangent())) return std::nullopt;
-    const GhostEntry& entry = pupil_entries_.at(half_tangent_of(light.from));
+    GhostEntry entry{};  // nothing known: all of the front is looked at
+    if (pupil_entries_) {
+        if (!(half_tangent_of(normalized(nearest)) < 1.5f * pupil_entries_->largest_half_tangent()))
+            return std::nullopt;
+        entry = pupil_entries_->at(half_tangent_of(light.from));
+    }
     // A light that is near is seen elsewhere and in other sizes than one that is far: from twice the size on.
     const float middle_along = 0.5f * (entry.low + entry.high),
                 reach = std::max({entry.high - entry.low, 2 * entry.half_width, front_reach_ / 64});

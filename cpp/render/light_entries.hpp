@@ -19,7 +19,7 @@ struct FoundLight {
 /// looked at, in more.
 class LightEntries {
 public:
-    /// `camera`: of the set-up, which has entries of its pupil.
+    /// `camera`: of the set-up.
     LightEntries(const SceneView& scene, const CameraView& camera, const CameraSetup& setup, const PupilTracer& tracer);
 
     /// Nothing where no light of the group reaches the film.
@@ -42,7 +42,7 @@ private:
     const CameraView& camera_;
     LensView<float> to_film_;
     const PupilTracer& tracer_;
-    const PupilEntries& pupil_entries_;
+    const PupilEntries* pupil_entries_;  ///< of a lens of revolution; else null
     float front_reach_;  ///< radius of a circle that holds all places where light enters the lens, mm
 };
 

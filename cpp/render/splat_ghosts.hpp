@@ -1,4 +1,5 @@
 #pragma once
+#include "../camera/camera_pupil.hpp"
 #include "../scene/light.hpp"
 #include "ghost_ways.hpp"
 #include "met_light.hpp"
@@ -116,26 +117,56 @@ REALCAM_INLINE void choose_lights(const SceneView& view, const CameraView& camer
     }
 }
 
-/// Chooses a place in front of the lens through which light of that direction may go this way.
-template <int N>
-REALCAM_INLINE void choose_entries(const GhostView& ghosts, const GhostEntry* entries, std::uint32_t stream,
-                                   std::uint32_t first, GhostSamples<N>& samples) {
+/// A place in front of the lens through which light of a direction may go one way.
+struct LightEntry {
+    Vec3f origin;
+    float density;  ///< per mm^2
+    bool seen;  ///< whether any light of that direction may
+};
+
+REALCAM_INLINE LightEntry round_light_entry(const GhostView& ghosts, const GhostEntry* entries, Vec3f from, Vec2f u) {
+    const auto [x, y, z] = from;
+    const float sine = std::sqrt(x * x + y * y), half_tangent = sine / (1.0f - z);  // no number right behind
+    const bool seen = (half_tangent < ghosts.largest_half_tangent) & (z < 0.9f);
+    const int bin = static_cast<int>(select(seen, half_tangent / ghosts.largest_half_tangent, 0.0f) *
+                                     static_cast<float>(kGhostBins));
+    const EntryPlace at = entry_place(entries[select(bin < kGhostBins, bin, kGhostBins - 1)], ghosts.reach, u);
+    const float inverse = 1.0f / select(sine > 0.0f, sine, 1.0f);
+    const float away_x = select(sine > 0.0f, x * inverse, 1.0f), away_y = y * inverse;
+    return {{-at.along * z * away_x - at.across * away_y, -at.along * z * away_y + at.across * away_x, at.along * sine},
+            at.density,
+            seen};
+}
+
+REALCAM_INLINE LightEntry free_light_entry(const GhostView& ghosts, const FreeGhostEntry* entries, Vec3f from,
+                                           Vec2f u) {
+    const bool ahead = from.z < 0.9f;
+    const Vec3f light = select(ahead, from, Vec3f{0, 0, -1});
+    const int cell = ghosts.grid.cell_of(half_tangents(light));
+    const EntryPlace at = entry_place(entries[select(cell < 0, 0, cell)], ghosts.reach, u);
+    const LightAxes axes = light_axes(light);
+    return {at.along * axes.x + at.across * axes.y, at.density, ahead && cell >= 0};
+}
+
+template <LensKind lens_kind>
+REALCAM_INLINE LightEntry light_entry(const GhostView& ghosts, int way, Vec3f from, Vec2f u) {
+    if constexpr (lens_kind == LensKind::any)
+        return free_light_entry(ghosts, ghosts.free_entries + way * kGhostCells, from, u);
+    else
+        return round_light_entry(ghosts, ghosts.entries + way * kGhostBins, from, u);
+}
+
+template <LensKind lens_kind, int N>
+REALCAM_INLINE void choose_entries(const GhostView& ghosts, const GhostBlock& block, std::uint32_t first,
+                                   GhostSamples<N>& samples) {
     REALCAM_LANES
     for (int i = 0; i < N; ++i) {
-        const Vec2f u = sample_2d(stream, first + static_cast<std::uint32_t>(i), ghost_dimension::entry);
-        const float x = samples.from.x[i], y = samples.from.y[i], z = samples.from.z[i];
-        const float sine = std::sqrt(x * x + y * y), half_tangent = sine / (1.0f - z);  // no number right behind
-        const bool seen = (half_tangent < ghosts.largest_half_tangent) & (z < 0.9f);
-        const int bin = static_cast<int>(select(seen, half_tangent / ghosts.largest_half_tangent, 0.0f) *
-                                         static_cast<float>(kGhostBins));
-        const EntryPlace at = entry_place(entries[select(bin < kGhostBins, bin, kGhostBins - 1)], ghosts.reach, u);
-        const float inverse = 1.0f / select(sine > 0.0f, sine, 1.0f);
-        const float away_x = select(sine > 0.0f, x * inverse, 1.0f), away_y = y * inverse;
-        samples.rays.origin.set(i, {-at.along * z * away_x - at.across * away_y,
-                                    -at.along * z * away_y + at.across * away_x, at.along * sine});
+        const Vec2f u = sample_2d(block.stream, first + static_cast<std::uint32_t>(i), ghost_dimension::entry);
+        const LightEntry entry = light_entry<lens_kind>(ghosts, block.number, samples.from[i], u);
+        samples.rays.origin.set(i, entry.origin);
         samples.rays.direction.set(i, {0, 0, 1});
-        samples.rays.status[i] = select(seen, 0, static_cast<int>(RayStatus::vignetted));
-        samples.density[i] = at.density;
+        samples.rays.status[i] = select(entry.seen, 0, static_cast<int>(RayStatus::vignetted));
+        samples.density[i] = entry.density;
     }
 }
 
@@ -187,7 +218,7 @@ REALCAM_INLINE Vec2f diffracted(const CameraView& camera, GhostLight light, Vec2
 }
 
 /// The pixels that the light reaches, or -1, and what it brings there if nothing in the scene is in its way.
-template <SceneKind scene_kind, bool has_wavelengths, int N>
+template <LensKind lens_kind, SceneKind scene_kind, bool has_wavelengths, int N>
 REALCAM_INLINE void reach_film(const CameraView& camera, const GhostView& ghosts, std::uint32_t stream,
                                std::uint32_t first, const PassedPower<N>& passed, GhostSamples<N>& samples,
                                std::int32_t (&pixel)[N]) {
@@ -195,7 +226,7 @@ REALCAM_INLINE void reach_film(const CameraView& camera, const GhostView& ghosts
         samples.shadow.active[i] = 0;
         pixel[i] = -1;
         if (samples.rays.status[i] != 0) continue;
-        Vec2f film = crossing_at(camera.film_distance, samples.rays.origin[i], samples.rays.direction[i]);
+        Vec2f film = landing_on_film<lens_kind>(camera, samples.rays.origin[i], samples.rays.direction[i]);
         if constexpr (has_wavelengths) {
             if (ghosts.light != GhostLight::of_lights && camera.effects.diffraction) {
                 const std::uint32_t sample = first + static_cast<std::uint32_t>(i);
@@ -247,12 +278,12 @@ REALCAM_HD inline void splat_ghosts(const SceneView& view, const CameraView& cam
         }
     }
     choose_lights<scene_kind>(view, camera, stream, first_sample, samples);
-    choose_entries(ghosts, block.entries, stream, first_sample, samples);
+    choose_entries<lens_kind>(ghosts, block, first_sample, samples);
     send_light<scene_kind>(view, camera, 1.0f / (pixel_area(camera) * block.way.probability), samples);
     PassedPower<N> passed;
     pass_ghost_way<lens_kind, has_wavelengths>(ghosts, block.way, samples.rays, samples.variable, passed);
     Lanes<std::int32_t, N> pixel, hidden;
-    reach_film<scene_kind, has_wavelengths>(camera, ghosts, stream, first_sample, passed, samples, pixel);
+    reach_film<lens_kind, scene_kind, has_wavelengths>(camera, ghosts, stream, first_sample, passed, samples, pixel);
     scene.occluded(samples.shadow, hidden);
     for (int i = 0; i < N; ++i)
         if (samples.shadow.active[i] && !hidden[i])

@@ -133,7 +133,8 @@ REALCAM_HD inline void trace_lights(const SceneView& view, const CameraView& cam
         samples.color = sent;
         PassedPower<N> passed;
         pass_ghost_way<lens_kind, has_wavelengths>(way, way.ways[0], samples.rays, samples.variable, passed);
-        reach_film<scene_kind, has_wavelengths>(camera, way, round, first_sample, passed, samples, pixels[step]);
+        reach_film<lens_kind, scene_kind, has_wavelengths>(camera, way, round, first_sample, passed, samples,
+                                                           pixels[step]);
         for (int i = 0; i < N; ++i) {
             if (!samples.shadow.active[i]) pixels[step][i] = -1;
             colors[step].set(i, share * samples.color[i]);

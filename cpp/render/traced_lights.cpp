@@ -147,7 +147,7 @@ TracedLightsView TracedLights::view() const {
 
 TracedLights traced_lights(const SceneView& scene, const CameraView& camera, const CameraSetup& setup,
                            LightTracing tracing, const PupilTracer& tracer) {
-    if (!setup.pupil_entries() || tracing == LightTracing::off) return {};
+    if (!setup.traces_lights() || tracing == LightTracing::off) return {};
     return TracedLights(scene, camera, setup, tracing, tracer);
 }
 
