@@ -23,7 +23,7 @@ def photograph(scene: mi.Scene, integrator: mi.SamplingIntegrator, camera: rc.Ca
     """
     width, height = camera.film.resolution
     film = dr.zeros(mi.Float, 3 * width * height)
-    at_once = 4  # samples a pixel: a ray takes 44 bytes here, and more in Mitsuba
+    at_once = 4  # samples a pixel: a ray takes 56 bytes here, and more in Mitsuba
     passes = -(-spp // at_once)
     for seed in range(passes):
         rays = camera.generate_rays(spp=at_once, seed=seed)

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <utility>
 
 #include "../camera/last_setup.hpp"
 #include "../cuda/ray_arrays.hpp"
@@ -22,58 +23,79 @@ namespace {
 
 /// Arrays of numpy, or DeviceArrays.
 struct CameraRaysResult {
-    py::object origins_m, directions, weights, pixels;
+    py::object origins_m, directions, weights, pixels, wavelengths_nm, times_s;
 };
+
+/// First and last, nm; none: the lens's design wavelength.
+using GivenWavelengths = std::optional<std::pair<double, double>>;
 
 /// What is asked for, checked.
 struct RayOrder {
     Camera camera;
     std::uint32_t spp, seed;
     std::optional<int> gpu;
+    LensEffects effects;
 
     RayRange all() const { return all_rays(camera.film.width, camera.film.height, spp); }
 };
 
-RayOrder order_of(const Camera& camera, int spp, std::int64_t seed, const std::string& device) {
+/// Rays that have each a wavelength of these.
+LensEffects effects_for(const Camera& camera, const GivenWavelengths& given) {
+    LensEffects effects;
+    if (!given) return effects;
+    const auto [first, last] = *given;
+    // Polynomials follow the indices of glasses so far to a hundred-thousandth (WavelengthVariable).
+    if (!(first >= 300 && first <= last && last <= 2500))
+        throw InputError("wavelengths_nm must be two numbers between 300 and 2500, the shorter one first");
+    if (camera.model != CameraModel::full_lens)
+        throw InputError("wavelengths_nm needs the camera model \"full\": others know the lens at one wavelength");
+    effects.dispersion = true;
+    effects.even_wavelengths = WavelengthRange{first, last};
+    return effects;
+}
+
+RayOrder order_of(const Camera& camera, int spp, std::int64_t seed, const std::string& device,
+                  const GivenWavelengths& wavelengths) {
     if (spp < 1) throw InputError("spp must be at least 1");
     if (seed < 0 || seed > 0xffffffff) throw InputError("the seed must lie between 0 and 4294967295");
     const std::optional<int> gpu = gpu_for_rays(device);
     if (gpu) validate_on_gpu(camera);
-    return {camera, static_cast<std::uint32_t>(spp), static_cast<std::uint32_t>(seed), gpu};
+    return {camera, static_cast<std::uint32_t>(spp), static_cast<std::uint32_t>(seed), gpu,
+            effects_for(camera, wavelengths)};
 }
 
 /// To be called without the interpreter's lock.
-std::shared_ptr<const CameraSetup> setup_of(const Camera& camera) {
+std::shared_ptr<const CameraSetup> setup_of(const RayOrder& order) {
     static LastSetup last;
-    return last.make(camera, fast_pupil_tracer());
+    return last.make(order.camera, fast_pupil_tracer(), order.effects);
 }
 
 CameraRaysResult rays_on_gpu(const RayOrder& order, RayRange range) {
     const CameraRayArrays rays = [&] {
         const Unlocked unlocked;
-        return generate_ray_arrays(*order.gpu, *setup_of(order.camera), order.spp, order.seed, range);
+        return generate_ray_arrays(*order.gpu, *setup_of(order), order.spp, order.seed, range);
     }();
-    return {py::cast(rays.origins_m), py::cast(rays.directions), py::cast(rays.weights), py::cast(rays.pixels)};
+    return {py::cast(rays.origins_m), py::cast(rays.directions),     py::cast(rays.weights),
+            py::cast(rays.pixels),    py::cast(rays.wavelengths_nm), py::cast(rays.times_s)};
 }
 
 CameraRaysResult rays_on_host(const RayOrder& order, RayRange range) {
     constexpr std::int64_t kBetweenSignals = 1 << 20;  // some ten milliseconds
     const std::int64_t count = range.count;
-    py::array_t<double> origins_m({count, std::int64_t{3}});
-    py::array_t<float> directions({count, std::int64_t{3}}), weights(count);
+    py::array_t<double> origins_m({count, std::int64_t{3}}), times_s(count);
+    py::array_t<float> directions({count, std::int64_t{3}}), weights(count), wavelengths_nm(count);
     py::array_t<int> pixels(count);
-    double* origins = origins_m.mutable_data();
-    float *ways = directions.mutable_data(), *shares = weights.mutable_data();
+    const CameraRayOutput out{origins_m.mutable_data(), directions.mutable_data(), weights.mutable_data(),
+                              wavelengths_nm.mutable_data(), times_s.mutable_data()};
     int* of = pixels.mutable_data();
     for (std::int64_t done = 0; done < count; done += kBetweenSignals) {
         heed_signals();
         const Unlocked unlocked;
         const RayRange part = {range.first + done, std::min(kBetweenSignals, count - done)};
-        generate_camera_rays(*setup_of(order.camera), order.spp, order.seed, part, origins + 3 * done, ways + 3 * done,
-                             shares + done);
+        generate_camera_rays(*setup_of(order), order.spp, order.seed, part, out.from(done));
         for (std::int64_t i = 0; i < part.count; ++i) of[done + i] = static_cast<int>((part.first + i) / order.spp);
     }
-    return {origins_m, directions, weights, pixels};
+    return {origins_m, directions, weights, pixels, wavelengths_nm, times_s};
 }
 
 CameraRaysResult rays_of(const RayOrder& order, RayRange range) {
@@ -87,9 +109,9 @@ struct RayChunks {
 };
 
 RayChunks chunks_of(const Camera& camera, int spp, std::int64_t seed, const std::string& device,
-                    std::int64_t max_rays) {
+                    const GivenWavelengths& wavelengths_nm, std::int64_t max_rays) {
     if (max_rays < 1) throw InputError("max_rays must be at least 1");
-    return {order_of(camera, spp, seed, device), max_rays};
+    return {order_of(camera, spp, seed, device, wavelengths_nm), max_rays};
 }
 
 CameraRaysResult next_chunk(RayChunks& chunks) {
@@ -108,7 +130,8 @@ struct RestoredCheck<CameraRaysResult> {
         const py::ssize_t count = restored_length(rays.weights);
         for (const py::object* vectors : {&rays.origins_m, &rays.directions})
             check_restored_array(*vectors, {'f', {count, 3}});
-        check_restored_array(rays.weights, {'f', {count}});
+        for (const py::object* numbers : {&rays.weights, &rays.wavelengths_nm, &rays.times_s})
+            check_restored_array(*numbers, {'f', {count}});
         check_restored_array(rays.pixels, {'i', {count}});
     }
 };
@@ -126,6 +149,10 @@ void bind_camera_rays(py::module_& m) {
             "(N,) float32: irradiance on the film for unit radiance; the mean over a pixel's rays of weight times\n"
             "radiance is its irradiance. 0: the lens blocks the ray.")
         .def_readonly("pixels", &CameraRaysResult::pixels, "(N,) int32: row * columns + column.")
+        .def_readonly("wavelengths_nm", &CameraRaysResult::wavelengths_nm,
+                      "(N,) float32: for which the lens was traced.")
+        .def_readonly("times_s", &CameraRaysResult::times_s,
+                      "(N,) float64: when the shutter lets them through, stratified over each pixel's exposure.")
         .def("__repr__", [](const CameraRaysResult& r) {
             return "<realcam.CameraRays " + counted(py::len(r.weights), "ray") + '>';
         });
@@ -135,16 +162,20 @@ void bind_camera_rays(py::module_& m) {
     py::reinterpret_borrow<py::class_<Camera>>(m.attr("Camera"))
         .def(
             "generate_rays",
-            [](const Camera& camera, int spp, std::int64_t seed, const std::string& device) {
-                const RayOrder order = order_of(camera, spp, seed, device);
+            [](const Camera& camera, int spp, std::int64_t seed, const std::string& device,
+               const GivenWavelengths& wavelengths_nm) {
+                const RayOrder order = order_of(camera, spp, seed, device, wavelengths_nm);
                 return rays_of(order, order.all());
             },
-            py::kw_only(), "spp"_a = 1, "seed"_a = 0, "device"_a = "cpu",
-            "The rays that render would trace, for any other renderer, 44 bytes each. Returns CameraRays.\n"
+            py::kw_only(), "spp"_a = 1, "seed"_a = 0, "device"_a = "cpu", "wavelengths_nm"_a = py::none(),
+            "The rays that render would trace, for any other renderer, 56 bytes each. Returns CameraRays.\n"
+            "wavelengths_nm: a pair (shortest, longest). Each ray has one of its own, drawn evenly between them, for\n"
+            "which every glass has its own index: weight times spectral radiance times (longest - shortest) is the\n"
+            "irradiance of that band. None: all have the lens's design wavelength.\n"
             "device: \"cpu\": arrays of numpy. \"cuda\", \"cuda:1\": DeviceArrays, made in that GPU's memory and left\n"
             "there. \"auto\": a GPU if there is one. Raises InputError, DeviceError.")
         .def("ray_chunks", &chunks_of, py::kw_only(), "spp"_a = 1, "seed"_a = 0, "device"_a = "cpu",
-             "max_rays"_a = std::int64_t{1} << 22,
+             "wavelengths_nm"_a = py::none(), "max_rays"_a = std::int64_t{1} << 22,
              "The same rays in pieces of at most max_rays, for pictures whose rays memory does not hold: an iterator\n"
              "over CameraRays. A piece may end between two rays of a pixel. Raises InputError, DeviceError.");
 }

@@ -40,6 +40,7 @@ void bind_bundle(py::module_& m);
 void bind_transmission(py::module_& m);
 void bind_camera(py::module_& m);
 void bind_camera_rays(py::module_& m);
+void bind_pupil_table(py::module_& m);
 void bind_projection(py::module_& m);
 void bind_material(py::module_& m);
 void bind_scene(py::module_& m);

@@ -22,6 +22,7 @@ PYBIND11_MODULE(_core, m) {
     bind_tolerance(m);
     bind_camera(m);
     bind_camera_rays(m);
+    bind_pupil_table(m);
     bind_projection(m);
     bind_material(m);
     bind_scene(m);

@@ -1,6 +1,7 @@
 #include "effect_tables.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "../optics/trace/film_frame.hpp"
 #include "../optics/trace/lens_dispersion.hpp"
@@ -12,7 +13,10 @@ EffectTables::EffectTables(const LensSystem& lens, double film_radius, const Len
     : effects_(effects), lens_(lens), film_radius_(film_radius) {
     const bool has_lens = last && last->effects_ == effects && last->lens_ == lens;
     const EffectTables* const same = has_lens && last->film_radius_ == film_radius ? last : nullptr;
-    if (effects.illuminant) set_wavelengths(*effects.illuminant);
+    if (effects.illuminant)
+        set_wavelengths(FilmSpectrum(*effects.illuminant));
+    else if (effects.even_wavelengths)
+        set_wavelengths(FilmSpectrum(*effects.even_wavelengths));
     if (effects.coatings) set_coatings(has_lens ? last : nullptr);
     lens_way_ = has_lens ? last->lens_way_ : std::make_shared<LazyLensWay>();
     if (effects.ghosts)
@@ -50,8 +54,8 @@ std::vector<GhostView> EffectTables::splats() const {
     return views;
 }
 
-void EffectTables::set_wavelengths(const Illuminant& illuminant) {
-    spectrum_.emplace(illuminant);
+void EffectTables::set_wavelengths(FilmSpectrum spectrum) {
+    spectrum_ = std::move(spectrum);
     if (!effects_.dispersion && !effects_.coatings) return;
     // The code for diffraction and coatings together takes the indices of a spectrum: here, of one wavelength.
     const double design = lens_.wavelength_nm;

@@ -20,6 +20,7 @@ struct LensEffects : Effects {
     std::optional<Illuminant> illuminant = {};  ///< of a picture whose samples have wavelengths
     std::optional<GhostChoice> ghosts = {};
     PupilSampling pupil_sampling = PupilSampling::outline;
+    std::optional<WavelengthRange> even_wavelengths = {};  ///< in place of an illuminant: all of these alike
 
     bool operator==(const LensEffects&) const = default;
 };
@@ -46,7 +47,7 @@ public:
 
 private:
     /// Rays of the shortest and of the longest wavelength leave the lens farthest apart.
-    void set_wavelengths(const Illuminant& illuminant);
+    void set_wavelengths(FilmSpectrum spectrum);
 
     void set_coatings(const EffectTables* same);
 

@@ -188,6 +188,9 @@ FilmSpectrum::FilmSpectrum(const Illuminant& illuminant) {
     cells_ = cells_of(pieces, kCells);
 }
 
+FilmSpectrum::FilmSpectrum(WavelengthRange range)
+    : cells_{{static_cast<float>(range.first), static_cast<float>(range.last), {1, 0, 0, 0, 1, 0, 0, 0, 1}}} {}
+
 std::vector<double> FilmSpectrum::even_wavelengths() const {
     constexpr std::size_t kStep = 6;
     std::vector<double> wavelengths;

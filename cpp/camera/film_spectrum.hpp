@@ -41,6 +41,8 @@ public:
 
     /// Throws InputError for an illuminant under which white cannot be shown as white.
     explicit FilmSpectrum(const Illuminant& illuminant);
+    /// All wavelengths of a range alike, for rays without a colour.
+    explicit FilmSpectrum(WavelengthRange range);
 
     const std::vector<WavelengthCell>& cells() const { return cells_; }
     WavelengthRange range() const {

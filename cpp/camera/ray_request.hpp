@@ -1,5 +1,6 @@
 #pragma once
 #include "exposed_rays.hpp"
+#include "rays_with_effects.hpp"
 
 namespace REALCAM_NAMESPACE {
 
@@ -20,6 +21,9 @@ struct RayRequest {
     std::uint32_t spp, seed;
     float *origins, *directions;  ///< 3 for each ray: metres in the placed scene; unit
     float* weights;               ///< irradiance on the film for unit radiance; 0: blocked
+    float* times;                 ///< as shares of the camera's exposure
+    float* wavelengths_nm;
+    float design_wavelength_nm;  ///< of all rays, where the camera has no dispersion
 
     REALCAM_HD std::int64_t count() const { return range.count; }
 };
@@ -41,7 +45,18 @@ REALCAM_HD inline void generate_rays_of(const RayRequest& request, std::int64_t 
         block.sample[k] = static_cast<std::uint32_t>(ray % request.spp);
     }
     float times[N];
-    generate_exposed_rays<lens_kind>(request.camera, block, rays, times);
+    Lanes<float, N> wavelengths_nm;
+    if (request.camera.dispersion.cells) {
+        SampleWavelengths<N> wavelengths;
+        draw_wavelengths(request.camera.dispersion, block, wavelengths);
+        generate_rays_with<lens_kind, Effects{.dispersion = true}>(
+            request.camera, block, PixelPoints<N>(request.camera, block), wavelengths, rays);
+        expose_rays(request.camera, block, rays, times);
+        for (int k = 0; k < N; ++k) wavelengths_nm[k] = wavelengths.nm[k];
+    } else {
+        generate_exposed_rays<lens_kind>(request.camera, block, rays, times);
+        for (int k = 0; k < N; ++k) wavelengths_nm[k] = request.design_wavelength_nm;
+    }
     for (int k = 0; k < used; ++k) {
         const Vec3f o = rays.origin[k], d = rays.direction[k];
         float* out_origin = request.origins + 3 * (first + k);
@@ -49,6 +64,8 @@ REALCAM_HD inline void generate_rays_of(const RayRequest& request, std::int64_t 
         out_origin[0] = o.x, out_origin[1] = o.y, out_origin[2] = o.z;
         out_direction[0] = d.x, out_direction[1] = d.y, out_direction[2] = d.z;
         request.weights[first + k] = rays.passed[k] ? rays.weight[k] : 0.0f;
+        request.times[first + k] = times[k];
+        request.wavelengths_nm[first + k] = wavelengths_nm[k];
     }
 }
 

@@ -18,6 +18,8 @@ __global__ void place(const __grid_constant__ PlaceRays rays) {
     to[0] = rays.place.x + static_cast<double>(from[0]);
     to[1] = rays.place.y + static_cast<double>(from[1]);
     to[2] = rays.place.z + static_cast<double>(from[2]);
+    const double share = static_cast<double>(rays.shares[ray]);
+    rays.times[ray] = rays.exposure.begin_s + share * (rays.exposure.end_s - rays.exposure.begin_s);
     rays.pixels[ray] = static_cast<int>((rays.range.first + ray) / rays.spp);
 }
 

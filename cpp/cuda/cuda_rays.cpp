@@ -64,14 +64,17 @@ void trace_rays_on_gpu(int ordinal, const LensSystem& lens, LightDirection direc
 }
 
 void generate_camera_rays_on_device(int ordinal, const CameraSetup& setup, std::uint32_t spp, std::uint32_t seed,
-                                    RayRange range, float* origins, float* directions, float* weights) {
+                                    RayRange range, const DeviceRayOutput& out) {
     const CurrentDevice current(ordinal);
     const CudaStream stream;
     DeviceArrays arrays;
     const CameraView view =
-        with_copied_arrays(setup.view(setup.camera().pose.position_m),
+        with_copied_arrays(setup.view(setup.camera().pose.position_m, true),
                            [&](const auto* from, std::size_t count) { return arrays.copy(from, count, stream); });
-    launch_generate({view, range, spp, seed, origins, directions, weights}, stream);
+    const auto design_nm = static_cast<float>(setup.camera().lens.wavelength_nm);
+    launch_generate(
+        {view, range, spp, seed, out.origins, out.directions, out.weights, out.times, out.wavelengths_nm, design_nm},
+        stream);
     stream.wait("generating rays");
 }
 

@@ -18,9 +18,14 @@ void trace_rays_on_gpu(int ordinal, const LensSystem& lens, LightDirection direc
                        Precision precision, int surface_count, std::int64_t count, const double* origins,
                        const double* directions, const TracedRays& out);
 
-/// Some of the camera's own rays into arrays of the GPU's memory, as generate_camera_rays of the CPU, but for the
-/// origins: they are floats, relative to the camera's position. Returns when they are made.
+/// Where a camera's rays are written in the GPU's memory: as RayRequest.
+struct DeviceRayOutput {
+    float *origins, *directions, *weights, *times, *wavelengths_nm;
+};
+
+/// Some of the camera's own rays, as generate_camera_rays of the CPU. But the origins are floats, relative to the
+/// camera's position, and times shares of its exposure. Returns when they are made.
 void generate_camera_rays_on_device(int ordinal, const CameraSetup& setup, std::uint32_t spp, std::uint32_t seed,
-                                    RayRange range, float* origins, float* directions, float* weights);
+                                    RayRange range, const DeviceRayOutput& out);
 
 }  // namespace realcam

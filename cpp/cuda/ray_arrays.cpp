@@ -57,15 +57,19 @@ CameraRayArrays generate_ray_arrays(int ordinal, const CameraSetup& setup, std::
     const CurrentDevice current(ordinal);
     const CudaStream stream;
     const auto rays = static_cast<std::size_t>(count);
-    DeviceArray<float> relative(3 * rays), directions(3 * rays), weights(rays);
-    DeviceArray<double> origins(3 * rays);
+    DeviceArray<float> relative(3 * rays), directions(3 * rays), weights(rays), shares(rays), wavelengths(rays);
+    DeviceArray<double> origins(3 * rays), times(rays);
     DeviceArray<int> pixels(rays);
-    generate_camera_rays_on_device(ordinal, setup, spp, seed, range, relative.data(), directions.data(),
-                                   weights.data());
-    launch_place({relative.data(), camera.pose.position_m, range, spp, origins.data(), pixels.data()}, stream);
+    generate_camera_rays_on_device(
+        ordinal, setup, spp, seed, range,
+        {relative.data(), directions.data(), weights.data(), shares.data(), wavelengths.data()});
+    launch_place({relative.data(), shares.data(), camera.pose.position_m, camera.exposure(), range, spp, origins.data(),
+                  times.data(), pixels.data()},
+                 stream);
     stream.wait("placing rays");
     return {share(std::move(origins), ordinal, {count, 3}), share(std::move(directions), ordinal, {count, 3}),
-            share(std::move(weights), ordinal, {count}), share(std::move(pixels), ordinal, {count})};
+            share(std::move(weights), ordinal, {count}),    share(std::move(wavelengths), ordinal, {count}),
+            share(std::move(times), ordinal, {count}),      share(std::move(pixels), ordinal, {count})};
 }
 
 }  // namespace realcam

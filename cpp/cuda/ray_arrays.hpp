@@ -28,7 +28,7 @@ TracedArrays trace_arrays(const LensSystem& lens, LightDirection direction, doub
 
 /// As generate_camera_rays of the CPU, in arrays of their own.
 struct CameraRayArrays {
-    SharedDeviceArray origins_m, directions, weights;
+    SharedDeviceArray origins_m, directions, weights, wavelengths_nm, times_s;
     SharedDeviceArray pixels;  ///< row * width + column
 };
 

@@ -104,22 +104,32 @@ void trace_rays(const LensSystem& lens, LightDirection direction, double wavelen
 }
 
 void generate_camera_rays(const CameraSetup& setup, std::uint32_t spp, std::uint32_t seed, RayRange range,
-                          double* origins_m, float* directions, float* weights) {
+                          const CameraRayOutput& out) {
     const Vec3d place = setup.camera().pose.position_m;
-    const CameraView view = setup.view(place);
+    const TimeInterval exposure = setup.camera().exposure();
+    const CameraView view = setup.view(place, true);
     in_chunks(0, range.count, [&](std::int64_t begin, std::int64_t end) {
+        const CameraRayOutput to = out.from(begin);
         std::vector<float> origins(static_cast<std::size_t>(3 * (end - begin)));
-        const RayRequest request{
-            view,           {range.first + begin, end - begin}, spp, seed, origins.data(), directions + 3 * begin,
-            weights + begin};
+        std::vector<float> times(static_cast<std::size_t>(end - begin));
+        const RayRequest request{view,
+                                 {range.first + begin, end - begin},
+                                 spp,
+                                 seed,
+                                 origins.data(),
+                                 to.directions,
+                                 to.weights,
+                                 times.data(),
+                                 to.wavelengths_nm,
+                                 static_cast<float>(setup.camera().lens.wavelength_nm)};
         kernels().generate_rays(&request);
         // The camera's place is added in double: far from the scene's origin float would lose the pupil.
         for (std::int64_t i = 0; i < end - begin; ++i) {
             const float* from = origins.data() + 3 * i;
-            double* to = origins_m + 3 * (begin + i);
-            to[0] = place.x + static_cast<double>(from[0]);
-            to[1] = place.y + static_cast<double>(from[1]);
-            to[2] = place.z + static_cast<double>(from[2]);
+            to.origins_m[3 * i] = place.x + static_cast<double>(from[0]);
+            to.origins_m[3 * i + 1] = place.y + static_cast<double>(from[1]);
+            to.origins_m[3 * i + 2] = place.z + static_cast<double>(from[2]);
+            to.times_s[i] = exposure.at(static_cast<double>(times[static_cast<std::size_t>(i)]));
         }
     });
 }

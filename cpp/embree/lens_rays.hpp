@@ -32,9 +32,21 @@ std::int64_t find_film_points(const LensSystem& lens, double wavelength_nm, cons
 /// A loop over rays on all cores. `grain`: as many as are worth a task of their own.
 RayLoop parallel_ray_loop(KeepGoing keep_going, std::size_t grain = 64);
 
-/// Some of the camera's own rays, spp for each pixel, row by row: origins (metres, scene), unit directions, and weights
-/// (irradiance on the film for unit radiance; 0: the ray does not leave the lens). Arrays of range.count rays.
+/// Where a camera's rays are written, each of them `count` times.
+struct CameraRayOutput {
+    double* origins_m;  ///< 3 for each ray, scene
+    float* directions;  ///< 3 for each ray, unit, scene
+    float* weights;  ///< irradiance on the film for unit radiance; 0: the ray does not leave the lens
+    float* wavelengths_nm;
+    double* times_s;
+
+    CameraRayOutput from(std::int64_t ray) const {
+        return {origins_m + 3 * ray, directions + 3 * ray, weights + ray, wavelengths_nm + ray, times_s + ray};
+    }
+};
+
+/// Some of the camera's own rays, spp for each pixel, row by row.
 void generate_camera_rays(const CameraSetup& setup, std::uint32_t spp, std::uint32_t seed, RayRange range,
-                          double* origins_m, float* directions, float* weights);
+                          const CameraRayOutput& out);
 
 }  // namespace realcam

@@ -966,6 +966,10 @@ class CameraRays(Generic[_Doubles, _Floats, _Integers]):
     def weights(self) -> _Floats: ...
     @property
     def pixels(self) -> _Integers: ...
+    @property
+    def wavelengths_nm(self) -> _Floats: ...
+    @property
+    def times_s(self) -> _Doubles: ...
 
 @final
 class RayChunks(Generic[_Doubles, _Floats, _Integers]):
@@ -1027,16 +1031,42 @@ class Camera(_Value):
     @property
     def entrance_pupil_position_m(self) -> tuple[float, float, float] | None: ...
     @overload
-    def generate_rays(self, *, spp: int = 1, seed: int = 0, device: Literal["cpu"] = "cpu") -> CameraRays: ...
+    def generate_rays(
+        self,
+        *,
+        spp: int = 1,
+        seed: int = 0,
+        device: Literal["cpu"] = "cpu",
+        wavelengths_nm: tuple[float, float] | None = None,
+    ) -> CameraRays: ...
     @overload
-    def generate_rays(self, *, spp: int = 1, seed: int = 0, device: str = "cpu") -> CameraRays[Any, Any, Any]: ...
+    def generate_rays(
+        self,
+        *,
+        spp: int = 1,
+        seed: int = 0,
+        device: str = "cpu",
+        wavelengths_nm: tuple[float, float] | None = None,
+    ) -> CameraRays[Any, Any, Any]: ...
     @overload
     def ray_chunks(
-        self, *, spp: int = 1, seed: int = 0, device: Literal["cpu"] = "cpu", max_rays: int = 4194304
+        self,
+        *,
+        spp: int = 1,
+        seed: int = 0,
+        device: Literal["cpu"] = "cpu",
+        wavelengths_nm: tuple[float, float] | None = None,
+        max_rays: int = 4194304,
     ) -> RayChunks: ...
     @overload
     def ray_chunks(
-        self, *, spp: int = 1, seed: int = 0, device: str = "cpu", max_rays: int = 4194304
+        self,
+        *,
+        spp: int = 1,
+        seed: int = 0,
+        device: str = "cpu",
+        wavelengths_nm: tuple[float, float] | None = None,
+        max_rays: int = 4194304,
     ) -> RayChunks[Any, Any, Any]: ...
     @overload
     def project(
@@ -1649,3 +1679,7 @@ def lens_names() -> list[str]: ...
 def glass_names() -> list[str]: ...
 def sensor_names() -> list[str]: ...
 def pupil_setup(lens: Lens, film_radius_mm: float, on_one_core: bool = False) -> float: ...
+def _pupil_table(
+    lens: Lens, film_radius_mm: float, wavelengths_nm: list[float]
+) -> tuple[NDArray[np.float32], NDArray[np.float32], float]: ...
+def _iris_apothem_mm(lens: Lens) -> float | None: ...

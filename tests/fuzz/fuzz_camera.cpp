@@ -108,8 +108,10 @@ void check_rays(Bytes& in, const Camera& camera) {
     const CameraSetup setup(camera, tracer());
     const CameraView view = setup.view(camera.pose.position_m);
     const int pixels = camera.film.width * camera.film.height;
-    std::vector<float> origins(3 * kCount), directions(3 * kCount), weights(kCount);
-    RayRequest request{view, {0, 0}, 0, 0, origins.data(), directions.data(), weights.data()};
+    std::vector<float> origins(3 * kCount), directions(3 * kCount), weights(kCount), times(kCount), wavelengths(kCount);
+    RayRequest request{
+        view,     {0, 0}, 0, 0, origins.data(), directions.data(), weights.data(), times.data(), wavelengths.data(),
+        587.5618f};
     request.spp = in.chance(128) ? 1 : 8;
     const std::int64_t all = static_cast<std::int64_t>(pixels) * request.spp;
     request.range.count = std::min<std::int64_t>(all, kCount);
