@@ -1,0 +1,29 @@
+"""realcam's lenses as sensors of Mitsuba 3: `import realcam.mitsuba` registers the sensor `realcam`.
+
+    import mitsuba as mi
+    import realcam.mitsuba
+
+    mi.set_variant("llvm_ad_rgb")
+    sensor = mi.load_dict({"type": "realcam", "lens": "double-gauss-50mm", "focus_distance_m": 4.0, "f_number": 2.8})
+
+The docs say which properties there are (docs/mitsuba.md). Needs the package mitsuba.
+"""
+
+from __future__ import annotations
+
+try:
+    import mitsuba
+except ImportError:
+    raise ImportError("realcam.mitsuba needs Mitsuba 3: pip install 'realcam[mitsuba]'") from None
+
+
+def _register(variant: str | None) -> None:
+    """Classes belong to a variant, so that each needs one of its own."""
+    if variant:
+        from .sensor import make_sensor_class
+
+        mitsuba.register_sensor("realcam", make_sensor_class())
+
+
+_register(mitsuba.variant())
+mitsuba.detail.add_variant_callback(lambda _, new: _register(new))

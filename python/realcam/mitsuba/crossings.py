@@ -1,0 +1,185 @@
+"""A lens as a list of surfaces in the order in which light from the film meets them, or light from the scene."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from .._core import InputError, Lens, Surface, _iris_apothem_mm
+
+# All that Mitsuba's sensors sample, nm.
+WAVELENGTHS_NM = (360.0, 830.0)
+# Refractive indices are nearly polynomials of 1 / (wavelength - POLE_NM), which grows as they do in the ultraviolet.
+POLE_NM = 200.0
+# Of these polynomials. The fit then leaves less than a float32 resolves, for all glasses that a formula describes.
+DEGREE = 6
+
+
+@dataclass(frozen=True)
+class Asphere:
+    """z = conic + u^2 p(u - 1/2), with u = r^2 / reach^2; beyond the reach the sag stays as it is there.
+
+    terms: of p, the constant first, mm. Powers of u - 1/2, because powers of u itself cancel towards the rim.
+    lowest_mm, highest_mm: bounds of the sag.
+    """
+
+    reach_mm: float
+    terms: tuple[float, ...]
+    lowest_mm: float
+    highest_mm: float
+
+
+@dataclass(frozen=True)
+class Iris:
+    """Blades whose edges are arcs of one curvature; the middle of each lies apothem_mm from the axis."""
+
+    apothem_mm: float
+    curvature_per_mm: float
+    azimuths_rad: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class Crossing:
+    """One surface, in the frame of its vertex. Light goes in and out along z with the signs given.
+
+    index_change: n'^2 / n^2 - 1 at the design wavelength. index_terms: the same as a polynomial of
+    `wavelength_variable`, the constant first; empty where neither medium disperses.
+    """
+
+    vertex_mm: float
+    curvature_per_mm: float
+    conic: float
+    asphere: Asphere | None
+    rim_mm: float
+    hole_mm: float
+    iris: Iris | None
+    sign_in: int
+    sign_out: int
+    index_change: float
+    index_terms: tuple[float, ...]
+
+
+def wavelength_variable(nm: Any) -> Any:
+    """From -1 at the longest wavelength to 1 at the shortest; of a number, an array or a value of Dr.Jit."""
+    low, high = (1 / (end - POLE_NM) for end in reversed(WAVELENGTHS_NM))
+    return (2 / (high - low)) / (nm - POLE_NM) - (high + low) / (high - low)
+
+
+def check_expressible(lens: Lens) -> None:
+    """Raises InputError, which names the surface, for a lens that the sensor cannot trace."""
+    for number, surface in enumerate(lens.surfaces, 1):
+        if surface.form != "conic":
+            raise InputError(
+                f'surface {number} of lens "{lens.name}" is of the form "{surface.form}"; the Mitsuba sensor traces '
+                "spheres, conics and even aspheres"
+            )
+    mirrors = [number for number, surface in enumerate(lens.surfaces, 1) if surface.type == "mirror"]
+    if len(mirrors) % 2:
+        raise InputError(
+            f'surface {mirrors[-1]} of lens "{lens.name}" is a mirror that sends light away from the film; the Mitsuba '
+            "sensor traces lenses with an even number of mirrors"
+        )
+
+
+def crossings_to_film(lens: Lens, dispersive: bool) -> list[Crossing]:
+    """In the order in which light from the scene meets them. Raises InputError as check_expressible."""
+    check_expressible(lens)
+    sign, found = 1, []
+    for index, (surface, vertex) in enumerate(zip(lens.surfaces, lens.vertices_mm, strict=True)):
+        sign_out = -sign if surface.type == "mirror" else sign
+        found.append(
+            Crossing(
+                vertex_mm=vertex,
+                curvature_per_mm=surface.curvature_per_mm,
+                conic=surface.conic,
+                asphere=_asphere(surface),
+                rim_mm=_rim_mm(lens, index),
+                hole_mm=surface.inner_semi_diameter_mm,
+                iris=_iris(lens) if index == lens.stop_index else None,
+                sign_in=sign,
+                sign_out=sign_out,
+                index_change=float(_index_change(lens, index, lens.wavelength_nm)),
+                index_terms=_index_terms(lens, index) if dispersive else (),
+            )
+        )
+        sign = sign_out
+    return found
+
+
+def crossings_to_scene(crossings: list[Crossing]) -> list[Crossing]:
+    """The same way back."""
+
+    def back(crossing: Crossing) -> Crossing:
+        terms = crossing.index_terms
+        if terms:
+            # 1 / (1 + change) - 1 of each direction is no polynomial, so that it has a fit of its own.
+            x = np.cos(np.pi * (np.arange(32) + 0.5) / 32)
+            change = np.polynomial.polynomial.polyval(x, terms)
+            terms = _fit(x, -change / (1 + change))
+        return replace(
+            crossing,
+            sign_in=-crossing.sign_out,
+            sign_out=-crossing.sign_in,
+            index_change=-crossing.index_change / (1 + crossing.index_change),
+            index_terms=terms,
+        )
+
+    return [back(crossing) for crossing in reversed(crossings)]
+
+
+def index_behind(lens: Lens, index: int, nm: float) -> float:
+    """Of the medium behind a surface, by its place in the list; -1: of that before the first."""
+    for surface in reversed(lens.surfaces[: index + 1]):
+        if surface.type == "refracting":
+            return surface.material.index(nm)
+    return 1.0
+
+
+def _rim_mm(lens: Lens, index: int) -> float:
+    clear = lens.surfaces[index].clear_semi_diameter_mm
+    if index != lens.stop_index or _iris(lens):
+        return clear
+    return min(lens.stop_semi_diameter_mm, clear)
+
+
+def _iris(lens: Lens) -> Iris | None:
+    apothem_mm = _iris_apothem_mm(lens)
+    if apothem_mm is None:
+        return None
+    turns = 2 * np.pi * np.arange(lens.iris_blades) / lens.iris_blades
+    return Iris(apothem_mm, lens.iris_rounding / apothem_mm, tuple(np.radians(lens.iris_rotation_deg) + turns))
+
+
+def _asphere(surface: Surface) -> Asphere | None:
+    if not surface.aspheric_coefficients:
+        return None
+    # A little further than the rim, so that a ray that just misses it is seen to miss it.
+    reach = 1.02 * surface.clear_semi_diameter_mm
+    if not np.isfinite(surface.sag_mm(reach)):
+        reach = surface.clear_semi_diameter_mm
+    powers = np.zeros(max(surface.aspheric_coefficients) // 2 - 1)
+    for power, coefficient in surface.aspheric_coefficients.items():
+        powers[power // 2 - 2] = coefficient * reach**power
+    terms = np.polynomial.Polynomial(powers)(np.polynomial.Polynomial([0.5, 1])).coef
+    sags = [surface.sag_mm(reach * share) for share in np.linspace(0, 1, 257)]
+    margin = 0.02 * np.ptp(sags) + 1e-3 * reach
+    return Asphere(reach, tuple(terms.tolist()), min(sags) - margin, max(sags) + margin)
+
+
+def _index_change(lens: Lens, index: int, nm: float) -> float:
+    ratio = index_behind(lens, index, nm) / index_behind(lens, index - 1, nm)
+    return ratio * ratio - 1
+
+
+def _index_terms(lens: Lens, index: int) -> tuple[float, ...]:
+    x = np.cos(np.pi * (np.arange(32) + 0.5) / 32)
+    zero, slope = wavelength_variable(np.inf), wavelength_variable(POLE_NM + 1) - wavelength_variable(np.inf)
+    change = np.array([_index_change(lens, index, nm) for nm in POLE_NM + slope / (x - zero)])
+    return () if np.ptp(change) == 0 else _fit(x, change)
+
+
+def _fit(x: np.ndarray, values: np.ndarray) -> tuple[float, ...]:
+    series = np.polynomial.Chebyshev.fit(x, values, DEGREE, domain=[-1, 1])
+    return tuple(series.convert(kind=np.polynomial.Polynomial).coef.tolist())

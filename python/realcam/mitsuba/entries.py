@@ -1,0 +1,97 @@
+"""Where light of a point of the scene has to enter the lens to reach the film: what connects paths with the sensor."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import drjit as dr
+import mitsuba as mi
+import numpy as np
+
+from .._core import Camera, Film, Lens
+from .tables import Table
+
+ANGLES = 64  # steps of the tangent of half the point's angle to the axis
+CLOSENESSES = 16  # steps of one over its distance
+NEAREST = 1.25  # distance of the nearest points for which there are entries, in radii of the front
+
+
+class Entries:
+    """Rectangles in the plane through the front vertex across the line to a point, with sides along and across the
+    meridional plane. They hold all that passes of rays that fill film and pupil, and a margin of a sixteenth.
+
+    In another measure than the film's, the same light: a ray's etendue is the same on both sides of the lens.
+    """
+
+    def __init__(self, lens: Lens, film: Film, wavelengths_nm: tuple[float, float] | None) -> None:
+        camera = Camera(lens, film=film.replace(resolution=(64, 64)))
+        rays = camera.generate_rays(spp=64, wavelengths_nm=wavelengths_nm)
+        passed = rays.weights > 0
+        o = 1000 * rays.origins_m[passed] + [0, 0, lens.film_position_mm]  # the camera's axes are the lens's
+        d = rays.directions[passed].astype(float)
+        self.nearest_mm = NEAREST * float(np.linalg.norm(o, axis=1).max())
+        closenesses = np.linspace(0, 1, 2 * CLOSENESSES + 1) / self.nearest_mm
+        seen = [places(o, d, closeness) for closeness in closenesses]
+        self.largest_half_tangent = 1.001 * float(max(half_tangent.max() for half_tangent, _, _ in seen))
+        rows = [rectangles(seen[2 * k : 2 * k + 3], self.largest_half_tangent) for k in range(CLOSENESSES)]
+        self.table = Table(np.concatenate(rows))
+
+    def sample(self, x: Any, u: Any) -> tuple[Any, Any]:
+        """A point of the rectangle of x, a point of the scene in mm from the front vertex. And the solid angle that the
+        rectangle fills as seen from x, which is one over the density of such samples: 0 where no light passes."""
+        distance = dr.norm(x)
+        t = x / distance
+        radial = dr.sqrt(t.x * t.x + t.y * t.y)
+        half_tangent = radial / dr.maximum(1 - t.z, 1e-6)
+        column = half_tangent * (ANGLES / self.largest_half_tangent)
+        row = dr.minimum(self.nearest_mm / distance, 1) * CLOSENESSES
+        is_seen = (column < ANGLES) & (t.z < 1)
+        column = mi.UInt32(dr.minimum(column, ANGLES - 1))
+        row = mi.UInt32(dr.minimum(row, CLOSENESSES - 1))
+        low, high, half_width = self.table(row * ANGLES + column)
+        cos = dr.select(radial > 0, t.x / radial, 1.0)
+        sin = dr.select(radial > 0, t.y / radial, 0.0)
+        along = low + u.x * (high - low)
+        across = half_width * (2 * u.y - 1)
+        # Away from the axis in the plane across t; -t.z is the cosine of the point's angle.
+        outwards = mi.Vector3f(-t.z * cos, -t.z * sin, radial)
+        point = mi.Point3f(along * outwards + across * mi.Vector3f(-sin, cos, 0))
+        way = point - x
+        squared = dr.squared_norm(way)
+        cosine = dr.abs(dr.dot(way, t)) * dr.rsqrt(squared)
+        solid_angle = 2 * half_width * (high - low) * cosine / squared
+        return point, dr.select(is_seen, solid_angle, 0.0)
+
+
+def places(o: np.ndarray, d: np.ndarray, closeness_per_mm: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Of rays at a distance from the front vertex: the tangents of half the angles at which they are there, and where
+    they enter the planes of Entries, along and across the meridional plane, mm."""
+    if closeness_per_mm > 0:
+        b = np.sum(o * d, axis=1)
+        s = -b + np.sqrt(b**2 - np.sum(o**2, axis=1) + closeness_per_mm**-2)
+        x = o + s[:, None] * d
+        t = x * closeness_per_mm
+    else:
+        t = d
+    radial = np.hypot(t[:, 0], t[:, 1])
+    cos, sin = np.where(radial > 0, t[:, :2].T / np.maximum(radial, 1e-300), [[1.0], [0.0]])
+    entry = o - d * (np.sum(o * t, axis=1) / np.sum(d * t, axis=1))[:, None]
+    outwards = np.stack([-t[:, 2] * cos, -t[:, 2] * sin, radial], axis=1)
+    across = np.stack([-sin, cos, np.zeros_like(sin)], axis=1)
+    return radial / (1 - t[:, 2]), np.sum(entry * outwards, axis=1), np.sum(entry * across, axis=1)
+
+
+def rectangles(seen: list[tuple[np.ndarray, np.ndarray, np.ndarray]], largest_half_tangent: float) -> np.ndarray:
+    """(ANGLES, 3): lowest and highest place along, and the largest across; zeros where nothing passes. The neighbours'
+    rectangles are held too, for what lies between the rays."""
+    low, high, half = np.full(ANGLES, np.inf), np.full(ANGLES, -np.inf), np.zeros(ANGLES)
+    for half_tangent, along, across in seen:
+        column = np.minimum((half_tangent * ANGLES / largest_half_tangent).astype(int), ANGLES - 1)
+        np.minimum.at(low, column, along)
+        np.maximum.at(high, column, along)
+        np.maximum.at(half, column, np.abs(across))
+    near = np.clip(np.arange(ANGLES)[:, None] + [-1, 0, 1], 0, ANGLES - 1)
+    low, high, half = low[near].min(axis=1), high[near].max(axis=1), half[near].max(axis=1)
+    margin = np.maximum(high - low, half) / 16
+    found = np.stack([low - margin, high + margin, half + margin], axis=1)
+    return np.where(half[:, None] > 0, found, 0.0)

@@ -1,0 +1,58 @@
+"""Where rays are sent from a point of the film into the lens: realcam's table of the pupil, in Dr.Jit."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import drjit as dr
+import mitsuba as mi
+
+from .._core import Lens, _pupil_table
+from .crossings import index_behind
+from .tables import Table
+from .trace import opaque
+
+
+class Pupil:
+    """Regions of optical direction cosines (l, m), in which the exposure integral has no factors: n^2 cos(theta) dw =
+    dl dm.
+
+    For each ring of the film a fan of triangles from the middle of a box holds all that passes. All of them are chosen
+    alike, so that a sample's weight is their number times the area of its own.
+    """
+
+    def __init__(self, lens: Lens, film_radius_mm: float, wavelengths_nm: list[float]) -> None:
+        nodes, outline, image_radius_mm = _pupil_table(lens, film_radius_mm, wavelengths_nm)
+        self.rows, self.sectors, _ = outline.shape
+        self.nodes, self.outline = Table(nodes), Table(outline)
+        self.image_radius_mm = opaque(image_radius_mm)
+        self.index_squared = index_behind(lens, len(lens.surfaces) - 1, lens.wavelength_nm) ** 2
+
+    def sample(self, x: Any, y: Any, u: Any) -> tuple[Any, Any]:
+        """Optical direction towards the scene for a point of the film (mm), and its weight: the area of direction
+        cosines over the probability. 0 where there is no light."""
+        radius = dr.sqrt(x * x + y * y)
+        is_off_axis = radius > 0
+        cos = dr.select(is_off_axis, x / radius, 1.0)
+        sin = dr.select(is_off_axis, y / radius, 0.0)
+        place = self.rows * (1 - dr.sqrt(dr.maximum(1 - radius / self.image_radius_mm, 0)))
+        row = mi.UInt32(dr.minimum(place, self.rows - 1))
+        share = place - row
+        near, far = self.nodes(row), self.nodes(row + 1)
+        centre, half_width, half_height = (dr.lerp(a, b, share) for a, b in zip(near, far, strict=True))
+
+        scaled = u.x * (2 * self.sectors)
+        number = dr.minimum(mi.UInt32(scaled), 2 * self.sectors - 1)
+        along = scaled - number
+        is_lower = number >= self.sectors
+        sector = dr.select(is_lower, number - self.sectors, number)
+        sx, sy, dx, dy, hole_squared = self.outline(row * self.sectors + sector)
+        reach = dr.sqrt(hole_squared + u.y * (1 - hole_squared))
+        l_radial = centre + half_width * reach * (sx + along * dx)
+        m_radial = half_height * reach * (sy + along * dy)
+        m_radial = dr.select(is_lower, -m_radial, m_radial)
+        l_film, m_film = l_radial * cos - m_radial * sin, l_radial * sin + m_radial * cos
+        rest = self.index_squared - l_film * l_film - m_film * m_film
+        is_lit = (rest > 0) & (radius < self.image_radius_mm)
+        area = self.sectors * (sx * dy - sy * dx) * (1 - hole_squared) * half_width * half_height
+        return mi.Vector3f(l_film, m_film, -dr.sqrt(dr.maximum(rest, 0.0))), dr.select(is_lit, area, 0.0)
