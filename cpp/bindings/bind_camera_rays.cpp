@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "../camera/film_spectrum.hpp"
 #include "../camera/last_setup.hpp"
 #include "../cuda/ray_arrays.hpp"
 #include "../devices/devices.hpp"
@@ -122,6 +123,21 @@ CameraRaysResult next_chunk(RayChunks& chunks) {
     return rays_of(chunks.order, range);
 }
 
+/// A row for each wavelength cell: where it begins and ends, and what its light, were it all, makes of white.
+py::array_t<double> film_of_white(const std::string& illuminant) {
+    const FilmSpectrum spectrum(Illuminant::parse(illuminant));
+    py::array_t<double> rows({static_cast<py::ssize_t>(spectrum.cells().size()), py::ssize_t{5}});
+    double* row = rows.mutable_data();
+    for (const WavelengthCell& cell : spectrum.cells()) {
+        *row++ = static_cast<double>(cell.first_nm);
+        *row++ = static_cast<double>(cell.last_nm);
+        for (int channel = 0; channel < 3; ++channel)
+            *row++ = static_cast<double>(cell.film[3 * channel] + cell.film[3 * channel + 1] +
+                                         cell.film[3 * channel + 2]);
+    }
+    return rows;
+}
+
 }  // namespace
 
 template <>
@@ -178,6 +194,7 @@ void bind_camera_rays(py::module_& m) {
              "wavelengths_nm"_a = py::none(), "max_rays"_a = std::int64_t{1} << 22,
              "The same rays in pieces of at most max_rays, for pictures whose rays memory does not hold: an iterator\n"
              "over CameraRays. A piece may end between two rays of a pixel. Raises InputError, DeviceError.");
+    m.def("_film_of_white", &film_of_white, "illuminant"_a);
 }
 
 }  // namespace realcam::bindings

@@ -329,7 +329,10 @@ std::pair<LensSystem, std::vector<std::string>> read_lens_with_notes(const py::o
 
 /// The content of its file, and what a file with that suffix cannot say.
 std::pair<py::bytes, std::vector<std::string>> file_content(const LensSystem& lens, const py::object& path) {
-    io::LensText text = io::lens_text_for(lens, path_from(path));
+    const std::string file = path_from(path);
+    if (io::suffix_of(file) == ".OSL")
+        return {py::module_::import("realcam.osl").attr("shader_text")(lens).attr("encode")(), {}};
+    io::LensText text = io::lens_text_for(lens, file);
     return {py::bytes(text.text), std::move(text.warnings)};
 }
 
@@ -545,8 +548,9 @@ void bind_lens(py::module_& m) {
             "file does not have. What a file leaves out and is computed or assumed is a UserWarning.")
         .def("save", &save_lens, "path"_a,
              "Writes a lens file by its suffix: .toml, from which Lens.load makes an equal lens; .zmx, .seq, .json\n"
-             "(Optiland) or .roa (ray-optics), with a UserWarning for all that these cannot say. Raises InputError,\n"
-             "and ImageFileError where no file can be made.")
+             "(Optiland) or .roa (ray-optics), with a UserWarning for all that these cannot say; .osl, a camera of Blender\n"
+             "5. Raises InputError, also for a lens that OSL cannot express, and ImageFileError where no file can be\n"
+             "made.")
         .def_static("_load_with_notes", &read_lens_with_notes, "path"_a)
         .def("_file_content", &file_content, "path"_a)
         .def_property_readonly("zoom_positions", &zoom_position_names,

@@ -18,6 +18,7 @@ EXAMPLES: dict[str, tuple[str, ...]] = {
     ),
     "lens compare": ("realcam lens compare tessar-50mm sonnar-50mm --mtf 10,30 -o both.svg",),
     "lens convert": ("realcam lens convert tessar-50mm -o tessar.zmx",),
+    "lens blender": ("realcam lens blender -o realcam-lenses.zip",),
     "lens gallery": (
         "realcam lens gallery -o lenses.png",
         "realcam lens gallery tessar-50mm sonnar-50mm --columns 2 -o two.svg",

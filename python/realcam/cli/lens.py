@@ -226,7 +226,7 @@ def compare(
 def convert(
     name: lens_options.LensName,
     output: Annotated[
-        Path, typer.Option("--output", "-o", metavar="FILE", help="A .toml, .zmx, .seq, .json or .roa file")
+        Path, typer.Option("--output", "-o", metavar="FILE", help="A .toml, .zmx, .seq, .json, .roa or .osl file")
     ],
     zoom: lens_options.Zoom = None,
     glass: lens_options.Glasses = None,
@@ -234,9 +234,31 @@ def convert(
     pbrt_thickness: lens_options.PbrtThickness = None,
     quiet: options.Quiet = False,
 ) -> None:
-    """Write a lens as a file of realcam (.toml), Zemax (.zmx), CODE V (.seq), Optiland (.json) or ray-optics."""
+    """Write a lens for realcam (.toml), Zemax (.zmx), CODE V (.seq), Optiland (.json), ray-optics or Blender (.osl)."""
     lens_options.check_not_the_lens(output, name)
     options.lens(name, zoom=zoom, glass=glass, force=force, pbrt_thickness=pbrt_thickness).save(output)
+    options.say_written(output, quiet)
+
+
+@app.command("blender")
+def blender(
+    names: Annotated[
+        Optional[list[str]],  # noqa: UP045
+        typer.Argument(
+            help="Lenses, bundled or files [all that are bundled]", metavar="LENS", autocompletion=completion_of("LENS")
+        ),
+    ] = None,
+    output: Annotated[Path, typer.Option("--output", "-o", metavar="FILE", help="A .zip file")] = Path(
+        "realcam-lenses.zip"
+    ),
+    quiet: options.Quiet = False,
+) -> None:
+    """Write an extension for Blender 5 with lenses as cameras of Cycles. All lenses take some minutes."""
+    from ..blender import write_extension
+
+    lens_options.check_not_the_lens(output, *(names or []))
+    lenses = [options.lens(name) for name in names] if names else None
+    write_extension(output, lenses, left_out=lambda why: typer.echo(f"left out: {why}", err=True))
     options.say_written(output, quiet)
 
 

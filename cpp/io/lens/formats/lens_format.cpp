@@ -49,6 +49,7 @@ std::string lens_suffixes(bool written) {
     std::vector<std::string_view> suffixes{".toml"};
     for (const LensFormat& format : kFormats)
         if (!written || format.write) suffixes.push_back(format.suffix);
+    if (written) suffixes.push_back(".osl");  // by the Python package
     std::string text(suffixes.front());
     for (std::size_t i = 1; i < suffixes.size(); ++i)
         text.append(i + 1 < suffixes.size() ? ", " : " or ").append(suffixes[i]);

@@ -1,0 +1,98 @@
+"""The way back: the scene as glTF, with the camera as realcam takes it, and a shot file with the lens's rings."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import bpy
+from bpy.props import StringProperty
+from bpy_extras.io_utils import ExportHelper
+
+from .lenses import film_mm, lenses
+
+
+class RealcamExportShot(bpy.types.Operator, ExportHelper):
+    """Write the scene (.glb) and a shot file (.toml) that realcam renders through the same lens"""
+
+    bl_idname = "export_scene.realcam"
+    bl_label = "Export realcam Shot"
+    filename_ext = ".toml"
+    filter_glob: StringProperty(default="*.toml", options={"HIDDEN"})
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        camera = context.scene.camera
+        return camera is not None and camera.data.realcam.lens != "none"
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        write_shot(context.scene, Path(self.filepath))
+        return {"FINISHED"}
+
+
+def write_shot(scene: bpy.types.Scene, path: Path) -> None:
+    """glTF has no cameras of their own kind: while it is written, the camera is a perspective one of the same angle."""
+    camera = scene.camera.data
+    camera.type = "PERSP"
+    try:
+        bpy.ops.export_scene.gltf(
+            filepath=str(path.with_suffix(".glb")), export_format="GLB", export_cameras=True, export_lights=True
+        )
+    finally:
+        camera.type = "CUSTOM"
+    path.write_text(shot_text(scene, path.with_suffix(".glb").name), encoding="utf-8")
+
+
+def shot_text(scene: bpy.types.Scene, scene_file: str) -> str:
+    rings = scene.camera.data.realcam
+    figures = lenses()[rings.lens]
+    width_mm, height_mm = film_mm(rings.lens, rings.film)
+    # Blender crops the film to the shape of the picture, along its longer side.
+    columns, rows = scene.render.resolution_x, scene.render.resolution_y
+    longer_mm = max(width_mm, height_mm)
+    film = [longer_mm * columns / max(columns, rows), longer_mm * rows / max(columns, rows)]
+    focus_m = max(_focus_m(scene), figures["nearest_m"])
+    lines = [
+        "format = 1",
+        f'scene = "{scene_file}"',
+        f'camera = "{scene.camera.name}"',
+        f'lens = "{figures["name"]}"',
+        *([f'zoom = "{figures["zoom"]}"'] if figures["zoom"] else []),
+        f"film_mm = [{film[0]:.6g}, {film[1]:.6g}]",
+        f"resolution = [{columns}, {rows}]",
+        f"focus_m = {focus_m:.9g}",
+        f"f_number = {max(rings.f_number, figures['f_number']):.6g}",
+    ]
+    if rings.blades > 2:
+        lines += [
+            f"blades = {rings.blades}",
+            f"blade_rounding = {rings.rounding:.6g}",
+            f"blade_rotation_deg = {rings.rotation_deg:.6g}",
+        ]
+    return "\n".join(lines) + "\n"
+
+
+def _focus_m(scene: bpy.types.Scene) -> float:
+    dof = scene.camera.data.dof
+    if not dof.use_dof:
+        return math.inf
+    distance = dof.focus_distance
+    if dof.focus_object is not None:
+        # Along the axis of the camera, as Cycles takes it.
+        to_camera = scene.camera.matrix_world.normalized().inverted()
+        distance = abs((to_camera @ dof.focus_object.matrix_world.translation).z)
+    return distance * scene.unit_settings.scale_length
+
+
+def _menu(self: bpy.types.Menu, _context: bpy.types.Context) -> None:
+    self.layout.operator(RealcamExportShot.bl_idname, text="realcam Shot (.toml, .glb)")
+
+
+def register() -> None:
+    bpy.utils.register_class(RealcamExportShot)
+    bpy.types.TOPBAR_MT_file_export.append(_menu)
+
+
+def unregister() -> None:
+    bpy.types.TOPBAR_MT_file_export.remove(_menu)
+    bpy.utils.unregister_class(RealcamExportShot)

@@ -1,0 +1,112 @@
+"""The rings of the lens, kept with each camera, and what they change of it."""
+
+from __future__ import annotations
+
+import bpy
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty
+
+from .lenses import FILMS_MM, film_mm, lenses, shader_of
+
+# Blender keeps no reference of its own to the texts of a menu.
+_MENU: list[tuple[str, str, str]] = []
+
+
+def lens_menu(_self: object, _context: object) -> list[tuple[str, str, str]]:
+    if not _MENU:
+        _MENU.append(("none", "None: Blender's own", "A perspective camera"))
+        _MENU.extend((key, lens["title"], lens["source"]) for key, lens in lenses().items())
+    return _MENU
+
+
+def set_lens(self: RealcamLens, _context: object) -> None:
+    """Gives the camera the shader of the lens, as a text inside of the file, which then needs no extension."""
+    camera = self.id_data
+    if self.lens == "none":
+        camera.type = "PERSP"
+        return
+    name = f"{self.lens}.osl"
+    text = bpy.data.texts.get(name) or bpy.data.texts.new(name)
+    text.from_string(shader_of(self.lens))
+    camera.type = "CUSTOM"
+    camera.custom_mode = "INTERNAL"
+    # Blender compiles the text when it becomes the camera's, and makes the parameters.
+    camera.custom_shader = None
+    camera.custom_shader = text
+    # A perspective of the same angle is what the viewport shows without Cycles.
+    camera.lens = lenses()[self.lens]["focal_length_mm"]
+    if not camera.dof.use_dof:
+        camera.dof.use_dof = True
+        camera.dof.focus_distance = 10 / _metres_per_unit()
+    set_film(self, None)
+    set_rings(self, None)
+
+
+def set_film(self: RealcamLens, _context: object) -> None:
+    if self.lens == "none":
+        return
+    camera = self.id_data
+    width_mm, height_mm = film_mm(self.lens, self.film)
+    camera.sensor_width, camera.sensor_height = width_mm, height_mm
+    # A picture that is higher than wide holds the film upright.
+    camera.sensor_fit = "AUTO"
+
+
+def set_rings(self: RealcamLens, _context: object) -> None:
+    if self.lens == "none":
+        return
+    camera = self.id_data
+    parameters = camera.cycles_custom
+    parameters["focus_m"] = 0.0  # the focus of Blender's depth of field, which can be an object
+    parameters["f_number"] = max(self.f_number, lenses()[self.lens]["f_number"])
+    parameters["blades"] = float(self.blades)
+    parameters["rounding"] = self.rounding
+    parameters["rotation_deg"] = self.rotation_deg
+    parameters["dispersion"] = int(self.dispersion)
+    parameters["keep_brightness"] = int(self.keep_brightness)
+    parameters["metres_per_unit"] = _metres_per_unit()
+    camera.update_tag()
+
+
+def _metres_per_unit() -> float:
+    return bpy.context.scene.unit_settings.scale_length if bpy.context.scene else 1.0
+
+
+class RealcamLens(bpy.types.PropertyGroup):
+    lens: EnumProperty(name="Lens", items=lens_menu, update=set_lens)
+    film: EnumProperty(name="Film", items=[(key, name, "") for key, (name, _) in FILMS_MM.items()], update=set_film)
+    f_number: FloatProperty(
+        name="f-number",
+        default=0.0,
+        min=0.0,
+        max=64.0,
+        precision=1,
+        update=set_rings,
+        description="The ring of the diaphragm; numbers below that of the lens are wide open",
+    )
+    blades: IntProperty(
+        name="Blades", default=0, min=0, max=16, update=set_rings, description="Of the diaphragm; 0 to 2: it is round"
+    )
+    rounding: FloatProperty(
+        name="Rounding", default=0.0, min=0.0, max=1.0, update=set_rings, description="0: straight blades; 1: a circle"
+    )
+    rotation_deg: FloatProperty(name="Rotation", default=0.0, update=set_rings, description="Of the first blade")
+    dispersion: BoolProperty(
+        name="Dispersion", default=True, update=set_rings, description="Each wavelength has its own way through glass"
+    )
+    keep_brightness: BoolProperty(
+        name="Keep Brightness",
+        default=True,
+        update=set_rings,
+        description="White is white in the middle of the picture at any f-number; otherwise as the film is lit",
+    )
+
+
+def register() -> None:
+    bpy.utils.register_class(RealcamLens)
+    bpy.types.Camera.realcam = PointerProperty(type=RealcamLens)
+
+
+def unregister() -> None:
+    del bpy.types.Camera.realcam
+    bpy.utils.unregister_class(RealcamLens)
+    _MENU.clear()

@@ -1,0 +1,103 @@
+"""Writes the extension: the files of its folder, a shader for each lens, and a preset for each."""
+
+from __future__ import annotations
+
+import io
+import json
+import math
+import os
+import zipfile
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from typing import Any
+
+from .._core import InputError, Lens, lens_names
+from ..files import check_target, write_whole
+from ..osl import focus_range, shader_text, wide_f_number
+from ..osl.expressible import check_expressible
+
+_FOLDER = Path(__file__).with_name("extension")
+# The earliest date of a zip file: the same lenses make the same bytes.
+_DATE = (1980, 1, 1, 0, 0, 0)
+
+
+def write_extension(
+    path: str | os.PathLike[str],
+    lenses: Sequence[Lens] | None = None,
+    *,
+    left_out: Callable[[str], None] | None = None,
+) -> list[str]:
+    """Writes the extension as a .zip for Blender's "Install from Disk", and returns the names of its lenses.
+
+    lenses: None: all bundled ones. Of a lens that zooms, each position is a lens. Those that OSL cannot express are
+    left out, and left_out is told why. Raises InputError where none is left, and ImageFileError.
+    """
+    if Path(path).suffix.lower() != ".zip":
+        raise InputError(f"{os.fspath(path)}: the suffix .zip is wanted")
+    check_target(path)
+    expressible = []
+    for lens in lenses if lenses is not None else [Lens.load(name) for name in lens_names()]:
+        try:
+            check_expressible(lens)
+        except InputError as error:
+            if left_out:
+                left_out(str(error))
+            continue
+        expressible += [lens.zoomed(position) for position in lens.zoom_positions] or [lens]
+    if not expressible:
+        raise InputError("none of the lenses can be written as OSL")
+    with ThreadPoolExecutor(os.cpu_count()) as threads:
+        shaders = list(threads.map(shader_text, expressible))
+    figures = {_key(lens): _figures(lens, text) for lens, text in zip(expressible, shaders, strict=True)}
+    if len(figures) < len(expressible):
+        raise InputError("two of the lenses have the same name")
+    files = {
+        str(file.relative_to(_FOLDER)): file.read_text(encoding="utf-8")
+        for file in sorted(_FOLDER.rglob("*"))
+        if file.suffix in (".py", ".toml")
+    }
+    files["lenses/lenses.json"] = json.dumps(figures, indent=1, ensure_ascii=False)
+    for (key, about), text in zip(figures.items(), shaders, strict=True):
+        files[f"lenses/{key}.osl"] = text
+        files[f"presets/camera/{_file_name(about['title'])}.py"] = _PRESET.format(key=key)
+    write_whole(path, _zipped(files))
+    return list(figures)
+
+
+_PRESET = """\
+import bpy
+bpy.context.camera.realcam.film = 'lens'
+bpy.context.camera.realcam.lens = '{key}'
+"""
+
+
+def _key(lens: Lens) -> str:
+    return f"{lens.name}-at-{lens.zoom_position}" if lens.zoom_position else lens.name
+
+
+def _figures(lens: Lens, text: str) -> dict[str, Any]:
+    zoom = f", at {lens.zoom_position}" if lens.zoom_position else ""
+    return {
+        "title": (lens.title or lens.name) + zoom,
+        "source": lens.source,
+        "name": lens.name,
+        "zoom": lens.zoom_position,
+        "f_number": round(wide_f_number(lens), 4),
+        "focal_length_mm": round(lens.focused(math.inf).first_order().effective_focal_length_mm, 3),
+        "nearest_m": focus_range(lens).nearest_m,
+        "film_mm": lens.film_mm,
+        "disperses": "int dispersion = 1" in text,
+    }
+
+
+def _file_name(title: str) -> str:
+    return "realcam_" + "".join(c if c.isalnum() or c in "-." else "_" for c in title)
+
+
+def _zipped(files: dict[str, str]) -> bytes:
+    buffer = io.BytesIO()
+    with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, text in sorted(files.items()):
+            archive.writestr(zipfile.ZipInfo(name, _DATE), text, zipfile.ZIP_DEFLATED)
+    return buffer.getvalue()

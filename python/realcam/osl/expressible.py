@@ -1,0 +1,41 @@
+"""Which lenses OSL can express."""
+
+from __future__ import annotations
+
+import math
+
+from .._core import InputError, Lens, Surface
+
+
+def check_expressible(lens: Lens) -> None:
+    """Raises InputError that names the surface for which there is no code, or what else is in the way."""
+    for number, surface in enumerate(lens.surfaces, 1):
+        why = _why_not(surface)
+        if why:
+            _refuse(lens, f"surface {number} {why}")
+    if math.isfinite(lens.film_radius_of_curvature_mm):
+        _refuse(lens, "its film is curved")
+    if not lens.is_rotational:
+        _refuse(lens, "its film is tilted or shifted")
+    if lens.surfaces[-1].type == "refracting" and lens.surfaces[-1].material.index(lens.wavelength_nm) != 1:
+        _refuse(lens, f"surface {len(lens.surfaces)} has glass up to the film")
+    if lens.first_order().effective_focal_length_mm == 0 or not math.isfinite(lens.first_order().f_number):
+        _refuse(lens, "it is afocal or telecentric before its film, and has no f-number")
+
+
+def _refuse(lens: Lens, why: str) -> None:
+    raise InputError(f'lens "{lens.name}" cannot be written as OSL, which is for centred lenses of revolution: {why}')
+
+
+def _why_not(surface: Surface) -> str:
+    if any(surface.decentre_mm) or any(surface.tilt_deg):
+        return "is tilted or decentred"
+    if surface.form != "conic":
+        return f"is a {surface.form}"
+    if surface.radial_terms or surface.xy_terms or surface.zernike or surface.forbes:
+        return "has terms of a free form"
+    if surface.aperture:
+        return "has an aperture that is no circle about the axis"
+    if surface.obscurations:
+        return "has obscurations"
+    return ""

@@ -1,0 +1,50 @@
+"""What surfaces do to light of each wavelength, as polynomials for OSL."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .._core import Lens
+
+_POLE_NM = 200.0
+"""Indices grow towards the resonances in the ultraviolet: in 1 / (wavelength - pole) they are nearly polynomials."""
+_TERMS = 4
+
+
+def colour_variable(lens: Lens, wavelength_nm: NDArray[np.float64]) -> NDArray[np.float64]:
+    """0 at the lens's own wavelength, and 1 at 400 nm."""
+    own = 1 / (lens.wavelength_nm - _POLE_NM)
+    return (1 / (np.asarray(wavelength_nm) - _POLE_NM) - own) / (1 / (400 - _POLE_NM) - own)
+
+
+def media_indices(lens: Lens, wavelength_nm: float) -> list[float]:
+    """The index before the lens, and behind each surface."""
+    indices = [1.0]
+    for surface in lens.surfaces:
+        indices.append(surface.material.index(wavelength_nm) if surface.type == "refracting" else indices[-1])
+    return indices
+
+
+def bends(lens: Lens, wavelengths_nm: Sequence[float]) -> list[list[float]]:
+    """Of each surface n'^2 / n^2 - 1 for light towards the scene, as a polynomial of the colour variable.
+
+    The constant is exact. One that is the same for all wavelengths has that alone.
+    """
+
+    def at(wavelength_nm: float) -> NDArray[np.float64]:
+        n = np.array(media_indices(lens, wavelength_nm), dtype=np.float64)
+        changes: NDArray[np.float64] = (n[:-1] / n[1:]) ** 2 - 1
+        return changes
+
+    own = at(lens.wavelength_nm)
+    places = colour_variable(lens, np.array(wavelengths_nm))
+    values = np.array([at(wavelength_nm) for wavelength_nm in wavelengths_nm]) - own
+    powers = places[:, None] ** np.arange(1, 1 + _TERMS)
+    rest = np.linalg.lstsq(powers, values, rcond=None)[0].T
+    return [
+        [float(constant), *map(float, terms)] if np.ptp(column) > 1e-7 else [float(constant)]
+        for constant, terms, column in zip(own, rest, values.T, strict=True)
+    ]

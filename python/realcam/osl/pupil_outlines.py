@@ -1,0 +1,128 @@
+"""Where the light of a film point passes a lens: outlines in direction cosines, found with real rays."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .._core import Lens
+
+Doubles = NDArray[np.float64]
+_COLUMNS, _ROWS = 33, 17
+_HALVINGS = 7
+
+
+@dataclass(frozen=True)
+class Outlines:
+    """Of film points on the +x axis, at R radii. The light lies between m and -m, in all R points of the edge."""
+
+    l: Doubles  # noqa: E741
+    """(R, P): direction cosines along x of points on the edge; NaN: the film point is dark."""
+    m: Doubles
+    """(R, P): those along y, which are not negative."""
+    inner_l: Doubles
+    """(R, Q): directions on a grid that pass, to see what is blocked in the middle; NaN: not one that passes."""
+    inner_m: Doubles
+    boxes: Doubles
+    """(R, 3): l from and to, m to: what holds the outline."""
+
+    @property
+    def lit(self) -> NDArray[np.bool_]:
+        return np.isfinite(self.boxes[:, 0])
+
+
+def rear_boxes(lens: Lens, radii_mm: Doubles) -> Doubles:
+    """(R, 3): directions from film points on the x axis to the lens's last surface, and some beside it."""
+    last = lens.surfaces[-1]
+    rim_mm = 1.1 * last.clear_semi_diameter_mm
+    away_mm = max(0.5 * lens.film_distance_mm, lens.film_distance_mm - last.sag_mm(last.clear_semi_diameter_mm))
+    angles = np.linspace(0, np.pi, 33)
+    x = rim_mm * np.cos(angles) - radii_mm[:, None]
+    y = rim_mm * np.sin(angles)
+    length = np.sqrt(x**2 + y**2 + away_mm**2)
+    directions_l, directions_m = x / length, y / length
+    return np.stack([directions_l.min(axis=1), directions_l.max(axis=1), directions_m.max(axis=1)], axis=1)
+
+
+def passes(lens: Lens, radii_mm: Doubles, l: Doubles, m: Doubles, wavelengths_nm: Sequence[float]) -> NDArray[np.bool_]:  # noqa: E741
+    """(R, K): whether light from film points (R,) in directions (R, K) passes, at any of the wavelengths."""
+    rest = 1 - l**2 - m**2
+    directions = np.stack([l, m, -np.sqrt(np.maximum(rest, 1e-12))], axis=-1).reshape(-1, 3)
+    origins = np.zeros_like(directions)
+    origins[:, 0] = np.repeat(radii_mm, l.shape[1])
+    origins[:, 2] = lens.film_position_mm
+    passed = np.zeros(len(directions), dtype=bool)
+    for wavelength_nm in wavelengths_nm:
+        left = ~passed
+        passed[left] = (
+            lens.trace(origins[left], directions[left], wavelength_nm=wavelength_nm, dtype="float32").status == 0
+        )
+    return passed.reshape(l.shape) & (rest > 0)
+
+
+def outlines(lens: Lens, radii_mm: Doubles, boxes: Doubles, wavelengths_nm: Sequence[float], rounds: int) -> Outlines:
+    """The outlines inside of boxes (R, 3), which are narrowed down in so many rounds first."""
+    for _ in range(rounds):
+        boxes = _narrowed(lens, radii_mm, boxes, wavelengths_nm)
+
+    def at(l: Doubles, m: Doubles) -> NDArray[np.bool_]:  # noqa: E741
+        return passes(lens, radii_mm, l, m, wavelengths_nm)
+
+    grid_l, grid_m = _grid(boxes)
+    shape = (len(radii_mm), _ROWS, _COLUMNS)
+    passed = at(grid_l.reshape(len(radii_mm), -1), grid_m.reshape(len(radii_mm), -1)).reshape(shape)
+    width = (boxes[:, 1] - boxes[:, 0])[:, None] / (_COLUMNS - 1)
+    height = boxes[:, 2][:, None] / (_ROWS - 1)
+    row_lit: NDArray[np.bool_] = np.any(passed, axis=2)
+    column_lit: NDArray[np.bool_] = np.any(passed, axis=1)
+    row_m, column_l = grid_m[:, :, 0], grid_l[:, 0, :]
+    first = np.take_along_axis(grid_l, passed.argmax(axis=2)[..., None], 2)[..., 0]
+    last = np.take_along_axis(grid_l, _COLUMNS - 1 - passed[:, :, ::-1].argmax(axis=2)[..., None], 2)[..., 0]
+    top = np.take_along_axis(grid_m, _ROWS - 1 - passed[:, ::-1].argmax(axis=1)[:, None], 1)[:, 0]
+    lows, highs = first - width, last + width
+    tops = top + height
+    for _ in range(_HALVINGS):
+        middle_low, middle_high, middle_top = 0.5 * (lows + first), 0.5 * (highs + last), 0.5 * (tops + top)
+        rows = at(np.hstack([middle_low, middle_high, column_l]), np.hstack([row_m, row_m, middle_top]))
+        low_in, high_in, top_in = np.split(rows, [_ROWS, 2 * _ROWS], axis=1)
+        first, lows = np.where(low_in, middle_low, first), np.where(low_in, lows, middle_low)
+        last, highs = np.where(high_in, middle_high, last), np.where(high_in, highs, middle_high)
+        top, tops = np.where(top_in, middle_top, top), np.where(top_in, tops, middle_top)
+    row_dark, column_dark = ~row_lit, ~column_lit
+    edge_l = np.hstack([np.where(row_dark, np.nan, lows), np.where(row_dark, np.nan, highs), column_l])
+    edge_m = np.hstack([row_m, row_m, np.where(column_dark, np.nan, tops)])
+    missing = np.isnan(edge_l) | np.isnan(edge_m)
+    edge_l[missing] = edge_m[missing] = np.nan
+    inside = passed.reshape(len(radii_mm), -1)
+    inner = [np.where(inside, grid.reshape(inside.shape), np.nan) for grid in (grid_l, grid_m)]
+    return Outlines(edge_l, edge_m, inner[0], inner[1], boxes)
+
+
+def _grid(boxes: Doubles) -> tuple[Doubles, Doubles]:
+    """(R, rows, columns) directions over boxes, from the middle of the pupil upwards."""
+    across = np.linspace(0, 1, _COLUMNS)
+    l = boxes[:, 0, None] + across * (boxes[:, 1] - boxes[:, 0])[:, None]  # noqa: E741
+    m = boxes[:, 2, None] * np.linspace(0, 1, _ROWS)
+    shape = (len(boxes), _ROWS, _COLUMNS)
+    return np.broadcast_to(l[:, None, :], shape).copy(), np.broadcast_to(m[:, :, None], shape).copy()
+
+
+def _narrowed(lens: Lens, radii_mm: Doubles, boxes: Doubles, wavelengths_nm: Sequence[float]) -> Doubles:
+    """The boxes of what passes on a grid and a cell beside it; NaN where nothing does."""
+    l, m = _grid(boxes)  # noqa: E741
+    passed = passes(lens, radii_mm, l.reshape(len(boxes), -1), m.reshape(len(boxes), -1), wavelengths_nm)
+    passed = passed.reshape(l.shape)
+    columns: NDArray[np.bool_] = np.any(passed, axis=1)
+    rows: NDArray[np.bool_] = np.any(passed, axis=2)
+    cell = (boxes[:, 1] - boxes[:, 0]) / (_COLUMNS - 1)
+    first = boxes[:, 0] + cell * (columns.argmax(axis=1) - 1)
+    last = boxes[:, 0] + cell * (_COLUMNS - columns[:, ::-1].argmax(axis=1))
+    top = boxes[:, 2] / (_ROWS - 1) * (_ROWS - rows[:, ::-1].argmax(axis=1))
+    narrowed = np.stack(
+        [np.maximum(first, boxes[:, 0]), np.minimum(last, boxes[:, 1]), np.minimum(top, boxes[:, 2])], 1
+    )
+    narrowed[~np.any(columns, axis=1)] = np.nan
+    return narrowed

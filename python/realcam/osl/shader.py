@@ -1,0 +1,294 @@
+"""A lens as an OSL camera shader, its surfaces one after the other."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Sequence
+
+import numpy as np
+
+from .._core import Lens, Surface, _film_of_white
+from .expressible import check_expressible
+from .focus_range import FocusRange, focus_range, gaps_of, wide_f_number
+from .functions import ASPHERE, HOLE, MIRROR, PLANE, PUPIL, SPHERE, STOP
+from .glasses import bends, colour_variable
+from .pupil_table import STOPS, PupilTable, pupil_table
+
+_CELLS = 64
+"""Of the spectrum, which a pixel's samples visit in turn."""
+_SEEN_NM = (420.0, 680.0)
+"""At these wavelengths and the lens's own, the pupil table holds all that passes."""
+
+
+def shader_text(lens: Lens) -> str:
+    """The lens as a shader for custom cameras of Blender 5, in OSL.
+
+    Focus, f-number and blades are parameters, which begin as the lens stands. Raises InputError where OSL cannot
+    express the lens, with the surface.
+    """
+    check_expressible(lens)
+    focusing = focus_range(lens)
+    spectrum = _film_of_white("D65").reshape(_CELLS, -1, 5)
+    edges_nm = np.append(spectrum[:, 0, 0], spectrum[-1, -1, 1])
+    changes = bends(lens, list(np.linspace(edges_nm[1], edges_nm[-2], 40)))
+    disperses = any(len(change) > 1 for change in changes)
+    seen = (lens.wavelength_nm, *_SEEN_NM) if disperses else (lens.wavelength_nm,)
+    table = pupil_table(focusing, seen)
+    aspheres = [s for s in lens.surfaces if s.type in ("refracting", "mirror") and (s.conic or s.aspheric_coefficients)]
+    terms = max((len(_terms(s)) for s in aspheres), default=0)
+    numbers = {
+        "reach": _float(table.reach_mm),
+        "wide": _float(wide_f_number(lens)),
+        "full": _full(lens),
+        "length": _float(_length(lens, focusing)),
+        "moves": "".join(f" + gap_{i + 1}" for i in focusing.gaps_mm),
+        "focal_length": _float(abs(lens.first_order().effective_focal_length_mm)),
+    }
+    parts = [
+        _heading(lens),
+        SPHERE,
+        HOLE if any(s.inner_semi_diameter_mm for s in lens.surfaces) else "",
+        MIRROR if any(s.type == "mirror" for s in lens.surfaces) else "",
+        PLANE,
+        STOP,
+        ASPHERE.format(terms=terms, steps=10, tolerance=1e-6) if aspheres else "",
+        PUPIL.format(rows=table.ellipses.shape[2], stops=len(STOPS), last=STOPS[-1], **_pupil_numbers(table)),
+        _parameters(lens, focusing, disperses),
+        "{",
+        _START.format(**numbers),
+        _focus(focusing),
+        _colour(lens, spectrum, edges_nm) if disperses else "    color film = 1;\n",
+        _DRAW.format(**numbers),
+        _surfaces(lens, focusing, changes, terms),
+        _END.format(**numbers),
+        "}",
+    ]
+    return "\n".join(part for part in parts if part) + "\n"
+
+
+_START = """\
+    // The film point, upside down as the image is, in mm.
+    vector size = 0;
+    getattribute("cam:sensor_size", size);
+    point raster = camera_shader_raster_position();
+    point at = point((0.5 - raster[0]) * size[0], (0.5 - raster[1]) * size[1], 0);
+    float radius = hypot(at[0], at[1]);
+    throughput = 0;
+    if (radius >= {reach}) return;
+
+    // How far the diaphragm is open.
+    float open = f_number > 0 ? min(1, {wide} / f_number) : 1;
+    float stop_radius = open * {full};
+    float apothem = stop_radius;
+    float corner = stop_radius;
+    if (blades >= 3) {{
+        apothem = apothem_of(blades, rounding, stop_radius, {full});
+        float linear = (1 - rounding) * cos(M_PI / blades);
+        corner = min({full}, apothem * (2 - rounding) / (linear + sqrt(linear * linear + rounding * (2 - rounding))));
+    }}
+    float rotation = radians(rotation_deg);
+    vector chance = camera_shader_random_sample();
+"""
+
+_DRAW = """\
+    // A direction, evenly out of the ellipse that holds the pupil of this film point.
+    float middle = 0;
+    float half_l = 0;
+    float half_m = 0;
+    float hole = 0;
+    find_pupil(radius / {reach}, focus, corner / {full}, middle, half_l, half_m, hole);
+    float outwards = sqrt(hole * hole + (1 - hole * hole) * chance[0]);
+    float l = middle + half_l * outwards * cos(2 * M_PI * chance[1]);
+    float m = half_m * outwards * sin(2 * M_PI * chance[1]);
+    float rest = 1 - l * l - m * m;
+    if (rest <= 0) return;
+    float cosine = radius > 0 ? at[0] / radius : 1;
+    float sine = radius > 0 ? at[1] / radius : 0;
+    vector way = vector(l * cosine - m * sine, l * sine + m * cosine, -sqrt(rest));
+"""
+
+_END = """\
+    // From the lens's frame, in mm, to the camera's, whose origin is the middle of the film.
+    float depth = {length}{moves};
+    position = point(at[0], at[1], depth - at[2]) * (0.001 / metres_per_unit);
+    direction = normalize(vector(way[0], way[1], -way[2]));
+    // The irradiance is the area of the directions that pass. One more factor makes the middle of the film 1.
+    float brightness = M_PI * half_l * half_m * (1 - hole * hole);
+    if (keep_brightness) brightness *= 4 * pow({wide} / open, 2) / M_PI;
+    throughput = brightness * film;
+    // From pixel to pixel, as without distortion: for bump maps and wireframes, at a part of the cost.
+    vector across = Dx(raster);
+    vector up = Dy(raster);
+    dPdx = 0;
+    dPdy = 0;
+    dDdx = vector(across[0] * size[0] / {focal_length}, 0, 0);
+    dDdy = vector(0, up[1] * size[1] / {focal_length}, 0);
+"""
+
+
+def _heading(lens: Lens) -> str:
+    lines = [f"// {line}" for line in (lens.title or lens.name, lens.source) if line]
+    lines += ["// A camera for Blender 5 (Cycles), written by realcam from the lens's prescription.", ""]
+    return "\n".join(line.replace("\n", " ") for line in lines)
+
+
+def _name(lens: Lens) -> str:
+    return "realcam_" + (re.sub(r"\W+", "_", lens.name, flags=re.ASCII).strip("_") or "lens")
+
+
+def _parameters(lens: Lens, focusing: FocusRange, disperses: bool) -> str:
+    focus_m = lens.focus_distance_m if math.isfinite(lens.focus_distance_m) else 0
+    full_mm = lens.surfaces[lens.stop_index].clear_semi_diameter_mm
+    wide = wide_f_number(lens)
+    f_number = wide * full_mm / lens.stop_semi_diameter_mm if lens.stop_semi_diameter_mm < full_mm else 0
+    nearest = f"{focusing.nearest_m:.3g}"
+    rows = [
+        (
+            "float",
+            "focus_m",
+            focus_m,
+            f"Focus from the film; 0: that of the depth of field; nearest {nearest} m",
+            0,
+        ),
+        ("float", "f_number", f_number, f"f-number of the ring; 0: wide open, f/{wide:.3g}", 0),
+        ("float", "blades", lens.iris_blades, "Blades of the diaphragm; 0: round", 0),
+        ("float", "rounding", lens.iris_rounding, "Of the blades: 0 is straight, 1 a circle", 0),
+        ("float", "rotation_deg", lens.iris_rotation_deg, "Of the first blade", None),
+        ("int", "dispersion", int(disperses), "Whether each glass has an index for each wavelength", None),
+        (
+            "int",
+            "keep_brightness",
+            1,
+            "White is white in the middle at any f-number; else as the film is lit",
+            None,
+        ),
+        ("float", "metres_per_unit", 1, "Of the scene", 0),
+    ]
+    written = []
+    for kind, name, value, help_text, least in rows:
+        hints = [f'string help = "{help_text}"']
+        if kind == "int":
+            hints.append('string widget = "checkBox"')
+        if least is not None:
+            hints.append(f"float min = {least}")
+        written.append(f"    {kind} {name} = {_float(value)} [[ {', '.join(hints)} ]],")
+    outputs = [
+        "point position",
+        "vector direction",
+        "color throughput",
+        *(f"vector d{p}d{q}" for p in "PD" for q in "xy"),
+    ]
+    written += [f"    output {output} = 0," for output in outputs]
+    return f"shader {_name(lens)}(\n" + "\n".join(written)[:-1] + ")"
+
+
+def _focus(focusing: FocusRange) -> str:
+    lines = [
+        "    // Focus: 0 at infinity, 1 at the nearest.",
+        "    float object = focus_m;",
+        "    if (object <= 0) {",
+        '        getattribute("cam:focal_distance", object);',
+        "        object = object < 0.0001 ? 0 : object * metres_per_unit;",
+        "    }",
+        "    float focus = 0;",
+        f"    if (object > 0) focus = object > {_float(focusing.nearest_m)} ? "
+        f"{_float(focusing.nearest_m - focusing.start_m)} / (object - {_float(focusing.start_m)}) : 1;",
+    ]
+    lines += [
+        f"    float gap_{index + 1} = {_horner(list(polynomial.coef), 'focus')};"
+        for index, polynomial in focusing.gaps_mm.items()
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def _colour(lens: Lens, spectrum: np.ndarray, edges_nm: np.ndarray) -> str:
+    film = spectrum[:, :, 2:].mean(axis=1)
+    return f"""\
+    // A wavelength: the first digits of a random number choose the cell, a hash the place in it.
+    float colour = 0;
+    color film = 1;
+    if (dispersion) {{
+        float edges[{_CELLS + 1}] = {_array(colour_variable(lens, edges_nm))};
+        float whites[{3 * _CELLS}] = {_array(film.ravel())};
+        int cell = min((int)(chance[0] * {_CELLS}), {_CELLS - 1});
+        float within = noise("hash", chance[0] * 4096, chance[1] * 4096);
+        colour = edges[cell] + within * (edges[cell + 1] - edges[cell]);
+        film = color(whites[3 * cell], whites[3 * cell + 1], whites[3 * cell + 2]);
+        chance[0] = chance[0] * {_CELLS} - cell;
+    }}
+"""
+
+
+def _surfaces(lens: Lens, focusing: FocusRange, changes: list[list[float]], terms: int) -> str:
+    gaps = gaps_of(focusing.lens)
+    lines = ["    // The surfaces, from the film to the scene."]
+    forwards = -1
+    for index in reversed(range(len(lens.surfaces))):
+        surface = lens.surfaces[index]
+        gap = f"gap_{index + 1}" if index in focusing.gaps_mm else _float(gaps[index])
+        rim = _float(surface.clear_semi_diameter_mm)
+        shape = [gap, _float(surface.curvature_per_mm)]
+        bend = _horner(changes[index], "colour")
+        if surface.type == "stop":
+            call = f"cross_stop({gap}, corner, blades, rounding, rotation, apothem, at, way)"
+        elif surface.type == "aperture":
+            call = f"cross_plane({gap}, {rim}, at, way)"
+        elif surface.type == "mirror":
+            call = f"cross_mirror({', '.join(shape)}, {rim}, {forwards}, at, way)"
+            forwards = -forwards
+        elif surface.conic or surface.aspheric_coefficients:
+            lines.append(f"    float terms_{index + 1}[{terms}] = {_array(_terms(surface, terms))};")
+            shape += [_float(1 + surface.conic), f"terms_{index + 1}"]
+            call = f"cross_asphere({', '.join(shape)}, {rim}, {bend}, {forwards}, at, way)"
+        else:
+            call = f"cross_sphere({', '.join(shape)}, {rim}, {bend}, {forwards}, at, way)"
+        lines.append(f"    if (!{call}) return;")
+        if surface.inner_semi_diameter_mm:
+            lines.append(f"    if (!misses_hole({_float(surface.inner_semi_diameter_mm)}, at)) return;")
+    return "\n".join(lines) + "\n"
+
+
+def _length(lens: Lens, focusing: FocusRange) -> float:
+    return sum(gap for i, gap in enumerate(gaps_of(focusing.lens)) if i not in focusing.gaps_mm)
+
+
+def _full(lens: Lens) -> str:
+    return _float(lens.surfaces[lens.stop_index].clear_semi_diameter_mm)
+
+
+def _terms(surface: Surface, count: int = 0) -> list[float]:
+    """From r^4 on, in mm at the rim."""
+    powers = surface.aspheric_coefficients
+    count = max(count, max(powers, default=4) // 2 - 1)
+    rim_mm = surface.clear_semi_diameter_mm
+    return [powers.get(2 * i + 4, 0.0) * rim_mm ** (2 * i + 4) for i in range(count)]
+
+
+def _pupil_numbers(table: PupilTable) -> dict[str, object]:
+    blocked = bool(table.ellipses[..., 4].any())
+    columns = 5 if blocked else 4
+    return {
+        "columns": columns,
+        "count": table.ellipses[..., :columns].size,
+        "ellipses": _array(table.ellipses[..., :columns].ravel()),
+        "foci": table.ellipses.shape[0],
+        "choice": " : ".join(f"open > {stop:.6g} ? {i}" for i, stop in enumerate(STOPS[1:-1])) + f" : {len(STOPS) - 2}",
+        "levels": _array(STOPS),
+        "hole": "\n        hole += weight * mix(ellipses[wide + 4], ellipses[narrow + 4], closing);" if blocked else "",
+    }
+
+
+def _horner(coefficients: list[float], variable: str) -> str:
+    text = _float(coefficients[-1])
+    for coefficient in reversed(coefficients[:-1]):
+        text = f"{_float(coefficient)} + {variable} * ({text})"
+    return text
+
+
+def _float(value: float) -> str:
+    return f"{value:.9g}"
+
+
+def _array(values: Sequence[float] | np.ndarray) -> str:
+    return "{" + ", ".join(f"{value:.6g}" for value in values) + "}"
