@@ -25,7 +25,7 @@ public:
             const Unlocked unlocked;
             session_ = make_session(device, warn_of_device);
         }
-        set(scene, camera);
+        set(scene, camera, settings_);
     }
     ~PythonSession() {
         if (has_lost_threads()) static_cast<void>(session_.release());
@@ -33,13 +33,14 @@ public:
     PythonSession(const PythonSession&) = delete;
     PythonSession& operator=(const PythonSession&) = delete;
 
-    void set(const Assembly& scene, const Camera& camera) {
+    void set(const Assembly& scene, const Camera& camera, const RenderSettings& settings) {
         {
             const Unlocked unlocked;
-            session_->set(scene, camera, settings_, heed_signals);
+            session_->set(scene, camera, settings, heed_signals);
         }
         scene_ = scene;
         camera_ = camera;
+        settings_ = settings;
     }
 
     /// take(progress), of what was set last.
@@ -133,7 +134,7 @@ void bind_session(py::module_& m) {
     py::class_<PythonSession>(m, "_Session")
         .def(py::init<const Assembly&, const Camera&, const RenderSettings&, const std::string&>(), "scene"_a,
              "camera"_a, "settings"_a, "device"_a)
-        .def("set", &PythonSession::set, "scene"_a, "camera"_a)
+        .def("set", &PythonSession::set, "scene"_a, "camera"_a, "settings"_a)
         .def("add", &PythonSession::add, "spp"_a)
         .def("add_until", &PythonSession::add_until, "wanted"_a)
         .def("picture", &PythonSession::picture)

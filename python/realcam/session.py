@@ -61,15 +61,12 @@ class Session:
     ) -> None:
         self._asked_settings, self._asked_camera, self._device = settings_of(settings, changes), camera, device
         self._settled = self._plan(scene, camera)  # raises for what is no scene or camera
-        self._core = self._begin(scene, self._settled)
+        self._core = _core._Session(scene, self._settled.camera, self._settled.settings, device)
         warn_of_no_light(scene)
         warn_of_effects(camera, self._settled.settings)
 
     def _plan(self, scene: Scene, camera: Camera) -> Settled:
         return settled(scene, camera, self._asked_settings, self._device, stacklevel=4)
-
-    def _begin(self, scene: Scene, now: Settled) -> _core._Session:
-        return _core._Session(scene, now.camera, now.settings, self._device)
 
     @property
     def scene(self) -> Scene:
@@ -93,36 +90,41 @@ class Session:
         """What it computes with, for people: as RenderStats.device."""
         return self._core.device
 
-    def set(self, *, scene: Scene | None = None, camera: Camera | None = None) -> None:
-        """Another scene or camera; None keeps the one that was set last.
+    def set(
+        self, *, scene: Scene | None = None, camera: Camera | None = None, settings: RenderSettings | None = None
+    ) -> None:
+        """Another scene, camera or settings; None keeps what was set last.
 
-        Only what changed is prepared again: of a scene from moved(), the places; of a camera with
-        the same lens and film, its pose. Either begins a new picture. Another exposure time or ISO only develops the
-        samples anew. Raises KeyboardInterrupt on Ctrl-C.
+        Only what changed is prepared again: of a scene from moved(), the places; of a camera with the same lens and
+        film, its pose. Each begins a new picture. Another exposure time or ISO only develops the samples anew. Raises
+        KeyboardInterrupt on Ctrl-C.
         """
         new_scene = self.scene if scene is None else scene
         asked = self._asked_camera if camera is None else camera
-        if "auto" in self._asked_settings.effects and isinstance(asked, Camera):
+        wanted = self._asked_settings if settings is None else settings_of(settings, {})
+        if "auto" in wanted.effects and isinstance(asked, Camera):
             if asked.model == self.camera.model:  # made of self.camera: the model of it was planned
                 asked = asked.replace(model=self._asked_camera.model)
-            now = self._settled_for(new_scene, asked, is_other_scene=scene is not None)
-        else:
+            if scene is None and settings is None:
+                now = self._settled_for(new_scene, asked)
+            else:
+                now = settled(new_scene, asked, wanted, self._device, stacklevel=2)
+        elif settings is None:
             now = self._settled._replace(camera=asked)
-        if now.settings == self.settings:
-            self._core.set(new_scene, now.camera)
         else:
-            self._core = self._begin(new_scene, now)
-        self._asked_camera, self._settled = asked, now
+            now = Settled(asked, wanted, "")
+        self._core.set(new_scene, now.camera, now.settings)
+        self._asked_settings, self._asked_camera, self._settled = wanted, asked, now
         if scene is not None:
             warn_of_no_light(scene)
 
-    def _settled_for(self, scene: Scene, asked: Camera, is_other_scene: bool) -> Settled:
+    def _settled_for(self, scene: Scene, asked: Camera) -> Settled:
         """Planned anew, but where only the dials of the exposure were turned."""
 
         def exposed_alike(camera: Camera) -> Camera:
             return camera.replace(exposure_time_s=asked.exposure_time_s, iso=asked.iso)
 
-        if is_other_scene or asked != exposed_alike(self._asked_camera):
+        if asked != exposed_alike(self._asked_camera):
             return self._plan(scene, asked)
         return self._settled._replace(camera=exposed_alike(self._settled.camera))
 

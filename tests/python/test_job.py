@@ -12,6 +12,7 @@ import signal
 import socket
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -328,3 +329,21 @@ def test_a_mistake_on_the_command_line_is_told_in_one_line(
     assert output == ""
     assert why in errors
     assert errors.count("\n") == 1
+
+
+def test_frames_are_shots_that_share_their_scene(tmp_path: Path) -> None:
+    """A rack focus of three frames, each with random numbers of its own."""
+    still = shot(20)
+    frames = {
+        f"rack.{number:04d}": replace(
+            still,
+            camera=still.camera.replace(lens=still.camera.lens.focused(distance_m)),
+            settings=still.settings.with_(seed=number),
+        )
+        for number, distance_m in ((1, 1.5), (2, 2.2), (3, 4.0))
+    }
+    job = made(tmp_path / "job", **frames)
+    assert len(list((tmp_path / "job" / "scenes").iterdir())) == 1
+    job.work()
+    for name, frame in frames.items():
+        assert job.image(name) == picture(frame)

@@ -254,3 +254,11 @@ def test_sessions_do_not_disturb_render_and_each_other() -> None:
         two.add(8)
     for session, pixels in zip((one, two), expected, strict=True):
         np.testing.assert_allclose(session.image().pixels, pixels, rtol=1e-6)
+
+
+def test_other_settings_are_those_of_another_render() -> None:
+    session = rc.Session(room(), camera(), device="cpu", effects=())
+    for settings in (rc.RenderSettings(spp=4, seed=2, effects=()), rc.RenderSettings(spp=4, layers="normal")):
+        session.set(settings=settings)
+        session.add(4)
+        assert session.image() == rc.render(room(), camera(), settings, device="cpu")

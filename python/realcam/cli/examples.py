@@ -44,6 +44,11 @@ EXAMPLES: dict[str, tuple[str, ...]] = {
         "realcam compare shot.toml --vary f_number=2,4,8 -o sheet.png",
         "realcam compare shot.toml --vary lens=wide-24mm,double-gauss-50mm,sonnar-180mm -o sheet.png",
     ),
+    "job": (
+        "realcam job make terrace.toml -o terrace.job",
+        "realcam job work terrace.job",
+        "realcam job finish terrace.job -o terrace.exr",
+    ),
     "job make": (
         "realcam job make terrace.toml -o terrace.job",
         "realcam job make *.toml -o night.job --spp 1024 --sbatch night.sbatch --tasks 40",

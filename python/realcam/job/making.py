@@ -80,8 +80,8 @@ class _Making:
         if settings.spp == "auto":
             settings = settings.with_(seconds=None)
         camera, settings, plan = settled(shot.scene, shot.camera, settings, self._device, stacklevel=5)
-        if self._session is not None and self._session.settings == settings:
-            self._session.set(scene=shot.scene, camera=camera)
+        if self._session is not None:
+            self._session.set(scene=shot.scene, camera=camera, settings=settings)
         else:
             self._session = Session(shot.scene, camera, settings, device=self._device)
         return self._session, plan

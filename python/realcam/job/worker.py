@@ -70,10 +70,9 @@ class Worker:
         shot, scene = self.shot(number), self.scene(self.folder.shots[number].scene)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", UserWarning)  # whoever made the job has seen them
-            if self._session is not None and self._session.settings == shot.settings:
-                self._session.set(scene=scene, camera=shot.camera)
+            if self._session is not None:
+                self._session.set(scene=scene, camera=shot.camera, settings=shot.settings)
                 return self._session
-            self._session = None  # before the next takes as much memory
             with self.folder.engine.pinned():
                 return Session(scene, shot.camera, shot.settings, device=self._device)
 
