@@ -51,6 +51,7 @@ EXAMPLES: dict[str, tuple[str, ...]] = {
     ),
     "job make": (
         "realcam job make terrace.toml -o terrace.job",
+        "realcam job make ball.toml -o ball.job --frames 1-48 --spp 256",
         "realcam job make *.toml -o night.job --spp 1024 --sbatch night.sbatch --tasks 40",
     ),
     "job work": (
@@ -62,6 +63,7 @@ EXAMPLES: dict[str, tuple[str, ...]] = {
     "job finish": (
         "realcam job finish terrace.job -o terrace.exr -o terrace.png",
         "realcam job finish night.job -o pictures --format png",
+        "realcam job finish ball.job -o ball.mp4",
     ),
     "view": (
         "realcam view",

@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import logging
 import os
+import re
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
-from typing import Annotated, Optional
+from typing import TYPE_CHECKING, Annotated, Optional
 
+import numpy as np
 import typer
 
 from .._core import ImageFileError, InputError
@@ -16,6 +19,9 @@ from ..progress import progress_bar
 from ..shot import Shot
 from . import options
 from .completions import completion_of
+
+if TYPE_CHECKING:
+    from ..job import Job
 
 app = typer.Typer(help="Take pictures on many machines, in a folder that all of them see.", no_args_is_help=True)
 
@@ -39,6 +45,11 @@ def make(
             autocompletion=completion_of("DEVICE"),
         ),
     ] = "auto",
+    frames: Annotated[
+        Optional[str],  # noqa: UP045
+        typer.Option("--frames", metavar="A-B", help="Of a film, 1-240 or 1-240x2: what moves is where it is then"),
+    ] = None,
+    fps: Annotated[float, typer.Option("--fps", metavar="N", help="Frames in a second of the scene")] = 24.0,
     tile: Annotated[
         Optional[str],  # noqa: UP045
         typer.Option("--tile", metavar="PIXELS", help="Of a unit: 128, or 128x64 [a second of one core]"),
@@ -66,10 +77,17 @@ def make(
     from ..job.making import check_is_new
 
     check_is_new(output)
-    size = _tile(tile)
+    size, numbers = _tile(tile), _frame_numbers(frames)
     for target in filter(None, (sbatch, openjd)):
         files.check_target(target)
-    job = Job.make(output, _named_shots(shots, spp, device), device=device, tile=size)
+    named = _named_shots(shots, spp, device)
+    if numbers is not None:
+        named = {
+            frame: shot
+            for name, still in named.items()
+            for frame, shot in still.frames(numbers, frames_per_second=fps, name=name, device=device).items()
+        }
+    job = Job.make(output, named, device=device, tile=size)
     if not quiet:
         typer.echo(f"{output}: {_count(job.status().units_known, 'unit')} of {_count(len(job.names), 'picture')}")
     if sbatch is not None:
@@ -164,12 +182,13 @@ def finish(
             "--output",
             "-o",
             metavar="FILE",
-            help="Of one picture, .exr or .png, may be repeated; or a folder for all of them",
+            help="Of one picture, .exr or .png, may be repeated; a folder for all of them; or a film of them, .mp4",
         ),
     ],
     format: Annotated[
         str, typer.Option("--format", metavar="NAME", help="Of pictures in a folder: exr or png")
     ] = "exr",
+    fps: Annotated[float, typer.Option("--fps", metavar="N", help="Frames in a second of a film")] = 24.0,
     device: Annotated[
         Optional[str],  # noqa: UP045
         typer.Option("--device", metavar="DEVICE", help="For layers of single rays [that of the job]"),
@@ -182,6 +201,13 @@ def finish(
 
     options.check_known(format, ("exr", "png"), "format")
     job = Job.load(folder)
+    if [path.suffix.lower() for path in output] == [".mp4"]:
+        from ..video import write_video
+
+        with progress_bar("adding up", is_shown=not quiet) as bar:
+            write_video(output[0], _developed(job, device, bar), fps)
+        options.say_written(output[0], quiet)
+        return
     suffixes = (".exr", ".png")
     to_files = all(path.suffix.lower() in suffixes for path in output)
     if to_files and len(job.names) > 1:
@@ -216,6 +242,23 @@ def _named_shots(paths: list[Path], spp: str | None, device: str) -> dict[str, S
             shot = replace(shot, settings=shot.settings.with_(spp=_samples(spp)))
         shots[path.stem] = shot
     return shots
+
+
+def _developed(job: Job, device: str | None, bar: Callable[[float], bool]) -> Iterator[np.ndarray]:
+    """All pictures, one after the other, as 8-bit sRGB."""
+    for done, name in enumerate(job.names):
+        bar(done / len(job.names))
+        yield job.image(name, device=device).developed(tone=job.tone(name))
+
+
+def _frame_numbers(text: str | None) -> range | None:
+    if text is None:
+        return None
+    found = re.fullmatch(r"(\d{1,6})(?:-(\d{1,6})(?:x(\d{1,6}))?)?", text)
+    numbers = range(int(found[1]), int(found[2] or found[1]) + 1, int(found[3] or 1) or 1) if found else range(0)
+    if not numbers:
+        raise InputError(f'--frames: "{text:.40}": a number, 1-240 or 1-240x2 is wanted, the smaller one first')
+    return numbers
 
 
 def _samples(text: str) -> int | str:

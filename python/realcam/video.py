@@ -1,0 +1,54 @@
+"""Films of 8-bit pictures."""
+
+from __future__ import annotations
+
+import secrets
+from collections.abc import Iterable
+from fractions import Fraction
+from pathlib import Path
+
+import numpy as np
+
+from ._core import ImageFileError, InputError
+from .files import check_target
+
+# Numbers of ITU-T H.273.
+_BT709, _SRGB = 1, 13
+
+
+def write_video(path: Path, frames: Iterable[np.ndarray], frames_per_second: float) -> None:
+    """Writes (H, W, 3) uint8 sRGB pictures of one size as H.264 in .mp4, as a whole or not at all.
+
+    Each pair of rows and columns shares its colour, so a picture with an odd number of them shows its last one twice.
+    Raises InputError where PyAV is missing or sizes differ, and ImageFileError.
+    """
+    try:
+        import av
+    except ImportError:
+        raise InputError("the Python package av is missing; pip install 'realcam[video]' brings it") from None
+    check_target(path)
+    temporary = path.with_name(f".realcam-{secrets.token_hex(8)}.mp4")
+    try:
+        with av.open(str(temporary), "w", format="mp4") as container:
+            stream = container.add_stream("libx264", rate=Fraction(frames_per_second).limit_denominator(1001))
+            stream.pix_fmt = "yuv420p"
+            stream.options = {"crf": "16"}
+            size: tuple[int, ...] | None = None
+            for frame in frames:
+                if size not in (None, frame.shape):
+                    raise InputError(f"{path}: the frames of a film must have the same size")
+                even = np.pad(frame, [(0, frame.shape[0] % 2), (0, frame.shape[1] % 2), (0, 0)], mode="edge")
+                if size is None:
+                    size = frame.shape
+                    stream.height, stream.width = even.shape[:2]
+                    # Players would guess them by the size.
+                    colours = stream.codec_context
+                    colours.colorspace, colours.color_primaries, colours.color_trc = _BT709, _BT709, _SRGB
+                picture = av.VideoFrame.from_ndarray(even, format="rgb24")
+                container.mux(stream.encode(picture.reformat(format="yuv420p", dst_colorspace="ITU709")))
+            container.mux(stream.encode())
+        temporary.replace(path)
+    except OSError as error:  # as FFmpeg's errors are
+        raise ImageFileError(f"{path}: cannot be written: {error.strerror or error}") from None
+    finally:
+        temporary.unlink(missing_ok=True)
