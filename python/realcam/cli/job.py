@@ -89,7 +89,9 @@ def make(
         }
     job = Job.make(output, named, device=device, tile=size)
     if not quiet:
-        typer.echo(f"{output}: {_count(job.status().units_known, 'unit')} of {_count(len(job.names), 'picture')}")
+        made = job.status()
+        units = "units as the noise wants them" if made.is_adaptive else _count(made.units_known, "unit")
+        typer.echo(f"{output}: {_count(made.shots, 'picture')}, {units}")
     if sbatch is not None:
         files.write_whole(sbatch, sbatch_script(output, tasks).encode())
         options.say_written(sbatch, quiet)
