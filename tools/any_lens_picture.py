@@ -1,4 +1,4 @@
-"""The picture of docs/any-lens.md: the demo scene through lenses that are not of revolution."""
+"""The pictures of docs/any-lens.md: the demo scene, and a lamp's ghosts, through lenses that are not of revolution."""
 
 from __future__ import annotations
 
@@ -10,6 +10,10 @@ from realcam.sheet import save_sheet
 
 ROOT = Path(__file__).resolve().parents[1]
 HEIGHT = 240
+
+
+def loaded(name: str) -> rc.Lens:
+    return rc.Lens.load(ROOT / "examples" / "lenses" / f"{name}.toml")
 
 
 def save_pictures(path: Path) -> None:
@@ -44,7 +48,29 @@ def save_pictures(path: Path) -> None:
     save_sheet(pictures, path, columns=2)
 
 
+def save_ghosts(path: Path) -> None:
+    """A lamp at night, in the upper left of the frame, with coated lenses of about the same field upright."""
+
+    def through(lens: rc.Lens, width_mm: float, height_mm: float, squeeze: float = 1.0, iso: float = 1600) -> rc.Image:
+        lens = lens.focused(30).with_coating("quarter_wave")
+        film = rc.Film(width_mm, height_mm, (round(HEIGHT * squeeze * width_mm / height_mm), HEIGHT))
+        camera = rc.Camera(lens, film=film, position=(0, 1.6, 0), look_at=(0, 1.6, -1), exposure_time_s=1 / 50, iso=iso)
+        # A quarter of the picture's sides from its middle.
+        (origin,), (way,) = camera.ray([(0.25 * film.resolution[0], 0.25 * film.resolution[1])])
+        scene = night.with_point_light(origin + 30 * way, (4e5, 4e5, 4e5))
+        return rc.render(scene, camera, effects={"ghosts", "dispersion"}, spp=128)
+
+    night = rc.Scene.from_arrays([(0.0, 0.0, 99.0), (1.0, 0.0, 99.0), (0.0, 1.0, 99.0)], [[0, 1, 2]])
+    pictures = [
+        ("Double Gauss 100 mm", through(rc.Lens.load("double-gauss-100mm"), 36, 24)),
+        ("Front anamorphic 31 mm", through(loaded("anamorphic-31mm"), 17, 18.6, 1.93)),
+        ("Rear anamorphic 65 mm", through(loaded("anamorphic-65mm"), 22, 18.6, 2, iso=100)),
+    ]
+    save_sheet(pictures, path, columns=1)
+
+
 if __name__ == "__main__":
-    if len(sys.argv) != 2:
-        sys.exit("usage: python tools/any_lens_picture.py PICTURE")
+    if len(sys.argv) != 3:
+        sys.exit("usage: python tools/any_lens_picture.py PICTURE GHOSTS")
     save_pictures(Path(sys.argv[1]))
+    save_ghosts(Path(sys.argv[2]))
