@@ -15,7 +15,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-
 import realcam as rc
 from realcam._core import _film_of_white
 from realcam.osl import focus_range, shader_text

@@ -132,8 +132,8 @@ py::array_t<double> film_of_white(const std::string& illuminant) {
         *row++ = static_cast<double>(cell.first_nm);
         *row++ = static_cast<double>(cell.last_nm);
         for (int channel = 0; channel < 3; ++channel)
-            *row++ = static_cast<double>(cell.film[3 * channel] + cell.film[3 * channel + 1] +
-                                         cell.film[3 * channel + 2]);
+            *row++ =
+                static_cast<double>(cell.film[3 * channel] + cell.film[3 * channel + 1] + cell.film[3 * channel + 2]);
     }
     return rows;
 }

@@ -548,7 +548,8 @@ void bind_lens(py::module_& m) {
             "file does not have. What a file leaves out and is computed or assumed is a UserWarning.")
         .def("save", &save_lens, "path"_a,
              "Writes a lens file by its suffix: .toml, from which Lens.load makes an equal lens; .zmx, .seq, .json\n"
-             "(Optiland) or .roa (ray-optics), with a UserWarning for all that these cannot say; .osl, a camera of Blender\n"
+             "(Optiland) or .roa (ray-optics), with a UserWarning for all that these cannot say; .osl, a camera of "
+             "Blender\n"
              "5. Raises InputError, also for a lens that OSL cannot express, and ImageFileError where no file can be\n"
              "made.")
         .def_static("_load_with_notes", &read_lens_with_notes, "path"_a)
