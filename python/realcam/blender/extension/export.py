@@ -8,6 +8,7 @@ from pathlib import Path
 import bpy
 from bpy.props import StringProperty
 from bpy_extras.io_utils import ExportHelper
+from mathutils import Vector
 
 from .lenses import film_mm, lenses
 
@@ -31,7 +32,7 @@ class RealcamExportShot(bpy.types.Operator, ExportHelper):
 
 
 def write_shot(scene: bpy.types.Scene, path: Path) -> None:
-    """glTF has no cameras of their own kind: while it is written, the camera is a perspective one of the same angle."""
+    """While glTF is written, which has no cameras of other kinds, the camera is a perspective one."""
     camera = scene.camera.data
     camera.type = "PERSP"
     try:
@@ -51,11 +52,15 @@ def shot_text(scene: bpy.types.Scene, scene_file: str) -> str:
     columns, rows = scene.render.resolution_x, scene.render.resolution_y
     longer_mm = max(width_mm, height_mm)
     film = [longer_mm * columns / max(columns, rows), longer_mm * rows / max(columns, rows)]
+    place = scene.camera.matrix_world
     focus_m = max(_focus_m(scene), figures["nearest_m"])
     lines = [
         "format = 1",
         f'scene = "{scene_file}"',
-        f'camera = "{scene.camera.name}"',
+        'camera = "none"',  # realcam takes a camera of glTF for the entrance pupil; here it is the film
+        f"position_m = {_triple(place.translation)}",
+        f"look_at_m = {_triple(place.translation - place.col[2].xyz)}",
+        f"up = {_triple(place.col[1].xyz)}",
         f'lens = "{figures["name"]}"',
         *([f'zoom = "{figures["zoom"]}"'] if figures["zoom"] else []),
         f"film_mm = [{film[0]:.6g}, {film[1]:.6g}]",
@@ -70,6 +75,11 @@ def shot_text(scene: bpy.types.Scene, scene_file: str) -> str:
             f"blade_rotation_deg = {rings.rotation_deg:.6g}",
         ]
     return "\n".join(lines) + "\n"
+
+
+def _triple(vector: Vector) -> str:
+    """In the frame of glTF, whose y is up."""
+    return f"[{vector.x:.9g}, {vector.z:.9g}, {-vector.y:.9g}]"
 
 
 def _focus_m(scene: bpy.types.Scene) -> float:
