@@ -57,7 +57,7 @@ def shot_text(scene: bpy.types.Scene, scene_file: str) -> str:
     lines = [
         "format = 1",
         f'scene = "{scene_file}"',
-        'camera = "none"',  # realcam takes a camera of glTF for the entrance pupil; here it is the film
+        # The pose in place of glTF's camera, which realcam takes for the entrance pupil: here it is the film's.
         f"position_m = {_triple(place.translation)}",
         f"look_at_m = {_triple(place.translation - place.col[2].xyz)}",
         f"up = {_triple(place.col[1].xyz)}",
