@@ -12,10 +12,6 @@ ROOT = Path(__file__).resolve().parents[1]
 HEIGHT = 240
 
 
-def loaded(name: str) -> rc.Lens:
-    return rc.Lens.load(ROOT / "examples" / "lenses" / f"{name}.toml")
-
-
 def save_pictures(path: Path) -> None:
     shot = rc.Shot.load(ROOT / "scenes" / "demo.toml")
     plain, focus_m = shot.camera.lens, shot.camera.lens.focus_distance_m
@@ -63,8 +59,8 @@ def save_ghosts(path: Path) -> None:
     night = rc.Scene.from_arrays([(0.0, 0.0, 99.0), (1.0, 0.0, 99.0), (0.0, 1.0, 99.0)], [[0, 1, 2]])
     pictures = [
         ("Double Gauss 100 mm", through(rc.Lens.load("double-gauss-100mm"), 36, 24)),
-        ("Front anamorphic 31 mm", through(loaded("anamorphic-31mm"), 17, 18.6, 1.93)),
-        ("Rear anamorphic 65 mm", through(loaded("anamorphic-65mm"), 22, 18.6, 2, iso=100)),
+        ("Front anamorphic 31 mm", through(rc.Lens.load("anamorphic-31mm"), 17, 18.6, 1.93)),
+        ("Rear anamorphic 65 mm", through(rc.Lens.load("anamorphic-65mm"), 22, 18.6, 2, iso=100)),
     ]
     save_sheet(pictures, path, columns=1)
 

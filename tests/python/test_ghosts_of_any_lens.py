@@ -13,7 +13,6 @@ from . import scenes
 from .test_first_order_of_any_lens import anamorphic
 from .test_ghost_pictures import FILM, far_lamp, ghosts, lit_without_ghosts
 
-LENSES = Path(__file__).resolve().parents[2] / "examples" / "lenses"
 INDEX = 1.6
 
 
