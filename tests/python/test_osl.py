@@ -21,7 +21,7 @@ from .osl_in_cpp import Rays, program_of
 needs_compiler = pytest.mark.skipif(osl_in_cpp.COMPILER is None, reason="runs OSL as C++, and there is no compiler c++")
 
 # Spheres; an asphere; mirrors with a hole; a group that moves; a field of 220 degrees.
-LENSES = ("double-gauss-50mm", "wide-24mm", "mirror-telephoto-500mm", "zoom-80-200mm", "fisheye-6mm-220deg")
+LENSES = ("double-gauss-50mm", "wide-24mm", "mirror-telephoto-500mm", "zoom-80-200mm")
 
 
 @pytest.fixture(scope="module")
@@ -76,11 +76,11 @@ def test_light_that_comes_back_along_a_ray_meets_its_film_point(
     lens = lens.focused(focus_m)
     # At a rim, rounding decides whether a ray passes.
     back = landing_mm(lens, Rays(*(part[passed] for part in rays)))
-    assert np.isnan(back).mean() < 3e-3
+    assert np.isnan(back).mean() < 1e-3
     miss_mm = np.linalg.norm(back - film_points_mm(raster, lens.film_mm)[passed], axis=1)
     # A tenth of the pixels of 6 um of a large sensor; the film of the shortest lens here is as large. The focus is a
     # polynomial within 1e-5 of the film's diagonal, over which a cone of f/1.4 spreads by 1.4 times less.
-    assert np.nanpercentile(miss_mm, 95) < 0.6e-3
+    assert np.nanpercentile(miss_mm, 99) < 0.6e-3
 
 
 @needs_compiler
@@ -121,8 +121,7 @@ def test_most_rays_pass(program: Callable[[str], Callable[..., Rays]], name: str
     radii_mm = np.linspace(0, radius_mm.max(), 60)
     light = np.array([lens.film_pupil((radius, 0.0)).irradiance for radius in radii_mm])
     lit = np.interp(radius_mm, radii_mm, light) > 0.1 * light[0]
-    # The fisheye's image ends within a step of the table.
-    assert (rays.throughput[lit, 1] > 0).mean() > (0.75 if "fisheye" in name else 0.9)
+    assert (rays.throughput[lit, 1] > 0).mean() > 0.9
 
 
 @needs_compiler
