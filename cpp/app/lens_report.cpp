@@ -13,6 +13,7 @@
 #include "../optics/analysis/transmission.hpp"
 #include "../optics/coating/coated_faces.hpp"
 #include "../optics/lens/focus.hpp"
+#include "../optics/lens/parabasal.hpp"
 #include "../optics/lens/paraxial.hpp"
 #include "../optics/prescription/lens_checks.hpp"
 #include "values.hpp"
@@ -57,9 +58,35 @@ std::string coating_name(const Coating& coating) {
     return std::to_string(coating.layers.size()) + " layers";
 }
 
+std::string vector_text(Vec3d v) {
+    return '(' + short_number(v.x, 6) + ", " + short_number(v.y, 6) + ", " + short_number(v.z, 6) + ')';
+}
+
+/// How it is moved from its place; empty: it is not.
+std::string place_text(const SurfacePlacement& place) {
+    if (place.is_in_place()) return "";
+    std::string text = place.returns ? "moved alone" : "moved";
+    if (place.decentre != Vec3d{0, 0, 0}) text += " by " + vector_text(place.decentre) + " mm";
+    if (place.tilt_deg != Vec3d{0, 0, 0}) text += " tilted by " + vector_text(place.tilt_deg) + " degrees";
+    return text;
+}
+
+std::string film_remarks(const LensSystem& lens) {
+    const std::string place = place_text(lens.film_placement);
+    if (std::isinf(lens.film_radius_of_curvature)) return place;
+    return "radius " + short_number(lens.film_radius_of_curvature, 6) + " mm" + (place.empty() ? "" : ", " + place);
+}
+
 std::string remarks(const Surface& surface) {
     std::string text;
     const auto add = [&](const std::string& mark) { text += (text.empty() ? "" : ", ") + mark; };
+    const SurfaceForm& form = surface.form;
+    if (form.base != BaseForm::conic)
+        add((form.base == BaseForm::toroid ? "toroid, " : "biconic, ") +
+            (form.curvature_x == 0 ? "plane" : "radius " + short_number(1 / form.curvature_x, 6) + " mm") + " in xz");
+    if (form.conic_x != 0) add("conic " + short_number(form.conic_x, 6) + " in xz");
+    if (!form.radial.empty() || !form.xy.empty() || form.zernike || form.forbes) add("polynomial terms");
+    if (const std::string place = place_text(surface.placement); !place.empty()) add(place);
     if (surface.conic != 0) add("conic " + short_number(surface.conic, 6));
     if (surface.is_asphere()) add("asphere to r^" + std::to_string(2 * surface.aspheric.size() + 2));
     if (surface.coating.kind != CoatingKind::unknown && surface.coating.kind != CoatingKind::bare)
@@ -80,7 +107,7 @@ std::string table(const LensSystem& lens) {
                         fixed(last ? lens.film_distance : s.thickness), material_name(s),
                         fixed(closed ? lens.stop_semi_diameter : s.clear_semi_diameter), remarks(s)});
     }
-    rows.push_back({"", "film", "", "", "", "", ""});
+    rows.push_back({"", "film", "", "", "", "", film_remarks(lens)});
     std::array<std::size_t, 7> widths{};
     for (const Row& row : rows)
         for (std::size_t c = 0; c < row.size(); ++c) widths[c] = std::max(widths[c], row[c].size());
@@ -179,6 +206,9 @@ std::string lens_as_text(const LensSystem& lens) {
     };
     text += "At " + short_number(lens.wavelength_nm, 7) + " nm; positions are measured from the front vertex.\n";
     line("effective focal length", mm(data.effective_focal_length));
+    if (!lens.is_rotational())
+        for (const Meridian& meridian : parabasal_data(lens, lens.wavelength_nm).meridians)
+            line("  at " + short_number(meridian.azimuth_deg, 4) + " degrees from x", mm(meridian.focal_length));
     line("back focal distance", mm(data.back_focal_distance));
     line("front focal distance", mm(data.front_focal_distance));
     // The ring's, and beside it that of a lens whose focusing group has moved.

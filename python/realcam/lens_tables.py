@@ -22,7 +22,12 @@ def prescription(lens: Lens) -> Iterator[tuple[str, ...]]:
         kind = "" if surface.type == "refracting" else surface.type
         if surface.aspheric_coefficients or surface.conic:
             kind = f"{kind} asphere".strip()
-        radius = "plane" if surface.curvature_per_mm == 0 else number(surface.radius_of_curvature_mm, 6)
+        radius = _radius(surface.radius_of_curvature_mm)
+        if surface.form in ("toroid", "biconic"):
+            kind = f"{kind} {surface.form}".strip()
+            radius = f"{radius}; in xz {_radius(surface.radius_of_curvature_x_mm)}"
+        if any(surface.decentre_mm) or any(surface.tilt_deg):
+            kind = f"{kind} moved".strip()
         is_last = index == len(lens.surfaces) - 1
         thickness = lens.film_distance_mm if is_last else surface.thickness_mm
         yield (
@@ -33,6 +38,10 @@ def prescription(lens: Lens) -> Iterator[tuple[str, ...]]:
             _glass(surface),
             number(surface.clear_semi_diameter_mm, 5),
         )
+
+
+def _radius(radius_mm: float) -> str:
+    return "plane" if math.isinf(radius_mm) else number(radius_mm, 6)
 
 
 def _glass(surface: Surface) -> str:
@@ -49,6 +58,9 @@ def first_order(lens: Lens) -> Iterator[tuple[str, str]]:
     angle = photo.angle_of_view_deg
     width, height = lens.film_mm
     yield "focal length", f"{number(data.effective_focal_length_mm)} mm"
+    if not lens.is_rotational:
+        for meridian in lens.meridians():
+            yield f"{meridian.azimuth_deg:.3g}° from x", f"{number(meridian.focal_length_mm)} mm"
     bare = " where glass of unknown coatings is bare" if lens.unknown_coatings else ""
     yield "f-number", f"f/{number(photo.f_number, 3)}, T/{number(photo.t_stop, 3)}{bare}"
     if math.isfinite(lens.focus_distance_m):

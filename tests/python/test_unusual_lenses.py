@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import math
+import re
+import subprocess
 
 import numpy as np
 import pytest
 import realcam as rc
 
 from ..centred_lenses import CENTRED
+from .programs import PROGRAM
 from .scenes import quad, scene_of
 
 UNUSUAL = sorted(set(rc.lens_names()) - set(CENTRED))
@@ -146,6 +149,17 @@ def test_a_point_out_of_focus_is_the_pupils_ellipse() -> None:
     blur = ((8e-3 * d) ** 2 + 0.1**2) / 12
     assert math.sqrt(4 * (y2 - blur)) == pytest.approx(4.0, rel=0.01)
     assert math.sqrt(4 * (x2 - blur)) == pytest.approx(4.0 * abs(1 - d / 100), rel=0.01)
+
+
+def test_lens_info_says_forms_places_and_both_focal_lengths() -> None:
+    def told(name: str) -> str:
+        return subprocess.run([*PROGRAM, "lens", "info", name], capture_output=True, text=True, check=True).stdout
+
+    anamorphic = told("anamorphic-65mm")
+    assert "toroid, radius -99.5 mm in xz" in anamorphic
+    assert re.search(r"at 0 degrees from x +65\.14", anamorphic) and re.search(r"at 90 degrees .* 130\.7", anamorphic)
+    assert "moved by (0, -20, 0) mm tilted by (6, 0, 0) degrees" in told("view-camera-210mm")
+    assert re.search(r"film +radius -12 mm", told("eye-22mm"))
 
 
 def test_the_eye() -> None:

@@ -25,10 +25,10 @@ inline FieldPicture photograph(const LensSystem& lens, double film_mm, int pixel
     Camera camera = camera_with(lens, model);
     camera.film = {film_mm, film_mm, pixels, pixels};
     const std::size_t count = static_cast<std::size_t>(pixels * pixels) * spp;
-    std::vector<double> origins(3 * count);
-    std::vector<float> directions(3 * count), weights(count);
+    std::vector<double> origins(3 * count), times(count);
+    std::vector<float> directions(3 * count), weights(count), wavelengths(count);
     generate_camera_rays(CameraSetup(camera, fast_pupil_tracer()), spp, 3, all_rays(pixels, pixels, spp),
-                         origins.data(), directions.data(), weights.data());
+                         {origins.data(), directions.data(), weights.data(), wavelengths.data(), times.data()});
     FieldPicture picture;
     for (std::size_t i = 0; i < count; ++i) {
         const double weight = static_cast<double>(weights[i]);
