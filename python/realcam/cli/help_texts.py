@@ -28,8 +28,8 @@ def finish(command: Any, words: tuple[str, ...] = ()) -> None:
     check_usage(command)
     examples = list(EXAMPLES.get(" ".join(words), ()))
     command.get_help = lambda context: _help_text(
-        # Some versions of typer put an argument that is required in braces.
-        " ".join([context.command_path, *(piece.strip("{}") for piece in command.collect_usage_pieces(context))]),
+        # Some versions of typer put an argument that is required in braces: {SHOT}...
+        re.sub("[{}]", "", " ".join([context.command_path, *command.collect_usage_pieces(context)])),
         command.help,
         list(_sections(command, context)),
         examples,

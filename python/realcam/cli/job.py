@@ -31,7 +31,7 @@ Threads = Annotated[int, typer.Option(metavar="N", help="Of each process; 0: all
 
 @app.command()
 def make(
-    shots: Annotated[list[Path], typer.Argument(help="Shot files, .toml", metavar="SHOT...")],
+    shots: Annotated[list[Path], typer.Argument(help="Shot files, .toml", metavar="SHOT")],
     output: Annotated[Path, typer.Option("--output", "-o", metavar="FOLDER", help="Of the job; it must not be there")],
     spp: Annotated[
         Optional[str],  # noqa: UP045
