@@ -8,8 +8,8 @@
 
 namespace realcam::app {
 
-ProgressBar::ProgressBar(std::string what)
-    : what_(std::move(what)), is_terminal_(isatty(STDERR_FILENO) != 0), start_(Clock::now()), last_(start_) {}
+ProgressBar::ProgressBar(std::string what, bool is_shown)
+    : what_(std::move(what)), is_shown_(is_shown && isatty(STDERR_FILENO) != 0), start_(Clock::now()), last_(start_) {}
 
 ProgressBar::~ProgressBar() {
     clear();
@@ -22,7 +22,7 @@ void ProgressBar::clear() {
 
 void ProgressBar::show(double done) {
     const auto now = Clock::now();
-    if (!is_terminal_ || now - last_ < std::chrono::milliseconds(100)) return;
+    if (!is_shown_ || now - last_ < std::chrono::milliseconds(100)) return;
     last_ = now;
     drawn_ = true;
     constexpr int kWidth = 30;

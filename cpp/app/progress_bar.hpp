@@ -7,7 +7,7 @@ namespace realcam::app {
 /// One line on stderr that rewrites itself; silent where stderr is no terminal. It goes away when it is destroyed.
 class ProgressBar {
 public:
-    explicit ProgressBar(std::string what);
+    explicit ProgressBar(std::string what, bool is_shown = true);
     ProgressBar(const ProgressBar&) = delete;
     ProgressBar& operator=(const ProgressBar&) = delete;
     ~ProgressBar();
@@ -21,7 +21,7 @@ private:
     using Clock = std::chrono::steady_clock;
 
     std::string what_;
-    bool is_terminal_, drawn_ = false;
+    bool is_shown_, drawn_ = false;
     Clock::time_point start_, last_;
 };
 

@@ -109,6 +109,7 @@ public:
         if (const std::string notice = exposure_notice(image, shot.camera, request.tone); !notice.empty()) warn(notice);
         write(image, shot, request, decisions, denoiser_name);
         const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        if (words_.is_quiet && !words_.as_json) return;
         const std::string figures =
             words_.as_json
                 ? render_as_json(shot, request, image, words_.outputs, decisions, denoiser_name, warnings_, seconds)
@@ -132,11 +133,16 @@ private:
         warnings_.push_back(io::one_line(text));
     }
 
+    void inform(const std::string& text) const {
+        if (!words_.is_quiet) say(text);
+    }
+
     shot::Shot set_up_shot(const shot::ShotRequest& request, Camera camera) {
         shot::Shot shot = set_up(request, std::move(camera), read_scene(request));
-        if (const std::string notice = shot::view_notice(shot); !notice.empty()) say(notice);
+        if (const std::string notice = shot::view_notice(shot); !notice.empty()) inform(notice);
         if (shot.has_daylight)
-            say("the scene holds no light; it gets daylight: a sun of 80 klux from the upper left, and a sky of 5000 "
+            inform(
+                "the scene holds no light; it gets daylight: a sun of 80 klux from the upper left, and a sky of 5000 "
                 "cd/m^2");
         return shot;
     }
@@ -146,7 +152,7 @@ private:
         try {
             const Plan plan = planned(session, shot, request, false);
             apply(plan, shot.camera, request.settings);
-            if (words_.explains && !words_.as_json)
+            if (words_.explains && !words_.as_json && !words_.is_quiet)
                 std::fputs((text_of(plan, io::name_of(plan.model)) + '\n').c_str(), stdout);
             return summary_of(plan);
         } catch (const NothingToPlan& nothing) {
@@ -181,24 +187,24 @@ private:
         return scene;
     }
 
-    static Image expose(Session& session, shot::Shot& shot, const shot::ShotRequest& request) {
+    Image expose(Session& session, shot::Shot& shot, const shot::ShotRequest& request) const {
         const Film& film = shot.camera.film;
         return until_interrupted([&] {
-            ProgressBar metering("metering ");
+            ProgressBar metering("metering ", !words_.is_quiet);
             const auto show_metering = [&](double done) {
                 metering.show(done);
                 return is_wanted();
             };
             if (!shot.is_metered) meter(shot, request, session, show_metering);
-            ProgressBar rendering("rendering");
+            ProgressBar rendering("rendering", !words_.is_quiet);
             std::optional<SamplingNotice> notice;
-            if (request.settings.noise) say(notice.emplace(*request.settings.noise, request.sampling).aim());
+            if (request.settings.noise) inform(notice.emplace(*request.settings.noise, request.sampling).aim());
             const auto show_rendering = [&](double done) {
                 if (notice) {
                     done = notice->took(done);
                     if (const std::string text = notice->expectation(); !text.empty()) {
                         rendering.clear();
-                        say(text);
+                        inform(text);
                     }
                 }
                 rendering.show(done);

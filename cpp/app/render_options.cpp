@@ -245,6 +245,7 @@ void add_render_options(CLI::App& command, RenderWords& w) {
     command.add_flag("-v,--verbose", w.verbose, "Also print rays per second, and where the time went");
     command.add_flag("--explain", w.explains, "Also print what --effects auto has decided, and why");
     command.add_flag("--json", w.as_json, "Print the picture's figures and settings as JSON, in place of the text");
+    command.add_flag("-q,--quiet", w.is_quiet, "Print warnings and errors alone");
     command.option_defaults()->group(group);
     command.add_option("-o,--output", w.outputs, "Picture to write, .png or .exr; may be repeated")
         ->type_name("FILE")

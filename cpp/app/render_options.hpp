@@ -14,7 +14,7 @@ struct RenderWords {
     std::string scene, device = "auto";
     std::vector<std::function<void(shot::ShotRequest&)>> changes;  ///< to what the shot file says, by the other options
     std::vector<std::string> outputs;
-    bool verbose = false, explains = false, as_json = false;
+    bool verbose = false, explains = false, as_json = false, is_quiet = false;
     LensWords lens_file;
 };
 

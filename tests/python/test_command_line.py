@@ -401,6 +401,18 @@ def test_quiet_commands_say_nothing(
         assert said([*words, option], monkeypatch, capsys) == (0, "", "")
 
 
+@pictures
+def test_a_quiet_render_tells_warnings_alone(tmp_path: Path) -> None:
+    """Daylight is brought without a word. The shutter of an hour is warned of."""
+    (tmp_path / "quad.obj").write_text(QUAD)
+    words = ("render", "quad.obj", "-o", "a.png", "--resolution", "20x10", "--spp", "1", "--device", "cpu", "--quiet")
+    done = run(*words, folder=tmp_path)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+    done = run(*words, "--exposure-time", "3600", folder=tmp_path)
+    assert done.stdout == "" and done.stderr.startswith("realcam: warning: "), done.stderr
+    assert json.loads(run(*words, "--json", folder=tmp_path).stdout)  # which was asked for
+
+
 def test_sensors_as_json(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     listed = json.loads(said(["sensor", "list", "--json"], monkeypatch, capsys)[1])
     assert [sensor["name"] for sensor in listed] == rc.sensor_names()
@@ -414,7 +426,7 @@ def test_sensors_as_json(monkeypatch: pytest.MonkeyPatch, capsys: pytest.Capture
 
 
 def test_all_commands_that_write_can_be_quiet() -> None:
-    """`render` and `bench` are told apart: the one is C++, the other's output is what it is for."""
+    """Of C++ `render` can, which has a test of its own."""
     for name in sorted(commands()):
         command: Any = TREE
         for word in name.split():

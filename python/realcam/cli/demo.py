@@ -71,8 +71,8 @@ def _render(shot: Path, spp: int, quiet: bool, *rest: Path | str) -> None:
     python = [sys.executable, *(["-P"] if sys.version_info >= (3, 11) else []), "-m", "realcam"]
     paths = os.pathsep.join([str(Path(__file__).resolve().parents[2]), os.environ.get("PYTHONPATH", "")])
     environment = {**os.environ, "PYTHONPATH": paths.rstrip(os.pathsep)}
-    command = [*python, "render", str(shot), "--spp", str(spp), *words]
-    with subprocess.Popen(command, env=environment, stdout=subprocess.DEVNULL if quiet else None) as program:
+    command = [*python, "render", str(shot), "--spp", str(spp), *words, *(["--quiet"] if quiet else [])]
+    with subprocess.Popen(command, env=environment) as program:
         try:
             while True:
                 with suppress(KeyboardInterrupt):
