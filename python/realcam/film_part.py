@@ -14,7 +14,7 @@ import numpy as np
 from . import _core
 from ._core import InputError
 from .files import write_whole
-from .pickling import same_arrays
+from .pickling import same_arrays, set_checked_state
 
 if TYPE_CHECKING:
     from ._core import _Region, _Splats
@@ -41,6 +41,10 @@ class FilmPart:
     stats: dict[str, float] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
+        if self.region is not None and not (
+            len(self.region) == 4 and all(isinstance(n, int | np.integer) and n >= 0 for n in self.region)
+        ):
+            raise InputError("the region of a part is (column, row, width, height), whole numbers from 0 on")
         shape = None if self.region is None else (self.region[3], self.region[2])
         for name, dtype in (("pixels", _core._PIXEL_SUM), ("layers", _core._LAYER_SUM)):
             sums = getattr(self, name)
@@ -48,6 +52,9 @@ class FilmPart:
                 raise InputError(f"the {name} of a part must be sums of its region's pixels")
         if self.first < 0 or self.spp < 0:
             raise InputError("a part has samples from a number on, both of which are 0 or more")
+
+    def __setstate__(self, state: Any) -> None:
+        set_checked_state(self, state, lambda made: made._written())
 
     def __eq__(self, other: object) -> bool:
         """Whether both have collected the same; what it cost does not count."""
@@ -66,12 +73,15 @@ class FilmPart:
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Writes the part, as a whole or not at all, also where the machine stops. Raises ImageFileError."""
+        write_whole(path, self._written(), is_durable=True)
+
+    def _written(self) -> bytes:
         content = io.BytesIO()
         about = np.frombuffer(json.dumps(self._about()).encode(), np.uint8)
         # Light that is traced apart leaves most pixels dark.
         write = np.savez_compressed if self.splats else np.savez
         write(content, about=about, **self._arrays())  # type: ignore[arg-type]
-        write_whole(path, content.getvalue(), is_durable=True)
+        return content.getvalue()
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> FilmPart:

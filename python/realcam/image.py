@@ -67,7 +67,7 @@ class Image:
                 raise InputError("object_names and material_names must be tuples of texts")
 
     def __setstate__(self, state: Any) -> None:
-        set_checked_state(self, state)
+        set_checked_state(self, state, type(self).metadata)
 
     def __eq__(self, other: object) -> bool:
         """Whether pictures, cameras and settings are the same; what it cost to take them does not count."""

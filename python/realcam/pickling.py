@@ -7,6 +7,7 @@ InputError.
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -41,8 +42,8 @@ def restored(kind: str, state_format: int, version: str, state: Any) -> Any:
     raise _core.InputError(f"this {kind} was pickled by realcam {made_by} and cannot be read: {why}")
 
 
-def set_checked_state(value: Any, state: Any) -> None:
-    """`__setstate__` of a picture, a frozen dataclass: its fields go through __init__, and must make metadata.
+def set_checked_state(value: Any, state: Any, check: Callable[[Any], object]) -> None:
+    """`__setstate__` of a frozen dataclass: its fields go through __init__ and `check`.
 
     Raises InputError. What is not a field (a cached property) is left out.
     """
@@ -50,10 +51,10 @@ def set_checked_state(value: Any, state: Any) -> None:
     why = "it is damaged"
     try:
         made = type(value)(**{name: item for name, item in state.items() if name in names})
-        made.metadata()
+        check(made)
     except _core.RealcamError as error:
         why = str(error)
-    except (TypeError, ValueError, AttributeError):
+    except (TypeError, ValueError, AttributeError, LookupError):
         pass  # Python's words about its arguments
     else:
         vars(value).update(vars(made))

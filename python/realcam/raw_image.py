@@ -58,7 +58,7 @@ class RawImage:
                 raise InputError(f"{name} must be a positive number, from 1e-37 to 1e38")
 
     def __setstate__(self, state: Any) -> None:
-        set_checked_state(self, state)
+        set_checked_state(self, state, type(self).metadata)
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, RawImage):

@@ -99,6 +99,8 @@ def _other_array(item: np.ndarray, draw: random.Random) -> np.ndarray:
         return np.concatenate([array] * draw.choice((2, 3)), axis=draw.randrange(array.ndim))
     if change == 2:
         return array.reshape(draw.choice(((-1,), (1, -1), (-1, 1))))
+    if change == 3 and array.dtype.names:  # which no other type can hold
+        return array[draw.choice(array.dtype.names)]
     if change == 3 and array.dtype.kind != "U":
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # that numbers are lost

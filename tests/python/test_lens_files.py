@@ -132,7 +132,7 @@ def test_save_of_a_made_lens(tmp_path):
     assert rc.Lens.load(tmp_path / "mine.toml") == lens
     with pytest.warns(UserWarning, match="coatings of surfaces 1"):
         lens.save(tmp_path / "mine.zmx")
-    with pytest.raises(rc.InputError, match=r"\.toml, \.zmx, \.seq, \.json or \.roa"):
+    with pytest.raises(rc.InputError, match=r"\.toml, \.zmx, \.seq, \.json, \.roa or \.osl"):
         lens.save(tmp_path / "mine.txt")
     with pytest.raises(rc.ImageFileError, match="does not exist"):
         lens.save(tmp_path / "no" / "mine.toml")
