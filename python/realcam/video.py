@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from ._core import ImageFileError, InputError
+from .extras import imported
 from .files import check_target
 
 # Numbers of ITU-T H.273.
@@ -22,10 +23,7 @@ def write_video(path: Path, frames: Iterable[np.ndarray], frames_per_second: flo
     Each pair of rows and columns shares its colour, so a picture with an odd number of them shows its last one twice.
     Raises InputError where PyAV is missing or sizes differ, and ImageFileError.
     """
-    try:
-        import av
-    except ImportError:
-        raise InputError("the Python package av is missing; pip install 'realcam[video]' brings it") from None
+    av = imported("av", "video")
     check_target(path)
     temporary = path.with_name(f".realcam-{secrets.token_hex(8)}.mp4")
     try:

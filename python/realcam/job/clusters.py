@@ -6,10 +6,12 @@ import concurrent.futures
 import logging
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
 from .._core import InputError
+from ..extras import imported
 
 _ANSWERS_WITHIN_S = 20
 
@@ -25,7 +27,7 @@ def dask_executor(
     describe them. None: so many processes of this machine, each with so many threads.
     Raises InputError where Dask is missing or no scheduler answers.
     """
-    distributed = _imported("distributed")
+    distributed = imported("distributed", "cluster")
     with ExitStack() as stack:
         # Workers that come and go are told of by the job itself.
         logging.getLogger("distributed").setLevel(logging.CRITICAL)
@@ -57,8 +59,6 @@ def dask_executor(
 
 
 def has_dask() -> bool:
-    from importlib.util import find_spec
-
     return find_spec("distributed") is not None
 
 
@@ -66,18 +66,9 @@ def _batch_cluster(batch_system: str, workers: int) -> Any:
     kinds = {"slurm": "SLURMCluster", "pbs": "PBSCluster"}
     if batch_system not in kinds:
         raise InputError(f'unknown batch system "{batch_system:.40}"; one of {", ".join(kinds)} is wanted')
-    cluster = getattr(_imported("dask_jobqueue"), kinds[batch_system])()
+    cluster = getattr(imported("dask_jobqueue", "cluster"), kinds[batch_system])()
     cluster.scale(workers)
     return cluster
-
-
-def _imported(name: str) -> Any:
-    from importlib import import_module
-
-    try:
-        return import_module(name)
-    except ImportError:
-        raise InputError(f"the Python package {name} is missing; pip install 'realcam[cluster]' brings it") from None
 
 
 def _line_of(error: BaseException) -> str:
