@@ -64,7 +64,7 @@ TEST_CASE("a mutated file of any kind is what it should be, or an error") {
     };
     for (const Kind& kind : kinds) {
         CAPTURE(kind.name);
-        const double broken = run(kind.target, &Findings::files, 500);
+        const double broken = run(kind.target, &Findings::files, 150);
         CHECK(fuzz::findings().files_read > 5);  // it is not all refused at the door
         hold({"Scenes",
               std::string("mutated files that end in anything but what they should be or an error: ") + kind.name,
