@@ -1,4 +1,4 @@
-"""realcam's lenses as sensors of Mitsuba 3. Skipped where Mitsuba is not installed, or has no LLVM."""
+"""realcam's lenses as sensors of Mitsuba 3. Skipped where Mitsuba is not installed, or has neither LLVM nor a GPU."""
 
 from __future__ import annotations
 
@@ -27,15 +27,15 @@ def mitsuba(variant: str) -> Any:
         mi.set_variant(variant)
         mi.Float(1) + mi.Float(2)
     except (ImportError, RuntimeError) as error:
-        pytest.skip(f"Mitsuba has no LLVM to work with: {error}")
+        pytest.skip(f"Mitsuba cannot work in {variant} here: {error}")
     import realcam.mitsuba  # noqa: F401
 
     return mi
 
 
-@pytest.fixture
-def mi() -> Any:
-    return mitsuba("llvm_ad_rgb")
+@pytest.fixture(params=["llvm_ad_rgb", "cuda_ad_rgb"])
+def mi(request: pytest.FixtureRequest) -> Any:
+    return mitsuba(request.param)
 
 
 def film(**crop: int) -> dict[str, Any]:
@@ -122,7 +122,7 @@ def blocks(mi: Any, picture_of: Any, rounds: int, spp: int) -> np.ndarray:
     return np.array(pictures).reshape(rounds, 4, ROWS // 4, 5, COLUMNS // 5, -1).mean(axis=(2, 4))
 
 
-@pytest.mark.parametrize("variant", ["llvm_ad_rgb", "llvm_ad_spectral"])
+@pytest.mark.parametrize("variant", ["llvm_ad_rgb", "llvm_ad_spectral", "cuda_ad_rgb"])
 def test_path_and_ptracer_take_the_same_picture(variant: str) -> None:
     mi = mitsuba(variant)
     rounds = 16
