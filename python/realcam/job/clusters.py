@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import concurrent.futures
 import logging
+import time
 from collections.abc import Iterator
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
@@ -66,8 +67,26 @@ def _batch_cluster(batch_system: str, workers: int) -> Any:
     kinds = {"slurm": "SLURMCluster", "pbs": "PBSCluster"}
     if batch_system not in kinds:
         raise InputError(f'unknown batch system "{batch_system:.40}"; one of {", ".join(kinds)} is wanted')
-    cluster = getattr(imported("dask_jobqueue", "cluster"), kinds[batch_system])()
+    kind = getattr(imported("dask_jobqueue", "cluster"), kinds[batch_system])
+    try:
+        cluster = kind()
+    except ValueError:  # its message is an example of Python
+        raise InputError(
+            f"{batch_system}: dask-jobqueue has to know the cores and the memory of a worker; "
+            f"jobqueue: {batch_system}: with cores and memory is wanted in ~/.config/dask/jobqueue.yaml"
+        ) from None
     cluster.scale(workers)
+    # dask-jobqueue swallows what the batch system answers, and waits for ever.
+    ends = time.monotonic() + _ANSWERS_WITHIN_S
+    while not any(job.job_id for job in cluster.workers.values()):
+        if time.monotonic() > ends:
+            with suppress(AssertionError):  # closing asserts that all jobs were accepted
+                cluster.close()
+            raise InputError(
+                f"{batch_system}: no job of a worker was accepted in {_ANSWERS_WITHIN_S} s; cores, memory and queue of "
+                f"jobqueue: {batch_system}: in ~/.config/dask/jobqueue.yaml have to be what the cluster offers"
+            )
+        time.sleep(0.1)
     return cluster
 
 
