@@ -138,6 +138,20 @@ std::array<double, 3> field_of_view(const LensSystem& lens) {
     return {full(lens.film_width), full(lens.film_height), full(hypotenuse(lens.film_width, lens.film_height))};
 }
 
+std::string field_text(const std::array<double, 3>& degrees) {
+    if (std::ranges::none_of(degrees, [](double d) { return std::isnan(d); }))
+        return fixed(degrees[0], 1) + " x " + fixed(degrees[1], 1) + " degrees, " + fixed(degrees[2], 1) +
+               " across the diagonal";
+    const char* across[] = {"width", "height", "diagonal"};
+    std::string lit, dark;
+    for (std::size_t i = 0; i < degrees.size(); ++i)
+        if (std::isnan(degrees[i]))
+            dark += std::string(dark.empty() ? "no light reaches the ends of the film's " : " and ") + across[i];
+        else
+            lit += fixed(degrees[i], 1) + " degrees across the film's " + across[i] + "; ";
+    return lit + dark;
+}
+
 /// What is assumed of surfaces of which the lens does not say how they are coated; empty where it says all.
 std::string coating_assumptions(const LensSystem& lens) {
     const std::vector<int> unknown = surfaces_with_unknown_coating(lens);
@@ -192,7 +206,6 @@ std::string iris_text(const IrisShape& iris) {
 
 std::string lens_as_text(const LensSystem& lens) {
     const FirstOrder data = first_order(lens, lens.wavelength_nm);
-    const auto view = field_of_view(lens);
     std::string text = lens.name + (lens.title.empty() ? "" : ": " + lens.title) + '\n';
     if (!lens.source.empty()) text += "source: " + lens.source + '\n';
     text += '\n' + table(lens) + '\n';
@@ -236,8 +249,7 @@ std::string lens_as_text(const LensSystem& lens) {
     }
     line("diaphragm", "     " + iris_text(lens.iris));
     line("film", "     " + short_number(lens.film_width) + " x " + short_number(lens.film_height) + " mm");
-    line("field of view", "     " + fixed(view[0], 1) + " x " + fixed(view[1], 1) + " degrees, " + fixed(view[2], 1) +
-                              " across the diagonal" + (std::isfinite(view[2]) ? "" : " (its corners get no light)"));
+    line("field of view", "     " + field_text(field_of_view(lens)));
     return text;
 }
 
