@@ -404,6 +404,8 @@ def test_a_small_lit_thing_before_nothing_is_no_black_picture(tmp_path: Path) ->
         ["lens", "plot", "distortion", "tessar-50mm", "-o", "a.svg", "-o", "a.csv"],
         ["lens", "convert", "tessar-50mm", "-o", "a.toml"],
         ["lens", "gallery", "tessar-50mm", "-o", "a.svg"],
+        ["lens", "compare", "tessar-50mm", "sonnar-50mm", "-o", "a.svg"],
+        ["lens", "photo", "tessar-50mm"],
     ],
 )
 def test_quiet_commands_say_nothing(
@@ -411,7 +413,9 @@ def test_quiet_commands_say_nothing(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     code, text, errors = said(words, monkeypatch, capsys)
-    assert (code, text, errors) == (0, "".join(f"wrote {file}\n" for file in words if file.startswith("a.")), "")
+    written = "".join(f"wrote {file}\n" for file in words if file.startswith("a."))
+    assert (code, errors) == (0, "")
+    assert text.endswith(written) and (len(text) > len(written)) == (words[1] in ("compare", "photo"))
     for option in ("-q", "--quiet"):
         assert said([*words, option], monkeypatch, capsys) == (0, "", "")
 
@@ -447,5 +451,5 @@ def test_all_commands_that_write_can_be_quiet() -> None:
         for word in name.split():
             command = command.commands[word]
         options = {option for parameter in command.params for option in parameter.opts}
-        if "--output" in options and name not in IN_CPP and name != "lens compare":
+        if ("--output" in options or name in ("lens photo", "view")) and name not in IN_CPP:
             assert "--quiet" in options, name

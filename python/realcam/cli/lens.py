@@ -137,6 +137,7 @@ def photo(
     force: lens_options.Force = False,
     pbrt_thickness: lens_options.PbrtThickness = None,
     as_json: AsJson = False,
+    quiet: options.Quiet = False,
 ) -> None:
     """Print photographers' figures: depth of field, angle of view, breathing, T-stop, exposure value."""
     from ..photography import photographic_figures
@@ -152,8 +153,8 @@ def photo(
     )
     if as_json:
         typer.echo(json_text(figures))
-        return
-    lens_figures.print_columns([lens.title or lens.name], [lens_figures.photo_rows(figures)])
+    elif not quiet:
+        lens_figures.print_columns([lens.title or lens.name], [lens_figures.photo_rows(figures)])
 
 
 @app.command("compare")
@@ -185,6 +186,7 @@ def compare(
     force: lens_options.Force = False,
     pbrt_thickness: lens_options.PbrtThickness = None,
     as_json: AsJson = False,
+    quiet: options.Quiet = False,
 ) -> None:
     """Print figures of two lenses side by side, at the same focus and stop if these are given, and draw both."""
     from ..photography import lens_summary
@@ -204,7 +206,7 @@ def compare(
     ]
     if as_json:
         typer.echo(json_text(summaries))
-    else:
+    elif not quiet:
         rows = [lens_figures.summary_rows(summary) for summary in summaries]
         lens_figures.print_columns([lens.title or lens.name for lens in lenses], rows)
     if output is not None:
@@ -219,7 +221,7 @@ def compare(
             theme=theme,
             width_px=width,
         )
-        options.say_written(output, quiet=as_json)
+        options.say_written(output, quiet or as_json)
 
 
 @app.command("convert")

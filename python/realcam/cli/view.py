@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from .._core import InputError
+from . import options
 from .completions import completion_of
 from .demo import scenes_folder
 
@@ -35,6 +36,7 @@ def view(
         ),
     ] = "auto",
     browser: Annotated[bool, typer.Option(help="Open the browser")] = True,
+    quiet: options.Quiet = False,
 ) -> None:
     """Photograph a scene in the browser: turn the rings, edit the lens, and see the picture follow."""
     try:
@@ -45,7 +47,10 @@ def view(
         raise InputError(f"the lens bench needs {error.name}; pip install realcam[view] brings it") from None
     if not is_local(host) and not allow_network:
         raise InputError(f"--host {host}: other machines reach this address; --allow-network allows that")
+    if quiet and not (is_local(host) or token):
+        raise InputError("--quiet hides the token that is made for other machines: name one with --token")
     check_port(host, port)  # before the scene is read, which may take its time
     source, opened = ShotSource.opened(scenes_folder() / "demo.toml" if shot is None else shot, device)
     folders = (Path.cwd(), *(folder or ()))
-    serve(opened, source, ServerSettings(folders, host, port, device, token, shows_browser=browser))
+    settings = ServerSettings(folders, host, port, device, token, shows_browser=browser, tells_address=not quiet)
+    serve(opened, source, settings)

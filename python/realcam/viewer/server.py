@@ -52,6 +52,7 @@ class ServerSettings:
     device: str = "auto"
     token: str = ""
     shows_browser: bool = True
+    tells_address: bool = True
     noise_codes: float = 1.0
     most_windows: int = 16
     reconnect_s: float = 30.0
@@ -104,7 +105,8 @@ def serve(shot: Shot, source: ShotSource, settings: ServerSettings) -> None:
     address = f"http://{_shown(settings.host)}:{settings.port}/" + (f"?token={token}" if token else "")
 
     async def tell() -> None:
-        print(f"realcam: the lens bench is at {address}", flush=True)
+        if settings.tells_address:
+            print(f"realcam: the lens bench is at {address}", flush=True)
         for process, module in ((reader, "realcam.viewer.lens_reading"), (plotter, "realcam.viewer.close_look")):
             threading.Thread(target=process.warm_up, args=(module,), daemon=True).start()
 
