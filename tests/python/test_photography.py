@@ -9,8 +9,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 import realcam as rc
+from matplotlib.figure import Figure
 from realcam import cli
-from realcam.analysis import depth_over_focus
+from realcam.analysis import DepthOverFocus, depth_over_focus, plot_depth_over_focus
 from realcam.photography import (
     angle_of_view_deg,
     blur_diameter_mm,
@@ -215,6 +216,33 @@ def test_depth_of_field_over_distance_of_a_thin_lens_is_the_formulas() -> None:
     np.testing.assert_allclose(1000 * data.near_m - image, near, rtol=1e-3)
     np.testing.assert_allclose(1 / (1000 * data.far_m - image), np.maximum(1 / far, 0), atol=1e-3 / s.min())
     assert np.isinf(data.far_m[far < 0]).all()
+
+
+def test_the_plot_of_depth_of_field_says_where_and_why_a_curve_is_missing() -> None:
+    """At f/2 the blur is above the limit of 0.03 mm at two stretches, at f/4 no light passes, f/8 has its curve."""
+    focus_m, nan = np.array([1.0, 2.0, 4.0, 8.0, 16.0]), np.nan
+    formula = np.stack([[nan, 1.9, 3.8, 7.6, 15.0]] * 3)
+    near = np.array([[nan, nan, 3.9, nan, nan], [nan] * 5, [nan, 1.9, 3.8, 7.6, 15.0]])
+    blur = np.array([[nan, 0.05, 0.02, 0.05, 0.05], [nan] * 5, [nan, 0.01, 0.01, 0.01, 0.01]])
+    data = DepthOverFocus(focus_m, np.array([2.0, 4.0, 8.0]), near, 1.2 * near, formula, 1.2 * formula, blur, 0.03)
+    axes = Figure().subplots()
+    plot_depth_over_focus(data, axes)
+    legend = axes.get_legend()
+    assert legend is not None
+    assert [" ".join(text.get_text().split()) for text in legend.get_texts()] == [
+        "f/8 no curve at 1 m: cannot be focused",
+        "f/4 no curve at 1 m: cannot be focused no curve at 2 to 16 m: no light passes",
+        "f/2 no curve at 1 m: cannot be focused no curve at 2 m and 8 to 16 m: blurred by aberrations",
+        "in focus",
+        "by formula",
+    ]
+
+
+def test_depth_of_field_over_distance_tells_what_it_misses() -> None:
+    """Wide open the Biotar blurs more than 1 um however it is focused, and no lens is focused at its own front."""
+    data = depth_over_focus(rc.Lens.load("biotar-50mm"), focus_m=[0.01, 2.0], circle_of_confusion_mm=1e-3)
+    assert np.isnan(data.blur_in_focus_mm[:, 0]).all() and np.isnan(data.formula_near_m[:, 0]).all()
+    assert data.blur_in_focus_mm[0, 1] > 1e-3 and np.isnan(data.near_m[0, 1])
 
 
 def test_depth_of_field_over_distance_asks_for_a_lens_that_focuses() -> None:

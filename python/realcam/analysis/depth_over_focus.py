@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
+import textwrap
 from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.axes import Axes
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from .._core import InputError, Lens
-from ..photography.depth import sharp_ranges
+from ..photography.depth import blur_diameter_mm, sharp_ranges
 from ..photography.formulas import ThinLens, at_infinity
 from ..short_text import ShortText
 from . import style
@@ -22,9 +24,11 @@ class DepthOverFocus(ShortText):
     """What is sharp when a lens is focused at one distance after the other. Distances are from the film, in metres.
 
     focus_m: (D,); f_numbers: (N,), as engraved.
-    near_m, far_m: (N, D), by real rays. Both are nan where the lens cannot be focused, or blurs more than the circle of
-      confusion by its aberrations alone. far_m is inf where infinity is sharp.
-    formula_near_m, formula_far_m: (N, D), of a thin lens with the same focal length and f-number.
+    near_m, far_m: (N, D), by real rays. Both are nan where the lens cannot be focused, where no light passes, and where
+      aberrations alone blur more than the circle of confusion. far_m is inf where infinity is sharp.
+    formula_near_m, formula_far_m: (N, D), of a thin lens with the same focal length and f-number; nan where the lens
+      cannot be focused.
+    blur_in_focus_mm: (N, D), as DepthOfField has it; nan where no light passes or the lens cannot be focused.
     circle_of_confusion_mm: the largest blur that counts as sharp.
     """
 
@@ -34,6 +38,7 @@ class DepthOverFocus(ShortText):
     far_m: Doubles
     formula_near_m: Doubles
     formula_far_m: Doubles
+    blur_in_focus_mm: Doubles
     circle_of_confusion_mm: float
 
 
@@ -62,7 +67,7 @@ def depth_over_focus(
         places: Doubles = np.geomspace(nearest, max(1e-3 * thin.hyperfocal_mm(circle), 4 * nearest), samples)
     else:
         places = numbers_of(focus_m, "focus_m")
-    result = np.full((4, len(stops), len(places)), np.nan)
+    result = np.full((5, len(stops), len(places)), np.nan)
     for n, stopped in enumerate(lenses):
         for d, place in enumerate(places):
             try:
@@ -70,10 +75,13 @@ def depth_over_focus(
             except InputError:  # nearer or farther than the lens can
                 continue
             real, formula = sharp_ranges(focused, circle)
-            result[:, n, d] = real.near_m, real.far_m, formula.near_m, formula.far_m
-    if np.isnan(result[2:]).all():
+            result[:4, n, d] = real.near_m, real.far_m, formula.near_m, formula.far_m
+            with contextlib.suppress(InputError):  # no light passes
+                result[4, n, d] = blur_diameter_mm(focused)
+    if np.isnan(result[2:4]).all():
         raise InputError(f'lens "{lens.name}" can be focused at none of these distances')
-    return DepthOverFocus(places, stops, result[0], result[1], result[2], result[3], circle)
+    near, far, formula_near, formula_far, blur_in_focus = result
+    return DepthOverFocus(places, stops, near, far, formula_near, formula_far, blur_in_focus, circle)
 
 
 def plot_depth_over_focus(data: DepthOverFocus, axes: Axes) -> None:
@@ -86,7 +94,7 @@ def plot_depth_over_focus(data: DepthOverFocus, axes: Axes) -> None:
         colour = style.field_colour(int(n))
         near, far = (np.minimum(_between(data.focus_m, edge[n], fine), 2 * top) for edge in (data.near_m, data.far_m))
         axes.fill_between(fine, near, far, color=colour, alpha=0.25, linewidth=0)
-        axes.plot(fine, near, color=colour, label=f"f/{data.f_numbers[n]:.3g}")
+        axes.plot(fine, near, color=colour, label=_label(data, int(n)))
         axes.plot(fine, far, color=colour)
         for edge in (data.formula_near_m[n], data.formula_far_m[n]):
             axes.plot(fine, np.minimum(_between(data.focus_m, edge, fine), 2 * top), "--", color=colour, linewidth=0.8)
@@ -102,6 +110,32 @@ def plot_depth_over_focus(data: DepthOverFocus, axes: Axes) -> None:
     axes.set_ylabel("sharp from and to / m")
     axes.set_title(f"depth of field, blur up to {1000 * data.circle_of_confusion_mm:.3g} µm")
     style.legend_beside(axes)
+
+
+def _label(data: DepthOverFocus, n: int) -> str:
+    """The aperture, and where and why it has no curve."""
+    is_focused = ~np.isnan(data.formula_near_m[n])
+    has_light = ~np.isnan(data.blur_in_focus_mm[n])
+    gaps = {
+        "cannot be focused": ~is_focused,
+        "no light passes": is_focused & ~has_light,
+        "blurred by aberrations": has_light & np.isnan(data.near_m[n]),
+    }
+    lines = [f"f/{data.f_numbers[n]:.3g}"]
+    for reason, is_missing in gaps.items():
+        if is_missing.any():
+            where = "" if is_missing.all() else f" at {_ranges(data.focus_m, is_missing)}"
+            lines += textwrap.wrap(f"no curve{where}: {reason}", 32)
+    return "\n".join(lines)
+
+
+def _ranges(places_m: Doubles, is_in: NDArray[np.bool_]) -> str:
+    """The stretches of places in which all are in, as text."""
+    order = np.argsort(places_m)
+    found = np.flatnonzero(is_in[order])
+    stretches = np.split(places_m[order][found], np.flatnonzero(np.diff(found) > 1) + 1)
+    ends = (dict.fromkeys(f"{stretch[end]:.3g}" for end in (0, -1)) for stretch in stretches)
+    return " and ".join(f"{' to '.join(texts)} m" for texts in ends)
 
 
 def _between(focus_m: Doubles, edge_m: Doubles, fine_m: Doubles) -> Doubles:
