@@ -1,4 +1,4 @@
-"""What notebooks show of lenses, pictures and plans, and Lens.draw."""
+"""What notebooks show of lenses, point spread functions, pictures and plans, and Lens.draw."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from ._core import InputError, Lens, Plan, develop
+from ._core import PSF, InputError, Lens, Plan, develop
 from .drawing import cross_section
 from .drawing.style import Style, data_of
 from .drawing.themes import theme_named
@@ -78,6 +78,18 @@ def lens_png(lens: Lens) -> bytes | None:
         return None
 
 
+def psf_png(psf: PSF) -> bytes:
+    """Its light in decades."""
+    from .analysis import style  # which loads matplotlib
+    from .analysis.point_spread import plot_decades
+    from .figure_files import NOTEBOOK_DPI, figure_bytes
+
+    with style.themed():
+        figure = style.new_figure(*style.SIZES_IN["small"])
+        plot_decades(psf, figure.add_subplot(), f"{', '.join(f'{nm:.4g}' for nm in psf.wavelengths_nm)} nm")
+    return figure_bytes(figure, ".png", NOTEBOOK_DPI)
+
+
 def picture_png(exposure: NDArray[np.float32], iso: float) -> bytes:
     """Of (H, W, 3) lux seconds, developed, with fewer pixels where there are more than a page shows."""
     import matplotlib.image
@@ -119,6 +131,7 @@ def table_html(rows: Iterable[Sequence[str]], head: Sequence[str] = ()) -> str:
 for _type, _name, _function in (
     (Lens, "draw", draw),
     (Lens, "_repr_png_", lens_png),
+    (PSF, "_repr_png_", psf_png),
     (Plan, "_repr_html_", plan_html),
 ):
     setattr(_type, _name, _function)

@@ -9,6 +9,7 @@ import sys
 from html.parser import HTMLParser
 from typing import Any
 
+import matplotlib
 import matplotlib.image
 import numpy as np
 import pytest
@@ -114,6 +115,16 @@ def test_an_analysis_is_shown_as_its_plot(kind: str) -> None:
     shown = picture_of(data._repr_png_())
     assert min(shown.shape[:2]) > 100
     assert len(np.unique(shown.reshape(-1, 3), axis=0)) > 20  # lines and text
+
+
+def test_a_point_spread_function_is_shown_in_decades() -> None:
+    """White is the peak and black a ten-thousandth of it, by the ends of matplotlib's "inferno"."""
+    psf = LENS.psf(10.0, [486.1, 656.3], size=32)
+    shown = picture_of(psf._repr_png_())  # type: ignore[attr-defined]  # what IPython calls
+    assert shown.shape == (300, 420, 3)
+    colours = {tuple(colour) for colour in shown.reshape(-1, 3)}
+    assert {tuple(np.round(255 * np.array(matplotlib.colormaps["inferno"](end)[:3]))) for end in (0.0, 1.0)} <= colours
+    assert repr(psf).startswith("<realcam.PSF") and len(repr(psf)) < 200
 
 
 def test_every_analysis_has_a_plot() -> None:

@@ -55,6 +55,11 @@ def point_spread(
 
 def plot_point_spread(data: PointSpread, axes: Axes) -> None:
     """In decades of the largest value."""
+    plot_decades(data, axes, f"{data.field_deg:.3g}°, {data.method}")
+
+
+def plot_decades(data: PointSpread | PSF, axes: Axes, title: str) -> None:
+    """The light in decades of its largest value. title: what stands before the Strehl ratio, where there is one."""
     half = 0.5 * (data.x_um[1] - data.x_um[0])
     with np.errstate(divide="ignore"):
         decades = np.log10(data.values / data.values.max())
@@ -71,5 +76,5 @@ def plot_point_spread(data: PointSpread, axes: Axes) -> None:
     axes.set_xlabel("x / µm")
     axes.set_ylabel("y / µm")
     strehl = "" if np.isnan(data.strehl) else f", Strehl {data.strehl:.2g}"
-    axes.set_title(f"{data.field_deg:.3g}°, {data.method}{strehl}")
+    axes.set_title(f"{title}{strehl}")
     style.colour_bar(axes, picture, "decades of the peak")
