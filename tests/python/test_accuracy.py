@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 import realcam as rc
 from realcam.accuracy import AccuracyCost, Measured
-from realcam.accuracy.figure import _apart
+from realcam.accuracy.error_plot import _apart
 from realcam.accuracy.image_space_blur import diffused, gathered
 
 from . import scenes
@@ -96,6 +96,9 @@ def test_time_to_an_error(cost: AccuracyCost) -> None:
     assert rung.seconds_to(math.sqrt(8)) == pytest.approx(8)  # between two pictures, on logarithmic scales
     assert rung.seconds_to(1) == pytest.approx(64)  # noise falls with the square root of the time
     assert replace(rung, bias_codes=1.5).seconds_to(1) == math.inf
+    # A bias of 1.2 leaves a noise of 1.6, which four times the time halves.
+    assert rung.error_after(64.0) == pytest.approx(1.0)
+    assert replace(rung, bias_codes=1.2).error_after(64.0) == pytest.approx(math.hypot(1.2, 0.8))
 
 
 def test_it_is_told_as_tables_and_json(cost: AccuracyCost) -> None:
@@ -115,7 +118,7 @@ def test_the_figure_is_one_file(cost: AccuracyCost, tmp_path: Path) -> None:
     assert "seconds of samples" in text
     assert "polynomial lens" in text
     for rung in (*cost.rungs, *cost.samplings):
-        assert (f"{rung.name}: recommended" in text) == rung.is_recommended
+        assert (f"Recommended: {rung.name}." in text) == rung.is_recommended
     cost.figure(tmp_path / "a.html")
     page = (tmp_path / "a.html").read_text()
     assert "<svg" in page

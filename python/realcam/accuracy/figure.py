@@ -8,20 +8,18 @@ import textwrap
 from pathlib import Path
 
 import numpy as np
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from .. import files
 from .._core import ImageFileError
 from ..analysis import style
-from ..analysis.fields import Doubles
 from ..drawing.web_page import colour_variables, inline_svg
 from ..figure_files import figure_bytes
-from .measurements import Measurements, Rung
+from .error_plot import draw_errors, recommendation
+from .measurements import Measurements
 from .report import tables_of
 
 MOST_CODES = 32.0  # white in the thumbnails
-DASHES = ("-", "--", ":", "-.")
 
 
 def save_figure(cost: Measurements, path: str | os.PathLike[str]) -> None:
@@ -40,16 +38,29 @@ def save_figure(cost: Measurements, path: str | os.PathLike[str]) -> None:
 
 
 def _drawing(cost: Measurements) -> Figure:
-    heights = [3.2, 2.6, 1.5] if cost.samplings else [3.2, 1.5]
-    with style.themed("light", 9.0):
-        figure = Figure(figsize=(12, 2.6 * sum(heights) / 1.5), layout="constrained")
+    size = f"{cost.size[0]} x {cost.size[1]} pixels on {cost.device}"
+    plots = [
+        (
+            f"Levels of simulation: {size}, against {cost.reference}",
+            "It leaves out only what this shot does not show",
+            cost.rungs,
+            5.0,
+        ),
+        (
+            "Ways to sample the full lens, against the same without effects",
+            "Its samples go where light passes, and some start at the lamps",
+            cost.samplings,
+            3.0,
+        ),
+    ]
+    plots = [plot for plot in plots if plot[2]]
+    heights = [height for *_, height in plots] + [2.4]
+    with style.themed("light", 8.0):
+        figure = Figure(figsize=(11, sum(heights)), layout="constrained")
         *above, below = np.asarray(figure.subfigures(len(heights), 1, height_ratios=heights)).ravel()
-        _draw_errors(above[0].subplots(), cost.rungs)
-        size = f"{cost.size[0]} x {cost.size[1]} pixels on {cost.device}"
-        above[0].suptitle(f"{size}, against {cost.reference}", fontsize=9)
-        if cost.samplings:
-            _draw_errors(above[1].subplots(), cost.samplings)
-            above[1].suptitle("Ways to sample the full lens, against the same without effects", fontsize=9)
+        for place, (title, reason, rungs, _) in zip(above, plots, strict=True):
+            draw_errors(place, rungs)
+            place.suptitle("\n".join(filter(None, (title, recommendation(rungs, reason)))), fontsize=9)
         columns = (len(cost.rungs) + 1) // 2
         thumbnails = np.atleast_1d(below.subplots(2, columns)).ravel()
         for place in thumbnails:
@@ -58,83 +69,9 @@ def _drawing(cost: Measurements) -> Figure:
             place.imshow(rung.difference, cmap="inferno", vmin=0, vmax=MOST_CODES, interpolation="nearest")
             place.set_title(textwrap.fill(rung.name, 24), fontsize=6)
         below.suptitle(
-            f"Difference of the best picture of each level to the reference; white: {MOST_CODES:g} codes", fontsize=8
+            f"Difference of the best picture of each level to the reference; white: {MOST_CODES:g} codes", fontsize=9
         )
     return figure
-
-
-def _draw_errors(axes: Axes, rungs: tuple[Rung, ...]) -> None:
-    """A colour for each group of lines, which are told apart by their dashes, and a name at each line's end."""
-    groups = list(dict.fromkeys(rung.group for rung in rungs))
-    seen = dict.fromkeys(groups, 0)
-    for rung in rungs:
-        seconds, errors = zip(*((picture.seconds, picture.rmse) for picture in rung.pictures), strict=True)
-        axes.plot(
-            seconds,
-            errors,
-            marker="o",
-            linestyle="-" if rung.is_recommended else DASHES[seen[rung.group] % len(DASHES)],
-            color=style.field_colour(groups.index(rung.group)),
-            markersize=5 if rung.is_recommended else 3,
-            linewidth=3 if rung.is_recommended else 1.2,
-            zorder=3 if rung.is_recommended else 2,
-        )
-        seen[rung.group] += not rung.is_recommended
-    _draw_frontier(axes, rungs)
-    axes.set(xscale="log", yscale="log", xlabel="seconds of samples", ylabel="error, root mean square, 8-bit codes")
-    for axis in (axes.xaxis, axes.yaxis):
-        style.plain_decades(axis)
-    _name_lines(axes, rungs, groups)
-
-
-def _name_lines(axes: Axes, rungs: tuple[Rung, ...], groups: list[str]) -> None:
-    """Beside the axes, as high as the lines end, but at least a line of text from each other."""
-    ends = sorted(
-        ((rung.pictures[-1].rmse, rung.pictures[-1].seconds, rung) for rung in rungs), key=lambda end: end[:2]
-    )
-    axes.autoscale_view()
-    low, high = axes.get_ylim()
-    height = np.log([error / low for error, _, _ in ends]) / np.log(high / low)
-    for error_height, (error, seconds, rung) in zip(_apart(height, 0.05), ends, strict=True):
-        axes.annotate(
-            f"{rung.name}: recommended" if rung.is_recommended else rung.name,
-            (seconds, error),
-            (1.01, error_height),
-            textcoords=axes.transAxes,
-            va="center",
-            color=style.field_colour(groups.index(rung.group)),
-            weight="bold" if rung.is_recommended else "normal",
-            fontsize=8,
-            arrowprops={
-                "arrowstyle": "-",
-                "linewidth": 0.4,
-                "color": style.GREY,
-                "relpos": (0, 0.5),
-                "shrinkA": 0,
-                "shrinkB": 2,
-            },
-        )
-
-
-def _apart(places: Doubles, least: float) -> Doubles:
-    """Rising places, moved as little as a rising pass and a falling one do until all are so far from each other."""
-    moved: Doubles = places.copy()
-    for k in range(1, len(moved)):
-        moved[k] = max(moved[k], moved[k - 1] + least)
-    moved[-1] = min(moved[-1], max(1.0, places[-1]))
-    for k in range(len(moved) - 2, -1, -1):
-        moved[k] = min(moved[k], moved[k + 1] - least)
-    return moved
-
-
-def _draw_frontier(axes: Axes, rungs: tuple[Rung, ...]) -> None:
-    """The least error that any of the lines has reached by then."""
-    lines = [np.log([(p.seconds, p.rmse) for p in rung.pictures]).T for rung in rungs]
-    times = np.linspace(min(line[0, 0] for line in lines), max(line[0, -1] for line in lines), 400)
-    errors = [np.interp(times, line[0], line[1], left=np.inf) for line in lines]
-    best = np.minimum.accumulate(np.min(errors, axis=0))
-    axes.plot(np.exp(times), np.exp(best), color=style.GREY, linewidth=7, alpha=0.25, zorder=0, label="the best of all")
-    axes.legend(loc="lower left")
 
 
 def _page(cost: Measurements, drawing: str) -> str:

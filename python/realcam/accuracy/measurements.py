@@ -43,6 +43,12 @@ class Rung:
     group: str
     is_recommended: bool
 
+    def error_after(self, seconds: float) -> float:
+        """The error after more time than was measured: noise falls with its square root, and bias stays."""
+        last = self.pictures[-1]
+        noise2 = max(0.0, last.rmse**2 - self.bias_codes**2)
+        return math.sqrt(min(self.bias_codes, last.rmse) ** 2 + noise2 * last.seconds / seconds)
+
     def seconds_to(self, rmse: float) -> float:
         """Seconds until the error is so small, between the pictures on a logarithmic scale; inf: never."""
         if self.bias_codes >= rmse:

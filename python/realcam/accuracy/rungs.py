@@ -23,7 +23,7 @@ class Level:
 
     model, effects, pupil_sampling, light_tracing: of render; blur: what is done to the picture afterwards;
     is_stratified: else each sample has random numbers of its own, whatever the others of its pixel have.
-    group: of levels that are alike, by which figures colour them; is_recommended: what is taken where nobody chooses.
+    group: of levels that are alike, which share a plot; is_recommended: what is taken where nobody chooses.
     """
 
     name: str

@@ -1,0 +1,121 @@
+"""Error over time, in one plot for each group of levels."""
+
+from __future__ import annotations
+
+import textwrap
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import SubFigure
+from matplotlib.ticker import LogLocator
+
+from ..analysis import style
+from ..analysis.fields import Doubles
+from .measurements import Rung
+
+# Lines are continued to so many times the time that was measured.
+CONTINUED = 16.0
+
+
+def draw_errors(figure: SubFigure, rungs: tuple[Rung, ...]) -> None:
+    """The recommended level stands in all plots, so that each other is seen beside it."""
+    groups = list(dict.fromkeys(rung.group for rung in rungs))
+    rows = 2 if len(groups) > 3 else 1
+    grid = figure.subplots(rows, -(-len(groups) // rows), sharex=True, sharey=True, squeeze=False)
+    end = CONTINUED * max(rung.pictures[-1].seconds for rung in rungs)
+    for place in grid.ravel()[len(groups) :]:
+        place.set_axis_off()
+    plots = [
+        (axes, group, [rung for rung in rungs if rung.group == group or rung.is_recommended])
+        for axes, group in zip(grid.ravel(), groups, strict=False)
+    ]
+    for axes, group, shown in plots:
+        _draw_frontier(axes, rungs)
+        for number, rung in enumerate(shown):
+            _draw_line(axes, rung, _colour(rung, number), end)
+        axes.set(xscale="log", yscale="log", title=group)
+        style.plain_decades(axes.yaxis)
+        style.plain_decades(axes.xaxis)
+        axes.xaxis.set_major_locator(LogLocator())
+    for axes in grid[-1]:
+        axes.set_xlabel("seconds of samples")
+    for axes in grid[:, 0]:
+        axes.set_ylabel("error / codes")
+    grid[0, 0].set_xlim(right=end)
+    grid[0, 0].plot([], [], ":", color=style.GREY, label="continued, as noise falls and bias stays")
+    grid[0, 0].legend(loc="lower left")
+    # Last, because the places of names depend on the limits, which all plots share.
+    for axes, _, shown in plots:
+        _name_lines(axes, shown, end)
+
+
+def recommendation(rungs: tuple[Rung, ...], reason: str) -> str:
+    """What is recommended and why, with the errors that show it; empty where it was not measured."""
+    best = next((rung for rung in rungs if rung.is_recommended), None)
+    if best is None:
+        return ""
+    end = CONTINUED * max(rung.pictures[-1].seconds for rung in rungs)
+    least: dict[str, float] = {}
+    for rung in rungs:
+        if rung is not best:
+            least[rung.group] = min(least.get(rung.group, np.inf), rung.error_after(end))
+    others = ", ".join(f"{error:.2g} ({group})" for group, error in least.items())
+    return (
+        f"Recommended: {best.name}. {reason}.\n"
+        f"After {end:.2g} s its error is {best.error_after(end):.2g} codes, that of the others at least {others}"
+    )
+
+
+def _colour(rung: Rung, number: int) -> str:
+    return style.text_colour() if rung.is_recommended else style.field_colour(number)
+
+
+def _draw_line(axes: Axes, rung: Rung, colour: str, end: float) -> None:
+    seconds, errors = zip(*((picture.seconds, picture.rmse) for picture in rung.pictures), strict=True)
+    width = 2.5 if rung.is_recommended else 1.2
+    axes.plot(seconds, errors, marker="o", color=colour, markersize=2 + width, linewidth=width)
+    later = np.geomspace(seconds[-1], end, 50)
+    axes.plot(later, [rung.error_after(time) for time in later], ":", color=colour, linewidth=width)
+
+
+def _name_lines(axes: Axes, rungs: list[Rung], end: float) -> None:
+    """Beside the axes, as high as the lines end, but far enough from each other."""
+    low, high = axes.get_ylim()
+    heights = np.log([rung.error_after(end) / low for rung in rungs]) / np.log(high / low)
+    order = np.argsort(heights)
+    places = _apart(heights[order], 0.13)
+    for place, number in zip(places, order, strict=True):
+        rung = rungs[number]
+        axes.annotate(
+            textwrap.fill(rung.name, 20),
+            (1, heights[number]),
+            (1.03, place),
+            xycoords="axes fraction",
+            textcoords="axes fraction",
+            va="center",
+            color=_colour(rung, int(number)),
+            weight="bold" if rung.is_recommended else "normal",
+            fontsize=7,
+            linespacing=0.9,
+            arrowprops={"arrowstyle": "-", "linewidth": 0.4, "color": style.GREY, "relpos": (0, 0.5), "shrinkB": 0},
+        )
+
+
+def _apart(places: Doubles, least: float) -> Doubles:
+    """Rising places, moved as little as a rising pass and a falling one do until all are so far from each other."""
+    moved: Doubles = places.copy()
+    for k in range(1, len(moved)):
+        moved[k] = max(moved[k], moved[k - 1] + least)
+    moved[-1] = min(moved[-1], max(1.0, places[-1]))
+    for k in range(len(moved) - 2, -1, -1):
+        moved[k] = min(moved[k], moved[k + 1] - least)
+    return moved
+
+
+def _draw_frontier(axes: Axes, rungs: tuple[Rung, ...]) -> None:
+    """The least error that any of the lines has reached by then."""
+    lines = [np.log([(p.seconds, p.rmse) for p in rung.pictures]).T for rung in rungs]
+    times = np.linspace(min(line[0, 0] for line in lines), max(line[0, -1] for line in lines), 400)
+    errors = [np.interp(times, line[0], line[1], left=np.inf) for line in lines]
+    best = np.minimum.accumulate(np.min(errors, axis=0))
+    axes.plot(np.exp(times), np.exp(best), color=style.GREY, linewidth=6, alpha=0.25, zorder=0, label="the best of all")
