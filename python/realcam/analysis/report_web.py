@@ -25,8 +25,13 @@ tbody tr:hover { background: var(--grid); }
 .figures th, .figures td, .surfaces .text { text-align: left; }
 .figures td { white-space: normal; }
 .figures th { font-weight: normal; color: var(--quiet); padding-left: 0; }
+.surfaces thead th { white-space: normal; vertical-align: bottom; }
 .surfaces .sum td { border-top: 1px solid var(--faint); }
 .wide { overflow-x: auto; }
+@media screen and (max-width: 64rem) {
+  .surfaces { font-size: 0.75rem; }
+  .surfaces th, .surfaces td { padding: 0.15rem 0.3rem; }
+}
 .note { color: var(--quiet); font-size: 0.85rem; }
 @page { size: A4; margin: 12mm; }
 @media print {
