@@ -1,8 +1,7 @@
-"""Builds the site of the documentation: ./run docs, or python docs/site/build.py -o FOLDER
+"""Builds the site of the documentation: ./run docs, or python docs/site/build.py -o FOLDER.
 
 Sphinx reads build/docs/source, where the pages stand beside each other as they do in the repository, so that links
-between them hold. What is made by programs (tutorials, the API, pages of
-lenses and effects) stands there, too.
+between them hold. What is made by programs (tutorials, the API, pages of lenses and effects) stands there, too.
 """
 
 from __future__ import annotations
@@ -66,13 +65,20 @@ def timed(what: str, make: Callable[[], object]) -> None:
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("-o", "--output", type=Path, default=ROOT / "out" / "docs", help="folder of the site")
+    parser.add_argument(
+        "--no-pictures",
+        action="store_true",
+        help="for writers of pages: take no photographs and start no tutorials; empty pictures stand for missing ones",
+    )
     arguments = parser.parse_args()
+    has_pictures = not arguments.no_pictures
     lay_out(PAGES)
     timed("API", lambda: api_pages.write(PAGES / "api"))
     timed("C++", lambda: cpp_pages.write(PAGES / "cpp-api"))
-    timed("lenses", lambda: lens_pages.write(PAGES / "gallery"))
-    timed("effects", lambda: effect_pages.write(PAGES / "effects"))
-    words = ["-W", "--keep-going", "-q", "-b", "html", "-c", HERE, "-d", WORK / "doctrees", PAGES, arguments.output]
+    timed("lenses", lambda: lens_pages.write(PAGES / "gallery", has_pictures=has_pictures))
+    timed("effects", lambda: effect_pages.write(PAGES / "effects", has_pictures=has_pictures))
+    words: list[str | Path] = [] if has_pictures else ["-D", "plot_gallery=0"]  # read by sphinx-gallery
+    words += ["-W", "--keep-going", "-q", "-b", "html", "-c", HERE, "-d", WORK / "doctrees", PAGES, arguments.output]
     status = sphinx([str(word) for word in words])
     broken = [] if status else list(broken_links(arguments.output))
     print(*broken, sep="\n", end="\n" if broken else "", file=sys.stderr)

@@ -8,7 +8,7 @@ from pathlib import Path
 import effect_pictures
 import realcam as rc
 from effect_pictures import Pair
-from written import is_newer, remove_others, write_text
+from written import is_newer, remove_others, stand_in_for, write_text
 
 # What the words are from: those of rc.effects() are in the extension.
 SOURCES = (Path(__file__), Path(effect_pictures.__file__), Path(rc._core.__file__))
@@ -41,18 +41,21 @@ def title_of(effect: rc.EffectInfo) -> str:
     return capital(effect.name.replace("_", " "))
 
 
-def write(folder: Path, names: Sequence[str] | None = None) -> None:
-    """Writes what is missing or older than its sources, with index.md as the first page. names: None is all effects."""
+def write(folder: Path, names: Sequence[str] | None = None, *, has_pictures: bool = True) -> None:
+    """Writes what is missing or older than its sources, with index.md as the first page. names: None is all effects.
+    has_pictures: otherwise no picture is made, and empty ones stand where there are none."""
     folder.mkdir(parents=True, exist_ok=True)
     effects = [effect for effect in rc.effects() if names is None or effect.name in names]
     for effect in effects:
         page = folder / f"{effect.name}.md"
         made = [folder / f"{effect.name}-{suffix}.png" for suffix in ("without", "with")]
-        have_pictures = all(is_newer(picture, effect_pictures.SOURCES) for picture in made)
-        if have_pictures and is_newer(page, SOURCES):
+        if not has_pictures:
+            stand_in_for(made)
+        is_made = not has_pictures or all(is_newer(picture, effect_pictures.SOURCES) for picture in made)
+        if is_made and is_newer(page, SOURCES):
             continue
         pair = effect_pictures.PAIRS[effect.name]()
-        if not have_pictures:
+        if not is_made:
             pair.save(folder, effect.name)
         page.write_text(page_of(effect, pair), encoding="utf-8")
     remove_others(folder, {"index", *(effect.name for effect in effects)})

@@ -14,7 +14,7 @@ import lens_pictures
 import realcam as rc
 from realcam import lens_tables
 from realcam.draw import save_cross_section
-from written import is_newer, remove_others, write_text
+from written import is_newer, remove_others, stand_in_for, write_text
 
 ROOT = Path(__file__).resolve().parents[2]
 # Angles of view over the diagonal, below which a lens is in the group.
@@ -85,15 +85,18 @@ def index_of(lenses: dict[str, rc.Lens]) -> str:
     return "\n".join([*lines, "```{toctree}\n:hidden:\n", *lenses, "```"]) + "\n"
 
 
-def write(folder: Path, names: Sequence[str] | None = None) -> None:
-    """Writes what is missing or older than its sources, with index.md as the first page. names: None is all lenses."""
+def write(folder: Path, names: Sequence[str] | None = None, *, has_pictures: bool = True) -> None:
+    """Writes what is missing or older than its sources, with index.md as the first page. names: None is all lenses.
+    has_pictures: otherwise no picture is made, and empty ones stand where there are none."""
     folder.mkdir(parents=True, exist_ok=True)
     shot = rc.Shot.load(lens_pictures.SHOT)
     lenses = {name: rc.Lens.load(name) for name in names or rc.lens_names()}
     for name, lens in lenses.items():
         file = ROOT / "lenses" / f"{name}.toml"
-        photograph, drawing, mtf = (folder / f"{name}{end}" for end in (".jpg", ".svg", "-mtf.svg"))
-        if not all(is_newer(made, (Path(lens_pictures.__file__), file)) for made in (photograph, drawing, mtf)):
+        pictures = photograph, drawing, mtf = tuple(folder / f"{name}{end}" for end in (".jpg", ".svg", "-mtf.svg"))
+        if not has_pictures:
+            stand_in_for(pictures)
+        elif not all(is_newer(made, (Path(lens_pictures.__file__), file)) for made in pictures):
             save_cross_section(lens, drawing, width_px=1000)
             lens_pictures.save_mtf(lens, mtf)
             lens_pictures.save_photograph(lens, shot, photograph)

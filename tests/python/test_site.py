@@ -195,6 +195,20 @@ def test_pages_of_lenses_are_complete(monkeypatch: pytest.MonkeyPatch, denoiser:
     assert {path: path.stat().st_mtime_ns for path in tmp_path.iterdir()} == before
 
 
+def test_pages_without_pictures_have_empty_ones_until_the_next_build(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    (tmp_path / "tessar-50mm.jpg").write_bytes(b"a photograph")
+    module_of("lens_pages", monkeypatch).write(tmp_path, ["tessar-50mm"], has_pictures=False)
+    assert missing_links(tmp_path) == set()
+    assert (tmp_path / "tessar-50mm.jpg").read_bytes() == b"a photograph"
+    module_of("effect_pages", monkeypatch).write(tmp_path, ["coatings"], has_pictures=False)
+    assert missing_links(tmp_path) == set()
+    is_newer = module_of("written", monkeypatch).is_newer
+    for name in ("tessar-50mm.svg", "tessar-50mm-mtf.svg", "coatings-without.png", "coatings-with.png"):
+        assert not is_newer(tmp_path / name, [ROOT / "LICENSE"])
+
+
 @pytest.mark.slow
 def test_a_page_of_an_effect_is_complete(monkeypatch: pytest.MonkeyPatch, denoiser: None, tmp_path: Path) -> None:
     pages, pictures = module_of("effect_pages", monkeypatch), module_of("effect_pictures", monkeypatch)
