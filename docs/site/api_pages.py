@@ -45,6 +45,7 @@ GROUPS = {
         "effects", "EffectInfo", "plan", "Plan", "PlanDecision", "accuracy_cost", "AccuracyCost",
     ),
     "Sensors": ("Sensor", "RawImage", "sensor_names"),
+    "Rigs": ("Rig", "RigCamera"),
     "Vision": (
         "ProjectionStatus", "CameraModelFit", "fit_camera_model", "camera_json", "save_camera_json", "save_colmap",
     ),

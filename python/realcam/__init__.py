@@ -85,6 +85,7 @@ from .photography import DepthOfField, PhotographicFigures, depth_of_field, phot
 from .planning import plan
 from .raw_image import RawImage
 from .render import render
+from .rig import Rig, RigCamera
 from .session import ReachedNoise, Session
 from .shot import Shot
 from .tolerance import (
@@ -163,6 +164,8 @@ __all__ = [
     "RealcamError",
     "RenderSettings",
     "RenderStats",
+    "Rig",
+    "RigCamera",
     "Scene",
     "SceneFileError",
     "Seidel",

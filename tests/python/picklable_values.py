@@ -99,6 +99,15 @@ MAKERS: dict[str, list[Callable[[], Any]]] = {
         lambda: lens().bundle(10, spokes=8, nodes=2),
         lambda: lens().bundle(11, spokes=8, nodes=2),
     ],
+    "RigCamera": [
+        lambda: rc.RigCamera(camera()),
+        lambda: rc.RigCamera(camera(), rc.Sensor.load(), ((500, 1), (600, 1))),
+    ],
+    "Rig": [
+        lambda: rc.Rig({"a": camera()}),
+        lambda: rc.Rig.stereo(camera(), baseline_m=0.1),
+        lambda: rc.Rig({"a": camera()}, np.stack([np.eye(4)] * 2), (0, 1)),
+    ],
     "RawImage": [lambda: rc.Sensor.load().expose(image()), lambda: rc.Sensor.load().expose(image(), seed=1)],
     "FilmPart": [lambda: session().expose((2, 1, 3, 4), 0, 2), lambda: session().expose((2, 1, 3, 4), 2, 2)],
     "Image": [

@@ -1,0 +1,319 @@
+"""Cameras that are fixed to one another: a stereo pair, a ring of cameras, all that a vehicle bears."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ._core import Camera, InputError, RenderSettings, Scene, Sensor
+from .files import write_whole
+from .image import Image
+from .pickling import set_checked_state
+from .raw_image import RawImage
+from .settings import settings_of
+from .shot import Shot
+from .vision import CameraModelFit, camera_json
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+    from ._core import _SettingWords
+
+Array = NDArray[np.float64]
+Matrix = tuple[tuple[float, ...], ...]
+
+UNMOVED: Matrix = tuple(tuple(row) for row in np.eye(4).tolist())
+
+
+@dataclass(frozen=True)
+class RigCamera:
+    """A camera of a rig, and what becomes of the light on its film.
+
+    camera: as it stands in the axes of the rig. sensor: what makes raw numbers of its film. spectral_filter: what lies
+    over that sensor, pairs of a wavelength in nm and a transmission from 0 to 1, linear between them and nothing beyond
+    them; (): none. Raises InputError.
+    """
+
+    camera: Camera
+    sensor: Sensor | None = None
+    spectral_filter: tuple[tuple[float, float], ...] = ()
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.camera, Camera):
+            raise InputError(f"a camera of a rig is a realcam.Camera or a RigCamera; it is {self.camera!r:.60}")
+        try:
+            table = tuple((float(nm), float(share)) for nm, share in self.spectral_filter)
+        except (TypeError, ValueError):
+            raise InputError("spectral_filter must be pairs of a wavelength in nm and a transmission") from None
+        object.__setattr__(self, "spectral_filter", table)
+        if table and self.sensor is None:
+            raise InputError("spectral_filter: the camera has no sensor for which light could be filtered")
+        self.filtered_sensor  # noqa: B018 - raises for what is no filter
+
+    def __repr__(self) -> str:
+        with_filter = " with a filter" if self.spectral_filter else ""
+        sensor = f" on {self.sensor.name!r:.30}{with_filter}" if self.sensor else ""
+        return f"<realcam.RigCamera {self.camera!r:.60}{sensor}>"
+
+    @property
+    def filtered_sensor(self) -> Sensor | None:
+        """The sensor with the filter as a part of its cover glass."""
+        if self.sensor is None or not self.spectral_filter:
+            return self.sensor
+        tables = [np.array(table) for table in (self.spectral_filter, self.sensor.cover_glass) if len(table)]
+        knots = np.unique(np.concatenate([table[:, 0] for table in tables]))
+        if len(tables) > 1:  # between knots, the product of two lines is none
+            knots = np.unique(np.concatenate([knots, np.arange(knots[0], knots[-1])]))
+        product = np.prod([np.interp(knots, table[:, 0], table[:, 1], left=0, right=0) for table in tables], axis=0)
+        return self.sensor.replace(cover_glass=list(zip(knots.tolist(), product.tolist(), strict=True)))
+
+    @property
+    def filter_factor(self) -> float:
+        """What the filter lets through of what the sensor sees of white light (D65), 0 to 1. Raises InputError."""
+        if self.sensor is None or self.filtered_sensor is None:
+            return 1.0
+        with_filter, without = (
+            each.electrons_per_um2().sum(axis=1).max() for each in (self.filtered_sensor, self.sensor)
+        )
+        return float(with_filter / without)
+
+
+@dataclass(frozen=True)
+class Rig:
+    """Cameras that are fixed to one another, by their names.
+
+    rig = rc.Rig.stereo(camera, baseline_m=0.12)
+    images = rig.moved(scene_from_rig).render(scene)  # {"left": ..., "right": ...}
+
+    members: cameras as they stand in the axes of the rig, Camera or RigCamera. scene_from_rig: (4, 4), which puts the
+    rig into the scene: a rotation and a translation in metres. times_s: where the rig moves while shutters are open,
+    the times in s of as many matrices, (K, 4, 4). Raises InputError.
+    """
+
+    members: Mapping[str, RigCamera]
+    scene_from_rig: Any = UNMOVED
+    times_s: tuple[float, ...] = field(default=())
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.members, Mapping) or not self.members:
+            raise InputError("members must be a mapping of names to cameras, with one camera at least")
+        members = {}
+        for name, member in self.members.items():
+            if not isinstance(name, str) or not name:
+                raise InputError(f"a camera of a rig has a text as its name; it is {name!r:.60}")
+            members[name] = member if isinstance(member, RigCamera) else RigCamera(member)
+        object.__setattr__(self, "members", members)
+        object.__setattr__(self, "times_s", tuple(float(time_s) for time_s in self.times_s))
+        poses = _rigid(self.scene_from_rig, len(self.times_s))
+        object.__setattr__(self, "scene_from_rig", _nested(poses))
+        if self.times_s and any(member.camera.motion for member in members.values()):
+            raise InputError("a rig that moves bears cameras that stand still in it; one of them has a motion")
+        self.cameras  # noqa: B018 - raises for times that are out of order
+
+    def __hash__(self) -> int:
+        return hash((tuple(self.members.items()), self.scene_from_rig, self.times_s))
+
+    def __setstate__(self, state: Any) -> None:
+        set_checked_state(self, state, hash)
+
+    def __repr__(self) -> str:
+        return f"<realcam.Rig of {len(self.members)} cameras: {', '.join(self.members):.60}>"
+
+    @classmethod
+    def stereo(cls, camera: Camera, *, baseline_m: float, toe_in_deg: float = 0.0) -> Rig:
+        """Two of a camera, "left" and "right" of where it stands.
+
+        baseline_m: between the middles of their films. toe_in_deg: by which each is turned towards the other, about the
+        middle of its film. The axes of the rig are those of the camera: x right, y up, z backward. Raises InputError.
+        """
+        if not 0 < baseline_m < np.inf:
+            raise InputError(f"baseline_m must be a positive number of metres, not {baseline_m!r:.20}")
+        if camera.motion:
+            raise InputError("a stereo rig is made of a camera that stands still; moved() takes the rig along")
+        turn = np.radians(toe_in_deg)
+        members = {}
+        for name, side in (("left", -1.0), ("right", 1.0)):
+            x = 0.5 * side * baseline_m
+            ahead = (x - side * np.sin(turn), 0.0, -np.cos(turn))
+            members[name] = RigCamera(camera.replace(position=(x, 0, 0), look_at=ahead, up=(0, 1, 0)))
+        return cls(members, _pose_of(camera))
+
+    @property
+    def cameras(self) -> dict[str, Camera]:
+        """The cameras as they stand in the scene."""
+        return {name: _placed(member.camera, self._poses, self.times_s) for name, member in self.members.items()}
+
+    @property
+    def _poses(self) -> Array:
+        poses: Array = np.array(self.scene_from_rig).reshape(-1, 4, 4)
+        return poses
+
+    def moved(self, scene_from_rig: ArrayLike, times_s: Sequence[float] = ()) -> Rig:
+        """The same rig elsewhere: scene_from_rig and times_s as the rig itself has them."""
+        return replace(self, scene_from_rig=scene_from_rig, times_s=tuple(times_s))
+
+    def metered(self, scene: Scene, *, device: str = "auto") -> Rig:
+        """With the exposure time of each camera that brings its average to middle grey. Raises what render raises."""
+        times = {name: camera.metered(scene, device=device).exposure_time_s for name, camera in self.cameras.items()}
+        members = {
+            name: replace(member, camera=member.camera.replace(exposure_time_s=times[name]))
+            for name, member in self.members.items()
+        }
+        return replace(self, members=members)
+
+    def shots(
+        self, scene: Scene, settings: RenderSettings | None = None, **changes: Unpack[_SettingWords]
+    ) -> dict[str, Shot]:
+        """What each camera photographs, for rc.Job say. Settings are those of rc.render.
+
+        Each has random numbers of its own: equal noise in two pictures would be taken for something that both see.
+        """
+        wanted = settings_of(settings, changes)
+        return {
+            name: Shot(scene, camera, wanted.with_(seed=(wanted.seed + number) % 2**32))
+            for number, (name, camera) in enumerate(self.cameras.items())
+        }
+
+    def render(
+        self,
+        scene: Scene,
+        settings: RenderSettings | None = None,
+        *,
+        device: str = "auto",
+        **changes: Unpack[_SettingWords],
+    ) -> dict[str, Image]:
+        """The pictures of all cameras by their names, as rc.render takes each.
+
+        The scene is prepared once: its hierarchy serves all cameras, and later pictures too, as long as it stays the
+        same. Raises what rc.render raises.
+        """
+        return {name: shot.render(device=device) for name, shot in self.shots(scene, settings, **changes).items()}
+
+    def expose(self, images: Mapping[str, Image], *, seed: int = 0) -> dict[str, RawImage]:
+        """What the sensors make of such pictures, for the cameras that have one: Sensor.expose with their filters.
+
+        A filter leaves the gain as the camera's ISO sets it without one, so that the ISO of the raw numbers is lower by
+        filter_factor. seed: of the noise. Each sensor has another fixed pattern. Raises InputError.
+        """
+        raws = {}
+        for number, (name, member) in enumerate(self.members.items()):
+            sensor = member.filtered_sensor
+            if name in images and sensor is not None:
+                iso = images[name].camera.iso * member.filter_factor
+                raws[name] = sensor.expose(images[name], iso=iso, seed=seed, serial=number)
+        return raws
+
+    def relative_pose(self, of: str, seen_from: str) -> tuple[Array, Array]:
+        """(R, t): R @ point + t takes points from the axes of one camera to those of another.
+
+        As cv2.stereoCalibrate has them for relative_pose("right", "left"): axes x right, y down, z forward, from the
+        middle of the entrance pupil, metres. Raises InputError.
+        """
+        (rotation, translation), (from_rotation, from_translation) = (
+            self._member(name).camera.world_to_camera for name in (of, seen_from)
+        )
+        turn: Array = rotation @ from_rotation.T
+        return turn, translation - turn @ from_translation
+
+    def _member(self, name: str) -> RigCamera:
+        if name not in self.members:
+            raise InputError(f"the rig has no camera {name!r:.40}; one of {', '.join(self.members):.200} is wanted")
+        return self.members[name]
+
+    def calibration(self, fits: Iterable[CameraModelFit] = ()) -> dict[str, Any]:
+        """Intrinsics and poses of all cameras as json.dump takes them (docs/rigs.md).
+
+        fits: from rc.fit_camera_model, each of one of rig.cameras. Raises InputError, also for a rig that moves.
+        """
+        if self.times_s:
+            raise InputError("a rig that moves has no one pose; moved(matrix) stops it")
+        fits = list(fits)
+        cameras = {}
+        for name, camera in self.cameras.items():
+            rotation, translation = self.members[name].camera.world_to_camera
+            cameras[name] = camera_json(camera, [fit for fit in fits if fit.camera == camera]) | {
+                "rig_to_camera": {"rotation": rotation.tolist(), "translation_m": translation.tolist()}
+            }
+        return {"rig_to_world": [list(row) for row in self.scene_from_rig], "cameras": cameras}
+
+    def save_calibration(self, path: str | os.PathLike[str], fits: Iterable[CameraModelFit] = ()) -> None:
+        """Writes calibration() as JSON. Raises InputError, ImageFileError."""
+        write_whole(path, (json.dumps(self.calibration(fits), indent=1) + "\n").encode())
+
+    def save_colmap_rig(self, path: str | os.PathLike[str]) -> None:
+        """Writes COLMAP's rig_config.json, whose pictures stand in a folder for each camera, named as it is.
+
+        The first camera is the one to which the poses of the others are relative. Raises InputError, ImageFileError.
+        """
+        from scipy.spatial.transform import Rotation  # slow to load
+
+        first = next(iter(self.members))
+        cameras: list[dict[str, Any]] = [{"image_prefix": f"{first}/", "ref_sensor": True}]
+        for name in list(self.members)[1:]:
+            rotation, translation = self.relative_pose(name, first)
+            x, y, z, w = Rotation.from_matrix(rotation).as_quat().tolist()
+            cameras.append(
+                {
+                    "image_prefix": f"{name}/",
+                    "cam_from_rig_rotation": [w, x, y, z],
+                    "cam_from_rig_translation": translation.tolist(),
+                }
+            )
+        write_whole(path, (json.dumps([{"cameras": cameras}], indent=1) + "\n").encode())
+
+
+def _rigid(matrices: ArrayLike, times: int) -> Array:
+    try:
+        poses: Array = np.array(matrices, dtype=float)
+    except (TypeError, ValueError):
+        poses = np.zeros(0)
+    if poses.shape != ((times, 4, 4) if times else (4, 4)) or not np.isfinite(poses).all():
+        wanted = f"{times} matrices, one for each of times_s," if times else "a (4, 4) matrix"
+        raise InputError(f"scene_from_rig must be {wanted} of finite numbers")
+    turns = poses[..., :3, :3]
+    # Of what a user writes with seven digits.
+    is_turn = np.allclose(turns @ np.swapaxes(turns, -1, -2), np.eye(3), atol=1e-6) and (np.linalg.det(turns) > 0).all()
+    if not is_turn or not np.allclose(poses[..., 3, :], (0, 0, 0, 1), rtol=0, atol=1e-12):
+        raise InputError("scene_from_rig must rotate and move alone: a rig is neither scaled nor mirrored")
+    return poses
+
+
+def _nested(poses: Array) -> Any:
+    """The array as tuples, which compare and hash."""
+    return tuple(map(_nested, poses)) if poses.ndim else float(poses)
+
+
+def _pose_of(camera: Camera) -> Array:
+    """(4, 4): from the axes of a camera (x right, y up, z backward, the middle of its film) to the scene."""
+    pose = np.eye(4)
+    backward = np.subtract(camera.position, camera.look_at)
+    right = np.cross(camera.up, backward)
+    pose[:3, 0] = right / np.linalg.norm(right)
+    pose[:3, 2] = backward / np.linalg.norm(backward)
+    pose[:3, 1] = np.cross(pose[:3, 2], pose[:3, 0])
+    pose[:3, 3] = camera.position
+    return pose
+
+
+def _placed(camera: Camera, poses: Array, times_s: tuple[float, ...]) -> Camera:
+    """A camera of the rig where the rig's poses put it."""
+
+    def at(
+        pose: Array, position: Sequence[float], look_at: Sequence[float], up: Sequence[float]
+    ) -> tuple[tuple[float, ...], ...]:
+        turn, shift = pose[:3, :3], pose[:3, 3]
+        return tuple(tuple(v.tolist()) for v in (turn @ position + shift, turn @ look_at + shift, turn @ up))
+
+    stands = camera.position, camera.look_at, camera.up
+    if times_s:
+        motion: Any = [(time_s, *at(pose, *stands)) for time_s, pose in zip(times_s, poses, strict=True)]
+    else:
+        motion = [(time_s, *at(poses[0], *key)) for time_s, *key in camera.motion]
+    position, look_at, up = at(poses[0], *stands)
+    return camera.replace(position=position, look_at=look_at, up=up, motion=motion)
