@@ -65,6 +65,7 @@ def _fit_json(fit: CameraModelFit) -> dict[str, Any]:
         "max_px": fit.max_px,
         "distance_m": _finite(fit.distance_m),
         "largest_angle_deg": fit.largest_angle_deg,
+        "condition": _finite(fit.condition),
     }
     if fit.model != "f_theta":
         entry["opencv_camera_matrix"] = conventions.opencv_matrix(fit.camera_matrix).tolist()

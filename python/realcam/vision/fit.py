@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,6 +12,7 @@ from .._core import Camera, InputError
 from ..notebook import table_html
 from . import conventions
 from .models import RadialModel, distortion_coefficients, model_named
+from .regularised import condition_of, nearest_coefficients
 
 Array = NDArray[np.float64]
 
@@ -18,6 +20,11 @@ GRID = 49  # places across the longer side of the film, its edges included
 LEAST_LIGHT = (
     0.1  # of that in the middle; where there is less, no pattern is recognised, and rims alone say what is seen
 )
+
+
+# Between held-out points, by which a model has to be better than one of fewer terms: no calibration tells less.
+NOTABLE_PX = 0.01
+SIMPLER = ("pinhole", "opencv4", "opencv5")  # than opencv8
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -28,7 +35,8 @@ class CameraModelFit:
     coefficients: k1, k2, ... of the model (realcam.vision.models). distance_m: of the points to which it was fitted,
     from the middle of the entrance pupil. through: as Camera.project has it. pixels: (N, 2), places of the film;
     residuals: (N, 2), by how much the model shows elsewhere what the lens shows there, in pixels. largest_angle_deg: to
-    the axis, up to which the model's radius grows, and the model can be inverted.
+    the axis, up to which the model's radius grows, and the model can be inverted. condition: of the model's terms over
+    the film (realcam.vision.regularised): where it is large, other coefficients would show nearly the same.
     """
 
     model: str
@@ -40,6 +48,7 @@ class CameraModelFit:
     pixels: Array
     residuals: Array
     largest_angle_deg: float
+    condition: float = np.nan
 
     def __repr__(self) -> str:
         return (
@@ -57,6 +66,7 @@ class CameraModelFit:
             *((f"k{index}", f"{value:.6g}") for index, value in enumerate(self.coefficients, 1)),
             ("residuals", f"{self.rms_px:.3g} px RMS, {self.max_px:.3g} px at most, at {len(self.pixels)} places"),
             ("largest angle", f"{self.largest_angle_deg:.4g}°"),
+            ("condition", f"{self.condition:.3g}"),
         ]
         return table_html(rows)
 
@@ -112,7 +122,14 @@ class CameraModelFit:
 
         A real lens has no one centre of projection: its entrance pupil moves with the angle, which shows near the lens.
         """
-        seen, pixels = calibration_points(self.camera, distance_m, self.through)
+        return self._residuals_of(*calibration_points(self.camera, distance_m, self.through))
+
+    def held_out_rms_px(self) -> float:
+        """The root mean square of the residuals' lengths at places between those to which the model was fitted."""
+        residuals = self._residuals_of(*calibration_points(self.camera, self.distance_m, self.through, between=True))
+        return float(np.sqrt(np.mean(np.sum(residuals**2, axis=1))))
+
+    def _residuals_of(self, seen: Array, pixels: Array) -> Array:
         return projected(model_named(self.model), self.camera_matrix, self.coefficients, seen) - pixels
 
     def opencv(self) -> tuple[Array, Array]:
@@ -143,13 +160,34 @@ def fit_camera_model(
     say stays in the residuals. distance_m: of the points that are matched, from there, infinity allowed; None: of the
     plane in focus. through: as Camera.project has it. Where the film gets less than a tenth of the light in its middle
     does not count.
+    Of all coefficients of "opencv8" that fit the film to a hundredth of a pixel of the best, those are taken that come
+    nearest to "opencv5". Warns where a model of fewer terms predicts places between the fitted ones as well,
+    to a hundredth of a pixel.
 
     Raises InputError; for models by the tangent of the angle also where the
     film sees 90 degrees to the side.
     """
-    from scipy import optimize  # slow to load
+    fit = _fitted(camera, model_named(model), distance_m, through)
+    if model_named(model).denominator:
+        _warn_of_too_many_terms(fit, distance_m)
+    return fit
 
-    from_model = model_named(model)
+
+def _warn_of_too_many_terms(fit: CameraModelFit, distance_m: float | None) -> None:
+    rms = fit.held_out_rms_px()
+    for name in SIMPLER:
+        simpler = _fitted(fit.camera, model_named(name), distance_m, fit.through).held_out_rms_px()
+        if simpler - rms < NOTABLE_PX:
+            warnings.warn(
+                f"{name} predicts places between those that were fitted as well as {fit.model}: {simpler:.2g} and "
+                f'{rms:.2g} pixels RMS; fewer terms are enough for lens "{fit.camera.lens.name:.60}"',
+                stacklevel=3,
+            )
+            return
+
+
+def _fitted(camera: Camera, from_model: RadialModel, distance_m: float | None, through: str) -> CameraModelFit:
+    from scipy import optimize  # slow to load
 
     if distance_m is None:
         distance_m = _focus_from_pupil_m(camera)
@@ -158,8 +196,8 @@ def fit_camera_model(
     s = from_model.argument(_angles(seen))
     if np.isnan(s).any():
         raise InputError(
-            f'the camera model {model} has no place for lens "{camera.lens.name}": its film sees 90 degrees to the '
-            "side and more; fisheye, f_theta or a smaller film is wanted"
+            f'the camera model {from_model.name} has no place for lens "{camera.lens.name}": its film sees 90 degrees '
+            "to the side and more; fisheye, f_theta or a smaller film is wanted"
         )
     r = np.hypot(*((pixels - start[:2, 2]) / np.diag(start)[:2]).T)
 
@@ -194,8 +232,12 @@ def fit_camera_model(
     widest = _angles(seen).max()
     sound = [p for p in candidates if from_model.largest_angle(p[of_matrix:]) >= widest] or candidates
     best = min(sound, key=lambda p: np.sum(residuals(p) ** 2))
+    if from_model.denominator:
+        near = nearest_coefficients(from_model, residuals, best, guesses[-1], float(s.max()))
+        if from_model.largest_angle(near[of_matrix:]) >= widest:
+            best = near
     return CameraModelFit(
-        model=model,
+        model=from_model.name,
         camera=camera,
         camera_matrix=matrix(best),
         coefficients=best[of_matrix:],
@@ -204,6 +246,7 @@ def fit_camera_model(
         pixels=pixels,
         residuals=residuals(best),
         largest_angle_deg=float(np.degrees(from_model.largest_angle(best[of_matrix:]))),
+        condition=condition_of(from_model, s, r),
     )
 
 
@@ -212,17 +255,19 @@ def _first_guesses(model: RadialModel, s: Array, r: Array) -> list[Array]:
     above = 1 + len(model.numerator)
     columns = model.linear_terms(s, r)
     guesses = []
-    for count in {above, columns.shape[1]}:
+    for count in sorted({above, columns.shape[1]}, reverse=True):
         found, *_ = np.linalg.lstsq(columns[:, :count], r, rcond=None)
         found = np.append(found, np.zeros(columns.shape[1] - count))
         guesses.append(np.concatenate([found[:1], found[1:above] / found[0], found[above:]]))
     return guesses
 
 
-def calibration_points(camera: Camera, distance_m: float, through: str = "light") -> tuple[Array, Array]:
+def calibration_points(
+    camera: Camera, distance_m: float, through: str = "light", between: bool = False
+) -> tuple[Array, Array]:
     """(seen, pixels): places all over the film that have a tenth of the light in its middle or more, (N, 2), and what
     they show at a distance from the middle of the entrance pupil, (N, 3) in the axes of world_to_camera; at infinity
-    unit directions. Raises InputError.
+    unit directions. between: places in the middle of these. Raises InputError.
     """
     if not distance_m > 0:
         raise InputError("distance_m must be a positive number of metres, or inf")
@@ -231,7 +276,10 @@ def calibration_points(camera: Camera, distance_m: float, through: str = "light"
     columns, rows = camera.film.resolution
     width, height = camera.film.width_mm, camera.film.height_mm
     places = [max(3, round(GRID * side / max(width, height))) for side in (width, height)]
-    grid = np.meshgrid(np.linspace(0, columns, places[0]), np.linspace(0, rows, places[1]))
+    steps = [np.linspace(0, size, count) for size, count in zip((columns, rows), places, strict=True)]
+    if between:
+        steps = [0.5 * (step[1:] + step[:-1]) for step in steps]
+    grid = np.meshgrid(*steps)
     pixels = np.stack(grid, axis=-1).reshape(-1, 2)
     origins, directions, light = camera.ray(pixels, through=through, return_light=True)
     lit = ~np.isnan(directions[:, 0]) & (light >= LEAST_LIGHT)
