@@ -9,6 +9,7 @@ import realcam as rc
 from realcam.viewer import lens_edits
 from realcam.viewer.history import History
 from realcam.viewer.lens_edits import glass_of, with_plate, with_value
+from realcam.viewer.lens_view import lens_view
 
 from ..centred_lenses import CENTRED
 
@@ -242,3 +243,16 @@ def test_what_the_zoom_ring_moves_is_not_edited() -> None:
         elif index + 1 < len(lens.surfaces):
             edited = with_value(lens, index, "thickness_mm", longer)
             assert all(edited.zoomed(z).surfaces[index].thickness_mm == longer for z in lens.zoom_positions)
+
+
+def test_a_toroid_has_a_radius_in_each_plane() -> None:
+    lens = rc.Lens.load("anamorphic-31mm")
+    rows = lens_view(lens)["surfaces"]
+    assert [row["type"] for row in rows if "radius_x_mm" in row] == ["refracting"] * 5
+    front = rows[0]
+    assert (front["radius_mm"] is None) != (front["radius_x_mm"] is None)  # a cylinder
+    edited = with_value(lens, 0, "radius_x_mm", -70.0)
+    assert edited.surfaces[0].radius_of_curvature_x_mm == -70
+    assert edited.surfaces[0].radius_of_curvature_mm == lens.surfaces[0].radius_of_curvature_mm
+    with pytest.raises(rc.LensFileError, match="surface 8"):
+        with_value(lens, 7, "radius_x_mm", 50.0)

@@ -22,8 +22,10 @@ def with_value(lens: Lens, index: int, field: str, value: Any) -> Lens:
     A radius of 0 or of no number is a plane.
     """
     surface = _surface(lens, index)
-    if field == "radius_mm":
+    if field in ("radius_mm", "radius_x_mm"):
         radius = math.inf if value in (None, "", 0, "inf", "∞") else _number(value, "the radius")
+        if field == "radius_x_mm":
+            return lens.with_surface(index, radius_of_curvature_x_mm=radius)
         return lens.with_surface(index, radius_of_curvature_mm=radius)
     if field == "thickness_mm":
         if _is_moved_by_zoom(lens, index):

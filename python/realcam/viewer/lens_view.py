@@ -78,10 +78,12 @@ def ray_view(lens: Lens, heights_mm: Sequence[float], plane: str = "yz") -> dict
 def _row(lens: Lens, index: int) -> dict[str, Any]:
     surface = lens.surfaces[index]
     last = index + 1 == len(lens.surfaces)
+    in_xz = {"radius_x_mm": _finite(surface.radius_of_curvature_x_mm)} if surface.form in ("toroid", "biconic") else {}
     return {
         "z": lens.vertices_mm[index],
         "type": surface.type,
         "radius_mm": _finite(surface.radius_of_curvature_mm),
+        **in_xz,
         "thickness_mm": lens.film_distance_mm if last else surface.thickness_mm,
         "glass": surface.material.label,
         "semi_diameter_mm": surface.clear_semi_diameter_mm,

@@ -11,8 +11,9 @@ const FIGURES = [
   ["entrance_pupil_diameter_mm", "Entrance pupil", "mm", "Diameter of the stop as seen from the object"],
   ["exit_pupil_diameter_mm", "Exit pupil", "mm", "Diameter of the stop as seen from the film"],
 ];
+const RADIUS = ["radius_mm", "Radius", "mm", "Radius of curvature; positive where the centre lies on the film's side, empty for a plane"];
+const RADIUS_X = ["radius_x_mm", "Radius in xz", "mm", "As the radius, which is in yz then, in the other plane; of toroids and biconics"];
 const COLUMNS = [
-  ["radius_mm", "Radius", "mm", "Radius of curvature; positive where the centre lies on the film's side, empty for a plane"],
   ["thickness_mm", "Thickness", "mm", "Along the axis to the next surface"],
   ["glass", "Glass", "", "What follows the surface: empty for air, an index, an index and an Abbe number, or a name"],
   ["semi_diameter_mm", "Semi-diameter", "mm", "From the axis to the rim that stops light"],
@@ -139,7 +140,8 @@ export default {
       const powers = new Set();
       for (const row of this.view?.surfaces ?? []) Object.keys(row.aspheric).forEach((p) => powers.add(Number(p)));
       const terms = [...powers].sort((a, b) => a - b);
-      return [...COLUMNS, ...terms.map((p) => [`a${p}`, `A${p}`, `mm^${1 - p}`, `Aspheric coefficient of r^${p}`])];
+      const radii = this.view?.surfaces.some((row) => "radius_x_mm" in row) ? [RADIUS, RADIUS_X] : [RADIUS];
+      return [...radii, ...COLUMNS, ...terms.map((p) => [`a${p}`, `A${p}`, `mm^${1 - p}`, `Aspheric coefficient of r^${p}`])];
     },
   },
   mounted() {
@@ -188,7 +190,7 @@ export default {
     choose(s) {
       this.chosen = s;
     },
-    has: (row, key) => row.type === "refracting" || !["glass"].includes(key) && (row.type === "mirror" || ["thickness_mm", "semi_diameter_mm"].includes(key)),
+    has: (row, key) => key === "radius_x_mm" ? key in row : row.type === "refracting" || !["glass"].includes(key) && (row.type === "mirror" || ["thickness_mm", "semi_diameter_mm"].includes(key)),
     shown(row, key) {
       const value = key.match(/^a\d+$/) ? (row.aspheric[key.slice(1)] ?? 0) : row[key];
       return value === null ? "" : typeof value === "number" ? this.number(value, 7) : value;
