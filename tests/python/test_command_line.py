@@ -85,6 +85,11 @@ def test_help(name: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.Capture
     assert has_examples or name in ("", "lens", "sensor")
 
 
+def test_the_help_of_plots_names_all(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    text = said(["lens", "plot", "-h"], monkeypatch, capsys)[1].partition("KIND: ")[2].partition(".\n")[0]
+    assert set(re.findall(r"[a-z]+(?:-[a-z]+)*", text)) - {"over", "the", "film"} == set(rc.analysis.KINDS)
+
+
 @pictures
 @pytest.mark.parametrize("name", IN_CPP)
 def test_help_of_what_is_in_cpp(name: str, capfd: pytest.CaptureFixture[str]) -> None:

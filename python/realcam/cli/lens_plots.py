@@ -93,7 +93,7 @@ def plot(
 
     KIND: ray-fan, spot, spot-through-focus, longitudinal, field-curves, distortion, distortion-grid, lateral-colour,
     seidel, wavefront, zernike, psf, mtf, mtf-field, mtf-focus, relative-illumination, pupil, bokeh,
-    depth-of-field.
+    depth-of-field; over the film spot-map, wavefront-map, mtf-x-map, mtf-y-map, illumination-map, distortion-map.
     """
     from .. import analysis  # brings matplotlib, which other commands need not load
     from ..analysis import kinds, numbers
