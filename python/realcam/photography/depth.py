@@ -12,9 +12,11 @@ from .._core import InputError, Lens
 from ..roots import root_between
 from .formulas import ThinLens
 
-# Rays of the meridional plane that stand for equal areas of the stop; a lens on its axis is the same in every plane.
-_RADII = np.sqrt((np.arange(200) + 0.5) / 200)
-_PUPIL = np.column_stack([np.zeros(400), np.concatenate([-_RADII[::-1], _RADII])])
+# Rays of the planes yz and xz that stand for equal areas of the stop. On its axis a lens of revolution is the same in
+# every plane; an anamorphic one has another focus in each of these two.
+_RADII = np.sqrt((np.arange(100) + 0.5) / 100)
+_LINE = np.concatenate([-_RADII[::-1], _RADII])
+_PUPIL = np.concatenate([np.column_stack([0 * _LINE, _LINE]), np.column_stack([_LINE, 0 * _LINE])])
 _TOLERANCE = 1e-7  # of a distance's inverse, relative to the depth of field
 
 
