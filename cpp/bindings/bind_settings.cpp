@@ -275,7 +275,7 @@ constexpr const char* kDoc =
     "transport: \"paths\" for all ways of light, \"whitted\" for direct light and what mirrors and smooth glass show.\n"
     "clamp_cd_m2: radiance above which what comes by a bounce is cut off, for fewer bright dots and a picture that is\n"
     "too dark; 0: never. threads: 0 for all.\n"
-    "layers: names of what else Image.layers is to hold, or \"all\" (docs/layers.md).\n"
+    "layers: names of what else Image.layers is to hold, or \"all\" (docs/layers.md), which leaves dual_pixel out.\n"
     "effects: \"auto\": what the shot calls for, and the cheapest camera model that shows it, by thresholds: those of\n"
     "quality, \"draft\" (2 pixels, 4 codes), \"photo\" (0.5, 1) or \"reference\" (0.1, 0.25), or threshold_px and\n"
     "threshold_codes; or names of what is simulated besides (rc.effects() lists them; docs/dispersion.md), () for\n"

@@ -61,7 +61,7 @@ private:
             place();  // which takes less time than a thread to start
         }
         CameraView view = setup_->view(scene_.placed().origin_m(), scene_.placed().moves());
-        traced_lights_ = traced_lights(scene_.placed().view(), view, *setup_, settings.light_tracing, tracer_);
+        traced_lights_ = traced_lights(scene_.placed().view(), view, *setup_, settings.lights_traced(), tracer_);
         view.traced_lights = traced_lights_.view();
         for (const auto& renderer : renderers_) renderer->set_camera(view);
         set_splats(view);
@@ -142,12 +142,13 @@ private:
         });
     }
 
-    LayerImage develop_variance() override {
+    std::vector<LayerImage> develop_besides() override {
         const std::vector<SplatFilm> splats = front().download_splats();
-        if (!fits()) return developed_variance(film_, camera().exposure_time_s, view_of(splats));
+        const LayerSet layers = settings().layers;
+        if (!fits()) return developed_besides(film_, layers, camera().exposure_time_s, view_of(splats));
         FilmSums sums(static_cast<std::size_t>(width()) * static_cast<std::size_t>(height()));
         front().download_film(sums.data());
-        return developed_variance(sums, camera().exposure_time_s, view_of(splats));
+        return developed_besides(sums, layers, camera().exposure_time_s, view_of(splats));
     }
 
     std::shared_ptr<LiveFrame> start(const std::vector<SampleRange>& ranges, ToneCurve curve,

@@ -178,7 +178,7 @@ void DeviceRenderer::launch(const FilmPart& part, const RenderSettings& settings
                             const PixelCounts& counts, std::int64_t pixels) {
     launch_render({scene_.view(), scene_.bvh(), camera_, sums, counts_.data(), stop_.data(), settings.path(),
                    settings.seed, part.first_sample, part.sample_count, counts.counts, counts.taken, part.first_row,
-                   part.row_count, settings.layers.has(Layer::variance)},
+                   part.row_count, settings.layers.has(Layer::variance), settings.layers.has_any(kHalfLayers)},
                   pixels, stream_);
 }
 

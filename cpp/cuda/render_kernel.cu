@@ -41,24 +41,26 @@ struct CompiledKernel {
     int effects;
     LensKind lens;
     SceneKind scene;
+    bool halves;
     RenderKernel (*of)(bool instanced);
 
     bool serves(const RenderJob& job) const {
         const SceneKind wanted = kind_of(job.scene, job.camera);
-        return effects == number_of(job.camera.effects) && lens >= lens_kind_of(job.camera) &&
-               (scene == SceneKind::any || scene == wanted);
+        return halves == job.adds_half && effects == number_of(job.camera.effects) &&
+               lens >= lens_kind_of(job.camera) && (scene == SceneKind::any || scene == wanted);
     }
 };
 
 constexpr CompiledKernel kKernels[] = {
-#define REALCAM_RENDER_KERNEL(effects, lens, scene) \
-    {effects, LensKind::lens, SceneKind::scene, render_kernel_of<LensKind::lens, SceneKind::scene, effects>},
+#define REALCAM_RENDER_KERNEL(effects, lens, scene, halves) \
+    {effects, LensKind::lens, SceneKind::scene, halves,     \
+     render_kernel_of<LensKind::lens, SceneKind::scene, effects, halves>},
 #include "render_kernels.inc"
 #undef REALCAM_RENDER_KERNEL
 };
 
-/// A kernel serves the kinds in front of its own in their list too. The last one of each set serves any lens and any
-/// scene.
+/// A kernel serves the kinds in front of its own in their list too. The last ones of each set serve any lens and any
+/// scene, with halves of dual pixels and without.
 RenderKernel kernel_for(const RenderJob& job) {
     const CompiledKernel* kernel = kKernels;
     while (!kernel->serves(job)) ++kernel;
@@ -69,7 +71,7 @@ RenderKernel kernel_for(const RenderJob& job) {
 
 void check_render_code() {
     cudaFuncAttributes attributes{};
-    const RenderKernel kernel = render_kernel_of<LensKind::any, SceneKind::any, 0>(true);
+    const RenderKernel kernel = render_kernel_of<LensKind::any, SceneKind::any, 0, false>(true);
     check_cuda(cudaFuncGetAttributes(&attributes, reinterpret_cast<const void*>(kernel)), "loading its code");
 }
 

@@ -46,7 +46,7 @@ struct RenderJob {
     const std::uint32_t* of_pixels;  ///< how many of them single pixels of the band take, after pixels_taken; none: all
     std::uint32_t pixels_taken;
     int first_row, row_count;  ///< of the picture
-    bool adds_squares;  ///< PixelSum::squares, too
+    bool adds_squares, adds_half;  ///< PixelSum::besides, too
 };
 
 /// Throws UnsupportedGpu where the current device cannot run this build's code.

@@ -1,4 +1,5 @@
 #pragma once
+#include "../camera/pupil_half.hpp"
 #include "bvh_scene.hpp"
 #include "launch_grid.hpp"
 #include "render_kernel_of.hpp"
@@ -63,12 +64,12 @@ struct ThreadSums {
     __device__ void clear() {
         for (int i = 0; i < 8; ++i) (*this)[i] = 0;
     }
-    __device__ void add(const PixelSum& sample, bool has_squares) {
+    __device__ void add(const PixelSum& sample, bool has_besides) {
         for (int c = 0; c < 3; ++c) (*this)[c] += sample.irradiance[c];
         (*this)[3] += sample.depth;
         (*this)[4] += sample.met;
-        if (!has_squares) return;
-        for (int c = 0; c < 3; ++c) (*this)[5 + c] += sample.squares[c];
+        if (!has_besides) return;
+        for (int c = 0; c < 3; ++c) (*this)[5 + c] += sample.besides[c];
     }
     /// Of all threads of the pixel, but for the number of samples.
     __device__ PixelSum of_pixel(int lanes) {
@@ -76,7 +77,7 @@ struct ThreadSums {
         for (int c = 0; c < 3; ++c) sum.irradiance[c] = sum_of_neighbours((*this)[c], lanes);
         sum.depth = sum_of_neighbours((*this)[3], lanes);
         sum.met = sum_of_neighbours((*this)[4], lanes);
-        for (int c = 0; c < 3; ++c) sum.squares[c] = sum_of_neighbours((*this)[5 + c], lanes);
+        for (int c = 0; c < 3; ++c) sum.besides[c] = sum_of_neighbours((*this)[5 + c], lanes);
         return sum;
     }
 };
@@ -88,7 +89,7 @@ __device__ inline std::uint32_t samples_of(const RenderJob& job, std::int64_t pi
     return wanted > job.pixels_taken ? min(wanted - job.pixels_taken, job.sample_count) : 0;
 }
 
-template <LensKind lens_kind, SceneKind scene_kind, int effects_number, bool instanced>
+template <LensKind lens_kind, SceneKind scene_kind, int effects_number, bool instanced, bool halves = false>
 __global__ void __launch_bounds__(kBlockSize, kBlocksPerMultiprocessor)
     render(const __grid_constant__ RenderJob job, int lanes_per_pixel) {
     constexpr Effects effects = kCompiledEffects[effects_number];
@@ -119,8 +120,15 @@ __global__ void __launch_bounds__(kBlockSize, kBlocksPerMultiprocessor)
                                                            results);
             PixelSum sample{};
             sample.add(results, 0);
-            sample.add_squares(results, 0);
-            sums.add(sample, job.adds_squares);
+            if constexpr (halves) {
+                Lanes<std::int32_t, 1> is_right;
+                find_right_half<effects>(job.camera, block, is_right);
+                sample.add_half(results, 0, is_right[0] != 0);
+                sums.add(sample, true);
+            } else {
+                sample.add_squares(results, 0);
+                sums.add(sample, job.adds_squares);
+            }
             sampled += static_cast<std::uint32_t>(results.sampled[0]);
             passed += static_cast<std::uint32_t>(results.passed[0]);
         }
@@ -143,10 +151,11 @@ __global__ void __launch_bounds__(kBlockSize, kBlocksPerMultiprocessor)
 
 }  // namespace render_kernel_detail
 
-template <LensKind lens_kind, SceneKind scene_kind, int effects>
+template <LensKind lens_kind, SceneKind scene_kind, int effects, bool halves>
 RenderKernel render_kernel_of(bool instanced) {
     using namespace render_kernel_detail;
-    return instanced ? render<lens_kind, scene_kind, effects, true> : render<lens_kind, scene_kind, effects, false>;
+    return instanced ? render<lens_kind, scene_kind, effects, true, halves>
+                     : render<lens_kind, scene_kind, effects, false, halves>;
 }
 
 }  // namespace realcam

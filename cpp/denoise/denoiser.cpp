@@ -226,8 +226,10 @@ void denoise(Image& image, LayerSet wanted, Denoiser& denoiser, const KeepGoing&
     image.exposure = PictureFloats(denoiser.denoised(
         {image.width, image.height, image.exposure.data(), values_of(Layer::albedo), values_of(Layer::normal)},
         DenoiseQuality::high, keep_going));
+    // These describe the noise, or have it.
+    constexpr LayerSet kNoisy = {Layer::variance, Layer::dual_pixel_left, Layer::dual_pixel_right};
     std::erase_if(image.layers,
-                  [&](const LayerImage& layer) { return layer.layer == Layer::variance || !wanted.has(layer.layer); });
+                  [&](const LayerImage& layer) { return kNoisy.has(layer.layer) || !wanted.has(layer.layer); });
 }
 
 }  // namespace realcam

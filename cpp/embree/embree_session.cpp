@@ -60,7 +60,7 @@ private:
                 setup_ = last_setup_.make(camera, fast_pupil_tracer(), settings.lens_effects());
                 place(scene, camera);
                 camera_view_ = setup_->view(scene_->placed().origin_m(), scene_->placed().moves());
-                traced_lights_ = traced_lights(scene_->placed().view(), camera_view_, *setup_, settings.light_tracing,
+                traced_lights_ = traced_lights(scene_->placed().view(), camera_view_, *setup_, settings.lights_traced(),
                                                fast_pupil_tracer());
                 camera_view_.traced_lights = traced_lights_.view();
             });
@@ -128,7 +128,9 @@ private:
         });
     }
 
-    LayerImage develop_variance() override { return developed_variance(film_, camera().exposure_time_s, splatted()); }
+    std::vector<LayerImage> develop_besides() override {
+        return developed_besides(film_, settings().layers, camera().exposure_time_s, splatted());
+    }
 
     std::shared_ptr<LiveFrame> start(const std::vector<SampleRange>& ranges, ToneCurve curve,
                                      std::shared_ptr<void> under_way) override {
@@ -209,6 +211,7 @@ private:
             tile.counts = wanted.empty() ? nullptr : wanted.data();
             tile.path_settings = &path;
             tile.adds_squares = settings.layers.has(Layer::variance);
+            tile.adds_half = settings.layers.has_any(kHalfLayers);
             FilmSums sums(pixels_of(tile));
             tile.sums = sums.data();
             kernels().render_tile(&tile);

@@ -5,6 +5,7 @@
 #include <iterator>
 #include <utility>
 
+#include "../camera/pupil_half.hpp"
 #include "../camera/ray_request.hpp"
 #include "../camera/sensor_request.hpp"
 #include "../optics/analysis/aim_request.hpp"
@@ -112,6 +113,15 @@ PacketScene<scene_kind> packet_scene_of(const realcam_tile& tile, const SceneVie
             RayOrder::coherent, 0};
 }
 
+/// Out of line: pictures without these layers pass over it.
+template <Effects effects>
+[[gnu::noinline]] void add_halves(const CameraView& camera, const SampleBlock<kLanes>& block, int lanes,
+                                  const int* place, const PathResults<kLanes>& results, PixelSum* sums) {
+    Lanes<std::int32_t, kLanes> is_right;
+    find_right_half<effects>(camera, block, is_right);
+    for (int k = 0; k < lanes; ++k) sums[place[k]].add_half(results, k, is_right[k] != 0);
+}
+
 template <LensKind lens_kind, SceneKind scene_kind, Effects effects>
 void render_tile_of(realcam_tile* tile) {
     const SceneView view = *static_cast<const SceneView*>(tile->scene_view);
@@ -139,6 +149,7 @@ void render_tile_of(realcam_tile* tile) {
         tile->passed_rays += static_cast<std::uint64_t>(passed);
         if (tile->adds_squares)
             for (int k = 0; k < lanes; ++k) sums[place[k]].add_squares(results, k);
+        if (tile->adds_half) add_halves<effects>(camera, block, lanes, place, results, sums);
     });
     clock.enter(RenderStage::other);
     tile->lens_seconds += clock.seconds[static_cast<int>(RenderStage::lens)];

@@ -106,6 +106,11 @@ LayerChannels channels_of(Layer layer) {
         case Layer::normal_middle:
             return {{"NormalMiddle.X", "NormalMiddle.Y", "NormalMiddle.Z"}, "scene axes, middle ray"};
         case Layer::motion: return {{"Motion.X", "Motion.Y"}, "pixels right and down while exposed, middle ray"};
+        case Layer::dual_pixel_left:
+            return {{"DualPixelLeft.R", "DualPixelLeft.G", "DualPixelLeft.B"}, "lux seconds, left half of the pupil"};
+        case Layer::dual_pixel_right:
+            return {{"DualPixelRight.R", "DualPixelRight.G", "DualPixelRight.B"},
+                    "lux seconds, right half of the pupil"};
         case Layer::object_id: return {{"ObjectId"}, "key of realcam:objects, middle ray; 0: nothing"};
         case Layer::material_id: return {{"MaterialId"}, "key of realcam:materials, middle ray; 0: nothing"};
     }

@@ -40,6 +40,33 @@ LayerImage developed_variance(const FilmSums& film, double exposure_time_s, cons
     return image;
 }
 
+namespace {
+
+LayerImage developed_half(const FilmSums& film, Layer half, double exposure_time_s, const SplattedLight& splatted) {
+    LayerImage image{half, {}, {}};
+    image.values.reserve(3 * film.size());
+    for (std::size_t i = 0; i < film.size(); ++i) {
+        for (int channel = 0; channel < 3; ++channel) {
+            const double ghosts = splatted.irradiance(static_cast<std::int64_t>(i), channel);
+            const float right = film[i].right_exposure(channel, exposure_time_s, ghosts);
+            image.values.push_back(
+                half == Layer::dual_pixel_right ? right : film[i].exposure(channel, exposure_time_s, ghosts) - right);
+        }
+    }
+    return image;
+}
+
+}  // namespace
+
+std::vector<LayerImage> developed_besides(const FilmSums& film, LayerSet wanted, double exposure_time_s,
+                                          const SplattedLight& splatted) {
+    std::vector<LayerImage> images;
+    if (wanted.has(Layer::variance)) images.push_back(developed_variance(film, exposure_time_s, splatted));
+    for (const Layer half : {Layer::dual_pixel_left, Layer::dual_pixel_right})
+        if (wanted.has(half)) images.push_back(developed_half(film, half, exposure_time_s, splatted));
+    return images;
+}
+
 std::vector<std::int64_t> samples_of(const FilmSums& film) {
     std::vector<std::int64_t> counts;
     counts.reserve(film.size());

@@ -22,6 +22,10 @@ std::vector<std::uint8_t> developed_codes(const FilmSums& film, double exposure_
 /// Variance of the exposure, 3 per pixel (PixelSum::variance).
 LayerImage developed_variance(const FilmSums& film, double exposure_time_s, const SplattedLight& splatted = {});
 
+/// The layers of PixelSum::besides that are wanted: the variance, or the halves of dual pixels.
+std::vector<LayerImage> developed_besides(const FilmSums& film, LayerSet wanted, double exposure_time_s,
+                                          const SplattedLight& splatted = {});
+
 /// How many samples each pixel has.
 std::vector<std::int64_t> samples_of(const FilmSums& film);
 

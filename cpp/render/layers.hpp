@@ -24,6 +24,8 @@ enum class Layer : std::uint32_t {
     object_id,
     material_id,
     motion,
+    dual_pixel_left,
+    dual_pixel_right,
 };
 
 struct LayerInfo {
@@ -33,7 +35,7 @@ struct LayerInfo {
 };
 
 /// In the order of Layer.
-inline constexpr std::array<LayerInfo, 11> kLayers = {{
+inline constexpr std::array<LayerInfo, 13> kLayers = {{
     {"depth", 1, false},
     {"normal", 3, false},
     {"albedo", 3, false},
@@ -45,6 +47,8 @@ inline constexpr std::array<LayerInfo, 11> kLayers = {{
     {"object_id", 1, true},
     {"material_id", 1, true},
     {"motion", 2, false},
+    {"dual_pixel_left", 3, false},
+    {"dual_pixel_right", 3, false},
 }};
 
 constexpr const LayerInfo& info_of(Layer layer) {
@@ -57,9 +61,10 @@ public:
     constexpr LayerSet(std::initializer_list<Layer> layers) {
         for (const Layer layer : layers) add(layer);
     }
+    /// Each but those that exclude another one, kHalfLayers.
     static constexpr LayerSet all() {
         LayerSet set;
-        set.bits_ = (1u << kLayers.size()) - 1;
+        set.bits_ = (1u << static_cast<std::uint32_t>(Layer::dual_pixel_left)) - 1;
         return set;
     }
 
@@ -77,6 +82,8 @@ inline constexpr LayerSet kSampledLayers = {Layer::normal, Layer::albedo, Layer:
 /// Those of the surface in the middle ray of each pixel.
 inline constexpr LayerSet kMiddleLayers = {Layer::depth_middle, Layer::normal_middle, Layer::object_id,
                                            Layer::material_id, Layer::motion};
+/// The exposure through the left and the right half of the exit pupil.
+inline constexpr LayerSet kHalfLayers = {Layer::dual_pixel_left, Layer::dual_pixel_right};
 
 /// The names of all layers, for messages.
 std::string layer_names();

@@ -11,14 +11,15 @@ namespace REALCAM_NAMESPACE {
 /// a picture may have different numbers of samples.
 struct PixelSum {
     double irradiance[3];   ///< lux, summed over the samples
-    double squares[3];      ///< of the samples' irradiance, summed, where they are asked for
+    double besides[3];  ///< summed where layers ask for it: squares of the samples' irradiance, or the irradiance
+                        ///< of those that came through the right half of the exit pupil
     double depth;  ///< metres, summed over those that met something, times their weight in the exposure
-    double met;    ///< their weight
+    double met;  ///< their weight
     std::uint64_t samples;  ///< a small picture that is never finished passes 2^32 within minutes
 
     REALCAM_HD PixelSum& operator+=(const PixelSum& other) {
         for (int c = 0; c < 3; ++c) irradiance[c] += other.irradiance[c];
-        for (int c = 0; c < 3; ++c) squares[c] += other.squares[c];
+        for (int c = 0; c < 3; ++c) besides[c] += other.besides[c];
         depth += other.depth;
         met += other.met;
         samples += other.samples;
@@ -42,7 +43,16 @@ struct PixelSum {
     REALCAM_INLINE void add_squares(const PathResults<N>& results, int lane) {
         const Color c = results.irradiance[lane];
         const double rgb[3] = {static_cast<double>(c.r), static_cast<double>(c.g), static_cast<double>(c.b)};
-        for (int i = 0; i < 3; ++i) squares[i] += rgb[i] * rgb[i];
+        for (int i = 0; i < 3; ++i) besides[i] += rgb[i] * rgb[i];
+    }
+    /// `is_right`: of the sample (find_right_half).
+    template <int N>
+    REALCAM_INLINE void add_half(const PathResults<N>& results, int lane, bool is_right) {
+        if (!is_right) return;
+        const Color c = results.irradiance[lane];
+        besides[0] += static_cast<double>(c.r);
+        besides[1] += static_cast<double>(c.g);
+        besides[2] += static_cast<double>(c.b);
     }
 
     /// Lux seconds on the film; 0 where no sample was taken. `ghosts`: irradiance that was found apart from them, lux.
@@ -61,8 +71,13 @@ struct PixelSum {
     REALCAM_HD float variance(int channel, double exposure_time_s, double ghosts = 0) const {
         if (samples < 2) return std::numeric_limits<float>::quiet_NaN();
         const double n = static_cast<double>(samples), sum = irradiance[channel];
-        const double spread = squares[channel] - sum * sum / n;
+        const double spread = besides[channel] - sum * sum / n;
         return film_exposure(((spread > 0 ? spread : 0) / (n * (n - 1)) + ghosts) * exposure_time_s * exposure_time_s);
+    }
+    /// The part of the exposure that came through the right half. Half of the ghosts is counted for it.
+    REALCAM_HD float right_exposure(int channel, double exposure_time_s, double ghosts = 0) const {
+        if (samples == 0) return 0;
+        return film_exposure((besides[channel] / static_cast<double>(samples) + 0.5 * ghosts) * exposure_time_s);
     }
     /// Mean depth, metres; infinite where nothing was met.
     REALCAM_HD float mean_depth() const {

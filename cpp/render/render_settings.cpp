@@ -33,6 +33,10 @@ void validate(const RenderSettings& settings) {
     if (settings.threads < 0 || settings.threads > kMaxThreads)
         throw InputError("threads must be 0 (all) or a number up to " + std::to_string(kMaxThreads));
     if (const std::string why = illuminant_error(settings); !why.empty()) throw InputError(why);
+    if (settings.layers.has_any(kHalfLayers) && settings.layers.has(Layer::variance))
+        throw InputError("layers: the variance and the halves of dual pixels cannot be had of one picture");
+    if (settings.layers.has_any(kHalfLayers) && settings.light_tracing == LightTracing::alone)
+        throw InputError("layers: light that is traced from lamps alone has no halves of dual pixels");
     for (const double threshold : {settings.thresholds.pixels, settings.thresholds.codes})
         if (!(threshold > 0) || !std::isfinite(threshold))
             throw InputError("thresholds of a plan must be above 0: pixels and 8-bit codes");
@@ -47,6 +51,10 @@ void validate_effects(const RenderSettings& settings, const Camera& camera) {
     if (settings.pupil_sampling == PupilSampling::pixel && static_cast<const Effects&>(effects) != kNoEffects)
         throw InputError("pupil_sampling: pixels learn where light passes only without " +
                          effects_that(&EffectInfo::is_compiled));
+    if (settings.layers.has_any(kHalfLayers) && camera.model == CameraModel::pinhole)
+        throw InputError("layers: the pupil of a pinhole has no halves for dual pixels; another model is wanted");
+    if (settings.layers.has_any(kHalfLayers) && settings.pupil_sampling == PupilSampling::pixel)
+        throw InputError("pupil_sampling: pixels that learn where light passes have no halves of dual pixels");
     if (const EffectInfo* effect = first_that(effects, &EffectInfo::needs_round_lens))
         require_radial_pupil(camera.lens, std::string(effect->name));
     if (camera.model == CameraModel::full_lens) return;

@@ -49,6 +49,8 @@ struct RenderSettings {
     }
     LensEffects lens_effects() const;
     std::optional<GhostChoice> ghost_choice() const;
+    /// Light that is traced from lamps has no halves of the pupil.
+    LightTracing lights_traced() const { return layers.has_any(kHalfLayers) ? LightTracing::off : light_tracing; }
     PathSettings path() const { return {max_bounces, transport, static_cast<float>(clamp)}; }
 };
 

@@ -106,7 +106,7 @@ Image Session::picture(const KeepGoing& keep_going) {
             if (stop) throw Cancelled();
         }
         Image image = develop();
-        add_layers(image, layer_film_, [&] { return develop_variance(); }, [&] { return count_samples(); });
+        add_layers(image, layer_film_, [&] { return develop_besides(); }, [&] { return count_samples(); });
         image.spp = mean_samples_ == samples_ ? samples_ : mean_of(count_samples());
         image.stats.setup_seconds = setup_seconds_;
         image.stats.seconds = setup_seconds_ + exposing_seconds_;
@@ -189,7 +189,7 @@ Image Session::picture_of(const CollectedFilm& film, const KeepGoing& keep_going
     }
     Image image = developed(film.pixels, width, height, camera_.exposure_time_s, splatted);
     add_layers(
-        image, layers, [&] { return developed_variance(film.pixels, camera_.exposure_time_s, splatted); },
+        image, layers, [&] { return developed_besides(film.pixels, wanted, camera_.exposure_time_s, splatted); },
         [&] { return samples_of(film.pixels); });
     image.spp = mean_of(samples_of(film.pixels));
     image.stats = film.stats;
@@ -246,13 +246,19 @@ bool Session::is_same_exposure(const Assembly& scene, const Camera& camera) cons
             (camera.shutter == camera_.shutter && camera.exposure_time_s == camera_.exposure_time_s));
 }
 
+bool Session::has_sums_for(LayerSet wanted) const {
+    const LayerSet had = settings_.layers;
+    if (had.has_any(kHalfLayers) != wanted.has_any(kHalfLayers)) return false;  // which also choose how lights are met
+    return had.has(Layer::variance) || !wanted.has(Layer::variance);
+}
+
 bool Session::is_same_picture(const Assembly& scene, const Camera& camera, const RenderSettings& settings) const {
     return same_parts(scene, scene_) && same_transforms(scene, scene_) && camera.lens == camera_.lens &&
            camera.film == camera_.film && camera.pose == camera_.pose && camera.model == camera_.model &&
            is_same_exposure(scene, camera) && settings.seed == settings_.seed && settings.path() == settings_.path() &&
            settings.effects == settings_.effects && settings.illuminant == settings_.illuminant &&
            settings.pupil_sampling == settings_.pupil_sampling && settings.light_tracing == settings_.light_tracing &&
-           (settings_.layers.has(Layer::variance) || !settings.layers.has(Layer::variance));
+           has_sums_for(settings.layers);
 }
 
 void Session::make_ready(const Assembly& wanted_scene, const Camera& wanted_camera, const RenderSettings& settings,
@@ -321,8 +327,8 @@ void Session::see_what_is_missing(std::atomic<std::int64_t>& done, OwnStop& stop
     if (stop) forget_layers();
 }
 
-template <class Variance, class Counts>
-void Session::add_layers(Image& image, const LayerFilm& layers, Variance&& variance, Counts&& counts) {
+template <class Besides, class Counts>
+void Session::add_layers(Image& image, const LayerFilm& layers, Besides&& besides, Counts&& counts) {
     const LayerSet wanted = settings_.layers;
     if (wanted.has_any(kSampledLayers) || wanted.has_any(kMiddleLayers)) {
         const SurfaceIds ids(scene_);
@@ -334,7 +340,8 @@ void Session::add_layers(Image& image, const LayerFilm& layers, Variance&& varia
         if (wanted.has(Layer::object_id)) image.object_names = ids.object_names();
         if (wanted.has(Layer::material_id)) image.material_names = ids.names_of_materials();
     }
-    if (wanted.has(Layer::variance)) image.layers.push_back(variance());
+    if (wanted.has(Layer::variance) || wanted.has_any(kHalfLayers))
+        for (LayerImage& layer : besides()) image.layers.push_back(std::move(layer));
     if (wanted.has(Layer::sample_count)) {
         constexpr std::int64_t kMost = std::numeric_limits<std::uint32_t>::max();
         LayerImage image_of_counts{Layer::sample_count, {}, {}};

@@ -143,8 +143,8 @@ protected:
     virtual std::shared_ptr<LiveFrame> start(const std::vector<SampleRange>& ranges, ToneCurve curve,
                                              std::shared_ptr<void> under_way) = 0;
     virtual Image develop() = 0;
-    /// Layer::variance of a film whose samples were taken while the settings asked for it.
-    virtual LayerImage develop_variance() = 0;
+    /// developed_besides of a film whose samples were taken while the settings asked for it.
+    virtual std::vector<LayerImage> develop_besides() = 0;
     /// Samples of a region apart from the film. `counts`: of the region's pixels.
     virtual RegionSums take_region(const FilmRegion& region, const SampleRange& range, const PixelCounts& counts,
                                    std::atomic<std::int64_t>& done, OwnStop& stop) = 0;
@@ -216,6 +216,9 @@ private:
     /// Where nothing moves it does not matter when the shutter is open.
     bool is_same_exposure(const Assembly& scene, const Camera& camera) const;
 
+    /// Whether PixelSum::besides has what layers want.
+    bool has_sums_for(LayerSet wanted) const;
+
     bool is_same_picture(const Assembly& scene, const Camera& camera, const RenderSettings& settings) const;
 
     void make_ready(const Assembly& wanted_scene, const Camera& wanted_camera, const RenderSettings& settings,
@@ -236,9 +239,9 @@ private:
     /// Brings the layers that are wanted up to the samples of the picture. Where it is stopped they begin anew.
     void see_what_is_missing(std::atomic<std::int64_t>& done, OwnStop& stop);
 
-    /// `variance`, `counts`: functions that make these of the same film.
-    template <class Variance, class Counts>
-    void add_layers(Image& image, const LayerFilm& layers, Variance&& variance, Counts&& counts);
+    /// `besides`, `counts`: functions that make these of the same film.
+    template <class Besides, class Counts>
+    void add_layers(Image& image, const LayerFilm& layers, Besides&& besides, Counts&& counts);
 
     /// work(range, stop) on the samples of a part of the picture, with nothing else under way.
     template <class Work>

@@ -69,6 +69,7 @@ from ._core import (
     sensor_names,
 )
 from .accuracy import AccuracyCost, accuracy_cost
+from .autofocus import Autofocus, autofocus
 from .cuda_plugin import path_of_plugin as _path_of_plugin
 from .derivatives import Gradient, RayDerivatives, ray_derivatives
 from .drawing import CrossSection, cross_section
@@ -111,6 +112,7 @@ __all__ = [
     "AccuracyCost",
     "AimedRays",
     "ArgumentError",
+    "Autofocus",
     "Camera",
     "CameraModelFit",
     "CameraRays",
@@ -186,6 +188,7 @@ __all__ = [
     "__version__",
     "accuracy_cost",
     "analysis",
+    "autofocus",
     "camera_json",
     "cross_section",
     "depth_of_field",

@@ -125,7 +125,7 @@ class FilmPart:
         for name in ("pixels", "layers"):
             sums = getattr(self, name)
             for key in () if sums is None else sums.dtype.names:
-                if key != "squares" or sums[key].any():
+                if key != "besides" or sums[key].any():
                     arrays[f"{name}.{key}"] = sums[key]
         return arrays
 

@@ -110,11 +110,13 @@ class Image:
         """Without noise, as Intel's Open Image Denoise guesses it: a picture to look at, not to measure.
 
         Wants the layers albedo and normal, and the extra realcam[denoise] (docs/denoising.md). All but the pixels stays
-        as it is; the layer variance, which describes the noise, goes. device: "auto" (a GPU if the denoiser can use
-        one), "cpu", "cuda" or "cuda:1". Raises InputError where one of these is missing; DeviceError.
+        as it is; the layers variance and dual_pixel_*, which describe the noise or have it, go. device: "auto" (a GPU
+        if the denoiser can use one), "cpu", "cuda" or "cuda:1". Raises InputError where one of these is missing;
+        DeviceError.
         """
         pixels, name = denoiser.denoised(self.pixels, self.layers, device)
-        layers = {layer: array for layer, array in self.layers.items() if layer != "variance"}
+        noisy = ("variance", "dual_pixel_left", "dual_pixel_right")
+        layers = {layer: array for layer, array in self.layers.items() if layer not in noisy}
         return replace(self, pixels=pixels, layers=layers, denoiser=name)
 
     def save(self, path: str | os.PathLike[str], tone: str = "film") -> None:

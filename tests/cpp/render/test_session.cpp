@@ -72,7 +72,7 @@ private:
         return frames.emplace_back(std::make_shared<NotedFrame>(samples(), stop_flag));
     }
     Image develop() override { return {}; }
-    LayerImage develop_variance() override { return {Layer::variance, {0, 0, 0}, {}}; }
+    std::vector<LayerImage> develop_besides() override { return {{Layer::variance, {0, 0, 0}, {}}}; }
     RegionSums take_region(const FilmRegion& region, const SampleRange& range, const PixelCounts&,
                            std::atomic<std::int64_t>&, OwnStop&) override {
         notes.push_back("take region");
