@@ -64,12 +64,12 @@ def disparity_of_rays_mm(lens: rc.Lens, distance_m: float) -> float:
 
 
 @pytest.mark.parametrize("distance_m", [0.7, 2.5])
-def test_disparity_over_defocus_is_that_of_ray_centroids(distance_m: float) -> None:
+def test_disparity_over_defocus_is_that_of_ray_centroids(distance_m: float, device: str) -> None:
     seen_by = camera()
     wanted = disparity_of_rays_mm(seen_by.lens, distance_m)
     # What is farther than the focus has the light of the right half on the right.
     assert (wanted > 0) == (distance_m > FOCUS_M)
-    found = disparity_mm(photograph(lamp(distance_m), seen_by, spp=256))
+    found = disparity_mm(photograph(lamp(distance_m), seen_by, spp=256, device=device))
     # 1e5 samples, of an image some tenths of a millimetre wide, leave 1e-3 mm or less of 0.2 mm.
     assert found == pytest.approx(wanted, rel=0.02)
 
@@ -83,22 +83,22 @@ def test_all_models_of_a_camera_have_halves(model: str) -> None:
 
 
 @pytest.mark.parametrize("effects", [(), ("dispersion",), ("coatings",), ("diffraction",), ("dispersion", "ghosts")])
-def test_left_and_right_are_the_whole(effects: tuple[str, ...]) -> None:
+def test_left_and_right_are_the_whole(effects: tuple[str, ...], device: str) -> None:
     scene, seen_by = lamp(2.5), camera()
-    image = photograph(scene, seen_by, effects=effects)
+    image = photograph(scene, seen_by, effects=effects, device=device)
     left, right = (image.layers[name].astype(float) for name in HALVES)
     assert left + right == pytest.approx(image.pixels.astype(float), rel=1e-6)
     # A quarter of the samples of the test above; dispersion has other colours at other places, which blurs little.
     assert disparity_mm(image) == pytest.approx(disparity_of_rays_mm(seen_by.lens, 2.5), rel=0.05)
-    without = photograph(scene, seen_by, effects=effects, layers=(), light_tracing="off")
+    without = photograph(scene, seen_by, effects=effects, layers=(), light_tracing="off", device=device)
     assert np.array_equal(image.pixels, without.pixels)
 
 
-def test_where_rims_cut_the_pupil_one_half_has_less_light_and_the_other_side_mirrors_it() -> None:
+def test_where_rims_cut_the_pupil_one_half_has_less_light_and_the_other_side_mirrors_it(device: str) -> None:
     speck = rc.Scene.from_arrays([(0, 0, 1e4), (1, 0, 1e4), (0, 1, 1e4)], [(0, 1, 2)]).with_environment(100)
     lens = rc.Lens.load("double-gauss-50mm")
     seen_by = rc.Camera(lens, film=rc.Film(36, 2, (36, 2)), exposure_time_s=0.01)
-    image = photograph(speck, seen_by, spp=1024)
+    image = photograph(speck, seen_by, spp=1024, device=device)
     left, right = (image.layers[name].sum(axis=(0, 2)) for name in HALVES)
     share = left / (left + right)
     # 2048 samples of each column, evenly spread: half a percent.
@@ -160,9 +160,9 @@ def wall(distance_m: float, period_m: float = 0.02) -> rc.Scene:
 
 
 @pytest.mark.parametrize(("distance_m", "from_m"), [(3.0, 1.5), (0.9, 4.0), (2.0, np.inf)])
-def test_autofocus_finds_the_wall(distance_m: float, from_m: float) -> None:
+def test_autofocus_finds_the_wall(distance_m: float, from_m: float, device: str) -> None:
     seen_by = camera(focus_m=from_m, film=rc.Film(6, 2, (192, 64)))
-    found = rc.autofocus(wall(distance_m), seen_by, window_px=(96, 16), device="cpu")
+    found = rc.autofocus(wall(distance_m), seen_by, window_px=(96, 16), device=device)
     assert abs(found.disparities_px[-1]) <= 0.1 < abs(found.disparities_px[0])
     assert (found.disparities_px[0] > 0) == (distance_m > from_m)
     # A tenth of a pixel is 0.003 mm: halves of f/2.8 meet within 0.02 mm of the film, which is 0.02 mm d^2 / f^2 at the
