@@ -45,6 +45,8 @@ def test_several_processes_make_the_picture_of_one(tmp_path: Path) -> None:
     status = job.status()
     assert status.is_done
     assert (status.units_done, status.shots_done, status.in_hand) == (status.units_known, 2, 0)
+    next((tmp_path / "job" / "units").rglob("*.npz")).with_suffix(".claim").touch()  # of a process killed just then
+    assert job.status() == status
     assert len(list((tmp_path / "job" / "rounds").rglob("*.npz"))) > 3  # the noise took several
 
 

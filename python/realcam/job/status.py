@@ -44,13 +44,16 @@ def status_of(folder: JobFolder) -> JobStatus:
     for shot in range(len(folder.shots)):
         here = folder.path / "units" / f"{shot:05d}"
         files: dict[str, float] = {}  # when they were written
+        claims: set[str] = set()
         if here.is_dir():
             with os.scandir(here) as entries:
                 for entry in entries:
                     if entry.name.endswith(".claim"):
-                        in_hand += 1
+                        claims.add(entry.name.removesuffix(".claim"))
                     elif entry.name.endswith(".npz") and not entry.name.startswith("."):
                         files[entry.name] = entry.stat().st_mtime
+        # A process that is killed after it has written its unit leaves the claim behind.
+        in_hand += len(claims - {name.removesuffix(".npz") for name in files})
         times += files.values()
         rounds, is_all = folder.rounds(shot)
         of_round: list[bool] = []
