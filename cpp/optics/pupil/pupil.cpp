@@ -91,44 +91,65 @@ PupilNode Pupil::node_at(double position) const {
             a.half_height + f * (b.half_height - a.half_height)};
 }
 
-std::vector<PupilOutline> Pupil::outlines_at(const std::vector<double>& positions) const {
+std::vector<OutlineLook> Pupil::looks_at(const std::vector<int>& eighths) const {
     std::vector<OutlineLook> looks;
-    for (const double position : positions) {
+    for (const int eighth : eighths) {
+        const double position = eighth / 8.0;
         const PupilNode box = node_at(position);
         looks.push_back({{radius_at(position), 0},
                          {static_cast<double>(box.centre), 0},
                          static_cast<double>(box.half_width),
                          static_cast<double>(box.half_height)});
     }
-    return OutlineSearch::find(search_.lens(), looks);
+    return looks;
+}
+
+void Pupil::look_between(int step, int rows, const std::function<bool(int row)>& wanted, OutlinesByEighth& seen) const {
+    std::vector<int> eighths;
+    std::vector<PupilOutline> expected;
+    for (int eighth = step; eighth < 8 * rows; eighth += 2 * step) {
+        if (!wanted(eighth / 8)) continue;
+        eighths.push_back(eighth);
+        expected.push_back(between({&seen.at(eighth - step), &seen.at(eighth + step)}));
+    }
+    const std::vector<PupilOutline> found =
+        OutlineSearch::find_near(search_.lens(), looks_at(eighths), expected, OutlineSearch::kChange);
+    for (std::size_t i = 0; i < found.size(); ++i) seen.emplace(eighths[i], found[i]);
 }
 
 void Pupil::find_outlines() {
+    constexpr int kFirstStep = 16;
     const int rows = ends_inside_film_ ? kRows - kEdgeRows : kRows;
-    std::vector<double> positions;
-    for (int i = 0; i <= 2 * rows; ++i) positions.push_back(0.5 * i);
-    const std::vector<PupilOutline> halves = outlines_at(positions);
-    std::vector<std::vector<PupilOutline>> looks;
-    positions.clear();
+    static_assert(kRows % 2 == 0 && kEdgeRows % 2 == 0);
+    std::vector<int> first;
+    for (int eighth = 0; eighth <= 8 * rows; eighth += kFirstStep) first.push_back(eighth);
+    const std::vector<PupilOutline> outlines = OutlineSearch::find(search_.lens(), looks_at(first));
+    OutlinesByEighth seen;
+    for (std::size_t i = 0; i < first.size(); ++i) seen.emplace(first[i], outlines[i]);
+    for (const int step : {8, 4}) look_between(step, rows, [](int) { return true; }, seen);
+    std::vector<char> changes;
     for (int row = 0; row < rows; ++row) {
-        looks.emplace_back(halves.begin() + 2 * row, halves.begin() + 2 * row + 3);
         const bool near_edge = ends_inside_film_ && row > kRows / 2;
-        if (!near_edge && largest_spread(looks.back()) <= 0.08) continue;
-        for (const int eighth : {1, 2, 3, 5, 6, 7}) positions.push_back(row + eighth / 8.0);
+        changes.push_back(near_edge || largest_spread(outlines_of(row, seen)) > 0.08);
     }
-    const std::vector<PupilOutline> eighths = outlines_at(positions);
-    for (std::size_t i = 0; i < eighths.size(); ++i)
-        looks[static_cast<std::size_t>(positions[i])].push_back(eighths[i]);
+    const auto does_change = [&](int row) { return changes[static_cast<std::size_t>(row)] != 0; };
+    for (const int step : {2, 1}) look_between(step, rows, does_change, seen);
     outline_.resize(kRows * kSectors);
     search_.lens().for_each(kRows, [&](int row) {
         if (row >= rows) {
             add_row(row, PupilRow(box_outline()), 1.5, 16);
             return;
         }
-        const std::vector<PupilOutline>& seen = looks[static_cast<std::size_t>(row)];
-        const bool changes = seen.size() > 3;
-        add_row(row, PupilRow(holding_all(seen)), changes ? 1.4 : 1.15, changes ? 24 : 1);
+        const PupilRow sectors(holding_all(outlines_of(row, seen)));
+        add_row(row, sectors, does_change(row) ? 1.4 : 1.15, does_change(row) ? 24 : 1);
     });
+}
+
+std::vector<PupilOutline> Pupil::outlines_of(int row, const OutlinesByEighth& seen) {
+    std::vector<PupilOutline> outlines;
+    for (auto at = seen.lower_bound(8 * row); at != seen.end() && at->first <= 8 * row + 8; ++at)
+        outlines.push_back(at->second);
+    return outlines;
 }
 
 void Pupil::add_row(int row, PupilRow sectors, double reach, int clean_rounds) {

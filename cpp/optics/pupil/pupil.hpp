@@ -1,4 +1,6 @@
 #pragma once
+#include <functional>
+#include <map>
 #include <vector>
 
 #include "pupil_outline_search.hpp"
@@ -14,9 +16,11 @@ public:
     static constexpr int kSectors = PupilRow::kSectors;  ///< for m >= 0
     /// No search traces more, whatever the lens. There are 270 looks at a film radius: two tables of nodes, both also
     /// looked for ahead, the edge of the image, and half-way between rows. Each row has outlines at both ends and seven
-    /// places, and 256 rounds. Lenses that can be made take a hundredth of it.
-    static constexpr int kMostBlocks = 270 * PupilSearch::kMostBlocks + OutlineSearch::most_blocks(2 * kRows + 1) +
-                                       OutlineSearch::most_blocks(6 * kRows) + 256 * kRows;
+    /// places, looked for in five steps, and 256 rounds. Lenses that can be made take a hundredth of it.
+    static constexpr int kMostBlocks = 270 * PupilSearch::kMostBlocks + OutlineSearch::most_blocks(kRows / 2 + 1) +
+                                       OutlineSearch::most_blocks(kRows / 2) + OutlineSearch::most_blocks(kRows) +
+                                       OutlineSearch::most_blocks(2 * kRows) + OutlineSearch::most_blocks(4 * kRows) +
+                                       256 * kRows;
 
     /// `film_radius` in mm: the film point furthest from the axis. Throws InputError where it is no positive length.
     /// The pupil holds what passes at any of the wavelengths; none: the lens's design wavelength.
@@ -45,11 +49,20 @@ private:
 
     PupilNode node_at(double position) const;
 
-    std::vector<PupilOutline> outlines_at(const std::vector<double>& positions) const;
+    /// The key is the place in the table, in eighths of rows.
+    using OutlinesByEighth = std::map<int, PupilOutline>;
+
+    std::vector<OutlineLook> looks_at(const std::vector<int>& eighths) const;
+
+    /// Looks half-way between outlines that have been seen, which lie `step` eighths before and behind.
+    void look_between(int step, int rows, const std::function<bool(int row)>& wanted, OutlinesByEighth& seen) const;
 
     /// A row holds what passes at its two ends and in between, and a share more of what changes over it. Where it
     /// changes by much, as behind the last surface that cuts the light off, more film radii are looked at.
     void find_outlines();
+
+    /// From the beginning of a row to its end.
+    static std::vector<PupilOutline> outlines_of(int row, const OutlinesByEighth& seen);
 
     /// Adds a row. Sends rays all over its surroundings first, and widens the sectors beside which some pass, until so
     /// many rounds in a row find none. The reason is that corners of slivers lie between spokes, and ends of crescents

@@ -8,6 +8,22 @@
 
 namespace realcam {
 
+namespace {
+
+template <class T>
+std::vector<T> at(const std::vector<std::size_t>& places, const std::vector<T>& all) {
+    std::vector<T> some;
+    for (const std::size_t place : places) some.push_back(all[place]);
+    return some;
+}
+
+template <class T>
+void assign_at(const std::vector<std::size_t>& places, const std::vector<T>& some, std::vector<T>& all) {
+    for (std::size_t i = 0; i < places.size(); ++i) all[places[i]] = some[i];
+}
+
+}  // namespace
+
 bool has_radial_pupil(const LensSystem& lens) {
     return lens.is_rotational() && std::isinf(lens.film_radius_of_curvature);
 }
@@ -56,8 +72,7 @@ PupilGrid::PupilGrid(const LensSystem& lens, const FilmArea& film, MirrorPlanes 
     cells_.resize(static_cast<std::size_t>(columns_ * rows_));
     sectors_.resize(cells_.size() * 2 * kPupilGridSectors);
     if (!is_lit_) return;
-    sharpen_nodes();
-    find_cells();
+    find_cells(sharpen_nodes());
 }
 
 PupilGridView PupilGrid::view() const {
@@ -135,11 +150,17 @@ std::optional<DirectionBox> PupilGrid::look(int column, int row, const std::vect
     return search_.look(node_point(column, row), expected);
 }
 
-void PupilGrid::sharpen_nodes() {
+std::vector<PupilOutline> PupilGrid::sharpen_nodes() {
+    const Lattice lattice{node_columns(), node_rows()};
     std::vector<OutlineLook> looks;
-    for (int row = 0; row <= rows_; row += kCellsPerPupilNode)
-        for (int column = 0; column <= columns_; column += kCellsPerPupilNode) add_looks(column, row, looks);
-    const std::vector<PupilOutline> outlines = OutlineSearch::find(search_.lens(), looks);
+    for (int row = 0; row < lattice.rows; ++row)
+        for (int column = 0; column < lattice.columns; ++column)
+            add_looks(kCellsPerPupilNode * column, kCellsPerPupilNode * row, looks);
+    std::vector<PupilOutline> outlines(looks.size());
+    const std::vector<std::size_t> coarse = lattice.even_looks();
+    assign_at(coarse, OutlineSearch::find(search_.lens(), at(coarse, looks)), outlines);
+    // What a grid of rays sees of a region is off by up to two of its cells.
+    look_between(lattice, looks, 0.12, outlines);
     for (std::size_t node = 0; node < nodes_.size(); ++node) {
         DirectionBox box = DirectionBox::none();
         for (const std::size_t half : {2 * node, 2 * node + 1})
@@ -150,8 +171,14 @@ void PupilGrid::sharpen_nodes() {
                     box = box.with({looks[half].centre.l + reach * looks[half].half_width * unit.l,
                                     looks[half].centre.m + reach * looks[half].half_height * unit.m});
             }
-        if (box.l_max > box.l_min && box.m_max > box.m_min) nodes_[node] = node_of(box);
+        if (!(box.l_max > box.l_min && box.m_max > box.m_min)) continue;
+        nodes_[node] = node_of(box);
+        const OutlineLook& upper = looks[2 * node];
+        const auto before = DirectionBox::around(upper.centre, upper.half_width, upper.half_height);
+        const OutlineHalves halves = moved_outline({outlines[2 * node], outlines[2 * node + 1]}, before, box);
+        std::copy(halves.begin(), halves.end(), outlines.begin() + static_cast<std::ptrdiff_t>(2 * node));
     }
+    return outlines;
 }
 
 void PupilGrid::add_looks(double column, double row, std::vector<OutlineLook>& looks) const {
@@ -174,15 +201,41 @@ PupilGridNode PupilGrid::box_at(double column, double row) const {
     return pupil_grid_place(grid, static_cast<float>(film.x), static_cast<float>(film.y)).box;
 }
 
-std::vector<PupilOutline> PupilGrid::outlines() const {
+std::vector<PupilOutline> PupilGrid::outlines(const std::vector<PupilOutline>& of_nodes) const {
+    const Lattice lattice{columns_ + 1, rows_ + 1};
     std::vector<OutlineLook> looks;
     for (int row = 0; row <= rows_; ++row)
         for (int column = 0; column <= columns_; ++column) add_looks(column, row, looks);
-    return OutlineSearch::find(search_.lens(), looks);
+    std::vector<PupilOutline> found(looks.size());
+    const std::vector<std::size_t> at_nodes = lattice.even_looks();
+    assign_at(at_nodes, OutlineSearch::find_near(search_.lens(), at(at_nodes, looks), of_nodes, OutlineSearch::kChange),
+              found);
+    look_between(lattice, looks, OutlineSearch::kChange, found);
+    return found;
 }
 
-void PupilGrid::find_cells() {
-    const std::vector<PupilOutline> all = outlines();
+void PupilGrid::look_between(Lattice lattice, const std::vector<OutlineLook>& looks, double tolerance,
+                             std::vector<PupilOutline>& outlines) const {
+    std::vector<std::size_t> places;
+    std::vector<PupilOutline> expected;
+    for (int row = 0; row < lattice.rows; ++row)
+        for (int column = 0; column < lattice.columns; ++column) {
+            const int dx = column % 2, dy = row % 2;
+            if (dx == 0 && dy == 0) continue;
+            for (std::size_t half = 0; half < 2; ++half) {
+                std::vector<const PupilOutline*> around;
+                for (int y = row - dy; y <= row + dy; y += 2)
+                    for (int x = column - dx; x <= column + dx; x += 2)
+                        around.push_back(&outlines[lattice.look(x, y) + half]);
+                places.push_back(lattice.look(column, row) + half);
+                expected.push_back(between(around));
+            }
+        }
+    assign_at(places, OutlineSearch::find_near(search_.lens(), at(places, looks), expected, tolerance), outlines);
+}
+
+void PupilGrid::find_cells(const std::vector<PupilOutline>& of_nodes) {
+    const std::vector<PupilOutline> all = outlines(of_nodes);
     search_.lens().for_each(columns_ * rows_, [&](int cell) { set_cell(cell % columns_, cell / columns_, all); });
 }
 
@@ -204,7 +257,7 @@ void PupilGrid::set_cell(int column, int row, const std::vector<PupilOutline>& o
     const double reach = changes ? 1.5 : 1.2;
     Halves halves = is_partly_dark ? Halves{PupilRow(box_outline()), PupilRow(box_outline())}
                                    : Halves{PupilRow(holding_all(seen[0])), PupilRow(holding_all(seen[1]))};
-    const int passed = take_in_strays(column, row, reach, changes ? 16 : 2, halves);
+    const int passed = take_in_strays(column, row, reach, changes ? 6 : 2, halves);
     PupilGridCell& cell = cells_[static_cast<std::size_t>(row * columns_ + column)];
     PupilSector* const sectors = sectors_.data() + (&cell - cells_.data()) * 2 * kPupilGridSectors;
     double areas[2] = {0, 0};
@@ -222,32 +275,62 @@ void PupilGrid::set_cell(int column, int row, const std::vector<PupilOutline>& o
 }
 
 int PupilGrid::take_in_strays(int column, int row, double reach, int clean_rounds, Halves& halves) const {
-    constexpr int kMostRounds = 128, kBlock = PupilTracer::kBlock;
+    constexpr int kMostRounds = 128;
     int passed = 0;
     for (int round = 0, clean = 0; round < kMostRounds && clean < clean_rounds; ++round) {
         const auto stream = static_cast<std::uint32_t>(kMostRounds * (row * columns_ + column) + round);
-        Vec2f places[kBlock];
-        PupilRays rays;
+        Vec2Lanes<float, kBlock> in_cell, places;
         for (int i = 0; i < kBlock; ++i) {
-            const auto number = static_cast<std::uint32_t>(i);
-            const Vec2f in_cell = sample_2d(stream, number, 0), u = sample_2d(stream, number, 1);
-            const double x = column + static_cast<double>(in_cell.x), y = row + static_cast<double>(in_cell.y);
-            const PupilGridNode box = box_at(x, y);
-            places[i] = {static_cast<float>(reach) * (2 * u.x - 1), static_cast<float>(reach) * (2 * u.y - 1)};
-            rays.set(i, film_point(x, y),
-                     {static_cast<double>(box.centre_l + box.half_width * places[i].x),
-                      static_cast<double>(box.centre_m + box.half_height * places[i].y)});
+            const Vec2f u = sample_2d(stream, static_cast<std::uint32_t>(i), 1);
+            in_cell.set(i, sample_2d(stream, static_cast<std::uint32_t>(i), 0));
+            places.set(i, round % 2 == 0 ? Vec2f{static_cast<float>(reach) * (2 * u.x - 1),
+                                                 static_cast<float>(reach) * (2 * u.y - 1)}
+                                         : beside_edge(halves, i, u));
         }
+        PupilRays rays;
+        set_rays(column, row, in_cell, places, rays);
         bool passes[kBlock], strayed = false;
         search_.lens().trace(rays, passes);
         for (int i = 0; i < kBlock; ++i) {
             if (!passes[i]) continue;
             ++passed;
-            strayed |= halves[places[i].y < 0].take_in({places[i].x, std::fabs(places[i].y)});
+            strayed |= halves[places.y[i] < 0].take_in({places.x[i], std::fabs(places.y[i])});
         }
         clean = strayed ? 0 : clean + 1;
     }
     return passed;
+}
+
+Vec2f PupilGrid::beside_edge(const Halves& halves, int i, Vec2f u) {
+    const int half = i % 2, sector = i / 2 % kPupilGridSectors;
+    const Vec2f place = halves[static_cast<std::size_t>(half)].beside(static_cast<std::size_t>(sector), u);
+    return {place.x, half == 0 ? place.y : -place.y};
+}
+
+void PupilGrid::set_rays(int column, int row, const Vec2Lanes<float, kBlock>& in_cell,
+                         const Vec2Lanes<float, kBlock>& places, PupilRays& rays) const {
+    const int node_column = column / kCellsPerPupilNode, node_row = row / kCellsPerPupilNode;
+    const PupilGridNode* const near = nodes_.data() + node_index(node_column, node_row);
+    const PupilGridNode* const far = near + node_columns();
+    const Vec2<double> corner = film_point(column, row), opposite = film_point(column + 1, row + 1);
+    const float left = static_cast<float>(column % kCellsPerPupilNode),
+                low = static_cast<float>(row % kCellsPerPupilNode);
+    const PupilGridNode a = near[0], b = near[1], c = far[0], d = far[1];
+    REALCAM_LANES
+    for (int i = 0; i < kBlock; ++i) {
+        const float fx = (left + in_cell.x[i]) / kCellsPerPupilNode, fy = (low + in_cell.y[i]) / kCellsPerPupilNode;
+        const auto between = [fx, fy](float at_a, float at_b, float at_c, float at_d) {
+            const float first = at_a + fx * (at_b - at_a), second = at_c + fx * (at_d - at_c);
+            return first + fy * (second - first);
+        };
+        rays.x[i] = corner.x + static_cast<double>(in_cell.x[i]) * (opposite.x - corner.x);
+        rays.y[i] = corner.y + static_cast<double>(in_cell.y[i]) * (opposite.y - corner.y);
+        rays.l[i] = static_cast<double>(between(a.centre_l, b.centre_l, c.centre_l, d.centre_l) +
+                                        places.x[i] * between(a.half_width, b.half_width, c.half_width, d.half_width));
+        rays.m[i] =
+            static_cast<double>(between(a.centre_m, b.centre_m, c.centre_m, d.centre_m) +
+                                places.y[i] * between(a.half_height, b.half_height, c.half_height, d.half_height));
+    }
 }
 
 }  // namespace realcam

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "direction_search.hpp"
+#include "moved_outline.hpp"
 #include "pupil_grid_view.hpp"
 #include "pupil_outline_search.hpp"
 
@@ -43,6 +44,8 @@ public:
     bool is_lit() const { return is_lit_; }
 
 private:
+    static constexpr int kBlock = PupilTracer::kBlock;
+
     /// Sectors above and below the middle of the box.
     using Halves = std::array<PupilRow, 2>;
 
@@ -65,8 +68,8 @@ private:
     std::optional<DirectionBox> look(int column, int row, const std::vector<std::optional<DirectionBox>>& found,
                                      int from_column, int from_row) const;
 
-    /// Gives each node the bounding box of its outline instead of what a grid of rays saw of it.
-    void sharpen_nodes();
+    /// Gives each node the bounding box of its outline instead of what a grid of rays saw of it. Returns the outlines.
+    std::vector<PupilOutline> sharpen_nodes();
 
     /// For both halves of a film point's region.
     void add_looks(double column, double row, std::vector<OutlineLook>& looks) const;
@@ -75,16 +78,41 @@ private:
 
     PupilGridNode box_at(double column, double row) const;
 
-    /// At the corners of all cells, row by row: of the upper half, and of the lower one.
-    std::vector<PupilOutline> outlines() const;
+    /// Places in columns and rows, odd numbers of both. Each has two looks: at the upper half, and at the lower one.
+    struct Lattice {
+        int columns, rows;
 
-    void find_cells();
+        std::size_t look(int column, int row) const { return 2 * static_cast<std::size_t>(row * columns + column); }
+        std::vector<std::size_t> even_looks() const {
+            std::vector<std::size_t> looks;
+            for (int row = 0; row < rows; row += 2)
+                for (int column = 0; column < columns; column += 2)
+                    for (const std::size_t half : {0, 1}) looks.push_back(look(column, row) + half);
+            return looks;
+        }
+    };
+
+    /// Looks where column or row is odd, near what the places around have.
+    void look_between(Lattice lattice, const std::vector<OutlineLook>& looks, double tolerance,
+                      std::vector<PupilOutline>& outlines) const;
+
+    /// At the corners of all cells. `of_nodes`: in boxes that were not sharp.
+    std::vector<PupilOutline> outlines(const std::vector<PupilOutline>& of_nodes) const;
+
+    void find_cells(const std::vector<PupilOutline>& of_nodes);
 
     void set_cell(int column, int row, const std::vector<PupilOutline>& outlines);
 
     /// Sends rays all over a cell and its surroundings, and widens the sectors beside which some pass, until so many
     /// rounds in a row find none. Returns how many passed.
     int take_in_strays(int column, int row, double reach, int clean_rounds, Halves& halves) const;
+
+    /// A place close to the edge of the i-th sector of the region.
+    static Vec2f beside_edge(const Halves& halves, int i, Vec2f u);
+
+    /// From places in a cell, both from 0 to 1, to places in the box that is interpolated there.
+    void set_rays(int column, int row, const Vec2Lanes<float, kBlock>& in_cell, const Vec2Lanes<float, kBlock>& places,
+                  PupilRays& rays) const;
 
     DirectionSearch search_;
     FilmArea film_;  ///< what the grid covers of it

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "../trace/open_iris.hpp"
-#include "film_surface.hpp"
 
 namespace realcam {
 
@@ -23,6 +22,7 @@ PupilLens::PupilLens(const LensSystem& lens, PupilTracer tracer, const std::vect
       ends_(film_path_ends(lens_, LightDirection::to_scene)),
       path_(lens_, LightDirection::to_scene, wavelengths_nm.empty() ? lens.wavelength_nm : wavelengths_nm.front(),
             ends_),
+      film_{static_cast<float>(lens.film_distance), static_cast<float>(1 / lens.film_radius_of_curvature)},
       tracer_(std::move(tracer)),
       has_aspheres_(std::any_of(lens.surfaces.begin(), lens.surfaces.end(), [](const Surface& surface) {
           return surface.is_asphere() || !surface.form.is_none();
@@ -103,14 +103,20 @@ LensSystem PupilLens::round_iris(LensSystem lens) {
 
 void PupilLens::trace(const LensView<float>& view, const PupilRays& from, PupilTracer::Rays& rays) const {
     const double n2 = index_squared();
-    const FilmSurface<double> film{lens_.film_distance, 1 / lens_.film_radius_of_curvature};
     REALCAM_LANES
     for (int i = 0; i < kBlock; ++i) {
         const double l = from.l[i], m = from.m[i], squared = n2 - l * l - m * m;
-        const Vec2<double> at = {from.x[i], from.y[i]};
-        rays.origin.set(i, static_cast<Vec3f>(film.place(at)));
-        rays.direction.set(i, static_cast<Vec3f>(film.direction(at, {l, m, -sqrt_or_zero(squared)})));
+        rays.origin.set(i, static_cast<Vec3f>(Vec3d{from.x[i], from.y[i], lens_.film_distance}));
+        rays.direction.set(i, static_cast<Vec3f>(Vec3d{l, m, -sqrt_or_zero(squared)}));
         rays.status[i] = squared > 0 ? 0 : static_cast<int>(RayStatus::missed);
+    }
+    if (film_.curvature != 0) {
+        REALCAM_LANES
+        for (int i = 0; i < kBlock; ++i) {
+            const Vec2f at = {rays.origin.x[i], rays.origin.y[i]};
+            rays.direction.set(i, film_.direction(at, rays.direction[i]));
+            rays.origin.z[i] = film_.place(at).z;
+        }
     }
     tracer_.trace(view, rays);
 }

@@ -4,6 +4,7 @@
 
 #include "../trace/film_frame.hpp"
 #include "direction_box.hpp"
+#include "film_surface.hpp"
 #include "pupil_tracer.hpp"
 
 namespace REALCAM_NAMESPACE {
@@ -64,6 +65,7 @@ private:
     PathEnds ends_;  ///< the film, and the camera
     LensPath<float> path_;
     std::vector<LensPath<float>> others_;  ///< of other wavelengths
+    FilmSurface<float> film_;
     PupilTracer tracer_;
     std::vector<SurfaceView<float>> surfaces_to_stop_;
     std::vector<FrameChanges<float>> frames_to_stop_;

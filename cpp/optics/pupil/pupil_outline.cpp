@@ -42,6 +42,23 @@ double largest_spread(const std::vector<PupilOutline>& looks) {
     return largest;
 }
 
+PupilOutline between(const std::vector<const PupilOutline*>& looks) {
+    PupilOutline mean;
+    for (int a = 0; a <= PupilOutline::kAzimuths; ++a) {
+        const auto is_lit = [a](const PupilOutline* look) { return look->outer[a] > 0; };
+        const auto has_hole = [a](const PupilOutline* look) { return look->inner[a] > 0; };
+        const auto holes = std::count_if(looks.begin(), looks.end(), has_hole);
+        if (!std::all_of(looks.begin(), looks.end(), is_lit) ||
+            (holes > 0 && holes < static_cast<std::ptrdiff_t>(looks.size())))
+            continue;
+        for (const PupilOutline* look : looks) {
+            mean.outer[a] += look->outer[a] / static_cast<double>(looks.size());
+            mean.inner[a] += look->inner[a] / static_cast<double>(looks.size());
+        }
+    }
+    return mean;
+}
+
 PupilOutline holding_all(const std::vector<PupilOutline>& looks) {
     constexpr double kMargin = 0.004, kSpreadShare = 0.05;
     PupilOutline all;
@@ -104,6 +121,15 @@ bool PupilRow::take_in(Vec2f place) {
     return true;
 }
 
+Vec2f PupilRow::beside(std::size_t sector, Vec2f u) const {
+    constexpr float kBeyond = 0.15f;
+    const PupilSector& s = sectors_[sector];
+    // A quarter of the places lies in the hole, if there is one.
+    const bool in_hole = s.hole_squared > 0 && u.y < 0.25f;
+    const float reach = in_hole ? (1 - 4 * u.y * kBeyond) * std::sqrt(s.hole_squared) : 1 + u.y * kBeyond;
+    return {reach * (s.x + u.x * s.dx), reach * (s.y + u.x * s.dy)};
+}
+
 std::optional<std::size_t> PupilRow::sector_of(Vec2f place) const {
     const auto begins_before = [place](const PupilSector& s) { return s.x * place.y - s.y * place.x >= 0; };
     const auto ends_before = [place](const PupilSector& s) {
@@ -127,14 +153,15 @@ PupilSector PupilRow::sector_over(const double* outer, const double* inner, int 
     };
     const Point a = point(from), b = point(to);
     const double twice_area = a.x * b.y - a.y * b.x;
-    // Distance from the middle to the edge along an azimuth, by Cramer's rule.
-    const auto edge = [&](int i) {
+    // By Cramer's rule, the distance from the middle to the edge along an azimuth is `twice_area` over this.
+    const auto per_distance = [&](int i) {
         const PupilDirection d = PupilOutline::fine_direction(i);
-        return twice_area / ((b.y - a.y) * d.l - (b.x - a.x) * d.m);
+        return (b.y - a.y) * d.l - (b.x - a.x) * d.m;
     };
-    double scale = 1, hole = 1;
-    for (int i = from; i <= to; ++i) scale = std::max(scale, outer[i] / edge(i));
-    for (int i = from; i <= to; ++i) hole = std::min(hole, inner[i] / (scale * edge(i)));
+    double outermost = twice_area, innermost = std::numeric_limits<double>::infinity();
+    for (int i = from; i <= to; ++i) outermost = std::max(outermost, outer[i] * per_distance(i));
+    for (int i = from; i <= to && innermost > 0; ++i) innermost = std::min(innermost, inner[i] * per_distance(i));
+    const double scale = outermost / twice_area, hole = std::min(1.0, innermost / outermost);
     return {static_cast<float>(scale * a.x), static_cast<float>(scale * a.y), static_cast<float>(scale * (b.x - a.x)),
             static_cast<float>(scale * (b.y - a.y)), static_cast<float>(hole * hole)};
 }

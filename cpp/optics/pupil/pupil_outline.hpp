@@ -29,6 +29,10 @@ double spread(const std::vector<PupilOutline>& looks, int azimuth);
 
 double largest_spread(const std::vector<PupilOutline>& looks);
 
+/// The mean of these: what lies between them looks about so. Nothing at azimuths at which some are dark and others not,
+/// or only some have a hole.
+PupilOutline between(const std::vector<const PupilOutline*>& looks);
+
 /// The outline that holds all of these, and a margin: a share of the reach, for what can pass between the film radii
 /// and azimuths looked at, and a share of how much it changes.
 PupilOutline holding_all(const std::vector<PupilOutline>& looks);
@@ -45,6 +49,9 @@ public:
 
     /// Widens the sector of a place in the box such that it holds it; false where it does already.
     bool take_in(Vec2f place);
+
+    /// A place just outside of a sector's edge, or just inside its hole.
+    Vec2f beside(std::size_t sector, Vec2f u) const;
 
     const std::vector<PupilSector>& sectors() const { return sectors_; }
 

@@ -1,24 +1,60 @@
 #include "pupil_outline_search.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numeric>
 
 namespace realcam {
 
 std::vector<PupilOutline> OutlineSearch::find(const PupilLens& lens, const std::vector<OutlineLook>& looks) {
     std::vector<PupilOutline> outlines(looks.size());
-    const int spokes = static_cast<int>(looks.size()) * kSpokes;
-    lens.for_each((spokes + kBlock - 1) / kBlock, [&](int block) {
-        OutlineSearch part(looks, block * kBlock, std::min(kBlock, spokes - block * kBlock));
-        part.scan(lens);
-        part.write(outlines);
-    });
+    Spokes all(looks.size() * kSpokes);
+    std::iota(all.begin(), all.end(), 0);
+    scan_all(lens, looks, all, outlines);
     return outlines;
 }
 
-OutlineSearch::OutlineSearch(const std::vector<OutlineLook>& looks, int first, int count)
-    : first_(first), count_(count) {
+std::vector<PupilOutline> OutlineSearch::find_near(const PupilLens& lens, const std::vector<OutlineLook>& looks,
+                                                   const std::vector<PupilOutline>& expected, double tolerance) {
+    std::vector<PupilOutline> outlines(looks.size());
+    Spokes left(looks.size() * kSpokes);
+    std::iota(left.begin(), left.end(), 0);
+    constexpr double kWidest = 0.2;  // beyond, a scan takes fewer rays
+    for (const double reach : {tolerance, 8 * tolerance}) {
+        if (reach > kWidest) break;
+        const int count = static_cast<int>(left.size()), blocks = (count + kBlock - 1) / kBlock;
+        const auto found = std::make_unique<bool[]>(static_cast<std::size_t>(blocks * kBlock));
+        lens.for_each(blocks, [&](int block) {
+            const int first = block * kBlock;
+            OutlineSearch part(looks, left.data() + first, std::min(kBlock, count - first));
+            part.narrow(lens, expected, reach, found.get() + first);
+            part.write(found.get() + first, outlines);
+        });
+        Spokes lost;
+        for (std::size_t i = 0; i < left.size(); ++i)
+            if (!found[i]) lost.push_back(left[i]);
+        left = std::move(lost);
+    }
+    scan_all(lens, looks, left, outlines);
+    return outlines;
+}
+
+void OutlineSearch::scan_all(const PupilLens& lens, const std::vector<OutlineLook>& looks, const Spokes& spokes,
+                             std::vector<PupilOutline>& outlines) {
+    const int count = static_cast<int>(spokes.size());
+    lens.for_each((count + kBlock - 1) / kBlock, [&](int block) {
+        const int first = block * kBlock;
+        OutlineSearch part(looks, spokes.data() + first, std::min(kBlock, count - first));
+        part.scan(lens);
+        part.write(nullptr, outlines);
+    });
+}
+
+OutlineSearch::OutlineSearch(const std::vector<OutlineLook>& looks, const int* spokes, int count)
+    : spokes_(spokes), count_(count) {
     for (int i = 0; i < kBlock; ++i) {
-        const int spoke = first + std::min(i, count - 1);
+        const int spoke = spokes[std::min(i, count - 1)];
         const OutlineLook& look = looks[static_cast<std::size_t>(spoke / kSpokes)];
         const PupilDirection unit = PupilOutline::direction(spoke % kSpokes);
         rays_.set(i, look.film, look.centre);
@@ -46,18 +82,50 @@ void OutlineSearch::scan(const PupilLens& lens) {
         open[i] = at(std::max(last[i], 0));
         outer_[i] = at(last[i] + 1);
     }
-    halve(lens, open, outer_);
+    halve(lens, kHalvings, open, outer_);
     std::fill(inner_, inner_ + kBlock, 0.0);
     if (std::none_of(first, first + kBlock, [](int step) { return step > 0; })) return;
     for (int i = 0; i < kBlock; ++i) {
         open[i] = at(std::max(first[i], 0));
         inner_[i] = at(std::max(first[i] - 1, 0));
     }
-    halve(lens, open, inner_);
+    halve(lens, kHalvings, open, inner_);
 }
 
-void OutlineSearch::halve(const PupilLens& lens, double (&open)[kBlock], double (&shut)[kBlock]) {
-    for (int halving = 0; halving < kHalvings; ++halving) {
+void OutlineSearch::narrow(const PupilLens& lens, const std::vector<PupilOutline>& expected, double tolerance,
+                           bool* found) {
+    double open[kBlock], hole_open[kBlock], hole_shut[kBlock];
+    for (int i = 0; i < kBlock; ++i) {
+        const int spoke = spokes_[std::min(i, count_ - 1)];
+        const PupilOutline& near = expected[static_cast<std::size_t>(spoke / kSpokes)];
+        const double outer = near.outer[spoke % kSpokes], inner = near.inner[spoke % kSpokes];
+        open[i] = std::max(0.0, outer - tolerance);
+        outer_[i] = outer + tolerance;
+        hole_open[i] = inner > 0 ? inner + tolerance : 0;
+        hole_shut[i] = inner > 0 ? std::max(0.0, inner - tolerance) : 0;
+        found[i] = outer > 0;
+    }
+    const int halvings = static_cast<int>(std::lround(std::log2(2 * tolerance / kPrecision)));
+    test(lens, open, outer_, found);
+    halve(lens, halvings, open, outer_);
+    std::copy(hole_shut, hole_shut + kBlock, inner_);
+    if (std::all_of(hole_open, hole_open + kBlock, [](double reach) { return reach == 0; })) return;
+    test(lens, hole_open, hole_shut, found);
+    halve(lens, halvings, hole_open, inner_);
+}
+
+void OutlineSearch::test(const PupilLens& lens, const double (&open)[kBlock], const double (&shut)[kBlock],
+                         bool* found) {
+    for (int i = 0; i < kBlock; ++i) reach_[i] = open[i];
+    trace(lens);
+    for (int i = 0; i < kBlock; ++i) found[i] &= passes_[i] || open[i] == shut[i];
+    for (int i = 0; i < kBlock; ++i) reach_[i] = shut[i];
+    trace(lens);
+    for (int i = 0; i < kBlock; ++i) found[i] &= !passes_[i] || open[i] == shut[i];
+}
+
+void OutlineSearch::halve(const PupilLens& lens, int halvings, double (&open)[kBlock], double (&shut)[kBlock]) {
+    for (int halving = 0; halving < halvings; ++halving) {
         for (int i = 0; i < kBlock; ++i) reach_[i] = 0.5 * (open[i] + shut[i]);
         trace(lens);
         for (int i = 0; i < kBlock; ++i) (passes_[i] ? open : shut)[i] = reach_[i];
@@ -73,11 +141,12 @@ void OutlineSearch::trace(const PupilLens& lens) {
     lens.trace(rays_, passes_);
 }
 
-void OutlineSearch::write(std::vector<PupilOutline>& outlines) const {
+void OutlineSearch::write(const bool* found, std::vector<PupilOutline>& outlines) const {
     for (int i = 0; i < count_; ++i) {
-        PupilOutline& outline = outlines[static_cast<std::size_t>((first_ + i) / kSpokes)];
-        outline.outer[(first_ + i) % kSpokes] = outer_[i];
-        outline.inner[(first_ + i) % kSpokes] = inner_[i];
+        if (found && !found[i]) continue;
+        PupilOutline& outline = outlines[static_cast<std::size_t>(spokes_[i] / kSpokes)];
+        outline.outer[spokes_[i] % kSpokes] = outer_[i];
+        outline.inner[spokes_[i] % kSpokes] = inner_[i];
     }
 }
 

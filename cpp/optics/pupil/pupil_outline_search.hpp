@@ -17,31 +17,56 @@ struct OutlineLook {
 /// The outlines at some film points. Each ray of a block has an azimuth of its own, of whichever of the looks.
 class OutlineSearch {
 public:
-    /// For `looks` looks.
+    /// By how much outlines may differ from those in the middle between which they lie, units of the box.
+    static constexpr double kChange = 0.005;
+
+    /// For `looks` looks, if none is as expected: two intervals for each edge, and a scan.
     static constexpr int most_blocks(int looks) {
-        return (looks * kSpokes + kBlock - 1) / kBlock * (kSteps + 2 * kHalvings);
+        constexpr int kNarrowings = 2 * (2 + 4) + 2 * (2 + 7);
+        return (looks * kSpokes + kBlock - 1) / kBlock * (kNarrowings + kSteps + 2 * kHalvings);
     }
 
     static std::vector<PupilOutline> find(const PupilLens& lens, const std::vector<OutlineLook>& looks);
+
+    /// The same where an outline is expected for each look. Its edges are looked for within `tolerance` (in units of
+    /// the box), which takes a quarter of the rays, and then within eight times as much. Azimuths without an edge
+    /// there, and those whose expected outline has none, are scanned.
+    static std::vector<PupilOutline> find_near(const PupilLens& lens, const std::vector<OutlineLook>& looks,
+                                               const std::vector<PupilOutline>& expected, double tolerance);
 
 private:
     static constexpr int kBlock = PupilLens::kBlock, kSpokes = PupilOutline::kAzimuths + 1;
     static constexpr int kSteps = 20, kHalvings = 9;
     static constexpr double kReach = 1.5;  ///< past the corner of the box
+    static constexpr double kPrecision = 6e-4;  ///< about that of edges near expected ones
 
-    OutlineSearch(const std::vector<OutlineLook>& looks, int first, int count);
+    /// Spokes count on from look to look.
+    using Spokes = std::vector<int>;
+
+    OutlineSearch(const std::vector<OutlineLook>& looks, const int* spokes, int count);
+
+    static void scan_all(const PupilLens& lens, const std::vector<OutlineLook>& looks, const Spokes& spokes,
+                         std::vector<PupilOutline>& outlines);
 
     /// Scans outwards along each azimuth, then halves the last and the first interval at which the light changes.
     void scan(const PupilLens& lens);
 
+    /// Halves the intervals around the expected edges. Sets `found` where they hold the edges.
+    void narrow(const PupilLens& lens, const std::vector<PupilOutline>& expected, double tolerance, bool* found);
+
+    /// Whether light passes at one reach of each spoke and not at the other.
+    void test(const PupilLens& lens, const double (&open)[kBlock], const double (&shut)[kBlock], bool* found);
+
     /// Narrows the interval between a reach that passes and one that does not.
-    void halve(const PupilLens& lens, double (&open)[kBlock], double (&shut)[kBlock]);
+    void halve(const PupilLens& lens, int halvings, double (&open)[kBlock], double (&shut)[kBlock]);
 
     void trace(const PupilLens& lens);
 
-    void write(std::vector<PupilOutline>& outlines) const;
+    /// Those of the spokes that are `found`; null: of all.
+    void write(const bool* found, std::vector<PupilOutline>& outlines) const;
 
-    int first_, count_;
+    const int* spokes_;
+    int count_;
     PupilRays rays_;
     PupilDirection centre_[kBlock], unit_[kBlock];
     double reach_[kBlock], outer_[kBlock], inner_[kBlock];

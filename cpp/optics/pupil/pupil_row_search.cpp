@@ -35,9 +35,9 @@ PupilRowBoxes PupilRowSearch::look_from_axis() const {
 PupilRowSearch::Edge PupilRowSearch::edge_of_image(int last_lit_row, const PupilRowBoxes& boxes) const {
     PupilTrack track = track_to(boxes, last_lit_row, 1);
     double dark = radius_at(last_lit_row + 1);
-    for (int i = 0; i < 24; ++i) {
+    for (int i = 0; i < kEdgeHalvings; ++i) {
         const double middle = 0.5 * (track.last->radius + dark);
-        if (!search_.look(middle, track)) dark = middle;
+        if (!search_.look_near(middle, track)) dark = middle;
     }
     return {dark, track.last->box};
 }

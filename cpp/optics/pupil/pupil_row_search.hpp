@@ -28,9 +28,12 @@ public:
         PupilBox last_box;  ///< just inside
     };
 
+    /// Within a millionth of the image's radius, on the dark side.
     Edge edge_of_image(int last_lit_row, const PupilRowBoxes& boxes) const;
 
 private:
+    static constexpr int kEdgeHalvings = 16;  ///< of a row, which takes 4% of the radius at most
+
     /// What was seen at a row and at one further in.
     PupilTrack track_to(const PupilRowBoxes& boxes, int row, int step) const;
 

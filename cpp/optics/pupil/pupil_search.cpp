@@ -5,10 +5,16 @@
 namespace realcam {
 
 std::optional<PupilBox> PupilSearch::look(double radius, PupilTrack& track) const {
+    if (track.last)
+        if (const auto box = look_near(radius, track)) return box;
     const PupilBox widest = lens_.box_of_last_surface(radius);
-    std::optional<PupilBox> box;
-    if (track.last) box = find_box(radius, track.search_at(radius), widest);
-    if (!box) box = find_box(radius, widest, widest);
+    const std::optional<PupilBox> box = find_box(radius, widest, widest);
+    if (box) track.add(radius, *box);
+    return box;
+}
+
+std::optional<PupilBox> PupilSearch::look_near(double radius, PupilTrack& track) const {
+    const std::optional<PupilBox> box = find_box(radius, track.search_at(radius), lens_.box_of_last_surface(radius));
     if (box) track.add(radius, *box);
     return box;
 }

@@ -22,6 +22,9 @@ public:
     /// The box at a film radius further out than those on the track; adds it there.
     std::optional<PupilBox> look(double radius, PupilTrack& track) const;
 
+    /// The same where the track leads to, and nowhere else.
+    std::optional<PupilBox> look_near(double radius, PupilTrack& track) const;
+
 private:
     /// Points of the search grid along l, and along m >= 0.
     static constexpr int kColumns = 48, kRows = kColumns / 2, kPoints = kColumns * kRows;

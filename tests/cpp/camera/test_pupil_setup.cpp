@@ -97,9 +97,9 @@ TEST_CASE("the pupil is the same bits on one thread and on many, in any order") 
         }
 }
 
-TEST_CASE("cores enough find the pupil in an eighth of the time of one") {
-    // 14 looks of 6 blocks, and the 29 steps of an outline: of all blocks a tenth. A few more where a look follows its
-    // box.
+TEST_CASE("cores enough find the pupil in a quarter of the time of one") {
+    // 14 looks of 6 blocks, the 29 steps of a first outline, and 6 of each of the two between: of all blocks a fifth. A
+    // few more where a look follows its box, or an outline is not near the expected one.
     for (const char* name : {"double-gauss-50mm", "tessar-50mm", "singlet-100mm"}) {
         CAPTURE(std::string(name));
         const LensSystem lens = io::read_lens(name);
@@ -107,7 +107,7 @@ TEST_CASE("cores enough find the pupil in an eighth of the time of one") {
         const Pupil pupil(lens, half_diagonal(lens), blocks.tracer());
         CAPTURE(blocks.all);
         CAPTURE(blocks.in_a_row);
-        CHECK(8 * blocks.in_a_row <= blocks.all);
+        CHECK(4 * blocks.in_a_row <= blocks.all);
     }
 }
 
