@@ -27,29 +27,32 @@ def variables_of(lens: rc.Lens) -> list[rc.Variable]:
 
 
 def by_realcam(lens: rc.Lens, variables: list[rc.Variable], origins: np.ndarray, towards: np.ndarray) -> np.ndarray:
-    rays = rc.ray_derivatives(lens, origins, towards, variables, start="scene")
+    rays = lens.trace(origins, towards, start="scene")
     film = sum(s.thickness_mm for s in lens.surfaces[:-1]) + lens.film_distance_mm
     film_by = np.array([float(v.quantity == "thickness") for v in variables])  # the film follows the last vertex
-    slope = rays.directions[:, :2] / rays.directions[:, 2:]
-    way = film - rays.origins_mm[:, 2:]
-    at = rays.origins_mm[:, :2] + way * slope
+    o, d = rays.origins_mm, rays.directions
+    slope, way = d[:, :2] / d[:, 2:], film - o[:, 2:]
+    at = o[:, :2] + way * slope
     off = at - at.mean(0)
     # What the RMS radius changes by with each place on the film, then with what that depends on.
     of_at = off / (len(at) * np.sqrt((off**2).sum(1).mean()))
     of_film = (of_at * slope).sum(1, keepdims=True)
-    of_origins, of_slopes = np.hstack([of_at, -of_film]), way / rays.directions[:, 2:]
-    of_directions = np.hstack([of_slopes * of_at, -of_slopes * of_film])
-    result: np.ndarray = (
-        np.tensordot(of_origins, rays.origins_by, 2)
-        + np.tensordot(of_directions, rays.directions_by, 2)
-        + of_film.sum() * film_by
+    found = rc.backpropagate_rays(
+        lens,
+        origins,
+        towards,
+        variables,
+        of_origins=np.hstack([of_at, -of_film]),
+        of_directions=way / d[:, 2:] * np.hstack([of_at, -of_film]),
+        start="scene",
     )
-    return result
+    return found.by + of_film.sum() * film_by
 
 
 def by_torch(lens: rc.Lens, origins: np.ndarray, towards: np.ndarray) -> Callable[[], np.ndarray]:
     import torch
 
+    torch.set_num_threads(1)  # a thread that waits for the others would count as busy
     surfaces = lens.surfaces
     bends = [i for i, s in enumerate(surfaces) if s.type == "refracting"]
     nm = lens.wavelength_nm

@@ -3,12 +3,6 @@
 # REALCAM_INSTRUCTION_SETS is the choice: every one of them runs on any machine that a package may land on, and takes its
 # share of the build; `machine` is the widest that the processor at hand has.
 set(REALCAM_INSTRUCTION_SETS v2 v3 v4 CACHE STRING "On x86: which of v2, v3, v4 (x86-64-v2 ...) to build, or machine")
-set(REALCAM_KERNEL_FLAGS -O3 -ffp-contract=fast -fno-math-errno -fno-trapping-math)
-if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
-  # Jump threading would turn the selects of the lane loops back into branches, and gcc then gives up on vector code:
-  # the lens trace runs ten times slower with it.
-  list(APPEND REALCAM_KERNEL_FLAGS -fno-thread-jumps)
-endif()
 
 # Asked anew at each configuration: the build folder may stand on another machine than the last time.
 function(realcam_widest_instruction_set variable)

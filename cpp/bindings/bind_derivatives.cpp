@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "../embree/lens_rays.hpp"
+#include "../optics/derivatives/adjoint_path.hpp"
 #include "../optics/derivatives/dual_path.hpp"
 #include "../optics/trace/lens_entry.hpp"
 #include "arrays.hpp"
@@ -73,16 +74,55 @@ void write_by_ray(const RayDerivatives& ray, Vec3d given, const LensEntry& entry
     }
 }
 
+py::ssize_t differentiated_rays(const InputArray<double>& origins, const InputArray<double>& directions) {
+    const bool fits = origins.ndim() == 2 && origins.shape(1) == 3 && directions.ndim() == 2 &&
+                      directions.shape(1) == 3 && origins.shape(0) == directions.shape(0);
+    if (!fits) throw InputError("origins_mm and directions must both be arrays of shape (N, 3)");
+    return origins.shape(0);
+}
+
+LightDirection way_of_derivatives(const std::string& start) {
+    if (start != "film" && start != "scene") throw InputError("start must be \"film\" or \"scene\"");
+    return start == "film" ? LightDirection::to_scene : LightDirection::to_film;
+}
+
+py::tuple backpropagate_rays(const LensSystem& lens, const InputArray<double>& origins,
+                             const InputArray<double>& directions, const Variables& variables,
+                             const InputArray<double>& of_origins, const InputArray<double>& of_directions,
+                             const InputArray<double>& of_paths, std::optional<double> wavelength_nm,
+                             const std::string& start) {
+    const py::ssize_t count = differentiated_rays(origins, directions);
+    for (const InputArray<double>* of : {&of_origins, &of_directions})
+        if (of->ndim() != 2 || of->shape(0) != count || of->shape(1) != 3)
+            throw InputError("of_origins and of_directions must be arrays of shape (N, 3), as the rays are");
+    if (of_paths.ndim() != 1 || of_paths.shape(0) != count)
+        throw InputError("of_optical_paths must be an array of shape (N,), one number for each ray");
+    const AdjointPath path(lens, way_of_derivatives(start), wavelength_or_design(lens, wavelength_nm),
+                           variables_from(variables));
+    py::array_t<double> by_origins({count, py::ssize_t{3}}), by_directions({count, py::ssize_t{3}});
+    const AdjointRequest request{static_cast<std::size_t>(count),
+                                 origins.data(),
+                                 directions.data(),
+                                 of_origins.data(),
+                                 of_directions.data(),
+                                 of_paths.data(),
+                                 by_origins.mutable_data(),
+                                 by_directions.mutable_data()};
+    const std::vector<double> by = [&] {
+        const Unlocked unlocked;
+        return path.gradient(request, parallel_ray_loop(heed_signals, 1));
+    }();
+    return py::make_tuple(py::array_t<double>(static_cast<py::ssize_t>(by.size()), by.data()), by_origins,
+                          by_directions);
+}
+
 py::tuple ray_derivatives(const LensSystem& lens, const InputArray<double>& origins,
                           const InputArray<double>& directions, const Variables& variables,
                           std::optional<double> wavelength_nm, const std::string& start, const std::string& frame,
                           std::optional<int> surface_count, bool rims) {
-    const bool fits = origins.ndim() == 2 && origins.shape(1) == 3 && directions.ndim() == 2 &&
-                      directions.shape(1) == 3 && origins.shape(0) == directions.shape(0);
-    if (!fits) throw InputError("origins_mm and directions must both be arrays of shape (N, 3)");
-    if (start != "film" && start != "scene") throw InputError("start must be \"film\" or \"scene\"");
-    const DualPath path(lens, start == "film" ? LightDirection::to_scene : LightDirection::to_film,
-                        wavelength_or_design(lens, wavelength_nm), variables_from(variables),
+    const py::ssize_t count = differentiated_rays(origins, directions);
+    const DualPath path(lens, way_of_derivatives(start), wavelength_or_design(lens, wavelength_nm),
+                        variables_from(variables),
                         frame == "lens"   ? ExitFrame::lens
                         : frame == "film" ? ExitFrame::film
                                           : ExitFrame::last_axis,
@@ -90,7 +130,7 @@ py::tuple ray_derivatives(const LensSystem& lens, const InputArray<double>& orig
     const int all = path.surface_count(), surfaces = surface_count.value_or(all);
     if (surfaces < 1 || surfaces > all) throw InputError("surface_count must lie between 1 and " + std::to_string(all));
     constexpr py::ssize_t kNumbers = RayDerivatives::kNumbers;
-    const py::ssize_t count = origins.shape(0), width = static_cast<py::ssize_t>(path.variable_count());
+    const auto width = static_cast<py::ssize_t>(path.variable_count());
     py::array_t<int> status(count);
     py::array_t<double> numbers({count, kNumbers}), by_variable({count, kNumbers, width}),
         by_ray({count, kNumbers, py::ssize_t{6}});
@@ -153,7 +193,10 @@ void bind_derivatives(py::module_& m) {
              "the frame\n"
              "of the last surface crossed. Returns status (N,); origin, optical direction and optical path (N, 7); "
              "their\n"
-             "derivatives by the variables (N, 7, V), and by the given origin and direction (N, 7, 6).");
+             "derivatives by the variables (N, 7, V), and by the given origin and direction (N, 7, 6).")
+        .def("_backpropagate_rays", &backpropagate_rays, "origins_mm"_a, "directions"_a, "variables"_a, "of_origins"_a,
+             "of_directions"_a, "of_optical_paths"_a, py::kw_only(), "wavelength_nm"_a = py::none(), "start"_a = "film",
+             "For realcam.backpropagate_rays, which says more. Returns (V,), (N, 3), (N, 3).");
 }
 
 }  // namespace realcam::bindings

@@ -20,7 +20,7 @@ GROUPS = {
         "Optimisation", "Targets", "Operand", "Variable", "optimised", "GlassMatch", "GlassSearch", "nearest_glasses",
         "with_better_glasses",
     ),
-    "Derivatives": ("Gradient", "RayDerivatives", "ray_derivatives"),
+    "Derivatives": ("Gradient", "RayDerivatives", "RayGradient", "backpropagate_rays", "ray_derivatives"),
     "Tolerances": (
         "Tolerances",
         "tolerance_study",

@@ -71,7 +71,7 @@ from ._core import (
 from .accuracy import AccuracyCost, accuracy_cost
 from .autofocus import Autofocus, autofocus
 from .cuda_plugin import path_of_plugin as _path_of_plugin
-from .derivatives import Gradient, RayDerivatives, ray_derivatives
+from .derivatives import Gradient, RayDerivatives, RayGradient, backpropagate_rays, ray_derivatives
 from .drawing import CrossSection, cross_section
 from .film_part import FilmPart
 from .glass_search import GlassMatch, GlassSearch, nearest_glasses, with_better_glasses
@@ -161,6 +161,7 @@ __all__ = [
     "RayBundle",
     "RayChunks",
     "RayDerivatives",
+    "RayGradient",
     "RayStatus",
     "ReachedNoise",
     "RealcamError",
@@ -189,6 +190,7 @@ __all__ = [
     "accuracy_cost",
     "analysis",
     "autofocus",
+    "backpropagate_rays",
     "camera_json",
     "cross_section",
     "depth_of_field",

@@ -656,6 +656,18 @@ class Lens(_Value):
         surface_count: int | None = None,
         rims: bool = True,
     ) -> tuple[NDArray[np.int32], NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]: ...
+    def _backpropagate_rays(
+        self,
+        origins_mm: ArrayLike,
+        directions: ArrayLike,
+        variables: Sequence[tuple[str, int, int, int]],
+        of_origins: ArrayLike,
+        of_directions: ArrayLike,
+        of_optical_paths: ArrayLike,
+        *,
+        wavelength_nm: float | None = None,
+        start: str = "film",
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]: ...
     def aim(
         self,
         pupil: ArrayLike,

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ._core import InputError, Lens, Surface
-from .derivatives.rays import ray_derivatives
+from .derivatives.rays import backpropagate_rays
 from .variable import Variable, checked
 
 if TYPE_CHECKING:
@@ -57,40 +57,40 @@ def trace_with_torch(
         if tensor.device.type != "cpu":
             raise InputError(f"rays with derivatives are traced on the host, and a tensor lies on {tensor.device}")
 
+    def numbers(tensor: torch.Tensor) -> np.ndarray:
+        array: np.ndarray = tensor.detach().double().numpy()
+        return array
+
     class Trace(torch.autograd.Function):  # type: ignore[misc]
         @staticmethod
         def forward(ctx: Any, o: torch.Tensor, d: torch.Tensor, v: torch.Tensor) -> Any:
-            changed = with_values(lens, listed, v.detach().double().tolist())
-            found = ray_derivatives(
-                changed,
-                o.detach().double().numpy(),
-                d.detach().double().numpy(),
-                listed,
-                wavelength_nm=wavelength_nm,
-                start=start,
-            )
-            passes = torch.from_numpy(found.status == 0)
+            ctx.changed = with_values(lens, listed, v.detach().double().tolist())
+            ctx.save_for_backward(o, d, v)
+            out = ctx.changed.trace(numbers(o), numbers(d), wavelength_nm=wavelength_nm, start=start)
+            passes = torch.from_numpy(out.status == 0)
+            ctx.mark_non_differentiable(passes)
 
             def tensor(array: np.ndarray) -> torch.Tensor:
-                return torch.from_numpy(np.nan_to_num(array, nan=0.0))
+                return torch.where(passes if array.ndim == 1 else passes[:, None], torch.from_numpy(array), 0.0)
 
-            by = np.concatenate([found.origins_by, found.directions_by, found.optical_path_by[:, None]], axis=1)
-            by_start = np.concatenate(
-                [found.origins_by_start, found.directions_by_start, found.optical_path_by_start[:, None]], axis=1
-            )
-            ctx.save_for_backward(tensor(by), tensor(by_start))
-            ctx.types = o.dtype, d.dtype, v.dtype
-            ctx.mark_non_differentiable(passes)
-            return tensor(found.origins_mm), tensor(found.directions), tensor(found.optical_path_mm), passes
+            return tensor(out.origins_mm), tensor(out.directions), tensor(out.optical_path_mm), passes
 
         @staticmethod
         @torch.autograd.function.once_differentiable  # type: ignore[untyped-decorator]
         def backward(ctx: Any, of_origins: Any, of_directions: Any, of_paths: Any, _: Any) -> Any:
-            by, by_start = ctx.saved_tensors
-            change = torch.cat([of_origins, of_directions, of_paths[:, None]], dim=1)
-            of_start = torch.einsum("nr,nrs->ns", change, by_start)
-            of_values = torch.einsum("nr,nrv->v", change, by)
-            o, d, v = ctx.types
-            return of_start[:, :3].to(o), of_start[:, 3:].to(d), of_values.to(v)
+            given = ctx.saved_tensors
+            found = backpropagate_rays(
+                ctx.changed,
+                numbers(given[0]),
+                numbers(given[1]),
+                listed,
+                of_origins=of_origins.numpy(),
+                of_directions=of_directions.numpy(),
+                of_optical_paths=of_paths.numpy(),
+                wavelength_nm=wavelength_nm,
+                start=start,
+            )
+            parts = found.by_origins, found.by_directions, found.by
+            return tuple(torch.from_numpy(part).to(of.dtype) for part, of in zip(parts, given, strict=True))
 
     return Trace.apply(origins_mm, directions, values)  # type: ignore[no-any-return]

@@ -255,6 +255,54 @@ def test_rays_keep_their_length_and_say_where_they_end() -> None:
     assert found.optical_path_by_start[0] @ np.array([0, 0, 1, 0, 0, 0]) == pytest.approx(-1, rel=1e-12)
 
 
+def test_a_function_of_rays_has_the_gradient_of_its_central_differences() -> None:
+    lens = singlet()
+    names = ("c0", "k", "a4", "t0", "n", "c1", "t1")
+    origins, directions = [[0.5, 1, -5], [0, 30, -5], [1, -2, -9]], [[0, 0.1, 2], [0, 0, 1], [0.05, 0.01, 0.5]]
+    # The function is a sum of all that Lens.trace returns, with these weights. The second ray does not pass.
+    of_at, of_way = [[0.3, -1, 2], [np.nan] * 3, [1, 0.2, 0.1]], [[5, 20, 9], [np.nan] * 3, [-7, 8, 30]]
+    of_path = [0.7, np.nan, -0.4]
+    found = rc.backpropagate_rays(
+        lens,
+        origins,
+        directions,
+        [VARIABLES[name] for name in names],
+        of_origins=of_at,
+        of_directions=of_way,
+        of_optical_paths=of_path,
+        start="scene",
+    )
+    with mpmath.workdps(50):
+        numbers = {name: mpf(value) for name, value in NUMBERS.items()}
+        numbers |= {"c0": mpf(lens.surfaces[0].curvature_per_mm), "c1": mpf(lens.surfaces[1].curvature_per_mm)}
+
+        def function(ray: int, change: dict[str, Any], moved: int = 0, step: Any = 0) -> Any:
+            given = [mpf(v) for v in origins[ray] + directions[ray]]
+            given[moved] += step
+            size = mpmath.sqrt(sum(v * v for v in given[3:]))
+            o, d, path = traced(numbers | change, given[:3], [v / size for v in given[3:]])
+            weights = of_at[ray] + of_way[ray]
+            return sum(mpf(w) * v for w, v in zip(weights, o + d, strict=True)) + mpf(of_path[ray]) * path
+
+        for name, ours in zip(names, found.by, strict=True):
+            step = mpf(10) ** -16 * (abs(numbers[name]) or 1)
+            above, below = ({name: numbers[name] + sign * step} for sign in (1, -1))
+            wanted = sum(function(ray, above) - function(ray, below) for ray in (0, 2)) / (2 * step)
+            assert ours == pytest.approx(float(wanted), rel=1e-9), name
+        step = mpf(10) ** -16
+        for ray in (0, 2):
+            ours_by = [*found.by_origins[ray], *found.by_directions[ray]]
+            for i, ours in enumerate(ours_by):
+                wanted = (function(ray, {}, i, step) - function(ray, {}, i, -step)) / (2 * step)
+                assert ours == pytest.approx(float(wanted), rel=1e-9), i
+    assert not found.by_origins[1].any() and not found.by_directions[1].any()
+    # None says that the function does not depend on it, and the gradient is linear.
+    parts: list[dict[str, Any]] = [{"of_origins": of_at}, {"of_directions": of_way}, {"of_optical_paths": of_path}]
+    variables = [VARIABLES[name] for name in names]
+    by = [rc.backpropagate_rays(lens, origins, directions, variables, **part, start="scene").by for part in parts]
+    assert np.sum(by, axis=0) == pytest.approx(found.by, rel=1e-12)
+
+
 @pytest.mark.parametrize(
     ("call", "message"),
     [
@@ -277,6 +325,18 @@ def test_rays_keep_their_length_and_say_where_they_end() -> None:
                 "spot_mm", [rc.Variable.conic(1)]
             ),
             "surface 2 is a plane: its conic has no effect",
+        ),
+        (
+            lambda lens: rc.backpropagate_rays(
+                lens, np.zeros((2, 3)), np.ones((2, 3)), [rc.Variable.radius(0)], of_origins=np.zeros((1, 3))
+            ),
+            r"must be arrays of shape \(N, 3\), as the rays are",
+        ),
+        (
+            lambda lens: rc.backpropagate_rays(
+                lens, np.zeros((2, 3)), np.ones((2, 3)), [rc.Variable.radius(0)], of_optical_paths=1.0
+            ),
+            r"of_optical_paths must be an array of shape \(N,\)",
         ),
     ],
 )

@@ -4,6 +4,14 @@
 
 #include "../../math/vec3.hpp"
 
+// Written before the functions that most of the time goes into. They are built for several machines, of which the
+// loader picks one.
+#if defined(__x86_64__) && defined(__linux__)
+#define REALCAM_CLONES __attribute__((target_clones("avx512f", "avx2", "default")))
+#else
+#define REALCAM_CLONES
+#endif
+
 namespace REALCAM_NAMESPACE {
 
 /// A number with its derivatives by N variables: forward-mode differentiation. Comparisons are those of the value, so
@@ -76,6 +84,11 @@ struct Dual {
 template <int N>
 __attribute__((always_inline)) inline Dual<N> length(Vec3<Dual<N>> a) {
     return sqrt(dot(a, a));
+}
+
+template <int N>
+__attribute__((always_inline)) inline Vec3d value(const Vec3<Dual<N>>& v) {
+    return {v.x.value, v.y.value, v.z.value};
 }
 
 }  // namespace REALCAM_NAMESPACE

@@ -4,13 +4,6 @@
 #include <limits>
 #include <utility>
 
-// Most of the time goes into two functions. They are built for several machines, of which the loader picks one.
-#if defined(__x86_64__) && defined(__linux__)
-#define DUAL_CLONES __attribute__((target_clones("avx512f", "avx2", "default")))
-#else
-#define DUAL_CLONES
-#endif
-
 namespace realcam {
 
 namespace {
@@ -20,10 +13,6 @@ constexpr int kRayLanes = 6;
 template <class F>
 void over_ray(Vec3<Dual8>& o, Vec3<Dual8>& p, F&& f) {
     f(o.x, 0), f(o.y, 1), f(o.z, 2), f(p.x, 3), f(p.y, 4), f(p.z, 5);
-}
-
-REALCAM_INLINE Vec3d value(const Vec3<Dual8>& v) {
-    return {v.x.value, v.y.value, v.z.value};
 }
 
 struct SagWithSlopes {
@@ -46,7 +35,7 @@ REALCAM_INLINE SagWithSlopes sag_at(const DualSurface& surface, const Vec3<Dual8
     }
     const Lanes<Dual8, 1> x = {at.x}, y = {at.y};
     FreeformSags<Dual8, 1> sag;
-    freeform_sags<Dual8, 1>(surface.form, x, y, sag);
+    freeform_sags<Dual8, 1>(surface.form.front(), x, y, sag);
     return {sag.height[0], sag.slope_x[0], sag.slope_y[0]};
 }
 
@@ -96,12 +85,18 @@ DualPath::DualPath(const LensSystem& lens, LightDirection direction, double wave
     if (kind_ == LensKind::plain) kind_ = LensKind::rotational;
     entry_index_ = path.entry_index, entry_position_ = path.entry_position, entry_reach_ = path.entry_reach;
     const bool to_film = direction == LightDirection::to_film;
-    add_surfaces(lens, wavelength_nm, to_film);
+    std::vector<DualLens> duals;
+    for (std::size_t first = 0; first < variables_.size() || first == 0; first += kDualLanes)
+        duals.emplace_back(lens, wavelength_nm, variables_, first);
+    add_surfaces(lens, duals, to_film);
     leaves_along_axis_ &= exit != ExitFrame::film;
     const int last = views_.back().surface_index;
-    for (std::size_t first = 0; first < variables_.size() || first == 0; first += kDualLanes) {
-        const DualLens dual(lens, wavelength_nm, variables_, first);
-        exits_.push_back(exit == ExitFrame::lens   ? dual.frame(lens, last)
+    for (const DualLens& dual : duals) {
+        const auto in_lens = [&]() -> Affine<Dual8> {
+            if (leaves_along_axis_) return {.origin = {0.0, 0.0, dual.vertices[static_cast<std::size_t>(last)]}};
+            return dual.frame(lens, last);
+        };
+        exits_.push_back(exit == ExitFrame::lens   ? in_lens()
                          : exit == ExitFrame::film ? dual.film(lens)
                                                    : dual.last_axis(lens));
         entry_positions_.push_back(to_film ? Dual8(0) : dual.vertices[lens.surfaces.size() - 1]);
@@ -109,7 +104,7 @@ DualPath::DualPath(const LensSystem& lens, LightDirection direction, double wave
     }
 }
 
-void DualPath::add_surfaces(const LensSystem& lens, double wavelength_nm, bool to_film) {
+void DualPath::add_surfaces(const LensSystem& lens, const std::vector<DualLens>& lenses, bool to_film) {
     bool is_placed = path_frames_detail::has_placements(lens);
     for (const LensVariable& v : variables_)
         is_placed |= v.quantity == LensQuantity::tilt || v.quantity == LensQuantity::decentre;
@@ -125,7 +120,7 @@ void DualPath::add_surfaces(const LensSystem& lens, double wavelength_nm, bool t
     }
     std::vector<int> taken(views_.size(), kRayLanes);  // lanes of the last dual surface
     for (std::size_t first = 0; first < variables_.size() || first == 0; first += kDualLanes) {
-        const DualLens dual(lens, wavelength_nm, variables_, first);
+        const DualLens& dual = lenses[first / kDualLanes];
         for (std::size_t k = 0; k < views_.size(); ++k) {
             const int here = surface(k), before = k == 0 ? here : surface(k - 1);
             DualSurface seeded = plain[k];
@@ -151,8 +146,7 @@ void DualPath::add_surfaces(const LensSystem& lens, double wavelength_nm, bool t
             if (first == 0) {
                 // The numbers themselves, which all share.
                 plain[k] = seeded;
-                for (int lane = 0; lane < kDualLanes; ++lane) plain[k].take_lane(lane, DualSurface(), 0);
-                plain[k].variables.assign(kDualLanes, -1);
+                plain[k].clear_lanes();
                 duals_[k] = {plain[k]};
             }
             for (const int lane : seeded.lanes()) {
@@ -193,8 +187,8 @@ RayStatus DualPath::trace(Vec3d origin, Vec3d direction, Tape& tape, int surface
     return tape.status_;
 }
 
-DUAL_CLONES void DualPath::write(const DualSurface& surface, bool has_ray, Vec3d from, Vec3d along, Vec3d at,
-                                 Tape::Derivatives& by) const {
+REALCAM_CLONES void DualPath::write(const DualSurface& surface, bool has_ray, Vec3d from, Vec3d along, Vec3d at,
+                                    Tape::Derivatives& by) const {
     Vec3<Dual8> o = static_cast<Vec3<Dual8>>(from), p = static_cast<Vec3<Dual8>>(along);
     if (has_ray) {
         o.x.by[0] = o.y.by[1] = o.z.by[2] = 1;
@@ -217,7 +211,7 @@ DUAL_CLONES void DualPath::write(const DualSurface& surface, bool has_ray, Vec3d
     by.of[6] = (surface.view.index_squared * hit.parameter).by;
 }
 
-DUAL_CLONES void DualPath::derivatives_behind(const Tape& tape, int surfaces, RayDerivatives& ray) const {
+REALCAM_CLONES void DualPath::derivatives_behind(const Tape& tape, int surfaces, RayDerivatives& ray) const {
     constexpr std::size_t kNumbers = RayDerivatives::kNumbers;
     // The seven numbers side by side, and one place that is left over.
     using Numbers = Dual8::Derivatives;

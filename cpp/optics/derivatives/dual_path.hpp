@@ -68,7 +68,8 @@ public:
     void derivatives(const Tape& tape, RayDerivatives& ray) const;
 
 private:
-    void add_surfaces(const LensSystem& lens, double wavelength_nm, bool to_film);
+    friend class AdjointPath;
+    void add_surfaces(const LensSystem& lens, const std::vector<DualLens>& lenses, bool to_film);
     void write(const DualSurface& surface, bool has_ray, Vec3d o, Vec3d p, Vec3d at, Tape::Derivatives& by) const;
 
     std::vector<LensVariable> variables_;

@@ -52,7 +52,7 @@ void over_vector_numbers(A& a, B& b, F&& f) {
 template <class A, class B, class F>
 void over_all_numbers(A& a, B& b, F&& f) {
     over_numbers(a.view, b.view, f);
-    over_form_numbers(a.form, b.form, f);
+    for (std::size_t i = 0; i < a.form.size(); ++i) over_form_numbers(a.form[i], b.form[i], f);
     over_vector_numbers(a.before.origin, b.before.origin, f);
     over_vector_numbers(a.before.x, b.before.x, f);
     over_vector_numbers(a.before.y, b.before.y, f);
@@ -81,6 +81,12 @@ Affine<Dual8> frame_of(const Vec3<Dual8>& decentre, const Vec3<Dual8>& tilt_deg)
         const Vec3d y = SurfacePlacement{{0, 0, 0}, {degrees.value, 0, 0}, false}.frame().y;
         return {degrees.mapped(y.y, -y.z * kDegree), degrees.mapped(y.z, y.y * kDegree)};
     };
+    const auto is_zero = [](const Dual8& angle) {
+        bool any = angle.value != 0;
+        for (int lane = 0; lane < kDualLanes; ++lane) any |= angle.by[lane] != 0;
+        return !any;
+    };
+    if (is_zero(tilt_deg.x) && is_zero(tilt_deg.y) && is_zero(tilt_deg.z)) return {.origin = decentre};
     const Turn a = turn(tilt_deg.x), b = turn(tilt_deg.y), c = turn(tilt_deg.z);
     const Affine<Dual8> about_x{{1.0, 0.0, 0.0}, {0.0, a.cos, a.sin}, {0.0, -a.sin, a.cos}, decentre},
         about_y{{b.cos, 0.0, -b.sin}, {0.0, 1.0, 0.0}, {b.sin, 0.0, b.cos}, {0.0, 0.0, 0.0}},
@@ -193,18 +199,25 @@ DualSurface::DualSurface(const SurfaceView<double>& from, const Surface& surface
     for (const LensVariable& v : shape)
         if (v.quantity == LensQuantity::xy) with_terms.form.xy.push_back({v.number, v.number_y, 0});
     const FreeformView<double> freeform = freeform_view<double>(with_terms);
-    over_form_numbers(form, freeform, [](Dual8& to, double number) { to = number; });
-    form.is_toroid = freeform.is_toroid;
-    form.section_terms = freeform.section_terms, form.radial_terms = freeform.radial_terms;
-    form.forbes_terms = freeform.forbes_terms, form.xy_degree = freeform.xy_degree;
+    FreeformView<Dual8>& terms = form.emplace_back();
+    over_form_numbers(terms, freeform, [](Dual8& to, double number) { to = number; });
+    terms.is_toroid = freeform.is_toroid;
+    terms.section_terms = freeform.section_terms, terms.radial_terms = freeform.radial_terms;
+    terms.forbes_terms = freeform.forbes_terms, terms.xy_degree = freeform.xy_degree;
     for (const int power : powers) {
-        if (form.is_toroid)
-            form.section_terms = std::max(form.section_terms, power / 2 - 1);
+        if (terms.is_toroid)
+            terms.section_terms = std::max(terms.section_terms, power / 2 - 1);
         else
-            form.radial_terms = std::max(form.radial_terms, power);
+            terms.radial_terms = std::max(terms.radial_terms, power);
     }
     for (const LensVariable& v : shape)
-        if (v.quantity == LensQuantity::radial) form.radial_terms = std::max(form.radial_terms, v.number);
+        if (v.quantity == LensQuantity::radial) terms.radial_terms = std::max(terms.radial_terms, v.number);
+}
+
+void DualSurface::clear_lanes() {
+    over_all_numbers(*this, *this, [](Dual8& number, const Dual8&) { number.by = Dual8::Derivatives{}; });
+    variables.assign(kDualLanes, -1);
+    powers.assign(kDualLanes, 0);
 }
 
 std::vector<int> DualSurface::lanes() const {
@@ -226,35 +239,27 @@ void DualSurface::take_lane(int lane, const DualSurface& from, int from_lane) {
 }
 
 void seed_shape(DualSurface& dual, const Surface& surface, const LensVariable& variable, int lane) {
-    const bool is_freeform = dual.view.kind == SurfaceShape::freeform;
-    FreeformView<Dual8>& form = dual.form;
-    const double reach = is_freeform ? 1 / form.inverse_reach.value : 0;
+    if (dual.form.empty()) {
+        if (variable.quantity == LensQuantity::curvature) dual.view.curvature.by[lane] = 1;
+        if (variable.quantity == LensQuantity::conic) dual.view.conic_factor.by[lane] = 1;
+        if (variable.quantity == LensQuantity::aspheric) dual.powers[static_cast<std::size_t>(lane)] = variable.number;
+        return;
+    }
+    FreeformView<Dual8>& form = dual.form.front();
+    const double reach = 1 / form.inverse_reach.value;
     switch (variable.quantity) {
         case LensQuantity::curvature:
-            if (!is_freeform) {
-                dual.view.curvature.by[lane] = 1;
-                return;
-            }
             form.curvature_y.by[lane] = 1;
             if (surface.form.base == BaseForm::conic) form.curvature_x.by[lane] = 1;
             if (surface.form.forbes) form.forbes_curvature_squared.by[lane] = 2 * surface.curvature;
             return;
         case LensQuantity::conic:
-            if (!is_freeform) {
-                dual.view.conic_factor.by[lane] = 1;
-                return;
-            }
             form.conic_factor_y.by[lane] = 1;
             if (surface.form.base != BaseForm::biconic) form.conic_factor_x.by[lane] = 1;
             return;
         case LensQuantity::aspheric: {
-            const auto term = static_cast<std::size_t>(variable.number / 2 - 2);
-            if (is_freeform) {
-                Dual8& to = form.is_toroid ? form.section[term] : form.radial[variable.number - 1];
-                to.by[lane] = std::pow(reach, variable.number);
-                return;
-            }
-            dual.powers[static_cast<std::size_t>(lane)] = variable.number;
+            Dual8& to = form.is_toroid ? form.section[variable.number / 2 - 2] : form.radial[variable.number - 1];
+            to.by[lane] = std::pow(reach, variable.number);
             return;
         }
         case LensQuantity::curvature_x: form.curvature_x.by[lane] = 1; return;

@@ -41,18 +41,20 @@ struct DualFrame {
 /// A surface on the path of a ray, with derivatives by eight numbers.
 struct DualSurface {
     SurfaceView<Dual8> view;
-    FreeformView<Dual8> form;  ///< of a freeform
+    std::vector<FreeformView<Dual8>> form;  ///< one of a freeform, none of others: it is large
     DualFrame before;  ///< where it changes, the view's shift is 0
     std::vector<int> variables;  ///< those of the lanes; -1: none, and all derivatives of this lane are 0
     /// Of an asphere: the power of r whose coefficient a lane is that of; 0: none. Not in the view, whose terms about
     /// the middle of the search region cancel near the axis.
     std::vector<int> powers;
 
-    DualSurface() : view{}, form{}, variables(kDualLanes, -1), powers(kDualLanes, 0) {}
+    DualSurface() : view{}, variables(kDualLanes, -1), powers(kDualLanes, 0) {}
     /// Without derivatives, but ready for those by `variables` of its shape: a sphere that may become an asphere is
     /// one.
     DualSurface(const SurfaceView<double>& view, const Surface& surface, const std::vector<LensVariable>& variables);
 
+    /// Leaves the numbers themselves.
+    void clear_lanes();
     /// Which lanes have a derivative that is not 0.
     std::vector<int> lanes() const;
     /// The derivatives of a lane of another become those of one of this.

@@ -2,9 +2,9 @@
 
 from .._core import Lens
 from .gradient import Gradient, gradient
-from .rays import RayDerivatives, ray_derivatives
+from .rays import RayDerivatives, RayGradient, backpropagate_rays, ray_derivatives
 
 # The class is the extension's, whose stub has the method.
 setattr(Lens, "gradient", gradient)  # noqa: B010
 
-__all__ = ["Gradient", "RayDerivatives", "gradient", "ray_derivatives"]
+__all__ = ["Gradient", "RayDerivatives", "RayGradient", "backpropagate_rays", "gradient", "ray_derivatives"]

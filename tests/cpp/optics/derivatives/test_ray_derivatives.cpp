@@ -7,6 +7,7 @@
 
 #include "doctest/doctest.h"
 #include "form_oracle.hpp"
+#include "optics/derivatives/adjoint_path.hpp"
 #include "optics/derivatives/dual_path.hpp"
 #include "optics/lens/lens_tilts.hpp"
 #include "refusal.hpp"
@@ -89,6 +90,48 @@ struct Start {
     Vec3d origin, towards;
 };
 
+/// The same in reverse mode: the adjoints of one ray's seven numbers, whose direction is a unit vector, one by one.
+void check_adjoints(const LensSystem& lens, LightDirection way, const std::vector<LensVariable>& variables,
+                    Vec3d origin, Vec3d towards) {
+    const auto traced = [&](const LensSystem& of, const RealVector& o, const RealVector& p) {
+        FormRay ray = form_oracle(of, way, o, p);
+        ray.direction = (1 / sqrt(dot(ray.direction, ray.direction))) * ray.direction;
+        return seven(ray);
+    };
+    const RealVector o = exact(origin), p = exact(towards);
+    const AdjointPath path(lens, way, lens.wavelength_nm, variables);
+    std::vector<double> by_variable[7];
+    double by_start[7][6];
+    for (int i = 0; i < 7; ++i) {
+        double of[7] = {};
+        of[i] = 1;
+        by_variable[i] = path.gradient({1, &origin.x, &towards.x, of, of + 3, of + 6, by_start[i], by_start[i] + 3});
+    }
+    const auto check = [&](const SevenNumbers& above, const SevenNumbers& below, const Real& step, const auto& found) {
+        SevenNumbers wanted;
+        for (std::size_t i = 0; i < 7; ++i) wanted[i] = (above[i] - below[i]) / (2 * step);
+        CHECK(error_of(wanted, found) < 1e-9);
+    };
+    for (std::size_t v = 0; v < variables.size(); ++v) {
+        CAPTURE(static_cast<int>(variables[v].quantity));
+        CAPTURE(variables[v].surface);
+        const double h = step_of(variables[v]);
+        check(traced(changed(lens, variables[v], h), o, p), traced(changed(lens, variables[v], -h), o, p), h,
+              [&](int i) { return by_variable[i][v]; });
+    }
+    for (int j = 0; j < 6; ++j) {
+        CAPTURE(j);
+        const Real h = 1e-15;
+        const auto moved = [&](const Real& step) {
+            RealVector from = o, along = p;
+            RealVector& part = j < 3 ? from : along;
+            (j % 3 == 0 ? part.x : j % 3 == 1 ? part.y : part.z) += step;
+            return traced(lens, from, along);
+        };
+        check(moved(h), moved(-h), h, [&](int i) { return by_start[i][j]; });
+    }
+}
+
 void check_lens(const LensSystem& lens, LightDirection way, const std::vector<LensVariable>& variables,
                 const std::vector<Start>& starts) {
     const DualPath path(lens, way, lens.wavelength_nm, variables, ExitFrame::lens);
@@ -148,6 +191,7 @@ void check_lens(const LensSystem& lens, LightDirection way, const std::vector<Le
             };
             CHECK(error_of(wanted, found) < 1e-9);
         }
+        check_adjoints(lens, way, variables, start.origin, 3.0 * start.towards);
     }
 }
 
@@ -276,6 +320,41 @@ TEST_CASE("derivatives by the coefficients of every form") {
     form.forbes->kind = ForbesKind::bfs;
     check(with(50, 0.1, form),
           {{LensQuantity::forbes, 0, 0}, {LensQuantity::forbes, 0, 1}, {LensQuantity::forbes, 0, 2}});
+}
+
+TEST_CASE("adjoints of many rays add up, whatever the threads, and rays that end are left out") {
+    const LensSystem lens = some_lens();
+    const std::vector<LensVariable> variables = all_of_some_lens();
+    const AdjointPath path(lens, LightDirection::to_film, 587.6, variables);
+    constexpr std::size_t kRays = 1500;  // neither whole parts nor whole blocks
+    std::vector<double> origins, directions, of(3 * kRays), of_paths(kRays, 0.5), by(3 * kRays), along(3 * kRays);
+    std::vector<double> wanted(variables.size()), sizes(variables.size());
+    for (std::size_t i = 0; i < kRays; ++i) {
+        const double x = i % 5 == 0 ? 100 : 0.005 * static_cast<double>(i), nan = std::nan("");
+        origins.insert(origins.end(), {x, -2, -10}), directions.insert(directions.end(), {0.02, 0.1, 1});
+        for (std::size_t j = 0; j < 3; ++j) of[3 * i + j] = x == 100 ? nan : std::sin(static_cast<double>(3 * i + j));
+        if (x == 100) of_paths[i] = nan;
+    }
+    const auto request = [&](std::size_t first, std::size_t count) {
+        const std::size_t at = 3 * first;
+        return AdjointRequest{count,   &origins[at],     &directions[at], &of[at],
+                              &of[at], &of_paths[first], &by[at],         &along[at]};
+    };
+    for (std::size_t i = 0; i < kRays; ++i) {
+        const std::vector<double> one = path.gradient(request(i, 1));
+        for (std::size_t v = 0; v < one.size(); ++v) wanted[v] += one[v], sizes[v] += std::fabs(one[v]);
+        CHECK((by[3 * i + 1] == 0) == (origins[3 * i] == 100));
+    }
+    const std::vector<double> of_singles = by, along_singles = along;
+    RayLoop backwards;
+    backwards.run = [](std::size_t first, std::size_t last, const RayTask& task) {
+        while (last-- > first) task(last, last + 1);
+    };
+    const std::vector<double> all = path.gradient(request(0, kRays));
+    CHECK(all == path.gradient(request(0, kRays), backwards));
+    for (std::size_t v = 0; v < all.size(); ++v) CHECK(std::fabs(all[v] - wanted[v]) <= 1e-13 * sizes[v]);
+    CHECK(by == of_singles);
+    CHECK(along == along_singles);
 }
 
 TEST_CASE("variables that make no sense are refused with one line") {
