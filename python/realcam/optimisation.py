@@ -17,6 +17,8 @@ from .variable import Variable, check_surface_exists, checked
 
 Progress = Callable[[int, float], bool | None]
 
+REACH = 0.005  # of differences, in steps of the variables
+
 
 @dataclass(frozen=True)
 class Targets:
@@ -71,7 +73,8 @@ def optimised(
 ) -> Optimisation:
     """Changes some numbers of a lens so that its spots become small (scipy's least_squares, trust region reflective).
 
-    Derivatives are exact (Lens.gradient), but for lenses that focus by a moving group, where they are differences.
+    Derivatives are exact (Lens.gradient). They are differences for lenses that focus by a moving group. So they are for
+    near objects before lenses that are not of revolution, and for the film that follows such a lens.
     most_steps: of the local search. samples: rings of rays in the pupil.
     progress: called after each look with its number and the RMS spot in mm; the search ends where it returns False.
     global_looks: looks at lenses all over the bounds, which must be finite, before the local search begins at the best
@@ -135,8 +138,12 @@ class _Search:
         self.failed = 1e3 * (1 + float(np.abs(self.of_start).max()))
         if not np.isfinite(self.of_start).all():
             raise InputError(f'no light passes lens "{lens.name}" from one of the fields')
+        # The object point of a near field follows a lens that is not of revolution in ways that have no derivatives.
+        distance_m = lens.focus_distance_m if targets.object_distance_m is None else targets.object_distance_m
         self.is_exact = (
-            lens.is_rotational and not (targets.refocuses and _focuses_by_group(lens)) and self._has_chief_rays()
+            (lens.is_rotational or math.isinf(distance_m))
+            and not (targets.refocuses and _focuses_by_group(lens))
+            and self._has_chief_rays()
         )
 
     def _has_chief_rays(self) -> bool:
@@ -201,11 +208,30 @@ class _Search:
         return np.asarray(np.clip(found.x, lower + inside, upper - inside))
 
     def jacobian(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
-        return np.asarray(self._exact_jacobian(self.lens_at(x)) * self.steps) if self.is_exact else self._differences(x)
+        return np.asarray(self._exact_jacobian(x) * self.steps) if self.is_exact else self._differences(x)
 
-    def _exact_jacobian(self, lens: Lens) -> NDArray[np.float64]:
-        targets, variables = self.targets, [*self.variables, Variable.film_distance()]
-        follows = film_distance_by(lens, self.variables) if targets.refocuses else np.zeros(len(self.variables))
+    def _film_follows(self, x: NDArray[np.float64], lens: Lens) -> NDArray[np.float64]:
+        """(V,): by how much the film's distance changes with each variable."""
+        if not self.targets.refocuses:
+            return np.zeros(len(x))
+        if lens.is_rotational:
+            return film_distance_by(lens, self.variables)
+
+        # The ray that the middle of the film sees changes with the lens, and has no derivatives. One-sided where a lens
+        # to one side cannot be built.
+        def moved(step: NDArray[np.float64]) -> float:
+            try:
+                return self.lens_at(x + step).film_distance_mm - lens.film_distance_mm
+            except (InputError, LensFileError):
+                return math.nan
+
+        slopes = [[moved(side * unit) / side for side in (REACH, -REACH)] for unit in np.eye(len(x))]
+        means = [np.mean([s for s in pair if math.isfinite(s)] or 0.0) for pair in slopes]
+        return np.asarray(np.array(means) / self.steps)
+
+    def _exact_jacobian(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
+        lens, targets, variables = self.lens_at(x), self.targets, [*self.variables, Variable.film_distance()]
+        follows = self._film_follows(x, lens)
 
         def following(by: NDArray[np.float64]) -> NDArray[np.float64]:
             """By the variables alone, while the film follows."""
@@ -244,10 +270,9 @@ class _Search:
     def _differences(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
         """Central differences: a focal length depends on curvatures so much more than a spot does that the error of
         one-sided ones would hide the spot. One-sided where a lens to one side cannot be built."""
-        reach = 0.005
         columns = []
         for unit in np.eye(len(x)):
-            looks = [(side, self.residuals(x + side * unit)) for side in (reach, -reach)]
+            looks = [(side, self.residuals(x + side * unit)) for side in (REACH, -REACH)]
             possible = [(side, residuals) for side, residuals in looks if residuals[0] != self.failed]
             if len(possible) == 1:
                 possible.append((0.0, self.residuals(x)))
