@@ -355,8 +355,11 @@ std::optional<std::string> zoom_position_of(const LensSystem& lens) {
     return lens.zoom.positions[static_cast<std::size_t>(lens.zoom.current)].name;
 }
 
-LensSystem zoomed_to(const LensSystem& lens, const std::variant<std::string, int>& position) {
-    return std::visit([&](const auto& which) { return zoomed(lens, which); }, position);
+/// A whole number is a position's index, as in Python, where 1 and 1.0 are different things.
+LensSystem zoomed_to(const LensSystem& lens, const std::variant<std::string, int, double>& to) {
+    if (const double* focal_length_mm = std::get_if<double>(&to)) return zoomed_to_focal_length(lens, *focal_length_mm);
+    if (const int* position = std::get_if<int>(&to)) return zoomed(lens, *position);
+    return zoomed(lens, std::get<std::string>(to));
 }
 
 void bind_glass(py::module_& m) {
@@ -556,11 +559,15 @@ void bind_lens(py::module_& m) {
         .def("_file_content", &file_content, "path"_a)
         .def_property_readonly("zoom_positions", &zoom_position_names,
                                "Names of the zoom positions; empty: the focal length is fixed.")
-        .def_property_readonly("zoom_position", &zoom_position_of, "The current one; None: the lens does not zoom.")
+        .def_property_readonly("zoom_position", &zoom_position_of,
+                               "The current one, or the nearest to it; None: the lens does not zoom.")
+        .def_property_readonly("zoom_focal_lengths_mm", &zoom_focal_lengths,
+                               "Of the lens at rest in each of its zoom positions.")
         .def("zoomed", &zoomed_to, "position"_a,
-             "The lens in another zoom position, by name or index. The plane in focus stays, an open diaphragm stays "
-             "open,\n"
-             "and a closed one keeps its f-number as far as it opens. Raises InputError.")
+             "The lens in another zoom position: its name, its index, or, as a float, a focal length in mm between\n"
+             "those of the positions. The plane in focus stays, an open diaphragm stays open, and a closed one keeps\n"
+             "its f-number as far as it opens. Between positions, spacings lie on monotone cubics over the logarithm\n"
+             "of the focal length, which is that of the lens at rest. Raises InputError.")
         .def(
             "first_order",
             [](const LensSystem& lens, std::optional<double> nm) {
