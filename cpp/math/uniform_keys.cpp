@@ -29,9 +29,11 @@ std::optional<int> key_steps(const Motion& motion, const TimeInterval& interval,
         for (const Vec3d p : points) most = std::max(most, length(a.point(p) - b.point(p)));
         return most;
     };
-    double way = 0, size = 0;
+    double way = 0, size = 0, reach = 0;
     for (const auto& map : path) way = std::max(way, farthest(map, path[0]));
-    if (way == 0) return 0;
+    for (const Vec3d p : points) reach = std::max(reach, length(path[0].point(p)));
+    constexpr double kRounding = 1e-14;  // of what stays in its place, when it is interpolated
+    if (way <= kRounding * reach) return 0;
     for (const Vec3d p : points) size = std::max(size, length(path[0].direction(p - points[0])));
     const double close = std::max(kOfWay * way, kOfSize * size);
     for (int steps = 1;; steps *= 2) {
