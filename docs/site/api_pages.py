@@ -54,7 +54,11 @@ GROUPS = {
         "DeviceError", "NothingToPlan", "Cancelled",
     ),
 }  # fmt: skip
-MODULES = {"realcam.analysis": "Aberrations and MTF, as arrays and as plots", "realcam.draw": "Drawings of lenses"}
+MODULES = {
+    "realcam.analysis": "Aberrations and MTF, as arrays and as plots",
+    "realcam.draw": "Drawings of lenses",
+    "realcam.dataset": "Labelled pictures",
+}
 
 
 def summary(title: str, module: str, names: tuple[str, ...]) -> str:

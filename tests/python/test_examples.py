@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import importlib.util
-import json
 import subprocess
 import sys
 from pathlib import Path
@@ -64,40 +63,18 @@ def test_mitsuba_rays_exposes_the_film_as_render_does(mitsuba_rays: ModuleType) 
 
 
 @pytest.mark.picture_files
-def test_dataset_makes_pictures_and_labels_and_goes_on(tmp_path: Path) -> None:
-    import OpenImageIO as oiio
-
-    def run(folder: Path, count: int) -> str:
-        command = [sys.executable, EXAMPLES / "dataset.py", "--output", folder, "--count", count, "--size", "60x40"]
-        words = [str(word) for word in [*command, "--spp", 2, "--seed", 3]]
-        return subprocess.run(words, check=True, capture_output=True, text=True, timeout=300).stdout
-
-    first = tmp_path / "first"
-    assert "2 of 2 pictures" in run(first, 2)
-    labels = [json.loads((first / f"{i:05d}.json").read_text()) for i in range(2)]
-    index = json.loads((first / "dataset.json").read_text())
-    assert [image["file_name"] for image in index["images"]] == ["00000.png", "00001.png"]
-    assert len(index["annotations"]) == sum(len(label["objects"]) for label in labels) > 0
-    for i, label in enumerate(labels):
-        ids = oiio.ImageBuf(str(first / f"{i:05d}.exr")).get_pixels(oiio.UINT)
-        ids = ids[..., oiio.ImageBuf(str(first / f"{i:05d}.exr")).spec().channelnames.index("ObjectId")]
-        for seen in label["objects"]:
-            x, y, width, height = seen["box"]
-            mask = ids == seen["id"]
-            assert mask.sum() == seen["area"] == mask[y : y + height, x : x + width].sum()
-            # Of a body that is whole in the picture and not hidden, the middle shows in its box.
-            if x > 0 and y > 0 and x + width < 60 and y + height < 40 and seen["area"] > 0.5 * width * height > 10:
-                u, v = seen["middle"]
-                assert x <= u <= x + width and y <= v <= y + height
-        assert label["fits"][0]["max_px"] < 1
-    # Another picture is added to those that are there; and each is the same, whichever others are made.
-    before = (first / "00000.json").stat().st_mtime_ns
-    assert "1 of 1 pictures" in run(first, 3)
-    assert (first / "00000.json").stat().st_mtime_ns == before
-    again = tmp_path / "again"
-    run(again, 1)
-    assert (again / "00000.json").read_text() == (first / "00000.json").read_text()
-    assert (again / "00000.png").read_bytes() == (first / "00000.png").read_bytes()
+def test_dataset_reads_what_the_command_makes(tmp_path: Path) -> None:
+    recipe = tmp_path / "recipe.toml"
+    recipe.write_text("format = 1\ncount = 3\nsize = [60, 40]\nspp = 2\nshard_size = 2\n")
+    make = [sys.executable, "-m", "realcam", "dataset", recipe, "-o", tmp_path / "out", "--workers", "1"]
+    read = [sys.executable, EXAMPLES / "dataset.py", tmp_path / "out", "--batch", "2"]
+    for command in (make, read):
+        done = subprocess.run(
+            [str(word) for word in command], check=True, capture_output=True, text=True, timeout=300
+        ).stdout
+    lines = [line for line in done.splitlines() if line.startswith("(")]
+    assert [line.split(", nearest")[0] for line in lines] == ["(2, 3, 40, 60)", "(1, 3, 40, 60)"]
+    assert all(0 < int(line.split()[-2].rstrip("%")) < 100 for line in lines)
 
 
 def test_paper_page_is_made_by_one_command(tmp_path: Path) -> None:

@@ -10,7 +10,7 @@ import typer
 
 from .. import __version__
 from .._core import LensFileError, RealcamError, one_line
-from . import bench, compare, cost, demo, job, lens, sensor, view
+from . import bench, compare, cost, dataset, demo, job, lens, sensor, view
 from .commands_in_cpp import add_command_in_cpp
 from .help_texts import finish
 from .options import advice_on
@@ -33,6 +33,7 @@ app.command("bench")(bench.bench)
 app.command("cost")(cost.cost)
 app.command("compare")(compare.compare)
 app.add_typer(job.app, name="job")
+app.command("dataset")(dataset.dataset)
 app.command("view")(view.view)
 
 

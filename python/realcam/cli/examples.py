@@ -65,6 +65,10 @@ EXAMPLES: dict[str, tuple[str, ...]] = {
         "realcam job finish night.job -o pictures --format png",
         "realcam job finish ball.job -o ball.mp4",
     ),
+    "dataset": (
+        "realcam dataset recipe.toml -o pictures",
+        "realcam dataset recipe.toml -o pictures --count 1000 --workers 8",
+    ),
     "view": (
         "realcam view",
         "realcam view shot.toml --port 8081 --no-browser",

@@ -1,0 +1,153 @@
+"""What a data set is made of: a TOML file of few keys."""
+
+from __future__ import annotations
+
+import dataclasses
+import os
+import re
+import sys
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from .._core import InputError, Sensor, _did_you_mean
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
+
+LABELS = ("depth", "mask", "motion")
+
+
+@dataclass(frozen=True)
+class Recipe:
+    """Of which pictures a data set consists. Two numbers in a pair are the ends of a range, drawn from evenly.
+
+    count: of pictures. size: columns and rows. seed: the same recipe and seed make the same pictures.
+    lenses: names or files. f_stops: factors of the lens's own f-number. objects: how many bodies a scene has. models:
+    what these are, categories and their files (.glb, .obj, ...), made one metre large; {}: boxes, balls and pyramids.
+    speed_m_s: of the bodies, along the floor. readout_time_s: of a rolling shutter. iso, sensor: of the camera.
+    board: columns and rows of the squares of a calibration board that stands in each scene; (): none. square_m: side
+    of its squares. labels: layers that are written, of depth, mask and motion. spp: samples of a pixel.
+    shard_size: pictures in a tar file. Raises InputError.
+    """
+
+    count: int = 200
+    size: tuple[int, int] = (640, 480)
+    seed: int = 0
+    lenses: tuple[str, ...] = ("double-gauss-50mm", "tessar-50mm", "sonnar-50mm", "phone-4mm", "fisheye-6mm-220deg")
+    f_stops: tuple[float, float] = (1.0, 3.0)
+    objects: tuple[int, int] = (3, 8)
+    models: Mapping[str, str] = field(default_factory=dict)
+    speed_m_s: tuple[float, float] = (0.0, 0.0)
+    readout_time_s: float = 0.0
+    iso: tuple[float, float] = (100.0, 100.0)
+    sensor: str = "ideal"
+    board: tuple[int, ...] = ()
+    square_m: float = 0.04
+    labels: tuple[str, ...] = ("depth", "mask")
+    spp: int = 24
+    shard_size: int = 100
+
+    def __post_init__(self) -> None:
+        for name, kind in _KINDS.items():
+            object.__setattr__(self, name, _as(kind, name, getattr(self, name)))
+        for name in ("count", "spp", "shard_size", "square_m"):
+            if not getattr(self, name) > 0:
+                raise InputError(f"{name} must be above 0")
+        if min(self.size) < 1 or min(self.objects) < 1 or self.seed < 0 or self.readout_time_s < 0:
+            raise InputError("size and objects must be 1 or more, seed and readout_time_s 0 or more")
+        for name in ("f_stops", "objects", "speed_m_s", "iso"):
+            low, high = getattr(self, name)
+            if not 0 <= low <= high:
+                raise InputError(f"{name} must be a range, the smaller number first")
+        if self.f_stops[0] < 1 or self.iso[0] <= 0 or not self.lenses:
+            raise InputError("f_stops must be 1 or more, iso above 0, and lenses name at least one")
+        if self.board and (len(self.board) != 2 or min(self.board) < 2):
+            raise InputError("board must be [columns, rows] of squares, 2 or more each")
+        for label in self.labels:
+            if label not in LABELS:
+                raise InputError(f'labels: "{label:.40}" is unknown; {", ".join(LABELS)} are wanted')
+        Sensor.load(self.sensor)
+
+    @classmethod
+    def load(cls, path: str | os.PathLike[str]) -> Recipe:
+        """Reads a recipe; files in it are relative to it. Raises InputError naming file, line and key."""
+        name = os.fspath(path)
+        try:
+            text = Path(path).read_text(encoding="utf-8")
+            values = tomllib.loads(text)
+        except (OSError, UnicodeDecodeError) as error:
+            raise InputError(f"{name}: this cannot be read: {getattr(error, 'strerror', None) or error}") from None
+        except tomllib.TOMLDecodeError as error:
+            raise InputError(f"{name}: {error}") from None
+        if values.pop("format", None) != 1:
+            raise InputError(f"{name}: format = 1 is wanted, the version of this description")
+        for key in values:
+            if key not in _KINDS:
+                raise InputError(
+                    f'{_where(name, text, key)}: unknown key "{key:.40}"{_did_you_mean(key, list(_KINDS))}'
+                )
+        for key, value in values.items():
+            try:
+                dataclasses.replace(cls(), **{key: value})
+            except InputError as error:
+                raise InputError(f"{_where(name, text, key)}: {error}") from None
+        recipe = cls(**values)
+        folder = Path(path).parent
+
+        def beside(file: str) -> str:
+            return str(folder / file) if re.search(r"[/.]", file) else file
+
+        return dataclasses.replace(
+            recipe,
+            lenses=tuple(map(beside, recipe.lenses)),
+            models={category: str(folder / file) for category, file in recipe.models.items()},
+            sensor=beside(recipe.sensor),
+        )
+
+    @property
+    def categories(self) -> tuple[str, ...]:
+        """Of the bodies, in the order of their numbers in COCO's format, from 1 on."""
+        return tuple(self.models) or ("box", "ball", "pyramid")
+
+
+_KINDS: dict[str, str] = {
+    f.name: str(f.type).replace("Mapping[str, str]", "texts by name") for f in dataclasses.fields(Recipe)
+}
+
+
+def _as(kind: str, name: str, value: Any) -> Any:
+    """The value as the field has it. Raises InputError."""
+    if kind == "texts by name":
+        if isinstance(value, Mapping) and all(isinstance(v, str) for pair in value.items() for v in pair):
+            return dict(value)
+    elif kind.startswith("tuple["):
+        element, second = kind[6:-1].split(", ")
+        items = [value, value] if second != "..." and isinstance(value, int | float) else value
+        if isinstance(items, list | tuple) and (second == "..." or len(items) == 2):
+            return tuple(_as(element, name, item) for item in items)
+    elif kind == "float" and isinstance(value, int | float) and not isinstance(value, bool):
+        if abs(value) < float("inf"):
+            return float(value)
+    elif (kind == "int" and isinstance(value, int) and not isinstance(value, bool)) or (
+        kind == "str" and isinstance(value, str)
+    ):
+        return value
+    words = {"int": "a whole number", "float": "a number", "str": "a text"}
+    wanted = (
+        words.get(kind)
+        or {"i": "whole numbers", "f": "numbers", "s": "texts", "t": "texts by name"}[kind.removeprefix("tuple[")[0]]
+    )
+    count = "two " if kind.startswith("tuple[") and not kind.endswith("...]") else ""
+    raise InputError(f"{name} must be {count}{wanted}; it is {value!r:.40}")
+
+
+def _where(file: str, text: str, key: str) -> str:
+    """The file, and the line on which a key stands."""
+    for number, line in enumerate(text.splitlines(), start=1):
+        if re.match(rf"\s*\[?\s*\"?{re.escape(key)}\b", line):
+            return f"{file}:{number}"
+    return file

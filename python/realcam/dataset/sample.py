@@ -1,0 +1,126 @@
+"""One picture of a data set with its labels."""
+
+from __future__ import annotations
+
+import io
+import json
+import warnings
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from .._core import Camera, Sensor
+from ..image import Image
+from ..render import render
+from ..vision import camera_json, fit_camera_model
+from .pictures import png_bytes
+from .recipe import Recipe
+from .scenes import RandomScene, random_camera, random_scene
+
+LAYERS = {"depth": "depth_middle", "mask": "object_id", "motion": "motion"}
+WIDEST_PLANE_DEG = 120.0  # of cameras whose model is one by the tangent of the angle
+
+
+def make_sample(recipe: Recipe, number: int, device: str, threads: int) -> dict[str, bytes]:
+    """The files of a picture, by what stands behind its key and a dot."""
+    rng = np.random.default_rng([recipe.seed, number])
+    seen = random_scene(recipe, rng)
+    camera = random_camera(recipe, rng).metered(seen.scene, device=device)
+    image = render(
+        seen.scene,
+        camera,
+        spp=recipe.spp,
+        seed=number,
+        device=device,
+        threads=threads,
+        layers=sorted({"object_id", *(LAYERS[label] for label in recipe.labels)}),
+        effects=(),
+    )
+    codes = _sensed(recipe, image, number)
+    files = {"png": png_bytes(codes)}
+    for label in recipe.labels:
+        layer = image.layers[LAYERS[label]]
+        if label == "mask":
+            files["mask.png"] = png_bytes(layer.astype(np.uint8))
+        else:
+            files[f"{label}.npy"] = _npy(layer.astype(np.float32))
+    files["json"] = json.dumps(_labels(recipe, seen, camera, image)).encode()
+    return files
+
+
+def _sensed(recipe: Recipe, image: Image, number: int) -> np.ndarray:
+    """What the sensor makes of the film, developed at the camera's ISO or the nearest that the sensor has."""
+    film = image.camera.film
+    pitch_um = 1000 * film.width_mm / film.resolution[0]
+    sensor = Sensor.load(recipe.sensor)
+    if sensor.pixel_pitch_um is not None:  # pixels as large as the film's, with the noise of this sensor's
+        sensor = sensor.replace(pixel_pitch_um=pitch_um, resolution=film.resolution)
+    lowest, highest = sensor.iso_range(pitch_um)
+    iso = image.camera.iso if lowest == 0 else float(np.clip(image.camera.iso, 1.001 * lowest, 0.999 * highest))
+    raw = sensor.expose(image, iso=iso, seed=number)
+    return raw.developed("film", iso=image.camera.iso, demosaic="bilinear")
+
+
+def _npy(array: np.ndarray) -> bytes:
+    content = io.BytesIO()
+    np.save(content, array)
+    return content.getvalue()
+
+
+def _labels(recipe: Recipe, seen: RandomScene, camera: Camera, image: Image) -> dict[str, Any]:
+    is_wide = camera.field_of_view_deg.diagonal > WIDEST_PLANE_DEG
+    still = camera.replace(motion=[])
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        label = camera_json(camera, [fit_camera_model(still, "fisheye" if is_wide else "opencv5")])
+    label["objects"] = list(_objects(seen, camera, image))
+    if seen.board_m is not None:
+        corners = camera.project(seen.board_m)
+        board_id = len(seen.categories) + 2
+        label["board"] = {
+            "squares": list(recipe.board),
+            "square_m": recipe.square_m,
+            "corners_m": seen.board_m.tolist(),
+            "corners_px": [None if np.isnan(corner).any() else corner.tolist() for corner in corners],
+            "corners_visible": [_shows(image, corner, board_id) for corner in corners],
+        }
+    return label
+
+
+def _shows(image: Image, pixel: np.ndarray, object_id: int) -> bool:
+    """Whether a place of the picture shows an object."""
+    ids = image.layers["object_id"]
+    if np.isnan(pixel).any() or not (0 <= pixel[0] < ids.shape[1] and 0 <= pixel[1] < ids.shape[0]):
+        return False
+    return bool(ids[int(pixel[1]), int(pixel[0])] == object_id)
+
+
+def _objects(seen: RandomScene, camera: Camera, image: Image) -> Iterator[dict[str, Any]]:
+    """Of each body that is seen: its box [x, y, width, height] and area in pixels, where its middle projects to, and
+    its pixels as run lengths, column by column, that of what it is not first (COCO).
+    """
+    ids = image.layers["object_id"]
+    middles = camera.project(seen.middles_m)
+    for i, (category, middle) in enumerate(zip(seen.categories, middles, strict=True), start=2):
+        mask = ids == i
+        rows, columns = np.nonzero(mask)
+        if len(rows):
+            x, y = int(columns.min()), int(rows.min())
+            yield {
+                "id": i,
+                "name": image.object_names[i],
+                "category": category,
+                "box": [x, y, int(columns.max()) + 1 - x, int(rows.max()) + 1 - y],
+                "area": len(rows),
+                "middle": [None, None] if np.isnan(middle).any() else middle.tolist(),
+                "run_lengths": _run_lengths(mask),
+            }
+
+
+def _run_lengths(mask: np.ndarray) -> list[int]:
+    flat = mask.ravel(order="F")
+    changes = np.flatnonzero(np.diff(flat)) + 1
+    ends = [*changes.tolist(), flat.size]
+    lengths: list[int] = np.diff([0, *ends]).tolist()
+    return [0, *lengths] if flat[0] else lengths

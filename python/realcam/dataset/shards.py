@@ -1,0 +1,157 @@
+"""The files of a data set: samples that are done, and shards, which hold many of them."""
+
+from __future__ import annotations
+
+import dataclasses
+import io
+import json
+import os
+import tarfile
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+from .._core import InputError, __version__
+from ..files import write_whole
+from .recipe import Recipe
+
+RECIPE_FILE = "recipe.json"
+INDEX_FILE = "dataset.json"
+
+
+class DatasetFolder:
+    """Where samples and shards are kept. All functions raise InputError and ImageFileError."""
+
+    def __init__(self, path: Path, recipe: Recipe) -> None:
+        self.path, self.recipe = path, recipe
+
+    @classmethod
+    def open(cls, path: str | os.PathLike[str], recipe: Recipe) -> DatasetFolder:
+        """Makes the folder, or goes on with one of the same recipe, whose count may be larger now."""
+        folder = cls(Path(path), recipe)
+        about = {"realcam": __version__, **json.loads(json.dumps(dataclasses.asdict(recipe)))}
+        file = folder.path / RECIPE_FILE
+        try:
+            (folder.path / "samples").mkdir(parents=True, exist_ok=True)
+            before = json.loads(file.read_bytes()) if file.exists() else about
+        except (OSError, ValueError) as error:
+            raise InputError(f"{file}: this cannot be read: {error}") from None
+        changed = [key for key in about if key != "count" and before.get(key) != about[key]]
+        if changed:
+            raise InputError(f"{folder.path}: made by another recipe ({', '.join(changed)}); another folder is wanted")
+        if before["count"] > recipe.count:
+            raise InputError(f"{folder.path}: this has {before['count']} pictures already; as many or more are wanted")
+        write_whole(file, json.dumps(about, indent=1).encode() + b"\n")
+        return folder
+
+    def sample_path(self, number: int) -> Path:
+        return self.path / "samples" / f"{number:06d}.tar"
+
+    def shard_path(self, shard: int) -> Path:
+        return self.path / f"shard-{shard:06d}.tar"
+
+    def numbers_of(self, shard: int) -> range:
+        size = self.recipe.shard_size
+        return range(shard * size, min((shard + 1) * size, self.recipe.count))
+
+    @property
+    def shards(self) -> range:
+        return range((self.recipe.count + self.recipe.shard_size - 1) // self.recipe.shard_size)
+
+    def missing(self) -> list[int]:
+        """Numbers of samples that are neither in a shard nor done."""
+        wanted: list[int] = []
+        for shard in self.shards:
+            numbers = self.numbers_of(shard)
+            held = self._held_by(shard)
+            if 0 < len(held) < len(numbers):  # more pictures are wanted than when it was made
+                for number, files in held.items():
+                    self.write_sample(number, files)
+                self.shard_path(shard).unlink()
+                held = {}
+            if not held:
+                wanted += [number for number in numbers if not self.sample_path(number).exists()]
+        return wanted
+
+    def write_sample(self, number: int, files: Mapping[str, bytes]) -> None:
+        content = io.BytesIO()
+        with tarfile.open(fileobj=content, mode="w") as tar:
+            _add(tar, number, files)
+        write_whole(self.sample_path(number), content.getvalue())
+
+    def write_shard(self, shard: int) -> None:
+        """Of samples that are done, whose own files are removed then. One that is there stays."""
+        if self.shard_path(shard).exists():
+            return
+        numbers = self.numbers_of(shard)
+        content = io.BytesIO()
+        with tarfile.open(fileobj=content, mode="w") as tar:
+            for number in numbers:
+                for _, files in read_samples(self.sample_path(number)):
+                    _add(tar, number, files)
+        write_whole(self.shard_path(shard), content.getvalue(), is_durable=True)
+        for number in numbers:
+            self.sample_path(number).unlink(missing_ok=True)
+
+    def write_index(self) -> None:
+        """dataset.json: images, annotations and categories as COCO has them."""
+        images: list[dict[str, Any]] = []
+        annotations: list[dict[str, Any]] = []
+        for shard in self.shards:
+            path = self.shard_path(shard)
+            for key, files in read_samples(path):
+                label = json.loads(files["json"])
+                size = label["height"], label["width"]
+                name = {"id": int(key), "file_name": f"{key}.png", "shard": path.name}
+                images.append(name | {"width": size[1], "height": size[0]})
+                for seen in label["objects"]:
+                    annotations.append(_annotation(self.recipe, len(annotations) + 1, int(key), seen, size))
+        categories = [{"id": i, "name": name} for i, name in enumerate(self.recipe.categories, start=1)]
+        index = {"images": images, "annotations": annotations, "categories": categories}
+        write_whole(self.path / INDEX_FILE, json.dumps(index).encode())
+
+    def _held_by(self, shard: int) -> dict[int, dict[str, bytes]]:
+        path = self.shard_path(shard)
+        return {int(key): files for key, files in read_samples(path)} if path.exists() else {}
+
+
+def _add(tar: tarfile.TarFile, number: int, files: Mapping[str, bytes]) -> None:
+    """Without times and owners, so that the same pictures are the same bytes."""
+    for name, content in files.items():
+        entry = tarfile.TarInfo(f"{number:06d}.{name}")
+        entry.size = len(content)
+        tar.addfile(entry, io.BytesIO(content))
+
+
+def read_samples(path: Path) -> Iterator[tuple[str, dict[str, bytes]]]:
+    """The samples of a tar file: keys, and files by what stands behind the first dot. Raises InputError."""
+    key = ""
+    files: dict[str, bytes] = {}
+    try:
+        with tarfile.open(path) as tar:
+            for entry in tar:
+                content = tar.extractfile(entry)
+                if content is None:
+                    continue
+                this, _, suffix = entry.name.partition(".")
+                if this != key and files:
+                    yield key, files
+                    files = {}
+                key = this
+                files[suffix] = content.read()
+    except (tarfile.TarError, OSError, EOFError) as error:
+        raise InputError(f"{path}: this cannot be read ({error}); removed, it is made again") from None
+    if files:
+        yield key, files
+
+
+def _annotation(recipe: Recipe, number: int, image: int, seen: dict[str, Any], size: tuple[int, int]) -> dict[str, Any]:
+    return {
+        "id": number,
+        "image_id": image,
+        "category_id": recipe.categories.index(seen["category"]) + 1,
+        "bbox": seen["box"],
+        "area": seen["area"],
+        "segmentation": {"counts": seen["run_lengths"], "size": list(size)},
+        "iscrowd": 0,
+    }

@@ -1,0 +1,205 @@
+"""Data sets: what recipes say, labels against pictures and geometry, and shards that are whole or not there."""
+
+from __future__ import annotations
+
+import concurrent.futures
+import dataclasses
+import json
+import os
+import signal
+import subprocess
+import sys
+import tarfile
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import realcam as rc
+from realcam.dataset import Recipe, make, samples
+from realcam.dataset.pictures import codes_of, png_bytes
+from realcam.dataset.sample import _run_lengths
+
+pytestmark = pytest.mark.picture_files
+
+SMALL = Recipe(
+    count=3,
+    size=(96, 64),
+    seed=5,
+    lenses=("double-gauss-50mm", "tessar-50mm"),
+    board=(6, 4),
+    speed_m_s=(20, 30),
+    readout_time_s=0.002,
+    iso=(100, 800),
+    labels=("depth", "mask", "motion"),
+    spp=2,
+    shard_size=2,
+)
+
+
+class Here(concurrent.futures.Executor):
+    """Runs each call at once in this process, and counts them."""
+
+    def __init__(self) -> None:
+        self.calls = 0
+
+    def submit(self, f: Callable[..., Any], /, *args: Any, **words: Any) -> concurrent.futures.Future[Any]:
+        self.calls += 1
+        future: concurrent.futures.Future[Any] = concurrent.futures.Future()
+        future.set_result(f(*args, **words))
+        return future
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("dataset") / "out"
+    make(SMALL, folder, Here(), device="cpu")
+    return folder
+
+
+def test_shards_hold_all_files_of_each_sample_in_order(made: Path) -> None:
+    names = []
+    for path in sorted(made.glob("shard-*.tar")):
+        with tarfile.open(path) as tar:
+            names.append(tar.getnames())
+    suffixes = ["png", "depth.npy", "mask.png", "motion.npy", "json"]
+    keys = [["000000", "000001"], ["000002"]]
+    assert names == [[f"{key}.{suffix}" for key in shard for suffix in suffixes] for shard in keys]
+    assert not list((made / "samples").iterdir())
+
+
+def test_labels_agree_with_the_layers_and_with_geometry(made: Path) -> None:
+    seen_boards = 0
+    for sample in samples(made):
+        mask, label, depth = sample["mask.png"], sample["json"], sample["depth.npy"]
+        assert sample["png"].shape == (64, 96, 3) and mask.shape == depth.shape == (64, 96)
+        assert len(label["objects"]) > 0
+        for seen in label["objects"]:
+            x, y, width, height = seen["box"]
+            here = mask == seen["id"]
+            assert here.sum() == seen["area"] == here[y : y + height, x : x + width].sum()
+            assert here[y].any() and here[y + height - 1].any() and here[:, x].any() and here[:, x + width - 1].any()
+            # COCO's run lengths, column by column, undone.
+            values = np.repeat(np.arange(len(seen["run_lengths"])) % 2, seen["run_lengths"])
+            assert np.array_equal(values.reshape(96, 64).T.astype(bool), here)
+        # A pinhole's view of the board's corners is near; the matrix alone leaves out distortion: some pixels of 96.
+        board = label["board"]
+        pose = label["pose"]["world_to_camera"]
+        rays = np.array(board["corners_m"]) @ np.array(pose["rotation"]).T + pose["translation_m"]
+        ideal = (rays / rays[:, 2:]) @ np.array(label["camera_matrix"]).T
+        visible = np.array(board["corners_visible"])
+        seen_boards += int(visible.any())
+        corners = np.array([[np.nan] * 2 if corner is None else corner for corner in board["corners_px"]])
+        assert corners[visible] == pytest.approx(ideal[visible, :2], abs=4)
+        # What moves along the floor moves in the picture, and the floor (1) does not.
+        motion = np.linalg.norm(sample["motion.npy"], axis=2)
+        assert np.nanmax(motion[mask == 1]) == 0 < np.nanmax(motion)
+    assert seen_boards > 0
+
+
+def test_the_index_is_cocos(made: Path) -> None:
+    index = json.loads((made / "dataset.json").read_text())
+    assert [image["file_name"] for image in index["images"]] == ["000000.png", "000001.png", "000002.png"]
+    assert [image["shard"] for image in index["images"]] == ["shard-000000.tar"] * 2 + ["shard-000001.tar"]
+    labels = [seen for sample in samples(made) for seen in sample["json"]["objects"]]
+    assert [each["bbox"] for each in index["annotations"]] == [seen["box"] for seen in labels]
+    names = {each["id"]: each["name"] for each in index["categories"]}
+    assert [names[each["category_id"]] for each in index["annotations"]] == [seen["category"] for seen in labels]
+    for each in index["annotations"]:
+        assert sum(each["segmentation"]["counts"][1::2]) == each["area"]
+        assert sum(each["segmentation"]["counts"]) == 96 * 64 and each["segmentation"]["size"] == [64, 96]
+
+
+def test_what_is_there_is_not_made_again(made: Path, tmp_path: Path) -> None:
+    folder, executor = tmp_path / "out", Here()
+    one = dataclasses.replace(SMALL, count=1)
+    make(one, folder, executor, device="cpu")
+    assert executor.calls == 1
+    make(one, folder, executor, device="cpu")
+    assert executor.calls == 1
+    # More pictures; that of the shard which was not full is kept. All are the same bytes as made at once.
+    make(SMALL, folder, executor, device="cpu")
+    assert executor.calls == 3
+    for path in made.glob("*.tar"):
+        assert (folder / path.name).read_bytes() == path.read_bytes()
+    assert (folder / "dataset.json").read_bytes() == (made / "dataset.json").read_bytes()
+    with pytest.raises(rc.InputError, match=r"another recipe \(seed, spp\)"):
+        make(dataclasses.replace(SMALL, seed=6, spp=3), folder, executor)
+    with pytest.raises(rc.InputError, match="has 3 pictures already"):
+        make(one, folder, executor)
+
+
+def test_a_kill_leaves_whole_files_and_the_next_run_goes_on(tmp_path: Path) -> None:
+    recipe, out = tmp_path / "recipe.toml", tmp_path / "out"
+    recipe.write_text("format = 1\nsize = [60, 40]\ncount = 6\nspp = 2\nshard_size = 3\nlenses = ['tessar-50mm']\n")
+    command = [sys.executable, "-m", "realcam", "dataset", str(recipe), "-o", str(out), "--workers", "1"]
+    process = subprocess.Popen(command, start_new_session=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    deadline = time.monotonic() + 120
+    while not list(out.glob("samples/*.tar")) and process.poll() is None and time.monotonic() < deadline:
+        time.sleep(0.05)
+    os.killpg(process.pid, signal.SIGKILL)
+    process.wait()
+    done = {path.name: path.stat().st_mtime_ns for path in out.glob("samples/0*.tar")}
+    assert done or (out / "dataset.json").exists()
+    executor = Here()
+    make(Recipe.load(recipe), out, executor, device="cpu")
+    assert executor.calls <= 6 - len(done)
+    assert [sample["__key__"] for sample in samples(out)] == [f"{i:06d}" for i in range(6)]
+
+
+def test_models_of_files_are_bodies_of_their_category(tmp_path: Path) -> None:
+    model = tmp_path / "wedge.obj"
+    model.write_text("v 0 0 0\nv 40 0 0\nv 0 30 0\nv 0 0 20\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n")
+    recipe = tmp_path / "recipe.toml"
+    recipe.write_text("format = 1\ncount = 1\nsize = [60, 40]\nspp = 1\n[models]\nwedge = 'wedge.obj'\n")
+    make(Recipe.load(recipe), tmp_path / "out", Here(), device="cpu")
+    (sample,) = samples(tmp_path / "out")
+    assert {seen["category"] for seen in sample["json"]["objects"]} == {"wedge"}
+    assert 0 < max(seen["area"] for seen in sample["json"]["objects"]) < 60 * 40
+
+
+@pytest.mark.parametrize("shape", [(7, 5), (7, 5, 3)])
+def test_pictures_come_back_from_their_bytes(shape: tuple[int, ...]) -> None:
+    codes = np.random.default_rng(1).integers(0, 256, shape, dtype=np.uint8)
+    assert np.array_equal(codes_of(png_bytes(codes)), codes)
+
+
+def test_run_lengths_begin_with_what_the_object_is_not() -> None:
+    # The example of a 2 x 3 mask, column by column: 1 0, 1 1, 0 0.
+    assert _run_lengths(np.array([[1, 1, 0], [0, 1, 0]], bool)) == [0, 1, 1, 2, 2]
+    assert _run_lengths(np.array([[0, 1, 0], [0, 1, 0]], bool)) == [2, 2, 2]
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("count = 3", "format = 1 is wanted"),
+        ("format = 1\ncout = 3", r"recipe.toml:2: unknown key \"cout\""),
+        ("format = 1\n\ncount = 'many'", "recipe.toml:3: count must be a whole number; it is 'many'"),
+        ("format = 1\nsize = [3]", "recipe.toml:2: size must be two whole numbers"),
+        ("format = 1\niso = [800, 100]", "recipe.toml:2: iso must be a range, the smaller number first"),
+        ("format = 1\nlabels = ['depht']", 'recipe.toml:2: labels: "depht" is unknown'),
+        ("format = 1\nboard = [9]", r"recipe.toml:2: board must be \[columns, rows\]"),
+        ("format = 1\nsensor = 'nothing'", "recipe.toml:2: .*nothing"),
+        ("format = 1\ncount = ", "recipe.toml: "),
+    ],
+)
+def test_mistakes_in_a_recipe_have_one_line(tmp_path: Path, text: str, message: str) -> None:
+    path = tmp_path / "recipe.toml"
+    path.write_text(text)
+    with pytest.raises(rc.InputError, match=message) as caught:
+        Recipe.load(path)
+    assert "\n" not in str(caught.value)
+
+
+def test_a_picture_that_fails_names_itself(tmp_path: Path) -> None:
+    recipe = dataclasses.replace(SMALL, lenses=("no-such-lens",))
+    with pytest.raises(rc.InputError, match=r"picture \d: .*no-such-lens"):
+        make(recipe, tmp_path / "out", Here(), device="cpu")
+
+
+def test_a_folder_without_shards_says_so(tmp_path: Path) -> None:
+    with pytest.raises(rc.InputError, match="this has no shards"):
+        list(samples(tmp_path))
