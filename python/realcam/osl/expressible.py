@@ -32,7 +32,9 @@ def _why_not(surface: Surface) -> str:
         return "is tilted or decentred"
     if surface.form != "conic":
         return f"is a {surface.form}"
-    if surface.radial_terms or surface.xy_terms or surface.zernike or surface.forbes:
+    if surface.radial_terms:
+        return "has radial_terms"
+    if surface.xy_terms or surface.zernike or surface.forbes:
         return "has terms of a free form"
     if surface.aperture:
         return "has an aperture that is no circle about the axis"

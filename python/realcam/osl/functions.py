@@ -152,11 +152,11 @@ int cross_asphere(float gap, float curvature, float conic, float terms[{terms}],
 PUPIL = """\
 // The ellipse of directions in which light passes, of a film point on the x axis, in direction cosines.
 // `share`: of the largest film radius. `open`: of the largest stop, to the blades' corners.
-void find_pupil(float share, float focus, float open, output float middle, output float half_l,
+void find_pupil(float share, float focus, float open, float colour, output float middle, output float half_l,
                 output float half_m, output float hole)
 {{
     float ellipses[{count}] = {ellipses};
-    float levels[{stops}] = {levels};
+    float levels[{stops}] = {levels};{drifts}
     int stop = {choice};
     float closing = clamp((levels[stop] - open) / (levels[stop] - levels[stop + 1]), 0, 1);
     float place = (1 - sqrt(1 - share)) * ({rows} - 1);
@@ -173,7 +173,7 @@ void find_pupil(float share, float focus, float open, output float middle, outpu
         middle += weight * mix(ellipses[wide], ellipses[narrow], closing);
         half_l += weight * mix(ellipses[wide + 1], ellipses[narrow + 1], closing);
         half_m += weight * mix(ellipses[wide + 2], ellipses[narrow + 2], closing);
-        bulge += weight * ellipses[wide + 3];{hole}
+        bulge += weight * ellipses[wide + 3];{hole}{drift}
     }}
     // Rims make the pupil larger between two stops than their mean. The last factor is for stops beyond the table.
     float size = (1 + 4 * closing * (1 - closing) * bulge) * min(1, open / {last});

@@ -9,15 +9,22 @@ from numpy.typing import NDArray
 
 from .._core import Lens
 
-_POLE_NM = 200.0
+POLE_NM = 200.0
 """Indices grow towards the resonances in the ultraviolet: in 1 / (wavelength - pole) they are nearly polynomials."""
 _TERMS = 4
 
 
 def colour_variable(lens: Lens, wavelength_nm: NDArray[np.float64]) -> NDArray[np.float64]:
     """0 at the lens's own wavelength, and 1 at 400 nm."""
-    own = 1 / (lens.wavelength_nm - _POLE_NM)
-    return (1 / (np.asarray(wavelength_nm) - _POLE_NM) - own) / (1 / (400 - _POLE_NM) - own)
+    scale, offset = colour_scale(lens)
+    return scale / (np.asarray(wavelength_nm) - POLE_NM) - offset
+
+
+def colour_scale(lens: Lens) -> tuple[float, float]:
+    """The colour variable is the first number / (wavelength - pole), less the second number."""
+    own = 1 / (lens.wavelength_nm - POLE_NM)
+    scale = 1 / (1 / (400 - POLE_NM) - own)
+    return scale, scale * own
 
 
 def media_indices(lens: Lens, wavelength_nm: float) -> list[float]:

@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 from .._core import Lens
 
 Doubles = NDArray[np.float64]
+Light = Sequence[tuple[float, Doubles]]
+"""Wavelengths in nm, and by how much (R,) the directions l of each are to be moved at R film points."""
 _COLUMNS, _ROWS = 33, 17
 _HALVINGS = 7
 
@@ -47,29 +49,29 @@ def rear_boxes(lens: Lens, radii_mm: Doubles) -> Doubles:
     return np.stack([directions_l.min(axis=1), directions_l.max(axis=1), directions_m.max(axis=1)], axis=1)
 
 
-def passes(lens: Lens, radii_mm: Doubles, l: Doubles, m: Doubles, wavelengths_nm: Sequence[float]) -> NDArray[np.bool_]:  # noqa: E741
+def passes(lens: Lens, radii_mm: Doubles, l: Doubles, m: Doubles, light: Light) -> NDArray[np.bool_]:  # noqa: E741
     """(R, K): whether light from film points (R,) in directions (R, K) passes, at any of the wavelengths."""
-    rest = 1 - l**2 - m**2
-    directions = np.stack([l, m, -np.sqrt(np.maximum(rest, 1e-12))], axis=-1).reshape(-1, 3)
-    origins = np.zeros_like(directions)
-    origins[:, 0] = np.repeat(radii_mm, l.shape[1])
-    origins[:, 2] = lens.film_position_mm
-    passed = np.zeros(len(directions), dtype=bool)
-    for wavelength_nm in wavelengths_nm:
-        left = ~passed
-        passed[left] = (
-            lens.trace(origins[left], directions[left], wavelength_nm=wavelength_nm, dtype="float32").status == 0
-        )
-    return passed.reshape(l.shape) & (rest > 0)
+    passed = np.zeros(l.shape, dtype=bool)
+    origins = np.zeros((*l.shape, 3))
+    origins[..., 0] = radii_mm[:, None]
+    origins[..., 2] = lens.film_position_mm
+    for wavelength_nm, shift in light:
+        moved = l + shift[:, None]
+        rest = 1 - moved**2 - m**2
+        left = ~passed & (rest > 0)
+        directions = np.stack([moved[left], m[left], -np.sqrt(rest[left])], axis=-1)
+        traced = lens.trace(origins[left], directions, wavelength_nm=wavelength_nm, dtype="float32")
+        passed[left] = traced.status == 0
+    return passed
 
 
-def outlines(lens: Lens, radii_mm: Doubles, boxes: Doubles, wavelengths_nm: Sequence[float], rounds: int) -> Outlines:
+def outlines(lens: Lens, radii_mm: Doubles, boxes: Doubles, light: Light, rounds: int) -> Outlines:
     """The outlines inside of boxes (R, 3), which are narrowed down in so many rounds first."""
     for _ in range(rounds):
-        boxes = _narrowed(lens, radii_mm, boxes, wavelengths_nm)
+        boxes = _narrowed(lens, radii_mm, boxes, light)
 
     def at(l: Doubles, m: Doubles) -> NDArray[np.bool_]:  # noqa: E741
-        return passes(lens, radii_mm, l, m, wavelengths_nm)
+        return passes(lens, radii_mm, l, m, light)
 
     grid_l, grid_m = _grid(boxes)
     shape = (len(radii_mm), _ROWS, _COLUMNS)
@@ -110,10 +112,10 @@ def _grid(boxes: Doubles) -> tuple[Doubles, Doubles]:
     return np.broadcast_to(l[:, None, :], shape).copy(), np.broadcast_to(m[:, :, None], shape).copy()
 
 
-def _narrowed(lens: Lens, radii_mm: Doubles, boxes: Doubles, wavelengths_nm: Sequence[float]) -> Doubles:
+def _narrowed(lens: Lens, radii_mm: Doubles, boxes: Doubles, light: Light) -> Doubles:
     """The boxes of what passes on a grid and a cell beside it; NaN where nothing does."""
     l, m = _grid(boxes)  # noqa: E741
-    passed = passes(lens, radii_mm, l.reshape(len(boxes), -1), m.reshape(len(boxes), -1), wavelengths_nm)
+    passed = passes(lens, radii_mm, l.reshape(len(boxes), -1), m.reshape(len(boxes), -1), light)
     passed = passed.reshape(l.shape)
     columns: NDArray[np.bool_] = np.any(passed, axis=1)
     rows: NDArray[np.bool_] = np.any(passed, axis=2)

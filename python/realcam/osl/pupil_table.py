@@ -6,7 +6,7 @@ a field of radiance 1 is the area of what passes. What the ellipse holds beside 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -14,7 +14,7 @@ import numpy as np
 from scipy.ndimage import maximum_filter, minimum_filter
 
 from .focus_range import FocusRange
-from .pupil_outlines import Doubles, Outlines, outlines, rear_boxes
+from .pupil_outlines import Doubles, Light, Outlines, outlines, rear_boxes
 
 ROWS, FOCI = 25, 3
 STOPS = (1.0, 2**-0.5, 0.5, 0.25, 0.0625)
@@ -26,6 +26,8 @@ _CELL = 0.08
 """Of a pupil's half axis: what the grid of directions may overlook in its middle."""
 _MARGIN = 1.002
 """For what lies between the places at which the ellipses were tried."""
+_SMALL_DRIFT = 0.05
+"""Of the pupil's width, from one end of the spectrum to the other: an ellipse for all wavelengths is good enough."""
 
 
 @dataclass(frozen=True)
@@ -36,19 +38,24 @@ class PupilTable:
     """(foci, stops, rows, 5), to be interpolated linearly, for film points on the +x axis: middle in l, half axes in l
     and m; by which share both grow half-way to the next stop, as 4 t (1 - t) on the way there; and the part of the half
     axes within which nothing passes, because the middle of the lens is blocked."""
+    drift: Doubles
+    """(foci, rows): how far the middle moves in l for each unit of the colour variable; 0 where that is little."""
 
 
-def pupil_table(focusing: FocusRange, wavelengths_nm: Sequence[float]) -> PupilTable:
-    """For light of any of the wavelengths."""
-    reach_mm = _reach_mm(focusing, wavelengths_nm)
+def pupil_table(focusing: FocusRange, colours: Mapping[float, float]) -> PupilTable:
+    """For light of any of these wavelengths in nm, of which the values are the colour variable."""
+    reach_mm = _reach_mm(focusing, colours)
     radii_mm = reach_mm * (1 - (1 - np.linspace(0, 1, 2 * ROWS - 1)) ** 2)
+    drift = _drift(focusing, radii_mm[::2], colours)
+    drifts = _between(_between(drift, 0), 1)
     # At each stop, for the foci of the table and those half-way; for its foci, in each quarter between the stops.
     at_stops, between = [], []
     cells = range(len(STOPS) - 1)
     for step in range(2 * FOCI - 1):
         parts = (*_QUARTERS, 1.0) if step % 2 == 0 else (1.0,)
         places = [0.0, *(cell + part for cell in cells for part in parts)]
-        looks = _looks(focusing, step / (2 * FOCI - 2), places, radii_mm, wavelengths_nm)
+        light = [(wavelength_nm, colour * drifts[step]) for wavelength_nm, colour in colours.items()]
+        looks = _looks(focusing, step / (2 * FOCI - 2), places, radii_mm, light)
         at_stops.append([looks[stop] for stop in range(len(STOPS))])
         if step % 2 == 0:
             between.append([[looks[cell + part] for part in _QUARTERS] for cell in cells])
@@ -63,10 +70,30 @@ def pupil_table(focusing: FocusRange, wavelengths_nm: Sequence[float]) -> PupilT
     bulge = np.zeros(hole.shape)
     for focus, cell in np.ndindex(FOCI, len(cells)):
         bulge[focus, cell] = _bulge(between[focus][cell], *_between(nodes[focus], 1)[cell : cell + 2])
-    return PupilTable(reach_mm, np.concatenate([nodes, bulge[..., None], hole[..., None]], axis=-1))
+    return PupilTable(reach_mm, np.concatenate([nodes, bulge[..., None], hole[..., None]], axis=-1), drift)
 
 
-def _reach_mm(focusing: FocusRange, wavelengths_nm: Sequence[float]) -> float:
+def _drift(focusing: FocusRange, radii_mm: Doubles, colours: Mapping[float, float]) -> Doubles:
+    """(FOCI, R): of the pupil wide open, from the wavelengths at both ends."""
+    ends = min(colours), max(colours)
+    spread = colours[ends[0]] - colours[ends[1]]
+    drift = np.zeros((FOCI, len(radii_mm)))
+    if not spread:
+        return drift
+    widths = []
+    for row, focus in zip(drift, np.linspace(0, 1, FOCI), strict=True):
+        lens, middles = focusing.lens_at(focus), []
+        for wavelength_nm in ends:
+            look = outlines(lens, radii_mm, rear_boxes(lens, radii_mm), [(wavelength_nm, 0 * radii_mm)], 3)
+            low, high = np.fmin.reduce(look.l, axis=1), np.fmax.reduce(look.l, axis=1)
+            middles.append(0.5 * (low + high))
+        row[:] = np.nan_to_num((middles[0] - middles[1]) / spread)
+        widths.append(np.nan_to_num(high - low, nan=np.inf))
+    small: bool = np.abs(spread * drift / widths).max() < _SMALL_DRIFT
+    return 0 * drift if small else drift
+
+
+def _reach_mm(focusing: FocusRange, wavelengths_nm: Iterable[float]) -> float:
     """Where the light ends, at the focus at which it ends last."""
     most = _REACH * 0.5 * float(np.hypot(*focusing.lens.film_mm))
     edge = 0.0
@@ -75,7 +102,8 @@ def _reach_mm(focusing: FocusRange, wavelengths_nm: Sequence[float]) -> float:
         low, high = 0.0, most
         for _ in range(3):
             radii_mm = np.linspace(low, high, 17)
-            lit = outlines(lens, radii_mm, rear_boxes(lens, radii_mm), wavelengths_nm, 2).lit
+            light = [(wavelength_nm, 0 * radii_mm) for wavelength_nm in wavelengths_nm]
+            lit = outlines(lens, radii_mm, rear_boxes(lens, radii_mm), light, 2).lit
             if lit[-1]:
                 break
             at = int(np.flatnonzero(lit).max(initial=0))
@@ -85,7 +113,7 @@ def _reach_mm(focusing: FocusRange, wavelengths_nm: Sequence[float]) -> float:
 
 
 def _looks(
-    focusing: FocusRange, focus: float, places: Sequence[float], radii_mm: Doubles, wavelengths_nm: Sequence[float]
+    focusing: FocusRange, focus: float, places: Sequence[float], radii_mm: Doubles, light: Light
 ) -> dict[float, Outlines]:
     """By places between the stops, the widest first: each outline lies within the one before."""
     lens = focusing.lens_at(focus)
@@ -94,7 +122,7 @@ def _looks(
     for place in places:
         stop = float(np.interp(place, range(len(STOPS)), STOPS))
         closed = lens.with_surface(lens.stop_index, clear_semi_diameter_mm=stop * lens.stop_semi_diameter_mm)
-        looks[place] = outlines(closed, radii_mm, boxes, wavelengths_nm, rounds)
+        looks[place] = outlines(closed, radii_mm, boxes, light, rounds)
         boxes, rounds = looks[place].boxes, 1
     return looks
 

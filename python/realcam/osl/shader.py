@@ -12,7 +12,7 @@ from .._core import Lens, Surface, _film_of_white
 from .expressible import check_expressible
 from .focus_range import FocusRange, focus_range, gaps_of, wide_f_number
 from .functions import ASPHERE, HOLE, MIRROR, PLANE, PUPIL, SPHERE, STOP
-from .glasses import bends, colour_variable
+from .glasses import POLE_NM, bends, colour_scale, colour_variable
 from .pupil_table import STOPS, PupilTable, pupil_table
 
 _CELLS = 64
@@ -29,12 +29,12 @@ def shader_text(lens: Lens) -> str:
     """
     check_expressible(lens)
     focusing = focus_range(lens)
-    spectrum = _film_of_white("D65").reshape(_CELLS, -1, 5)
-    edges_nm = np.append(spectrum[:, 0, 0], spectrum[-1, -1, 1])
+    spectrum = _film_of_white("D65")
+    edges_nm = np.append(spectrum[:, 0], spectrum[-1, 1])
     changes = bends(lens, list(np.linspace(edges_nm[1], edges_nm[-2], 40)))
     disperses = any(len(change) > 1 for change in changes)
     seen = (lens.wavelength_nm, *_SEEN_NM) if disperses else (lens.wavelength_nm,)
-    table = pupil_table(focusing, seen)
+    table = pupil_table(focusing, dict(zip(seen, colour_variable(lens, np.array(seen)), strict=True)))
     aspheres = [s for s in lens.surfaces if s.type in ("refracting", "mirror") and (s.conic or s.aspheric_coefficients)]
     terms = max((len(_terms(s)) for s in aspheres), default=0)
     numbers = {
@@ -58,7 +58,7 @@ def shader_text(lens: Lens) -> str:
         "{",
         _START.format(**numbers),
         _focus(focusing),
-        _colour(lens, spectrum, edges_nm) if disperses else "    color film = 1;\n",
+        _colour(lens, spectrum, edges_nm) if disperses else "    float colour = 0;\n    color film = 1;\n",
         _DRAW.format(**numbers),
         _surfaces(lens, focusing, changes, terms),
         _END.format(**numbers),
@@ -97,7 +97,7 @@ _DRAW = """\
     float half_l = 0;
     float half_m = 0;
     float hole = 0;
-    find_pupil(radius / {reach}, focus, corner / {full}, middle, half_l, half_m, hole);
+    find_pupil(radius / {reach}, focus, corner / {full}, colour, middle, half_l, half_m, hole);
     float outwards = sqrt(hole * hole + (1 - hole * hole) * chance[0]);
     float l = middle + half_l * outwards * cos(2 * M_PI * chance[1]);
     float m = half_m * outwards * sin(2 * M_PI * chance[1]);
@@ -203,18 +203,22 @@ def _focus(focusing: FocusRange) -> str:
 
 
 def _colour(lens: Lens, spectrum: np.ndarray, edges_nm: np.ndarray) -> str:
-    film = spectrum[:, :, 2:].mean(axis=1)
+    parts = len(spectrum) // _CELLS
+    scale, offset = colour_scale(lens)
     return f"""\
-    // A wavelength: the first digits of a random number choose the cell, a hash the place in it.
+    // A wavelength: the first digits of a random number choose {parts} of the equally probable parts of the spectrum,
+    // and a hash one of them and the place in it.
     float colour = 0;
     color film = 1;
     if (dispersion) {{
-        float edges[{_CELLS + 1}] = {_array(colour_variable(lens, edges_nm))};
-        float whites[{3 * _CELLS}] = {_array(film.ravel())};
+        float edges_nm[{len(edges_nm)}] = {_array(edges_nm)};
+        float whites[{3 * len(spectrum)}] = {_array(spectrum[:, 2:].ravel())};
         int cell = min((int)(chance[0] * {_CELLS}), {_CELLS - 1});
-        float within = noise("hash", chance[0] * 4096, chance[1] * 4096);
-        colour = edges[cell] + within * (edges[cell + 1] - edges[cell]);
-        film = color(whites[3 * cell], whites[3 * cell + 1], whites[3 * cell + 2]);
+        float within = {parts} * noise("hash", chance[0] * 4096, chance[1] * 4096);
+        int part = {parts} * cell + min((int)within, {parts - 1});
+        float wavelength_nm = mix(edges_nm[part], edges_nm[part + 1], within - floor(within));
+        colour = {_float(scale)} / (wavelength_nm - {POLE_NM:g}) - {_float(offset)};
+        film = color(whites[3 * part], whites[3 * part + 1], whites[3 * part + 2]);
         chance[0] = chance[0] * {_CELLS} - cell;
     }}
 """
@@ -266,7 +270,8 @@ def _terms(surface: Surface, count: int = 0) -> list[float]:
 
 
 def _pupil_numbers(table: PupilTable) -> dict[str, object]:
-    blocked = bool(table.ellipses[..., 4].any())
+    blocked, drifts = bool(table.ellipses[..., 4].any()), bool(table.drift.any())
+    rows = table.ellipses.shape[2]
     columns = 5 if blocked else 4
     return {
         "columns": columns,
@@ -275,6 +280,10 @@ def _pupil_numbers(table: PupilTable) -> dict[str, object]:
         "foci": table.ellipses.shape[0],
         "choice": " : ".join(f"open > {stop:.6g} ? {i}" for i, stop in enumerate(STOPS[1:-1])) + f" : {len(STOPS) - 2}",
         "levels": _array(STOPS),
+        "drifts": f"\n    float drifts[{table.drift.size}] = {_array(table.drift.ravel())};" if drifts else "",
+        "drift": f"\n        middle += weight * colour * drifts[(state + next_state) * {rows} + row + next_row];"
+        if drifts
+        else "",
         "hole": "\n        hole += weight * mix(ellipses[wide + 4], ellipses[narrow + 4], closing);" if blocked else "",
     }
 
