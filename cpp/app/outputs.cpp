@@ -1,7 +1,9 @@
 #include "outputs.hpp"
 
 #include <algorithm>
+#include <cstdio>
 #include <filesystem>
+#include <regex>
 #include <system_error>
 
 #include "../error.hpp"
@@ -35,6 +37,36 @@ void check_apart(const std::vector<std::string>& outputs, const std::vector<std:
             if (!input.empty() && same_file(output, input))
                 throw InputError("--output: \"" + output + "\" is a file that the picture is made from (" + input +
                                  "); another name is wanted");
+}
+
+std::vector<int> frame_numbers(const std::string& text) {
+    static const std::regex kRange(R"((\d{1,6})(?:-(\d{1,6})(?:x(\d{1,6}))?)?)");
+    std::smatch found;
+    std::vector<int> numbers;
+    if (std::regex_match(text, found, kRange)) {
+        const auto number = [&](std::size_t i, int without) {
+            return found[i].matched ? std::stoi(found[i]) : without;
+        };
+        const int first = number(1, 0), last = number(2, first), step = std::max(1, number(3, 1));
+        for (int n = first; n <= last; n += step) numbers.push_back(n);
+    }
+    if (numbers.empty())
+        throw InputError("--frames: \"" + text.substr(0, 40) +
+                         "\": a number, 1-240 or 1-240x2 is wanted, the smaller one first");
+    return numbers;
+}
+
+std::string frame_file(const std::string& output, int number) {
+    const std::filesystem::path path(output);
+    const std::string name = path.filename().string();
+    const std::size_t end = name.find_last_of('#');
+    const std::size_t begin = end == name.npos ? end : name.find_last_not_of('#', end) + 1;  // npos + 1 is 0
+    char digits[24];
+    std::snprintf(digits, sizeof digits, "%0*d",
+                  end == name.npos ? 4 : static_cast<int>(std::min<std::size_t>(end + 1 - begin, 20)), number);
+    const std::string numbered = end == name.npos ? path.stem().string() + '.' + digits + path.extension().string()
+                                                  : name.substr(0, begin) + digits + name.substr(end + 1);
+    return (path.parent_path() / numbered).string();
 }
 
 }  // namespace realcam::app

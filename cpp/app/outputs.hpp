@@ -11,4 +11,11 @@ void check_outputs(const std::vector<std::string>& outputs);
 /// Throws InputError where a picture would take the place of a file that it is made from.
 void check_apart(const std::vector<std::string>& outputs, const std::vector<std::string>& inputs);
 
+/// The numbers of frames that a user names: "7", "1-240" or "1-240x10". Throws InputError.
+std::vector<int> frame_numbers(const std::string& text);
+
+/// The file of a frame: the number stands in place of the last "####" in the file's name, with so many digits, or else,
+/// with four, before its suffix.
+std::string frame_file(const std::string& output, int number);
+
 }  // namespace realcam::app

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <optional>
 
@@ -12,11 +14,12 @@
 #include "../image_io/image_file.hpp"
 #include "../io/files/free_memory.hpp"
 #include "../io/text/one_line.hpp"
-#include "../plan/make_plan.hpp"
+#include "../plan/plan_film.hpp"
 #include "../plan/plan_text.hpp"
 #include "../render/effect_names.hpp"
 #include "../render/pixel_sum.hpp"
 #include "../render/take_picture.hpp"
+#include "../shot/frames.hpp"
 #include "../shot/shot.hpp"
 #include "exposure_notice.hpp"
 #include "help.hpp"
@@ -76,15 +79,23 @@ void check_memory(const Film& film, LayerSet layers) {
                     " GB are free; a smaller --resolution is wanted");
 }
 
+bool is_file(const std::string& path) {
+    std::error_code error;
+    return std::filesystem::is_regular_file(path, error);
+}
+
 /// One run of the command.
 class Run {
 public:
     explicit Run(const RenderWords& words) : words_(words) {}
 
     void photograph() {
-        const auto start = std::chrono::steady_clock::now();
+        start_ = std::chrono::steady_clock::now();
         shot::ShotRequest request = understand(words_);
-        check_outputs(words_.outputs);
+        const std::vector<int> frames = words_.frames.empty() ? std::vector<int>() : frame_numbers(words_.frames);
+        if (!(words_.frames_per_second > 0 && std::isfinite(words_.frames_per_second)))
+            throw InputError("--fps: more than 0 frames in a second are wanted");
+        check_outputs(frames.empty() ? words_.outputs : files_of(frames.front()));
         check_apart(words_.outputs,
                     {words_.scene, request.scene, request.lens, request.texture, request.environment_file});
         Camera camera = camera_of(request);
@@ -96,25 +107,18 @@ public:
         const auto session = make_session(words_.device, [this](const std::string& text) { warn(text); });
         std::optional<Denoiser> denoiser;
         if (request.denoises) denoiser.emplace(words_.device, request.settings.threads);
-        const std::string denoiser_name = denoiser ? denoiser->name() : "";
         shot::Shot shot = set_up_shot(request, std::move(camera));
+        const Darkroom darkroom{*session, denoiser ? &*denoiser : nullptr, written_layers};
+        // Until here nothing is on disk, and a signal may simply end the program.
+        const Interrupt interrupt;
+        meter_exposure(*session, shot, request);
+        if (!frames.empty()) return film(darkroom, shot, request, frames);
+        shot.camera = shaken(std::move(shot.camera), request.shake);
         std::string decisions;
         if (request.settings.effects.is_automatic) decisions = follow_plan(*session, shot, request);
         for (const std::string& notice : effect_notices(request.settings.effects, shot.camera.lens)) warn(notice);
-        // Until here nothing is on disk, and a signal may simply end the program.
-        const Interrupt interrupt;
-        Image image = expose(*session, shot, request);
-        if (denoiser) until_interrupted([&] { denoise(image, written_layers, *denoiser, is_wanted); });
-        if (!image.shortfall.empty()) warn(image.shortfall);
-        if (const std::string notice = exposure_notice(image, shot.camera, request.tone); !notice.empty()) warn(notice);
-        write(image, shot, request, decisions, denoiser_name);
-        const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-        if (words_.is_quiet && !words_.as_json) return;
-        const std::string figures =
-            words_.as_json
-                ? render_as_json(shot, request, image, words_.outputs, decisions, denoiser_name, warnings_, seconds)
-                : summary(shot, request.settings, image, words_.outputs, denoiser_name, seconds, words_.verbose);
-        std::fputs(figures.c_str(), stdout);
+        const std::string figures = take(darkroom, shot, request, decisions, words_.outputs);
+        if (!words_.is_quiet || words_.as_json) std::fputs(figures.c_str(), stdout);
     }
 
     void plan(bool as_json) {
@@ -123,11 +127,27 @@ public:
         Camera camera = camera_of(request);
         const auto session = make_session(words_.device, [this](const std::string& text) { warn(text); });
         shot::Shot shot = set_up_shot(request, std::move(camera));
-        const Plan plan = planned(*session, shot, request, true);
+        meter(shot, request, *session, {});
+        shot.camera = shaken(std::move(shot.camera), request.shake);
+        const Plan plan = make_plan(*session, shot.scene, shot.camera, request.settings, true, fast_pupil_tracer());
         std::fputs((as_json ? json_of(plan) : text_of(plan, io::name_of(plan.model))).c_str(), stdout);
     }
 
 private:
+    /// What turns a shot into a picture.
+    struct Darkroom {
+        Session& session;
+        Denoiser* denoiser;  ///< null: noise stays
+        LayerSet written_layers;
+    };
+
+    /// Of a frame.
+    std::vector<std::string> files_of(int frame) const {
+        std::vector<std::string> files;
+        for (const std::string& output : words_.outputs) files.push_back(frame_file(output, frame));
+        return files;
+    }
+
     void warn(const std::string& text) {
         say("warning: " + text);
         warnings_.push_back(io::one_line(text));
@@ -150,22 +170,100 @@ private:
     /// Returns what was decided. What cannot be planned is taken as it stands.
     std::string follow_plan(Session& session, shot::Shot& shot, shot::ShotRequest& request) {
         try {
-            const Plan plan = planned(session, shot, request, false);
+            const Plan plan = until_interrupted([&] {
+                return make_plan(session, shot.scene, shot.camera, request.settings, false, fast_pupil_tracer(),
+                                 [](double) { return is_wanted(); });
+            });
             apply(plan, shot.camera, request.settings);
             if (words_.explains && !words_.as_json && !words_.is_quiet)
                 std::fputs((text_of(plan, io::name_of(plan.model)) + '\n').c_str(), stdout);
             return summary_of(plan);
         } catch (const NothingToPlan& nothing) {
-            warn(std::string(nothing.what()) + "; the picture has the effects that are named");
-            request.settings.effects = without_plan(request.settings.effects);
-            return "";
+            return follow_nothing(nothing, request);
         }
     }
 
-    /// Meters first, because sizes in codes depend on the exposure.
-    Plan planned(Session& session, shot::Shot& shot, const shot::ShotRequest& request, bool measures_times) const {
-        meter(shot, request, session, {});
-        return make_plan(session, shot.scene, shot.camera, request.settings, measures_times, fast_pupil_tracer());
+    /// The same for all frames of a film, by the first, the middle and the last of them.
+    std::string follow_film_plan(Session& session, shot::Shot& shot, shot::ShotRequest& request,
+                                 const std::vector<int>& frames) {
+        std::vector<Camera> cameras;
+        for (const int frame : {frames.front(), frames[frames.size() / 2], frames.back()})
+            cameras.push_back(camera_of_frame(shot.camera, request, frame));
+        try {
+            const FilmPlan plan = until_interrupted([&] {
+                return plan_film(session, shot.scene, cameras, request.settings, fast_pupil_tracer(),
+                                 [](double) { return is_wanted(); });
+            });
+            apply({plan.model, plan.effects, {}}, shot.camera, request.settings);
+            return plan.summary;
+        } catch (const NothingToPlan& nothing) {
+            return follow_nothing(nothing, request);
+        }
+    }
+
+    std::string follow_nothing(const NothingToPlan& nothing, shot::ShotRequest& request) {
+        warn(std::string(nothing.what()) + "; the picture has the effects that are named");
+        request.settings.effects = without_plan(request.settings.effects);
+        return "";
+    }
+
+    Camera camera_of_frame(const Camera& camera, const shot::ShotRequest& request, int frame) const {
+        return shot::camera_at(camera, request.keys, request.shake,
+                               shot::frame_opens_s(camera, frame, words_.frames_per_second));
+    }
+
+    /// Frames that are there as files stay: files are written as a whole or not at all.
+    void film(const Darkroom& darkroom, shot::Shot& shot, shot::ShotRequest& request, const std::vector<int>& frames) {
+        std::string decisions;
+        if (request.settings.effects.is_automatic)
+            decisions = follow_film_plan(darkroom.session, shot, request, frames);
+        for (const std::string& notice : effect_notices(request.settings.effects, shot.camera.lens)) warn(notice);
+        const Camera camera = shot.camera;
+        const std::uint32_t seed = request.settings.seed;
+        std::optional<shot::FollowedIso> followed;
+        if (request.iso_follows_s)
+            followed.emplace(darkroom.session, shot.scene, camera, request.keys, request.settings,
+                             words_.frames_per_second, *request.iso_follows_s);
+        std::size_t there = 0;
+        std::string all_figures;
+        for (const int frame : frames) {
+            const std::vector<std::string> files = files_of(frame);
+            if (!words_.takes_again && std::all_of(files.begin(), files.end(), is_file)) {
+                ++there;
+                continue;
+            }
+            start_ = std::chrono::steady_clock::now();
+            shot.camera = camera_of_frame(camera, request, frame);
+            if (followed)
+                shot.camera.iso =
+                    until_interrupted([&] { return followed->at(frame, [](double) { return is_wanted(); }); });
+            request.settings.seed = shot::frame_seed(seed, frame);
+            const std::string figures = take(darkroom, shot, request, decisions, files);
+            if (words_.as_json)
+                all_figures += (all_figures.empty() ? "" : ",\n") + figures;
+            else if (!words_.is_quiet)
+                std::fputs(frame_summary(frame, shot.camera, files).c_str(), stdout);
+        }
+        if (words_.as_json) std::fputs(("[\n" + all_figures + "]\n").c_str(), stdout);
+        if (there > 0)
+            inform(std::to_string(there) + " of " + std::to_string(frames.size()) +
+                   " frames were there already; --again takes them, too");
+    }
+
+    /// Takes and writes a picture; its figures.
+    std::string take(const Darkroom& darkroom, const shot::Shot& shot, const shot::ShotRequest& request,
+                     const std::string& decisions, const std::vector<std::string>& files) {
+        const std::string denoiser_name = darkroom.denoiser ? darkroom.denoiser->name() : "";
+        Image image = expose(darkroom.session, shot, request);
+        if (darkroom.denoiser)
+            until_interrupted([&] { denoise(image, darkroom.written_layers, *darkroom.denoiser, is_wanted); });
+        if (!image.shortfall.empty()) warn(image.shortfall);
+        if (const std::string notice = exposure_notice(image, shot.camera, request.tone); !notice.empty()) warn(notice);
+        write(image, shot, request, decisions, denoiser_name, files);
+        const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+        return words_.as_json
+                   ? render_as_json(shot, request, image, files, decisions, denoiser_name, warnings_, seconds)
+                   : summary(shot, request.settings, image, files, denoiser_name, seconds, words_.verbose);
     }
 
     Assembly read_scene(const shot::ShotRequest& request) {
@@ -187,15 +285,19 @@ private:
         return scene;
     }
 
-    Image expose(Session& session, shot::Shot& shot, const shot::ShotRequest& request) const {
-        const Film& film = shot.camera.film;
-        return until_interrupted([&] {
+    void meter_exposure(Session& session, shot::Shot& shot, const shot::ShotRequest& request) const {
+        until_interrupted([&] {
             ProgressBar metering("metering ", !words_.is_quiet);
-            const auto show_metering = [&](double done) {
+            meter(shot, request, session, [&](double done) {
                 metering.show(done);
                 return is_wanted();
-            };
-            if (!shot.is_metered) meter(shot, request, session, show_metering);
+            });
+        });
+    }
+
+    Image expose(Session& session, const shot::Shot& shot, const shot::ShotRequest& request) const {
+        const Film& film = shot.camera.film;
+        return until_interrupted([&] {
             ProgressBar rendering("rendering", !words_.is_quiet);
             std::optional<SamplingNotice> notice;
             if (request.settings.noise) inform(notice.emplace(*request.settings.noise, request.sampling).aim());
@@ -217,13 +319,13 @@ private:
     }
 
     void write(const Image& image, const shot::Shot& shot, const shot::ShotRequest& request,
-               const std::string& decisions, const std::string& denoiser) const {
+               const std::string& decisions, const std::string& denoiser, const std::vector<std::string>& files) const {
         io::ImageMetadata metadata = io::metadata_of(shot.camera, request.settings);
         metadata.plan = decisions;
         metadata.denoiser = denoiser;
         metadata.spp = static_cast<int>(image.spp);
         std::string written;
-        for (const std::string& path : words_.outputs) {
+        for (const std::string& path : files) {
             try {
                 image_io::write_image(image_io::view_of(image), path, metadata, request.tone,
                                       [] { return Interrupt::signal() == 0; });
@@ -235,6 +337,7 @@ private:
     }
 
     const RenderWords& words_;
+    std::chrono::steady_clock::time_point start_;
     std::vector<std::string> warnings_;  ///< that were told
 };
 
@@ -253,6 +356,7 @@ void add_render_command(CLI::App& app) {
             "--exposure-time 1/125 --iso 400",
             "realcam render shot.toml -o picture.png --noise-codes 1 --seconds 300 --json",
             "realcam render shot.toml -o picture.png --spp 16 --denoise",
+            "realcam render shot.toml -o frames/shot.####.exr --frames 1-240",
         });
     command->callback([words] { Run{*words}.photograph(); });
 }

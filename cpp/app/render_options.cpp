@@ -108,8 +108,17 @@ void add_shot_options(CLI::App& command, RenderWords& words) {
            "LENS", [](Request& r, Text, Text w) {
                r.lens = w;
                r.zoom.clear();  // a position of the shot file's lens
+               r.focal_length_mm.reset();
+               r.forget(&CameraKey::focal_length_mm);
            });
     add_lens_options(command, words.lens_file);
+    option("--focal-length", "Of a zoom lens, between those of its positions [that of its position]", "MM",
+           [](Request& r, Text o, Text w) {
+               r.focal_length_mm = parse_number(o, w);
+               r.zoom.clear();
+               r.forget(&CameraKey::focal_length_mm);
+           });
+    command.get_option("--focal-length")->excludes(command.get_option("--zoom"));
     option("--film", "Film in mm [the lens's, in the shape of the resolution]", "WxH",
            [](Request& r, Text o, Text w) { r.film_mm = parse_size(o, w); });
     option("--film-shift",
@@ -138,9 +147,14 @@ void add_shot_options(CLI::App& command, RenderWords& words) {
     option("--up", "Direction that is up in the picture [0,1,0]", "X,Y,Z",
            [](Request& r, Text o, Text w) { r.view.up = parse_point(o, w); });
     option("--focus", "Object plane to film, inf, or auto [auto: the first surface on the axis]", "METRES",
-           [](Request& r, Text o, Text w) { r.view.focus_distance_m = parse_focus(o, w); });
-    option("--f-number", "Close the diaphragm to f/N [wide open]", "N",
-           [](Request& r, Text o, Text w) { r.f_number = parse_number(o, w); });
+           [](Request& r, Text o, Text w) {
+               r.view.focus_distance_m = parse_focus(o, w);
+               r.forget(&CameraKey::focus_m);
+           });
+    option("--f-number", "Close the diaphragm to f/N [wide open]", "N", [](Request& r, Text o, Text w) {
+        r.f_number = parse_number(o, w);
+        r.forget(&CameraKey::f_number);
+    });
     option("--blades", "Of the diaphragm: 3 to 24, or 0 for a round one [the lens's]", "N",
            [](Request& r, Text o, Text w) { r.blades = parse_whole(o, w, kMaxIrisBlades); });
     option("--blade-rounding", "0: straight edges; 1: the opening is a circle [the lens's]", "SHARE",
@@ -148,12 +162,19 @@ void add_shot_options(CLI::App& command, RenderWords& words) {
     option("--blade-rotation", "Degrees by which the blades are turned about the axis [the lens's]", "DEGREES",
            [](Request& r, Text o, Text w) { r.blade_rotation_deg = parse_number(o, w); });
     option("--exposure-time", "Seconds, such as 1/125, or auto [auto: the average lands on middle grey]", "TIME",
-           [](Request& r, Text o, Text w) { r.exposure_time_s = parse_exposure_time(o, w); });
+           [](Request& r, Text o, Text w) {
+               r.exposure_time_s = parse_exposure_time(o, w);
+               r.forget(&CameraKey::exposure_time_s);
+           });
     option("--shutter-opens", "When, in seconds of a scene that moves [0]", "SECONDS",
            [](Request& r, Text o, Text w) { r.shutter.opens_s = parse_number(o, w); });
     option("--readout-time", "Of a rolling shutter: seconds from the top row of pixels to the bottom [0]", "SECONDS",
            [](Request& r, Text o, Text w) { r.shutter.readout_time_s = parse_number(o, w); });
-    option("--iso", "Sensitivity [100]", "ISO", [](Request& r, Text o, Text w) { r.iso = parse_number(o, w); });
+    option("--iso", "Sensitivity [100]", "ISO", [](Request& r, Text o, Text w) {
+        r.iso = parse_number(o, w);
+        r.iso_follows_s.reset();
+        r.forget(&CameraKey::iso);
+    });
     option("--model", "full, full_double, polynomial, thick, mapped, thin or pinhole [full]", "MODEL",
            [](Request& r, Text, Text w) { r.model = parse_model(w); });
     command.option_defaults()->group("Scene");
@@ -246,8 +267,22 @@ void add_render_options(CLI::App& command, RenderWords& w) {
     command.add_flag("--explain", w.explains, "Also print what --effects auto has decided, and why");
     command.add_flag("--json", w.as_json, "Print the picture's figures and settings as JSON, in place of the text");
     command.add_flag("-q,--quiet", w.is_quiet, "Print warnings and errors alone");
+    command.option_defaults()->group("Film");
+    CLI::Option* const frames =
+        command
+            .add_option(
+                "--frames", w.frames,
+                "Frames of a film: 1-240, or 1-240x10 for every tenth. Their files are numbered, in place of #### in "
+                "the name or before its suffix; what is there already stays")
+            ->type_name("A-B");
+    command.add_option("--fps", w.frames_per_second, "Frames in a second of the scene [24]")
+        ->type_name("N")
+        ->needs(frames);
+    command.add_flag("--again", w.takes_again, "Also take frames that are there already")->needs(frames);
     command.option_defaults()->group(group);
-    command.add_option("-o,--output", w.outputs, "Picture to write, .png or .exr; may be repeated")
+    command
+        .add_option("-o,--output", w.outputs,
+                    "Picture to write, .png or .exr; may be repeated. With --frames also .mp4 (realcam[video])")
         ->type_name("FILE")
         ->required()
         ->allow_extra_args(false);
@@ -261,7 +296,11 @@ shot::ShotRequest understand(const RenderWords& w) {
         request.scene = w.scene;
     }
     for (const auto& change : w.changes) change(request);
-    if (!w.lens_file.zoom.empty()) request.zoom = w.lens_file.zoom;
+    if (!w.lens_file.zoom.empty()) {
+        request.zoom = w.lens_file.zoom;
+        request.focal_length_mm.reset();
+        request.forget(&CameraKey::focal_length_mm);
+    }
     request.lens_options = lens_options_of(w.lens_file);
     check_environment_change(request);
     check_blades(request);

@@ -83,4 +83,13 @@ std::string summary(const shot::Shot& shot, const RenderSettings& settings, cons
     return text;
 }
 
+std::string frame_summary(int frame, const Camera& camera, const std::vector<std::string>& pictures) {
+    const FirstOrder data = first_order(camera.lens, camera.lens.wavelength_nm);
+    std::string text = "frame " + std::to_string(frame) + ": " + short_number(data.effective_focal_length) + " mm, f/" +
+                       short_number(data.f_number, 3) + ", focus " + distance_text(camera.lens.focus_distance / 1000) +
+                       ", " + exposure_text(camera.exposure_time_s) + ", ISO " + short_number(camera.iso);
+    for (const std::string& path : pictures) text += ", " + path;
+    return text + '\n';
+}
+
 }  // namespace realcam::app

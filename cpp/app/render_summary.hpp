@@ -13,4 +13,7 @@ std::string summary(const shot::Shot& shot, const RenderSettings& settings, cons
                     const std::vector<std::string>& pictures, const std::string& denoiser, double seconds,
                     bool verbose);
 
+/// A line on a frame of a film.
+std::string frame_summary(int frame, const Camera& camera, const std::vector<std::string>& pictures);
+
 }  // namespace realcam::app

@@ -4,8 +4,7 @@
 
 #include "../embree/fast_pupil_tracer.hpp"
 #include "../io/files/image_metadata.hpp"
-#include "../plan/make_plan.hpp"
-#include "../plan/plan_text.hpp"
+#include "../plan/plan_film.hpp"
 #include "bindings.hpp"
 #include "render_turn.hpp"
 #include "short_text.hpp"
@@ -50,6 +49,19 @@ Planned plan(const Assembly& scene, const Camera& camera, const RenderSettings& 
         make_plan(session, scene, camera, settings, times, fast_pupil_tracer(), [](double) { return heed_signals(); }));
 }
 
+/// Model, effects and what was decided.
+std::tuple<std::string, std::vector<std::string>, std::string> plan_of_film(const Assembly& scene,
+                                                                            const std::vector<Camera>& cameras,
+                                                                            const RenderSettings& settings,
+                                                                            const std::string& device) {
+    Session& session = session_for(device);
+    const Unlocked unlocked;
+    const RenderTurn turn;
+    const FilmPlan plan =
+        plan_film(session, scene, cameras, settings, fast_pupil_tracer(), [](double) { return heed_signals(); });
+    return {io::name_of(plan.model), names_of(plan.effects), plan.summary};
+}
+
 }  // namespace
 
 template <>
@@ -88,6 +100,7 @@ void bind_plan(py::module_& m) {
             return "<realcam.Plan: model " + p.model + ", effects " + (names.empty() ? "none" : names) + '>';
         });
     m.def("_plan", &plan, "scene"_a, "camera"_a, "settings"_a, "device"_a, "times"_a);
+    m.def("_plan_film", &plan_of_film, "scene"_a, "cameras"_a, "settings"_a, "device"_a);
 }
 
 }  // namespace realcam::bindings

@@ -1,17 +1,196 @@
+#include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
+#include "../camera/camera_key.hpp"
+#include "../camera/shake.hpp"
 #include "../io/files/image_metadata.hpp"
 #include "../render/session.hpp"
+#include "../shot/frames.hpp"
+#include "../shot/shake_curve.hpp"
 #include "../shot/shot_file.hpp"
 #include "bindings.hpp"
 #include "picture_readers.hpp"
 #include "render_turn.hpp"
+#include "short_text.hpp"
+#include "triples.hpp"
+#include "value_methods.hpp"
 
 namespace realcam::bindings {
 
 using namespace py::literals;
 
+template <>
+struct LastEnumerator<KeyWay> : LastIs<KeyWay::step> {};
+template <>
+struct RestoredCheck<CameraKey> {
+    static void check(const CameraKey& key) { validate(key); }
+};
+template <>
+struct RestoredCheck<ShakeKey> : AnyMembers {};
+template <>
+struct RestoredCheck<Shake> {
+    static void check(const Shake& shake) { validate(shake); }
+};
+
 namespace {
+
+using Number = std::optional<double>;
+using CurvePoint = std::tuple<double, Triple, Triple>;
+
+constexpr const char* kWays[] = {"linear", "smooth", "step"};
+
+KeyWay key_way_from(const std::string& name) {
+    for (std::size_t i = 0; i < std::size(kWays); ++i)
+        if (name == kWays[i]) return static_cast<KeyWay>(i);
+    throw InputError("interpolation: \"" + name + "\": linear, smooth or step is wanted");
+}
+
+CameraKey make_key(double time_s, Number focus_m, Number focal_length_mm, Number f_number, Number exposure_time_s,
+                   Number iso, const std::string& interpolation) {
+    const CameraKey key{time_s, focus_m, focal_length_mm, f_number, exposure_time_s, iso, key_way_from(interpolation)};
+    validate(key);
+    return key;
+}
+
+std::string text_of_key(const CameraKey& key) {
+    std::string text = "<realcam.CameraKey at " + digits(key.time_s) + " s";
+    const auto add = [&](const char* before, const Number& value, const char* unit) {
+        if (value) text += std::string(", ") + before + digits(*value) + unit;
+    };
+    add("focus ", key.focus_m, " m");
+    add("", key.focal_length_mm, " mm");
+    add("f/", key.f_number, "");
+    add("", key.exposure_time_s, " s");
+    add("ISO ", key.iso, "");
+    return text + '>';
+}
+
+Shake make_shake(double rms_deg, double rms_mm, double corner_hz, std::int64_t seed,
+                 const std::vector<CurvePoint>& curve) {
+    Shake shake{{}, rms_deg, rms_mm, corner_hz, seed_from(seed)};
+    for (const auto& [time_s, rotation_deg, position_m] : curve)
+        shake.curve.push_back({time_s, vector_of(rotation_deg), vector_of(position_m)});
+    validate(shake);
+    return shake;
+}
+
+std::string text_of_shake(const Shake& shake) {
+    std::string text = "<realcam.Shake";
+    if (!shake.curve.empty()) text += " of " + std::to_string(shake.curve.size()) + " keys";
+    if (shake.rms_deg > 0) text += " " + digits(shake.rms_deg) + " deg";
+    if (shake.rms_mm > 0) text += " " + digits(shake.rms_mm) + " mm";
+    return text + '>';
+}
+
+py::tuple shake_positions(const Shake& shake, const std::vector<double>& times_s) {
+    const std::vector<ShakeKey> keys = shake_at(shake, times_s);
+    const std::vector<py::ssize_t> shape = {static_cast<py::ssize_t>(keys.size()), 3};
+    py::array_t<double> angles(shape), positions(shape);
+    auto to_angles = angles.mutable_unchecked<2>();
+    auto to_positions = positions.mutable_unchecked<2>();
+    for (py::ssize_t i = 0; i < shape[0]; ++i) {
+        const ShakeKey& key = keys[static_cast<std::size_t>(i)];
+        const auto fill = [i](auto& to, Vec3d v) { to(i, 0) = v.x, to(i, 1) = v.y, to(i, 2) = v.z; };
+        fill(to_angles, key.rotation_deg);
+        fill(to_positions, key.position_m);
+    }
+    return py::make_tuple(angles, positions);
+}
+
+py::tuple curve_of(const Shake& shake) {
+    py::list curve;
+    for (const ShakeKey& key : shake.curve)
+        curve.append(py::make_tuple(key.time_s, triple(key.rotation_deg), triple(key.position_m)));
+    return py::tuple(curve);
+}
+
+/// Throws InputError where keys are none, or the camera cannot be as one of them says.
+void check_camera_keys(const Camera& camera, const std::vector<CameraKey>& keys) {
+    validate(keys);
+    for (std::size_t i = 0; i < keys.size(); ++i) {
+        try {
+            check_key(camera, key_at(keys, keys[i].time_s));
+        } catch (const InputError& error) {
+            throw InputError("key " + std::to_string(i) + " of the camera: " + error.what());
+        }
+    }
+}
+
+Camera camera_at_time(const Camera& camera, const std::vector<CameraKey>& keys, const std::optional<Shake>& shake,
+                      double opens_s) {
+    const Unlocked unlocked;
+    return shot::camera_at(camera, keys, shake.value_or(Shake{}), opens_s);
+}
+
+std::vector<double> followed_isos(const Assembly& scene, const Camera& camera, const std::vector<CameraKey>& keys,
+                                  const RenderSettings& settings, const std::vector<int>& numbers,
+                                  double frames_per_second, double smoothing_s, const std::string& device) {
+    Session& session = session_for(device);
+    const py::none no_callback;
+    const Progress report = progress_of(no_callback);
+    const Unlocked unlocked;
+    const RenderTurn turn;
+    shot::FollowedIso followed(session, scene, camera, keys, settings, frames_per_second, smoothing_s);
+    std::vector<double> isos;
+    for (const int number : numbers) isos.push_back(followed.at(number, report));
+    return isos;
+}
+
+void bind_key(py::module_& m) {
+    py::class_<CameraKey> key(m, "CameraKey", "What the rings and dials of a camera say at a time of a film.");
+    def_hashable_value(key);
+    key.def(
+           py::init(&make_key), "time_s"_a, py::kw_only(), "focus_m"_a = py::none(), "focal_length_mm"_a = py::none(),
+           "f_number"_a = py::none(), "exposure_time_s"_a = py::none(), "iso"_a = py::none(),
+           "interpolation"_a = "linear",
+           "focus_m: object plane to film, or inf. focal_length_mm: of a zoom lens at rest. What is None is that of\n"
+           "the keys beside. Between keys 1 / focus_m changes evenly, and the others by even ratios. interpolation:\n"
+           "of the way from here on; \"smooth\" goes from rest to rest, and through the smooth keys between without a\n"
+           "stop; \"step\" stays, and jumps at the next key. Raises InputError.")
+        .def_readonly("time_s", &CameraKey::time_s)
+        .def_readonly("focus_m", &CameraKey::focus_m)
+        .def_readonly("focal_length_mm", &CameraKey::focal_length_mm)
+        .def_readonly("f_number", &CameraKey::f_number)
+        .def_readonly("exposure_time_s", &CameraKey::exposure_time_s)
+        .def_readonly("iso", &CameraKey::iso)
+        .def_property_readonly("interpolation",
+                               [](const CameraKey& k) { return kWays[static_cast<std::size_t>(k.way)]; })
+        .def("__repr__", &text_of_key);
+}
+
+void bind_shake(py::module_& m) {
+    py::class_<Shake> shake(
+        m, "Shake",
+        "The shake of a camera in the hand: a curve that was measured, one that is drawn, or both, which are added.");
+    def_hashable_value(shake);
+    shake
+        .def(
+            py::init(&make_shake), py::kw_only(), "rms_deg"_a = 0.0, "rms_mm"_a = 0.0, "corner_hz"_a = 1.0,
+            "seed"_a = 0, "curve"_a = std::vector<CurvePoint>(),
+            "rms_deg, rms_mm: of each angle and of each shift, about and along the camera's axes to the right, up and\n"
+            "back. Each is a Gaussian process of its own, drawn with the seed, with the one-sided spectrum\n"
+            "4 rms^2 / (pi corner_hz) / (1 + (f / corner_hz)^2)^2 over the frequency f, up to ten corners.\n"
+            "curve: (time_s, (x, y, z) in degrees, (x, y, z) in metres) in rising order of time; about x, then y,\n"
+            "then z. Raises InputError.")
+        .def_static(
+            "load",
+            [](const py::object& path) {
+                const std::string name = path_from(path);
+                return Shake{.curve = shot::read_shake_curve(name)};
+            },
+            "path"_a,
+            "Reads a curve from a .csv, whose first line names its columns: time_s, x_deg, y_deg, z_deg, x_m, y_m, "
+            "z_m;\n"
+            "but for the time any may be missing. Raises InputError naming file and line.")
+        .def("at", &shake_positions, "times_s"_a,
+             "Where it has the camera at (N,) times: angles (N, 3) in degrees, and shifts (N, 3) in metres.")
+        .def_readonly("rms_deg", &Shake::rms_deg)
+        .def_readonly("rms_mm", &Shake::rms_mm)
+        .def_readonly("corner_hz", &Shake::corner_hz)
+        .def_readonly("seed", &Shake::seed)
+        .def_property_readonly("curve", &curve_of)
+        .def("__repr__", &text_of_shake);
+}
 
 /// What realcam.Shot is made of, by the names of its fields.
 py::dict read_shot(const py::object& path, const std::string& device, const py::object& progress) {
@@ -33,7 +212,7 @@ py::dict read_shot(const py::object& path, const std::string& device, const py::
     for (const std::string& note : notes)
         if (PyErr_WarnEx(PyExc_UserWarning, note.c_str(), 1) < 0) throw py::error_already_set();
     shot::Shot shot = shot::set_up(request, std::move(camera), std::move(scene));
-    if (!request.exposure_time_s) {
+    if (request.meters_exposure_time()) {
         Session& session = session_for(device);
         const Progress report = progress_of(progress);
         const Unlocked unlocked;
@@ -41,7 +220,10 @@ py::dict read_shot(const py::object& path, const std::string& device, const py::
         meter(shot, request, session, report);
     }
     return py::dict("scene"_a = shot.scene, "camera"_a = shot.camera, "settings"_a = request.settings,
-                    "tone"_a = request.tone == ToneCurve::film ? "film" : "linear");
+                    "tone"_a = request.tone == ToneCurve::film ? "film" : "linear",
+                    "keys"_a = py::tuple(py::cast(request.keys)),
+                    "shake"_a = request.shake.is_still() ? std::nullopt : std::optional(request.shake),
+                    "iso_follows_s"_a = request.iso_follows_s);
 }
 
 py::dict metadata(const Camera& camera, const RenderSettings& settings, int spp, std::uint32_t seed,
@@ -59,6 +241,13 @@ py::dict metadata(const Camera& camera, const RenderSettings& settings, int spp,
 }  // namespace
 
 void bind_shot(py::module_& m) {
+    bind_key(m);
+    bind_shake(m);
+    m.def("_check_camera_keys", &check_camera_keys, "camera"_a, "keys"_a);
+    m.def("_camera_at", &camera_at_time, "camera"_a, "keys"_a, "shake"_a, "opens_s"_a);
+    m.def("_frame_seed", &shot::frame_seed, "seed"_a, "number"_a);
+    m.def("_followed_isos", &followed_isos, "scene"_a, "camera"_a, "keys"_a, "settings"_a, "numbers"_a,
+          "frames_per_second"_a, "smoothing_s"_a, "device"_a);
     m.def("_read_shot", &read_shot, "path"_a, "device"_a, "progress"_a);
     m.def("_metadata", &metadata, "camera"_a, "settings"_a, "spp"_a, "seed"_a, "plan"_a, "denoiser"_a);
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "../math/turn.hpp"
 #include "../scene/assembly.hpp"
 #include "../scene/scene_checks.hpp"
 
@@ -139,20 +140,6 @@ private:
     Material& m_ = request_.values;
 };
 
-/// About x, then y, then z.
-Affine<double> rotation(Vec3d degrees) {
-    const auto turn = [](double angle, Vec3d Affine<double>::* a, Vec3d Affine<double>::* b) {
-        Affine<double> map;
-        const Vec3d u = map.*a, v = map.*b;
-        map.*a = std::cos(angle) * u + std::sin(angle) * v;
-        map.*b = std::cos(angle) * v - std::sin(angle) * u;
-        return map;
-    };
-    using A = Affine<double>;
-    return turn(kDegree * degrees.z, &A::x, &A::y) * turn(kDegree * degrees.y, &A::z, &A::x) *
-           turn(kDegree * degrees.x, &A::y, &A::z);
-}
-
 Affine<double> transform_of(const ShotTable& table) {
     const std::vector<double> m = table.numbers("matrix", 16);
     if (!m.empty()) {
@@ -167,7 +154,7 @@ Affine<double> transform_of(const ShotTable& table) {
     stretch.x.x = factors.x;
     stretch.y.y = factors.y;
     stretch.z.z = factors.z;
-    Affine<double> map = rotation(table.point("rotation_deg").value_or(Vec3d{0, 0, 0})) * stretch;
+    Affine<double> map = turn_of(table.point("rotation_deg").value_or(Vec3d{0, 0, 0})) * stretch;
     map.origin = table.point("position_m").value_or(Vec3d{0, 0, 0});
     return map;
 }

@@ -37,6 +37,17 @@ IrisShape iris_of(const ShotRequest& request, IrisShape iris) {
     return iris;
 }
 
+/// Whether the camera can be as each of the keys says.
+void check_keys(const ShotRequest& request, const Camera& camera) {
+    for (std::size_t i = 0; i < request.keys.size(); ++i) {
+        try {
+            check_key(camera, key_at(request.keys, request.keys[i].time_s));
+        } catch (const InputError& error) {
+            throw InputError(request.key_places[i] + ": " + error.what());
+        }
+    }
+}
+
 }  // namespace
 
 void check_blades(const ShotRequest& request) {
@@ -69,6 +80,7 @@ Camera camera_of(const ShotRequest& request) {
     if (!request.zoom.empty()) camera.lens = zoomed(camera.lens, request.zoom);
     if (request.blades || request.blade_rounding || request.blade_rotation_deg)
         camera.lens = with_iris(camera.lens, iris_of(request, camera.lens.iris));
+    if (request.focal_length_mm) camera.lens = zoomed_to_focal_length(camera.lens, *request.focal_length_mm);
     if (request.f_number) camera.lens = stopped_down(camera.lens, *request.f_number);
     camera.film = default_film(camera.lens, request.film_mm, request.resolution);
     camera.film.shift_mm = {request.film_shift_mm[0], request.film_shift_mm[1]};
@@ -78,7 +90,8 @@ Camera camera_of(const ShotRequest& request) {
     if (request.exposure_time_s) camera.exposure_time_s = *request.exposure_time_s;
     validate(camera);
     if (request.view.focus_distance_m) focused(camera.lens, 1000 * *request.view.focus_distance_m);
-    return camera;
+    check_keys(request, camera);
+    return with_key(std::move(camera), request.opening_key());
 }
 
 Assembly scene_of(const ShotRequest& request, const PictureReaders& readers, const KeepGoing& keep_going) {
@@ -103,10 +116,11 @@ Assembly scene_of(const ShotRequest& request, const PictureReaders& readers, con
 Shot set_up(const ShotRequest& request, Camera camera, Assembly scene) {
     Shot shot{std::move(scene), std::move(camera), std::nullopt};
     ViewRequest view = request.view;
+    if (const auto focus_m = request.opening_key().focus_m) view.focus_distance_m = focus_m;
     if (!request.motion.empty()) {
         set_motion(shot.camera, request.motion);
         const Pose pose = pose_at(shot.camera, shot.camera.shutter.opens_s);
-        view = {pose.position_m, pose.look_at_m, pose.up, request.view.focus_distance_m, {}};
+        view = {pose.position_m, pose.look_at_m, pose.up, view.focus_distance_m, {}};
     }
     if (const SceneCamera* from = set_view(shot.camera, shot.scene, view)) shot.scene_camera = *from;
     if (!request.motion.empty()) set_motion(shot.camera, request.motion);
@@ -131,7 +145,7 @@ std::string view_notice(const Shot& shot) {
 }
 
 void meter(Shot& shot, const ShotRequest& request, Session& session, const Progress& progress) {
-    if (request.exposure_time_s) return;
+    if (!request.meters_exposure_time()) return;
     shot.camera.exposure_time_s = metered_exposure_time(session, shot.scene, shot.camera, request.settings, progress);
     shot.is_metered = true;
 }

@@ -13,6 +13,7 @@
 #include "../io/text/toml_document.hpp"
 #include "../render/effect_names.hpp"
 #include "names.hpp"
+#include "read_camera_keys.hpp"
 #include "read_scene_request.hpp"
 
 namespace realcam::shot {
@@ -73,7 +74,11 @@ public:
                       "clamp_cd_m2",
                       "shutter_opens_s",
                       "readout_time_s",
-                      "pose"});
+                      "pose",
+                      "focal_length_mm",
+                      "key",
+                      "shake",
+                      "iso_follows_s"});
         if (table_.number("format") != kFormat) table_.fail("format = " + std::to_string(kFormat) + " is wanted");
         ShotRequest shot;
         shot.scene = table_.path("scene");
@@ -117,6 +122,9 @@ private:
         shot.zoom = table_.text("zoom");
         if (shot.zoom.empty() && table_.find("zoom"))
             table_.fail("\"zoom\" is empty; the name of a zoom position of the lens is wanted", table_.find("zoom"));
+        shot.focal_length_mm = table_.number("focal_length_mm");
+        if (shot.focal_length_mm && !shot.zoom.empty())
+            table_.fail("\"zoom\" and \"focal_length_mm\" exclude each other", table_.find("focal_length_mm"));
         shot.f_number = table_.number("f_number");
         if (const auto blades = table_.number("blades")) shot.blades = table_.whole("blades", *blades);
         shot.blade_rounding = table_.number("blade_rounding");
@@ -145,6 +153,7 @@ private:
         shot.shutter.opens_s = table_.number("shutter_opens_s").value_or(0);
         shot.shutter.readout_time_s = table_.number("readout_time_s").value_or(0);
         read_motion(shot);
+        read_camera_keys(table_, shot);
         shot.tone = table_.named("tone", tone_named, kToneNames).value_or(shot.tone);
     }
 

@@ -4,8 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "../camera/camera.hpp"
+#include "../camera/camera_key.hpp"
 #include "../camera/develop.hpp"
+#include "../camera/shake.hpp"
 #include "../io/lens/lens_file.hpp"
 #include "../render/default_view.hpp"
 #include "../render/render_settings.hpp"
@@ -39,6 +40,7 @@ struct ShotRequest {
     std::string lens = "double-gauss-50mm";  ///< a bundled one, or a file
     io::LensReadOptions lens_options;
     std::string zoom;  ///< a position of the lens; empty: as its file gives it
+    std::optional<double> focal_length_mm;  ///< of a zoom lens, in place of a position
     std::optional<double> f_number;
     std::optional<int> blades;  ///< of the diaphragm; this and the next two: the lens's where they are left out
     std::optional<double> blade_rounding, blade_rotation_deg;
@@ -48,6 +50,10 @@ struct ShotRequest {
     ViewRequest view;
     std::vector<PoseKey> motion;  ///< of the camera, in place of position and look_at; empty: it stands still
     Shutter shutter;
+    std::vector<CameraKey> keys;  ///< of rings and dials, whose own values below and above are then left out
+    std::vector<std::string> key_places;  ///< of each, for messages
+    Shake shake;
+    std::optional<double> iso_follows_s;  ///< of a film: the ISO number follows the meter, smoothed over so long
     CameraModel model = CameraModel::full_lens;
     std::optional<double> exposure_time_s;
     double iso = 100;
@@ -58,6 +64,13 @@ struct ShotRequest {
     bool denoises = false;
     ToneCurve tone = ToneCurve::film;
 
+    /// Takes a value out of the keys: something else was said of it.
+    void forget(std::optional<double> CameraKey::* value) {
+        for (CameraKey& key : keys) (key.*value).reset();
+    }
+    /// What its keys say when the shutter opens.
+    CameraKey opening_key() const { return key_at(keys, shutter.opens_s); }
+    bool meters_exposure_time() const { return !exposure_time_s && !opening_key().exposure_time_s; }
     bool chooses_environment() const { return environment_cd_m2 || !environment_file.empty(); }
 };
 

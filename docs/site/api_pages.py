@@ -34,7 +34,7 @@ GROUPS = {
     "Photographers' figures": (
         "DepthOfField", "FieldOfView", "PhotographicFigures", "depth_of_field", "photographic_figures",
     ),
-    "Camera": ("Camera", "Film", "CameraRays", "RayChunks", "Autofocus", "autofocus"),
+    "Camera": ("Camera", "Film", "CameraKey", "Shake", "CameraRays", "RayChunks", "Autofocus", "autofocus"),
     "Scene": ("Scene", "Material", "read_environment"),
     "Pictures": (
         "render", "RenderSettings", "RenderStats", "Image", "Shot", "Session", "ReachedNoise", "LiveView", "LiveFrame",

@@ -1418,6 +1418,75 @@ def _sensor_color(
     sensor: Sensor, illuminant: str
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]: ...
 def _film_of_white(illuminant: str) -> NDArray[np.float64]: ...
+
+@final
+class CameraKey(_Value):
+    def __init__(
+        self,
+        time_s: float,
+        *,
+        focus_m: float | None = None,
+        focal_length_mm: float | None = None,
+        f_number: float | None = None,
+        exposure_time_s: float | None = None,
+        iso: float | None = None,
+        interpolation: str = "linear",
+    ) -> None: ...
+    @property
+    def time_s(self) -> float: ...
+    @property
+    def focus_m(self) -> float | None: ...
+    @property
+    def focal_length_mm(self) -> float | None: ...
+    @property
+    def f_number(self) -> float | None: ...
+    @property
+    def exposure_time_s(self) -> float | None: ...
+    @property
+    def iso(self) -> float | None: ...
+    @property
+    def interpolation(self) -> str: ...
+
+@final
+class Shake(_Value):
+    def __init__(
+        self,
+        *,
+        rms_deg: float = 0.0,
+        rms_mm: float = 0.0,
+        corner_hz: float = 1.0,
+        seed: int = 0,
+        curve: Sequence[tuple[float, _Triple, _Triple]] = [],
+    ) -> None: ...
+    @staticmethod
+    def load(path: _Path) -> Shake: ...
+    def at(self, times_s: Sequence[float] | NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]: ...
+    @property
+    def rms_deg(self) -> float: ...
+    @property
+    def rms_mm(self) -> float: ...
+    @property
+    def corner_hz(self) -> float: ...
+    @property
+    def seed(self) -> int: ...
+    @property
+    def curve(
+        self,
+    ) -> tuple[tuple[float, tuple[float, float, float], tuple[float, float, float]], ...]: ...
+
+def _check_camera_keys(camera: Camera, keys: Sequence[CameraKey]) -> None: ...
+def _camera_at(camera: Camera, keys: Sequence[CameraKey], shake: Shake | None, opens_s: float) -> Camera: ...
+def _frame_seed(seed: int, number: int) -> int: ...
+def _followed_isos(
+    scene: Scene,
+    camera: Camera,
+    keys: Sequence[CameraKey],
+    settings: RenderSettings,
+    numbers: Sequence[int],
+    frames_per_second: float,
+    smoothing_s: float,
+    device: str,
+) -> list[float]: ...
 def _read_shot(path: str | os.PathLike[str], device: str, progress: _Progress | None) -> _Shot: ...
 
 class _SettingWords(TypedDict, total=False):
@@ -1515,6 +1584,9 @@ class _Shot(TypedDict):
     camera: Camera
     settings: RenderSettings
     tone: str
+    keys: tuple[CameraKey, ...]
+    shake: Shake | None
+    iso_follows_s: float | None
 
 class _Reached(TypedDict):
     noise: float
@@ -1593,6 +1665,9 @@ class Plan(_Value):
     def summary(self) -> str: ...
 
 def _plan(scene: Scene, camera: Camera, settings: RenderSettings, device: str, times: bool) -> Plan: ...
+def _plan_film(
+    scene: Scene, cameras: Sequence[Camera], settings: RenderSettings, device: str
+) -> tuple[str, list[str], str]: ...
 
 @final
 class LiveFrame:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 from . import _core
@@ -64,12 +64,20 @@ def settled(scene: Scene, camera: Camera, settings: RenderSettings, device: str,
 
     Warns, `stacklevel` calls up, where there is nothing to plan; raises what plan raises else.
     """
+    return settled_film(scene, [camera], settings, device, stacklevel + 1)
+
+
+def settled_film(
+    scene: Scene, cameras: Sequence[Camera], settings: RenderSettings, device: str, stacklevel: int
+) -> Settled:
+    """The same for frames of a film, given by their cameras, together. The camera is the first one."""
+    camera = cameras[0]
     if "auto" not in settings.effects:
         return Settled(camera, settings, "")
     summary = ""
     try:
-        choice = _core._plan(scene, camera, settings, device, False)
-        camera, effects, summary = camera.replace(model=choice.model), choice.effects, choice.summary
+        model, effects, summary = _core._plan_film(scene, cameras, settings, device)
+        camera = camera.replace(model=model)
     except NothingToPlan as nothing:
         warnings.warn(f"{nothing}; the picture has the effects that are named", stacklevel=stacklevel + 1)
         effects = [name for name in settings.effects if name != "auto"]

@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 import os
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 from . import _core
-from ._core import Camera, InputError, RenderSettings, Scene
+from ._core import Camera, CameraKey, InputError, RenderSettings, Scene, Shake
 from .image import Image
-from .planning import settled
+from .planning import settled_film
 from .render import ProgressCallback, render
 from .settings import setting
 
@@ -21,12 +21,28 @@ class Shot:
 
     tone: "film" or "linear", the tone curve for Image.save. What the settings say can be asked of the shot, too:
     shot.spp is shot.settings.spp.
+    keys: of the camera's rings and dials, which then go before what the camera itself says; `shake`: of a camera in the
+    hand. `camera` is as the keys have it when its shutter opens, and does not shake. iso_follows_s: in a film the ISO
+    number follows the meter, smoothed over so many seconds; None: it does not.
+    Raises InputError where the camera cannot be as a key says.
     """
 
     scene: Scene
     camera: Camera
     settings: RenderSettings = field(default_factory=RenderSettings)
     tone: str = "film"
+    keys: tuple[CameraKey, ...] = ()
+    shake: Shake | None = None
+    iso_follows_s: float | None = None
+
+    def __post_init__(self) -> None:
+        if self.keys:
+            _core._check_camera_keys(self.camera, self.keys)
+        follows_s = self.iso_follows_s
+        if follows_s is not None and not 0 <= follows_s < math.inf:
+            raise InputError("iso_follows_s must be a number of seconds, 0 or more, or None")
+        if follows_s is not None and any(key.iso is not None for key in self.keys):
+            raise InputError("iso_follows_s and the iso of keys exclude each other")
 
     spp, noise, noise_codes, seconds, max_spp = map(setting, ("spp", "noise", "noise_codes", "seconds", "max_spp"))
     seed, max_bounces, transport = map(setting, ("seed", "max_bounces", "transport"))
@@ -48,34 +64,43 @@ class Shot:
         """Frames of a film by their names, as "frame.0001": what moves is where it is at that time.
 
         The shutter of frame 1 opens when that of the shot does, and those of the others so many frames later. Each
-        frame has random numbers of its own, so that the noise does not stand still. Effects "auto" are planned for the
-        first, the middle and the last frame together (on `device`), because one that comes and goes would show.
-        Raises InputError for numbers below 0, and what plan raises.
+        frame has a seed of its own, a hash of the shot's and of its number, so that the noise does not stand still.
+        Effects "auto" are planned for the first, the middle and the last frame together, because one that comes and
+        goes would show. The plan and the meter, where the ISO number follows it, work on `device`.
+        Raises InputError for numbers below 0 and for what the lens cannot do at a frame, and what plan raises.
         """
         numbers = list(numbers)
         if not numbers or min(numbers) < 0 or not 0 < frames_per_second < math.inf:
             raise InputError("a film wants frames with numbers from 0 on, and more than 0 of them in a second")
 
-        def at(number: int) -> Shot:
-            opens_s = self.camera.shutter_opens_s + (number - 1) / frames_per_second
-            settings = self.settings.with_(seed=(self.seed + number) % 2**32)
-            return replace(self, camera=self.camera.replace(shutter_opens_s=opens_s), settings=settings)
+        def camera_of(number: int) -> Camera:
+            return self.camera_at(self.camera.shutter_opens_s + (number - 1) / frames_per_second)
 
-        made = {f"{name}.{number:04d}": at(number) for number in numbers}
-        if "auto" not in self.effects:
-            return made
-        some = [at(number) for number in dict.fromkeys((numbers[0], numbers[len(numbers) // 2], numbers[-1]))]
-        plans = [settled(each.scene, each.camera, each.settings, device, stacklevel=2) for each in some]
-        effects = tuple(dict.fromkeys(effect for plan in plans for effect in plan.settings.effects))
-        models = {plan.camera.model for plan in plans}
-        model = models.pop() if len(models) == 1 else self.camera.model
-        return {
-            name: replace(
-                frame, camera=frame.camera.replace(model=model), settings=frame.settings.with_(effects=effects)
+        cameras = {number: camera_of(number) for number in numbers}
+        settings = self.settings
+        if "auto" in settings.effects:
+            some = [cameras[number] for number in (numbers[0], numbers[len(numbers) // 2], numbers[-1])]
+            planned = settled_film(self.scene, some, settings, device, stacklevel=2)
+            settings = planned.settings
+            cameras = {number: camera.replace(model=planned.camera.model) for number, camera in cameras.items()}
+        if self.iso_follows_s is not None:
+            isos = _core._followed_isos(
+                self.scene, self.camera, self.keys, settings, numbers, frames_per_second, self.iso_follows_s, device
             )
-            for name, frame in made.items()
+            cameras = {number: cameras[number].replace(iso=iso) for number, iso in zip(numbers, isos, strict=True)}
+        return {
+            f"{name}.{number:04d}": Shot(
+                self.scene, camera, settings.with_(seed=_core._frame_seed(self.seed, number)), self.tone
+            )
+            for number, camera in cameras.items()
         }
 
+    def camera_at(self, time_s: float) -> Camera:
+        """The camera of a picture whose shutter opens at a time: with its rings and dials as the keys have them, and
+        with the shake of its exposure. Raises InputError where the lens cannot be so."""
+        return _core._camera_at(self.camera, self.keys, self.shake, time_s)
+
     def render(self, *, device: str = "auto", threads: int = 0, progress: bool | ProgressCallback = False) -> Image:
-        """Takes the photograph: realcam.render with the shot's own settings."""
-        return render(self.scene, self.camera, self.settings, device=device, threads=threads, progress=progress)
+        """Takes the photograph: realcam.render with the shot's own settings, when its shutter opens."""
+        camera = self.camera if self.shake is None else self.camera_at(self.camera.shutter_opens_s)
+        return render(self.scene, camera, self.settings, device=device, threads=threads, progress=progress)

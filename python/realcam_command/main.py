@@ -17,8 +17,10 @@ def main() -> None:
     # Python's own handler would end an import in a traceback, and would not be called while C++ is at work.
     signal.signal(signal.SIGINT, signal.SIG_DFL)
     arguments = sys.argv[1:]
+    if "--denoise" in arguments and (library := denoiser_library()):
+        os.environ["REALCAM_OIDN"] = library
     try:
-        if any(arguments[: len(command)] == command for command in _IN_CPP):
+        if any(arguments[: len(command)] == command for command in _IN_CPP) and not _makes_film(arguments):
             sys.exit(_run_in_cpp(arguments))
         from realcam.cli import run
     except ImportError as error:
@@ -29,12 +31,15 @@ def main() -> None:
     run()
 
 
+def _makes_film(arguments: list[str]) -> bool:
+    """Whether there is more to do than the extension does."""
+    return arguments[:1] == ["render"] and any(word.lower().endswith(".mp4") for word in arguments)
+
+
 def _run_in_cpp(arguments: list[str]) -> int:
     """The exit code."""
     from realcam import _core
 
-    if "--denoise" in arguments and (library := denoiser_library()):
-        os.environ["REALCAM_OIDN"] = library
     if not hasattr(_core, "_run_command"):
         print("realcam: error: this build of realcam has no picture files, and no such command", file=sys.stderr)
         return 2

@@ -77,6 +77,15 @@ MAKERS: dict[str, list[Callable[[], Any]]] = {
         lambda: rc.RenderSettings(),
     ],
     "Film": [lambda: rc.Film(), lambda: rc.Film(resolution=(960, 641))],
+    "CameraKey": [
+        lambda: rc.CameraKey(1, focus_m=2, f_number=4, interpolation="smooth"),
+        lambda: rc.CameraKey(1, focus_m=2, f_number=4),
+    ],
+    "Shake": [
+        lambda: rc.Shake(rms_deg=0.1, seed=2),
+        lambda: rc.Shake(rms_deg=0.1),
+        lambda: rc.Shake(curve=[(0, (0.1, 0, 0), (0, 0, 0)), (1, (0, 0, 0), (0, 0, 1))]),
+    ],
     "Camera": [camera, lambda: rc.Camera(lens())],
     "Material": [lambda: rc.Material(), lambda: rc.Material(emission=(1, 0, 0))],
     "Scene": [scene, floor_scene, lambda: scene().moved("chair 1", np.eye(4))],

@@ -113,3 +113,11 @@ def test_copies_writes_a_sheet(tmp_path: Path) -> None:
     told = subprocess.run(command, check=True, capture_output=True, text=True, timeout=300).stdout
     assert "has the softest corner" in told
     assert sheet.stat().st_size > 1000
+
+
+def test_film_goes_from_the_lamps_to_the_chessmen() -> None:
+    shot = rc.Shot.load(EXAMPLES / "film.toml", device="cpu")
+    begin, end = (shot.camera_at(time_s).lens for time_s in (0, 5))
+    assert (begin.focus_distance_m, end.focus_distance_m) == pytest.approx((3.5, 2.0))
+    assert end.focused(float("inf")).first_order().effective_focal_length_mm == pytest.approx(135)
+    assert shot.shake is not None

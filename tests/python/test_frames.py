@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import subprocess
 from pathlib import Path
 
 import numpy as np
 import pytest
 import realcam as rc
 from realcam import cli
+from realcam.image_file import read_film
 from realcam.video import write_video
 
 from . import scenes
+from .programs import PROGRAM, PYTHON
 
 SHOT = """
 format = 1
@@ -65,6 +68,119 @@ def test_frames_open_their_shutters_one_after_the_other(folder: Path) -> None:
     ).pixels  # fmt: skip
     whole_step = np.abs(np.diff(still, axis=1)).max()
     assert np.abs(moved.mean(axis=0) - still.mean(axis=0)).max() < whole_step / 3
+
+
+def test_the_noise_of_frames_has_nothing_in_common() -> None:
+    """Of 30 frames of one shot, and of a shot whose seed is the next: as little as of independent noise."""
+    scene = scenes.scene_of(scenes.quad((0, 0, -3), 5, diffuse=0.7)).with_environment((900, 500, 100))
+    camera = rc.Camera(rc.Lens.load("tessar-50mm").focused(1), film=rc.Film(36, 24, (24, 16)))
+    shots = [rc.Shot(scene, camera, rc.RenderSettings(spp=2, seed=seed, effects=())) for seed in (0, 1)]
+    frames = [frame for shot in shots for frame in shot.frames(range(15)).values()]
+    assert len({frame.seed for frame in frames}) == 30
+    pictures = np.array([frame.render(device="cpu").pixels[..., 1] for frame in frames], dtype=float)
+    noise = pictures - pictures.mean(axis=0)
+    assert noise.std() > 0.01 * pictures.mean()
+    noise /= noise.std(axis=0)  # some pixels have more of it, which would count for all others
+    flat = noise.reshape(30, -1)
+    correlation = np.corrcoef(flat)[~np.eye(30, dtype=bool)]
+    # Their mean was taken out of 30, which correlates two by -1 / 29. The rest is chance, of 384 pixels.
+    assert np.abs(correlation + 1 / 29).max() < 5 / np.sqrt(384)
+    # Nor does it move over the picture: the same with the frame before, by a pixel to each side.
+    for shift in ((0, 1), (1, 0), (1, 1)):
+        moved = np.roll(noise[:-1], shift, axis=(1, 2)).reshape(29, -1)
+        alike = [np.corrcoef(a, b)[0, 1] for a, b in zip(moved, flat[1:], strict=True)]
+        assert abs(np.mean(alike)) < 5 / np.sqrt(384 * 29)
+    again = shots[0].frames([7])["frame.0007"].render(device="cpu").pixels
+    np.testing.assert_array_equal(again[..., 1], pictures[7].astype(np.float32))
+
+
+def test_the_iso_number_follows_the_meter_smoothly(folder: Path) -> None:
+    """The exposure time falls to a quarter at once; the ISO number goes up by two stops, as the stated mean does."""
+    shot = rc.Shot.load("pan.toml", device="cpu")
+    keys = (rc.CameraKey(0, exposure_time_s=0.01, interpolation="step"), rc.CameraKey(0.2, exposure_time_s=0.0025))
+    wall = shot.camera.replace(position=(2, 0, 2), look_at=(2, 0, 0))
+    following = rc.Shot(shot.scene, wall, shot.settings, keys=keys, iso_follows_s=0.1)
+    numbers = range(1, 31)
+    isos = [f.camera.iso for f in following.frames(numbers, frames_per_second=20, device="cpu").values()]
+    target = np.log2([isos[0] if (n - 1) / 20 < 0.2 - 1e-9 else 4 * isos[0] for n in numbers])
+    expected = []
+    for n in numbers:
+        ages = np.arange(min(n, 11))  # five times the smoothing, and the frame itself; no frame before the first
+        weights = np.exp(-ages / 20 / 0.1)
+        expected.append((weights * target[n - 1 - ages]).sum() / weights.sum())
+    # Float pictures of the same samples, of which the exposure is a factor: some digits.
+    np.testing.assert_allclose(np.log2(isos), expected, atol=1e-5)
+    # A frame by itself has the same.
+    assert following.frames([7], frames_per_second=20, device="cpu")["frame.0007"].camera.iso == isos[6]
+
+
+def test_render_takes_numbered_frames_and_goes_on(folder: Path) -> None:
+    words = ["render", "pan.toml", "-o", "pan.##.exr", "--frames", "1-25x8", "--fps", "24", "--device", "cpu"]
+    done = subprocess.run([*PROGRAM, *words], capture_output=True, text=True, check=True)
+    names = [f"pan.{n:02d}.exr" for n in (1, 9, 17, 25)]
+    assert sorted(path.name for path in folder.glob("pan.*.exr")) == names
+    assert [line.split(":")[0] for line in done.stdout.splitlines()] == ["frame 1", "frame 9", "frame 17", "frame 25"]
+    frames = rc.Shot.load("pan.toml", device="cpu").frames((1, 9, 17, 25))
+    for name, frame in zip(names, frames.values(), strict=True):
+        found = read_film(name)[0]
+        # Half floats in the file: 11 bits.
+        np.testing.assert_allclose(found, frame.render(device="cpu").pixels, rtol=1e-3)
+    (folder / names[1]).unlink()
+    before = {name: (folder / name).stat().st_mtime_ns for name in names if (folder / name).exists()}
+    done = subprocess.run([*PROGRAM, *words], capture_output=True, text=True, check=True)
+    assert "3 of 4 frames were there already; --again takes them, too" in done.stderr
+    assert {name: (folder / name).stat().st_mtime_ns for name in before} == before
+    assert (folder / names[1]).exists()
+    subprocess.run([*PROGRAM, *words, "--again", "--quiet"], capture_output=True, check=True)
+    assert all((folder / name).stat().st_mtime_ns != time for name, time in before.items())
+
+
+def test_render_makes_a_film(folder: Path) -> None:
+    av = pytest.importorskip("av", reason="realcam[video] is missing")
+    words = [
+        "render",
+        "pan.toml",
+        "-o",
+        "pan.mp4",
+        "-o",
+        "pan.png",
+        "--frames",
+        "1-3",
+        "--fps",
+        "12",
+        "--device",
+        "cpu",
+    ]
+    done = subprocess.run([*PYTHON, *words], capture_output=True, text=True, check=True)
+    assert done.stdout.endswith("wrote pan.mp4\n")
+    with av.open("pan.mp4") as film:
+        assert float(film.streams.video[0].average_rate) == 12
+        shown = [frame.to_ndarray(format="rgb24") for frame in film.decode(film.streams.video[0])]
+    assert len(shown) == 3
+    with av.open("pan.0002.png") as picture:
+        still = next(picture.decode(video=0)).to_ndarray(format="rgb24")
+    assert np.abs(shown[1][:21, :31].astype(int) - still.astype(int)).mean() < 6
+    assert not (folder / "pan.mp4.frames").exists()
+
+
+@pytest.mark.parametrize(
+    ("words", "wanted"),
+    [
+        (["-o", "a.png", "--frames", "9-1"], '--frames: "9-1": a number, 1-240 or 1-240x2 is wanted'),
+        (["-o", "a.png", "--frames", "1-2", "--fps", "0"], "--fps: more than 0 frames in a second are wanted"),
+        (["-o", "nowhere/a.png", "--frames", "1-2"], "nowhere"),
+        (["-o", "a.mp4"], "--frames is missing: a film, .mp4, is made of frames, as of 1-240"),
+        (["-o", "nowhere/a.mp4", "--frames", "1-2"], "nowhere"),
+    ],
+)
+def test_films_that_cannot_be_are_refused(folder: Path, words: list[str], wanted: str) -> None:
+    if any(".mp4" in word for word in words):
+        pytest.importorskip("av", reason="realcam[video] is missing")
+    done = subprocess.run([*PYTHON, "render", "pan.toml", *words], capture_output=True, text=True)
+    assert done.returncode == 2
+    assert done.stderr.startswith("realcam: error: ") and wanted in done.stderr
+    assert done.stderr.count("\n") == 1
+    assert not list(folder.glob("a*"))
 
 
 def test_effects_of_a_film_are_planned_together(folder: Path) -> None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import logging
 import os
-import re
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -77,7 +76,7 @@ def make(
     from ..job.making import check_is_new
 
     check_is_new(output)
-    size, numbers = _tile(tile), _frame_numbers(frames)
+    size, numbers = _tile(tile), None if frames is None else options.frame_numbers(frames)
     for target in filter(None, (sbatch, openjd)):
         files.check_target(target)
     named = _named_shots(shots, spp, device)
@@ -251,16 +250,6 @@ def _developed(job: Job, device: str | None, bar: Callable[[float], bool]) -> It
     for done, name in enumerate(job.names):
         bar(done / len(job.names))
         yield job.image(name, device=device).developed(tone=job.tone(name))
-
-
-def _frame_numbers(text: str | None) -> range | None:
-    if text is None:
-        return None
-    found = re.fullmatch(r"(\d{1,6})(?:-(\d{1,6})(?:x(\d{1,6}))?)?", text)
-    numbers = range(int(found[1]), int(found[2] or found[1]) + 1, int(found[3] or 1) or 1) if found else range(0)
-    if not numbers:
-        raise InputError(f'--frames: "{text:.40}": a number, 1-240 or 1-240x2 is wanted, the smaller one first')
-    return numbers
 
 
 def _samples(text: str) -> int | str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import os
+import re
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Annotated
@@ -30,6 +31,15 @@ def number(text: str, what: str, wanted: str = "a number") -> float:
     if math.isnan(value):
         raise InputError(f'{what}: "{text}" is not {wanted}')
     return value
+
+
+def frame_numbers(text: str) -> range:
+    """The numbers of frames: 7, 1-240, or 1-240x10 for every tenth. Raises InputError."""
+    found = re.fullmatch(r"(\d{1,6})(?:-(\d{1,6})(?:x(\d{1,6}))?)?", text)
+    numbers = range(int(found[1]), int(found[2] or found[1]) + 1, int(found[3] or 1) or 1) if found else range(0)
+    if not numbers:
+        raise InputError(f'--frames: "{text:.40}": a number, 1-240 or 1-240x2 is wanted, the smaller one first')
+    return numbers
 
 
 def check_known(word: str, known: Iterable[str], what: str) -> None:

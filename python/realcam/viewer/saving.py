@@ -79,8 +79,10 @@ def shot_contents(source: ShotSource, controls: CameraControls, effects: list[st
         beside = path.with_name(f"{path.stem}-lens.toml")
         contents[beside], _ = lens_content(lens, beside.name)
         shot["lens"] = f"./{beside.name}"
-    for key in ("blades", "blade_rounding", "blade_rotation_deg", "zoom", "f_number"):
+    for key in ("blades", "blade_rounding", "blade_rotation_deg", "zoom", "focal_length_mm", "f_number"):
         shot.pop(key, None)  # the lens has them
+    for key in ("key", "iso_follows_s", "pose", "camera"):
+        shot.pop(key, None)  # which go before what is said below
     if controls.zoom is not None:
         shot["zoom"] = controls.zoom
     widest = controls.body.first_order().f_number

@@ -1,0 +1,83 @@
+#include "read_camera_keys.hpp"
+
+#include "shake_curve.hpp"
+
+namespace realcam::shot {
+namespace {
+
+std::optional<KeyWay> way_named(std::string_view name) {
+    if (name == "linear") return KeyWay::linear;
+    if (name == "smooth") return KeyWay::smooth;
+    if (name == "step") return KeyWay::step;
+    return std::nullopt;
+}
+
+/// The key of the file that a value of [[key]] stands in place of.
+struct StillKey {
+    std::optional<double> CameraKey::* value;
+    const char* key;    ///< of [[key]]
+    const char* still;  ///< of the file
+};
+
+constexpr StillKey kStill[] = {{&CameraKey::focus_m, "focus_m", "focus_m"},
+                               {&CameraKey::focal_length_mm, "focal_length_mm", "focal_length_mm"},
+                               {&CameraKey::focal_length_mm, "focal_length_mm", "zoom"},
+                               {&CameraKey::f_number, "f_number", "f_number"},
+                               {&CameraKey::exposure_time_s, "exposure_time_s", "exposure_time_s"},
+                               {&CameraKey::iso, "iso", "iso"},
+                               {&CameraKey::iso, "iso", "iso_follows_s"}};
+
+void read_keys(const ShotTable& shot, ShotRequest& request) {
+    for (const ShotTable& table : shot.tables("key")) {
+        table.allow({"time_s", "focus_m", "focal_length_mm", "f_number", "exposure_time_s", "iso", "interpolation"});
+        CameraKey key{.time_s = table.number_wanted("time_s")};
+        if (table.find("focus_m")) {
+            key.focus_m = table.number_or_auto("focus_m", "a number of metres or inf");
+            if (!key.focus_m)
+                table.fail("\"focus_m\" of a key must be a number of metres or inf", table.find("focus_m"));
+        }
+        key.focal_length_mm = table.number("focal_length_mm");
+        key.f_number = table.number("f_number");
+        key.exposure_time_s = table.number("exposure_time_s");
+        key.iso = table.number("iso");
+        key.way = table.named("interpolation", way_named, "linear, smooth or step").value_or(key.way);
+        table.checked("time_s", [&] { validate(key); });
+        const double* const last = request.keys.empty() ? nullptr : &request.keys.back().time_s;
+        if (const std::string why = key_time_error(key.time_s, last); !why.empty())
+            table.fail(why, table.find("time_s"));
+        for (const StillKey& still : kStill)
+            if (const toml::node* node = key.*still.value ? shot.find(still.still) : nullptr)
+                shot.fail('"' + std::string(still.still) + "\" and \"" + still.key + "\" of [[key]] exclude each other",
+                          node);
+        request.keys.push_back(key);
+        request.key_places.push_back(table.place());
+    }
+}
+
+void read_shake(const ShotTable& shot, Shake& shake) {
+    const toml::node* node = shot.find("shake");
+    if (!node) return;
+    if (!node->is_table()) shot.fail("a table [shake] is wanted", node);
+    const ShotTable table(*node->as_table(), shot.file());
+    table.allow({"file", "rms_deg", "rms_mm", "corner_hz", "seed"});
+    if (const std::string file = table.path("file"); !file.empty()) shake.curve = read_shake_curve(file);
+    shake.rms_deg = table.number("rms_deg").value_or(0);
+    shake.rms_mm = table.number("rms_mm").value_or(0);
+    shake.corner_hz = table.number("corner_hz").value_or(shake.corner_hz);
+    if (const auto seed = table.number("seed")) shake.seed = table.whole<std::uint32_t>("seed", *seed);
+    for (const char* key : {"rms_deg", "rms_mm", "corner_hz"})
+        if (table.find(key)) table.checked(key, [&] { validate(shake); });
+    if (shake.is_still()) table.fail("[shake] wants a \"file\", \"rms_deg\" or \"rms_mm\"");
+}
+
+}  // namespace
+
+void read_camera_keys(const ShotTable& shot, ShotRequest& request) {
+    read_keys(shot, request);
+    read_shake(shot, request.shake);
+    request.iso_follows_s = shot.number("iso_follows_s");
+    if (request.iso_follows_s && !(*request.iso_follows_s >= 0))
+        shot.fail("\"iso_follows_s\" must be a number of seconds, 0 or more", shot.find("iso_follows_s"));
+}
+
+}  // namespace realcam::shot
