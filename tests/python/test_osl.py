@@ -86,8 +86,8 @@ def test_light_that_comes_back_along_a_ray_meets_its_film_point(
 @pytest.mark.parametrize("name", [*LENSES, "fisheye-6mm-220deg"])
 def test_the_film_gets_as_much_light(program: Callable[[str], Callable[..., Rays]], name: str) -> None:
     lens = rc.Lens.load(name).focused(math.inf)
-    # At 0.56 is the edge of the fisheye's image.
-    for share in (0.0, 0.35, 0.56, 0.7, 0.95):
+    # The image of the fisheye ends 0.05 mm after 0.55.
+    for share in (0.0, 0.35, 0.55, 0.7, 0.95):
         raster = np.array([[0.5 + 0.5 * share, 0.5 + 0.25 * share]])
         chance = even_points(16)
         rays = program(name)(np.repeat(raster, len(chance), 0), chance, lens.film_mm, dispersion=0, keep_brightness=0)
@@ -96,6 +96,21 @@ def test_the_film_gets_as_much_light(program: Callable[[str], Callable[..., Rays
         # Of 65536 cells some 800 lie on an edge, and the half of each is counted by chance: 4e-4, three times that.
         if expected > 0.02 * lens.film_pupil().irradiance:
             assert rays.throughput[:, 1].mean() == pytest.approx(expected, rel=2e-3), share
+
+
+@needs_compiler
+def test_a_diaphragm_nearly_as_small_as_the_blocked_middle(program: Callable[[str], Callable[..., Rays]]) -> None:
+    name = "mirror-telephoto-500mm"
+    lens = rc.Lens.load(name).focused(math.inf)
+    f_number = lens.first_order().f_number / 0.65
+    raster, chance = np.array([[0.75, 0.75]]), even_points(16)
+    rays = program(name)(
+        np.repeat(raster, len(chance), 0), chance, lens.film_mm, dispersion=0, keep_brightness=0, f_number=f_number
+    )
+    film = film_points_mm(raster, lens.film_mm)[0]
+    expected = lens.stopped_down(f_number).film_pupil((film[0], film[1])).irradiance
+    # Some 3900 points fall into the crescent that is left, and some 150 lie on its edge: the half by chance.
+    assert rays.throughput[:, 1].mean() == pytest.approx(expected, rel=1e-2)
 
 
 @needs_compiler

@@ -175,8 +175,11 @@ void find_pupil(float share, float focus, float open, float colour, output float
         half_m += weight * mix(ellipses[wide + 2], ellipses[narrow + 2], closing);
         bulge += weight * ellipses[wide + 3];{hole}{drift}
     }}
-    // Rims make the pupil larger between two stops than their mean. The last factor is for stops beyond the table.
-    float size = (1 + 4 * closing * (1 - closing) * bulge) * min(1, open / {last});
+    // Rims make the pupil larger between two stops than their mean, but not what is blocked in its middle.
+    float growth = 1 + 4 * closing * (1 - closing) * bulge;
+    hole /= growth;
+    // The last factor is for stops beyond the table.
+    float size = growth * min(1, open / {last});
     half_l *= size;
     half_m *= size;
 }}

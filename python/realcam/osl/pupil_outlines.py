@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,6 +15,7 @@ Light = Sequence[tuple[float, Doubles]]
 """Wavelengths in nm, and by how much (R,) the directions l of each are to be moved at R film points."""
 _COLUMNS, _ROWS = 33, 17
 _HALVINGS = 7
+_AZIMUTHS, _STEPS = 33, 16
 
 
 @dataclass(frozen=True)
@@ -26,7 +27,8 @@ class Outlines:
     m: Doubles
     """(R, P): those along y, which are not negative."""
     inner_l: Doubles
-    """(R, Q): directions on a grid that pass, to see what is blocked in the middle; NaN: not one that passes."""
+    """(R, Q): directions about the middle of the box in which the first light passes, where the lens's middle is
+    blocked; NaN: not one."""
     inner_m: Doubles
     boxes: Doubles
     """(R, 3): l from and to, m to: what holds the outline."""
@@ -98,9 +100,35 @@ def outlines(lens: Lens, radii_mm: Doubles, boxes: Doubles, light: Light, rounds
     edge_m = np.hstack([row_m, row_m, np.where(column_dark, np.nan, tops)])
     missing = np.isnan(edge_l) | np.isnan(edge_m)
     edge_l[missing] = edge_m[missing] = np.nan
-    inside = passed.reshape(len(radii_mm), -1)
-    inner = [np.where(inside, grid.reshape(inside.shape), np.nan) for grid in (grid_l, grid_m)]
-    return Outlines(edge_l, edge_m, inner[0], inner[1], boxes)
+    blocked = ~passed[:, 0, _COLUMNS // 2] & row_lit.any(axis=1)
+    inner_l, inner_m = _inner_edges(boxes, at) if blocked.any() else np.full((2, len(radii_mm), _AZIMUTHS), np.nan)
+    return Outlines(edge_l, edge_m, inner_l, inner_m, boxes)
+
+
+def _inner_edges(boxes: Doubles, at: Callable[[Doubles, Doubles], NDArray[np.bool_]]) -> tuple[Doubles, Doubles]:
+    """Outwards from the middle of each box, where the first light passes."""
+    angles = np.linspace(0, np.pi, _AZIMUTHS)
+    middle, half, top = 0.5 * (boxes[:, 0] + boxes[:, 1]), 0.5 * (boxes[:, 1] - boxes[:, 0]), boxes[:, 2]
+
+    def directions(share: Doubles) -> tuple[Doubles, Doubles]:
+        """Of shares (R, azimuths) of the way to the ellipse in the box."""
+        return (
+            middle[:, None] + half[:, None] * share * np.cos(angles),
+            top[:, None] * share * np.sin(angles),
+        )
+
+    shape = (len(boxes), _AZIMUTHS)
+    passed = np.stack([at(*directions(np.full(shape, step / _STEPS))) for step in range(_STEPS)], axis=-1)
+    first = passed.argmax(axis=-1) / _STEPS
+    before = np.maximum(first - 1 / _STEPS, 0)
+    for _ in range(_HALVINGS):
+        tried = 0.5 * (before + first)
+        lit = at(*directions(tried))
+        first, before = np.where(lit, tried, first), np.where(lit, before, tried)
+    l, m = directions(before)  # noqa: E741
+    dark = ~passed.any(axis=-1)
+    l[dark] = m[dark] = np.nan
+    return l, m
 
 
 def _grid(boxes: Doubles) -> tuple[Doubles, Doubles]:

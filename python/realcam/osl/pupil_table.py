@@ -22,8 +22,8 @@ STOPS = (1.0, 2**-0.5, 0.5, 0.25, 0.0625)
 _QUARTERS = (0.25, 0.5, 0.75)
 _REACH = 1.2
 """Film radii go on to so many half diagonals of the film, or to where the light ends."""
-_CELL = 0.08
-"""Of a pupil's half axis: what the grid of directions may overlook in its middle."""
+_HOLE_MARGIN = 0.02
+"""Of a pupil's half axes. Between two stops the blocked part is smaller than their mean, by nearly as much."""
 _MARGIN = 1.002
 """For what lies between the places at which the ellipses were tried."""
 _SMALL_DRIFT = 0.05
@@ -65,8 +65,8 @@ def pupil_table(focusing: FocusRange, colours: Mapping[float, float]) -> PupilTa
     growth = np.fmax(np.fmax.reduce(outer, axis=-1), 1)
     nodes[..., 1:] *= maximum_filter(growth, (3, 1, 3), mode="nearest")[::2, :, ::2, None] * _MARGIN
     inner = np.fmin.reduce(_norms_at(at_stops, nodes, lambda look: (look.inner_l, look.inner_m)), axis=-1)
-    hole = minimum_filter(np.nan_to_num(inner, nan=np.inf), 3, mode="nearest")[::2, :, ::2] - _CELL
-    hole = np.where(np.isfinite(hole) & (hole > _CELL), hole, 0)
+    hole = minimum_filter(np.nan_to_num(inner, nan=np.inf), 3, mode="nearest")[::2, :, ::2] - _HOLE_MARGIN
+    hole = np.where(np.isfinite(hole) & (hole > _HOLE_MARGIN), hole, 0)
     bulge = np.zeros(hole.shape)
     for focus, cell in np.ndindex(FOCI, len(cells)):
         bulge[focus, cell] = _bulge(between[focus][cell], *_between(nodes[focus], 1)[cell : cell + 2])
