@@ -257,6 +257,78 @@ def test_gradients_are_central_differences_in_fifty_digits(object_m: float) -> N
                 assert found[q].by[k] == pytest.approx(float((above[q] - below[q]) / (2 * step)), rel=1e-9), (q, name)
 
 
+def focal_length_and_f_number(of: dict[str, Any], near: rc.AimedRays) -> tuple[Any, Any]:
+    """Of both meridians together, about the ray from the middle of the film to that of the stop, which is looked for
+    from a ray near to it. The determinants of how directions behind the lens, and places on the stop, change with the
+    place of parallel rays in front of it, by differences."""
+    h = mpf(10) ** -18
+    at, d = [mpf(v) for v in near.origins_mm[0]], unit([mpf(v) for v in near.directions[0]])
+
+    def beside(k: int, step: Any) -> tuple[list[Any], list[Any]]:
+        x = unit(cross([mpf(0), mpf(1), mpf(0)], d))
+        axis = (x, cross(d, x))[k % 2]
+        return (plus(at, step, axis), d) if k < 2 else (at, unit(plus(d, step, axis)))
+
+    for _ in range(6):
+        stop, place, _, _ = traced(of, at, d)
+        here = mpmath.matrix([*stop, *place[:2]])
+        slopes = mpmath.matrix(4, 4)
+        for k in range(4):
+            stop, place, _, _ = traced(of, *beside(k, h))
+            slopes[:, k] = (mpmath.matrix([*stop, *place[:2]]) - here) / h
+        steps = mpmath.lu_solve(slopes, -here)
+        for k in range(4):
+            at, d = beside(k, steps[k])
+    stop, _, behind, _ = traced(of, at, d)
+    x = unit(cross([mpf(0), mpf(1), mpf(0)], behind))
+    axes, power, pupil = (x, cross(behind, x)), mpmath.matrix(2, 2), mpmath.matrix(2, 2)
+    for k in range(2):
+        stop_beside, _, way, _ = traced(of, *beside(k, h))
+        for i in range(2):
+            power[i, k], pupil[i, k] = dot(axes[i], way) / h, (stop_beside[i] - stop[i]) / h
+    length = 1 / mpmath.sqrt(abs(mpmath.det(power)))
+    return length, length * mpmath.sqrt(abs(mpmath.det(pupil))) / (2 * STOP)
+
+
+def test_first_order_is_a_central_difference_in_fifty_digits() -> None:
+    lens = tilted_anamorphic()
+    near = lens.aim([[0.0, 0.0]], film_mm=(0.0, 0.0))
+    found = [lens.gradient(q, list(VARIABLES.values())) for q in ("effective_focal_length_mm", "f_number")]
+    data = lens.first_order()
+    # These are found by differences of rays in double.
+    assert found[0].value == pytest.approx(data.effective_focal_length_mm, rel=1e-8)
+    assert found[1].value == pytest.approx(data.f_number, rel=1e-8)
+    with mpmath.workdps(50):
+        numbers = {name: mpf(value) for name, value in NUMBERS.items()}
+        numbers |= {
+            name: mpf(lens.surfaces[k].curvature_per_mm)
+            for name, k in (("c0", 0), ("c1", 1), ("cylinder", 3), ("c4", 4))
+        }
+        assert found[0].value == pytest.approx(float(focal_length_and_f_number(numbers, near)[0]), rel=1e-10)
+        for k, name in enumerate(VARIABLES):
+            step = mpf(10) ** -14 * (abs(numbers[name]) or 1)
+            above, below = (
+                focal_length_and_f_number(numbers | {name: numbers[name] + side}, near) for side in (step, -step)
+            )
+            for i in (0, 1):
+                # The second derivatives of rays are differences of first ones in double.
+                wanted = float((above[i] - below[i]) / (2 * step))
+                assert found[i].by[k] == pytest.approx(wanted, rel=1e-7, abs=1e-9 * found[i].value), (i, name)
+
+
+def test_the_first_order_of_a_lens_that_is_moved_before_its_film_is_asked_for_before() -> None:
+    moved = rc.Lens.load("view-camera-210mm")
+    with pytest.raises(rc.InputError, match="differentiate it without the move"):
+        moved.gradient("effective_focal_length_mm", [rc.Variable.radius(0)])
+
+
+def test_a_length_is_a_sum() -> None:
+    variables = [rc.Variable.radius(0), rc.Variable.thickness(2), rc.Variable.film_distance()]
+    found = tilted_anamorphic().gradient("length_mm", variables)
+    assert found.value == pytest.approx(sum(NUMBERS[name] for name in ("t0", "t1", "t2", "t3", "film")), rel=1e-15)
+    assert list(found.by) == [0, 1, 1]
+
+
 def test_values_are_those_of_the_analyses() -> None:
     """Of lenses whose axis turns and whose film is tilted, too."""
     some = [rc.Variable.radius(0)]
@@ -306,7 +378,7 @@ def test_a_film_point_names_the_field_of_a_lens_of_revolution_too() -> None:
         assert by_place.by == pytest.approx(by_angle.by, rel=1e-7)
 
 
-@pytest.mark.parametrize("quantity", ["distortion_percent", "chief_ray_angle_deg", "length_mm", "f_number"])
+@pytest.mark.parametrize("quantity", ["distortion_percent", "chief_ray_angle_deg", "back_focal_distance_mm"])
 def test_what_needs_a_lens_of_revolution_says_so(quantity: str) -> None:
     with pytest.raises(rc.InputError, match="need a centred lens of revolution"):
         tilted_anamorphic().gradient(quantity, [rc.Variable.radius(0)], field_deg=3)

@@ -74,6 +74,14 @@ def exit_pupil_distance(rays: ChiefRayNeighbours, origin: DualArray, direction: 
     pupil is the image of the stop: with places q and optical directions p across the chief ray at the film, a ray meets
     the stop in A q + B p, and the distance is the mean of the matrix -n A^-1 B over both meridians.
     """
+    film, index = at_film(rays, origin, direction)
+    by_film = _solved_right(rays.stop, film)
+    return -0.5 * index * _trace_of_quotient(by_film[:, :2], by_film[:, 2:])
+
+
+def at_film(rays: ChiefRayNeighbours, origin: DualArray, direction: DualArray) -> tuple[DualArray, DualArray]:
+    """(4, 4): places and optical directions across the chief ray at the film, by the four numbers of a ray at its
+    start, and the index behind the lens."""
     square = direction * direction
     index = (square[0] + square[1] + square[2]).sqrt()
     z = [direction[i] / index for i in range(3)]
@@ -82,15 +90,13 @@ def exit_pupil_distance(rays: ChiefRayNeighbours, origin: DualArray, direction: 
     x = [z[2] / width, none, -z[0] / width]
     y = [-(z[0] * z[1]) / width, width, -(z[1] * z[2]) / width]
     way = -origin[2] / direction[2]
-    at_film = [rays.place[i] + way * rays.direction[i] for i in range(3)]
+    places = [rays.place[i] + way * rays.direction[i] for i in range(3)]
     rows = [
         axis[0] * part[0] + axis[1] * part[1] + axis[2] * part[2]
-        for part in (at_film, [rays.direction[i] for i in range(3)])
+        for part in (places, [rays.direction[i] for i in range(3)])
         for axis in (x, y)
     ]
-    film = DualArray(np.array([row.value for row in rows]), np.array([row.by for row in rows]))
-    by_film = _solved_right(rays.stop, film)
-    return -0.5 * index * _trace_of_quotient(by_film[:, :2], by_film[:, 2:])
+    return DualArray(np.array([row.value for row in rows]), np.array([row.by for row in rows])), index
 
 
 def _solved_right(a: DualArray, b: DualArray) -> DualArray:

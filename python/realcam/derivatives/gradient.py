@@ -14,6 +14,7 @@ from ..variable import Variable, checked
 from .dual_array import Doubles, DualArray
 from .field_light import FieldLight, field_light
 from .first_order import first_order_duals
+from .parabasal import focal_length_and_f_number
 
 FIRST_ORDER = (
     "effective_focal_length_mm",
@@ -35,7 +36,19 @@ QUANTITIES = (
 )
 
 
-OF_ANY_LENS = ("spot_mm", "wavefront_waves", "mtf_tangential", "mtf_sagittal", "chief_ray_height_mm")
+OF_ANY_LENS = (
+    "spot_mm",
+    "wavefront_waves",
+    "mtf_tangential",
+    "mtf_sagittal",
+    "chief_ray_height_mm",
+    "length_mm",
+    "effective_focal_length_mm",
+    "f_number",
+)
+NEEDS_REVOLUTION = (
+    f"derivatives of {{}} need a centred lens of revolution and a field angle; those of {', '.join(OF_ANY_LENS)} do not"
+)
 
 
 @dataclass(frozen=True, repr=False)
@@ -74,7 +87,8 @@ def gradient(
       entrance_pupil_position_mm.
     film_mm: names the field by the film point of its chief ray, as in Lens.spot. Tangential is then away from the
       film's middle, and the object point stays where it is. So it does in lenses that are not of revolution. Those have
-      only spot_mm, wavefront_waves, the MTF and chief_ray_height_mm (its y on the film).
+      only spot_mm, wavefront_waves, the MTF, chief_ray_height_mm (its y on the film), length_mm, f_number and
+      effective_focal_length_mm (means of both meridians).
     remove: None, "tilt" or "focus", of the wavefront. samples: hexapolar rings of rays.
     The film stays at its distance from the last vertex, the stop keeps its size, and rays go on to fill it. What a rim
     cuts off counts as if it stayed the same rays. Raises InputError for what the lens or its variables have not.
@@ -83,21 +97,13 @@ def gradient(
         raise InputError(f'unknown quantity "{quantity}"; one of {", ".join(QUANTITIES)} is wanted')
     listed = checked(self, variables)
     nm = self.wavelength_nm if wavelength_nm is None else wavelength_nm
-    first_order = first_order_duals(self, listed, nm) if quantity in (*FIRST_ORDER, "length_mm") else None
-    if first_order is not None:
+    if quantity in (*FIRST_ORDER, "length_mm"):
         # Refuses variables without an effect as rays do.
         self._ray_derivatives(np.zeros((0, 3)), np.zeros((0, 3)), [v.as_tuple() for v in listed])
-        number = (
-            first_order.last_vertex_mm + first_order.film_distance_mm
-            if quantity == "length_mm"
-            else getattr(first_order, quantity)
-        )
+        number = _of_first_order(self, quantity, listed, nm)
     else:
         if quantity not in OF_ANY_LENS and (film_mm is not None or not self.is_rotational):
-            raise InputError(
-                f"derivatives of {quantity} need a centred lens of revolution and a field angle; those of "
-                f"{', '.join(OF_ANY_LENS)} do not"
-            )
+            raise InputError(NEEDS_REVOLUTION.format(quantity))
         light = field_light(
             self, listed, field_deg, nm, object_distance_m=object_distance_m, film_mm=film_mm, samples=samples
         )
@@ -105,6 +111,20 @@ def gradient(
         tangential = x / math.hypot(x, y), y / math.hypot(x, y)
         number = _of_light(quantity, light, nm, frequency_per_mm, remove, tangential)
     return Gradient(quantity, float(number.value), tuple(listed), np.asarray(number.by))
+
+
+def _of_first_order(lens: Lens, quantity: str, variables: Sequence[Variable], wavelength_nm: float) -> DualArray:
+    if quantity == "length_mm":
+        length = sum(surface.thickness_mm for surface in lens.surfaces[:-1]) + lens.film_distance_mm
+        by = [float(v.quantity in ("thickness", "film_distance")) for v in variables]
+        return DualArray(np.array(length), np.array(by))
+    if lens.is_rotational:
+        number: DualArray = getattr(first_order_duals(lens, variables, wavelength_nm), quantity)
+        return number
+    if quantity not in OF_ANY_LENS:
+        raise InputError(NEEDS_REVOLUTION.format(quantity))
+    focal_length, f_number = focal_length_and_f_number(lens, variables, wavelength_nm)
+    return f_number if quantity == "f_number" else focal_length
 
 
 def _of_light(

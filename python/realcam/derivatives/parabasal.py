@@ -1,0 +1,78 @@
+"""First-order data of lenses of any kind, about the chief ray of the film's middle, with derivatives."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from .._core import InputError, Lens
+from ..variable import Variable
+from .dual_array import Doubles, DualArray
+from .exit_pupil import ChiefRayNeighbours, at_film
+
+
+def focal_length_and_f_number(
+    lens: Lens, variables: Sequence[Variable], wavelength_nm: float
+) -> tuple[DualArray, DualArray]:
+    """The geometric means of both meridians, as Lens.first_order has them.
+
+    Let rays beside the chief ray begin at places q across it and leave with optical directions C q. The singular values
+    of C are the index behind the lens over each focal length, so that their mean follows from the determinant of C. In
+    the same way the pupil's area follows from the stop's, by the determinant of the places on the stop. The chief ray
+    goes on to meet the middle of the stop and that of the film, from which its own derivatives follow.
+    Raises InputError for lenses of revolution that are moved before their film.
+    """
+    chief = lens.aim([[0.0, 0.0]], film_mm=(0.0, 0.0), wavelength_nm=wavelength_nm)
+    towards = chief.directions[0]
+    x = np.cross([0.0, 1.0, 0.0] if abs(towards[1]) < 0.9 else [1.0, 0.0, 0.0], towards)
+    x /= np.linalg.norm(x)
+    across = np.array([x, np.cross(towards, x)])
+    basis = np.zeros((6, 4))
+    basis[:3, :2] = basis[3:, 2:] = across.T
+
+    def traced(**options: object) -> tuple[Doubles, Doubles, Doubles]:
+        """The chief ray behind, its derivatives by the variables, and by its own four numbers at the start."""
+        _, numbers, by, by_ray = lens._ray_derivatives(
+            chief.origins_mm,
+            chief.directions,
+            [v.as_tuple() for v in variables],
+            wavelength_nm=wavelength_nm,
+            start="scene",
+            rims=False,
+            **options,  # type: ignore[arg-type]
+        )
+        return numbers[0, :6], by[0, :6], by_ray[0, :6] @ basis
+
+    _, stop_by, stop_by_start = traced(frame="axis", surface_count=lens.stop_index + 1)
+    numbers, by, by_start = traced(frame="film")
+    # Where the ray meets the film, by its six numbers behind the lens.
+    slope, way = numbers[3:5] / numbers[5], -numbers[2] / numbers[5]
+    on_film = np.hstack([np.eye(2), -slope[:, None], way * np.eye(2), -way * slope[:, None]])
+    start_by = -np.linalg.solve(
+        np.vstack([stop_by_start[:2], on_film @ by_start]), np.vstack([stop_by[:2], on_film @ by])
+    )
+    rays = ChiefRayNeighbours(
+        lens, variables, wavelength_nm, np.hstack([chief.origins_mm[0], towards]), across, start_by
+    )
+    behind = DualArray(numbers, by + by_start @ start_by)
+    film, index = at_film(rays, behind[:3], behind[3:])
+    power, stop = film[2:, :2], rays.stop[:, :2]
+
+    def grows(matrix: DualArray) -> Doubles:
+        """Derivatives of half the logarithm of the determinant."""
+        return np.asarray(0.5 * np.einsum("ij,jiv->v", np.linalg.inv(matrix.value), matrix.by))
+
+    first_order = lens.first_order(wavelength_nm)
+    size = float(index.value) / np.sqrt(abs(np.linalg.det(power.value)))
+    if abs(size / abs(first_order.effective_focal_length_mm) - 1) > 1e-6:
+        # Lens.first_order takes the move back.
+        raise InputError(
+            "a lens that was shifted or tilted before its film has the focal length and f-number that it had before: "
+            "differentiate it without the move"
+        )
+    growth = index.by / index.value - grows(power)
+    length = float(np.copysign(size, first_order.effective_focal_length_mm))
+    f_number = first_order.f_number
+    f_growth = growth + grows(stop)
+    return DualArray(np.array(length), length * growth), DualArray(np.array(f_number), f_number * f_growth)
