@@ -47,6 +47,8 @@ class RigCamera:
     def __post_init__(self) -> None:
         if not isinstance(self.camera, Camera):
             raise InputError(f"a camera of a rig is a realcam.Camera or a RigCamera; it is {self.camera!r:.60}")
+        if self.sensor is not None and not isinstance(self.sensor, Sensor):
+            raise InputError(f"the sensor of a rig's camera is a realcam.Sensor or None; it is {self.sensor!r:.60}")
         try:
             table = tuple((float(nm), float(share)) for nm, share in self.spectral_filter)
         except (TypeError, ValueError):
@@ -55,6 +57,9 @@ class RigCamera:
         if table and self.sensor is None:
             raise InputError("spectral_filter: the camera has no sensor for which light could be filtered")
         self.filtered_sensor  # noqa: B018 - raises for what is no filter
+
+    def __setstate__(self, state: Any) -> None:
+        set_checked_state(self, state, hash)
 
     def __repr__(self) -> str:
         with_filter = " with a filter" if self.spectral_filter else ""
@@ -276,7 +281,7 @@ def _rigid(matrices: ArrayLike, times: int) -> Array:
     if poses.shape != ((times, 4, 4) if times else (4, 4)) or not np.isfinite(poses).all():
         wanted = f"{times} matrices, one for each of times_s," if times else "a (4, 4) matrix"
         raise InputError(f"scene_from_rig must be {wanted} of finite numbers")
-    turns = poses[..., :3, :3]
+    turns = np.clip(poses[..., :3, :3], -2, 2)  # products of larger ones, which turn nothing, might overflow
     # Of what a user writes with seven digits.
     is_turn = np.allclose(turns @ np.swapaxes(turns, -1, -2), np.eye(3), atol=1e-6) and (np.linalg.det(turns) > 0).all()
     if not is_turn or not np.allclose(poses[..., 3, :], (0, 0, 0, 1), rtol=0, atol=1e-12):
