@@ -11,6 +11,7 @@
 #include "../io/files/readable_file.hpp"
 #include "../io/text/nearest_names.hpp"
 #include "../io/text/printable.hpp"
+#include "../io/text/text_lines.hpp"
 
 namespace realcam::shot {
 namespace {
@@ -19,18 +20,11 @@ constexpr std::size_t kMostRows = 1 << 20;
 
 const std::vector<std::string> kColumns = {"time_s", "x_deg", "y_deg", "z_deg", "x_m", "y_m", "z_m"};
 
-std::string_view trimmed(std::string_view text) {
-    const auto is_blank = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
-    while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
-    while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
-    return text;
-}
-
 std::vector<std::string_view> cells_of(std::string_view line) {
     std::vector<std::string_view> cells;
     for (std::size_t begin = 0; begin <= line.size();) {
         const std::size_t end = std::min(line.find(',', begin), line.size());
-        cells.push_back(trimmed(line.substr(begin, end - begin)));
+        cells.push_back(io::trimmed(line.substr(begin, end - begin)));
         begin = end + 1;
     }
     return cells;
@@ -46,7 +40,8 @@ public:
         std::vector<ShakeKey> curve;
         for (std::string line; std::getline(stream, line);) {
             ++line_;
-            const std::string_view content = trimmed(line);
+            if (line.ends_with('\r')) line.pop_back();
+            const std::string_view content = io::trimmed(line);
             if (content.empty() || content.front() == '#') continue;
             if (columns_.empty()) {
                 read_columns(content);
