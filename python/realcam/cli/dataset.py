@@ -39,7 +39,7 @@ def dataset(
     as_json: options.AsJson = False,
     quiet: options.Quiet = False,
 ) -> None:
-    """Make labelled pictures of random scenes through real lenses, in shards of tar files. It goes on after an end."""
+    """Make labelled pictures of random scenes through real lenses, in shards. Started again, it goes on."""
     from dataclasses import replace
 
     from ..dataset import Recipe, make

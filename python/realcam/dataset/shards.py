@@ -34,8 +34,10 @@ class DatasetFolder:
         try:
             (folder.path / "samples").mkdir(parents=True, exist_ok=True)
             before = json.loads(file.read_bytes()) if file.exists() else about
-        except (OSError, ValueError) as error:
-            raise InputError(f"{file}: this cannot be read: {error}") from None
+        except OSError as error:
+            raise InputError(f"{error.filename}: {error.strerror}; a folder that can be written to is wanted") from None
+        except ValueError as error:
+            raise InputError(f"{file}: this is damaged ({error}); another folder is wanted") from None
         changed = [key for key in about if key != "count" and before.get(key) != about[key]]
         if changed:
             raise InputError(f"{folder.path}: made by another recipe ({', '.join(changed)}); another folder is wanted")
