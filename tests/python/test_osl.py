@@ -83,7 +83,7 @@ def test_light_that_comes_back_along_a_ray_meets_its_film_point(
 
 
 @needs_compiler
-@pytest.mark.parametrize("name", [*LENSES, "fisheye-6mm-220deg"])
+@pytest.mark.parametrize("name", [*LENSES, "fisheye-6mm-220deg", "zoom-11-24mm"])
 def test_the_film_gets_as_much_light(program: Callable[[str], Callable[..., Rays]], name: str) -> None:
     lens = rc.Lens.load(name).focused(math.inf)
     # The image of the fisheye ends 0.05 mm after 0.55.

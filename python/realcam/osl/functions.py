@@ -122,9 +122,10 @@ int cross_asphere(float gap, float curvature, float conic, float terms[{terms}],
     float slope = 0;
     float miss = 1;
     for (int step = 0; step < {steps} && abs(miss) > {tolerance} * rim; ++step) {{
-        // Newton's method. Beyond the rim the surface goes on as a plane, so that no power runs away.
+        // Newton's method. Beyond the rim the surface goes on as a paraboloid of the same slope: no power runs away,
+        // and there is no edge about which the steps could go to and fro.
         float share = (at[0] * at[0] + at[1] * at[1]) / (rim * rim);
-        float near = min(share, 1.2);
+        float near = min(share, 1);
         float squared = near * rim * rim;
         float root = sqrt(max(1e-3, 1 - conic * curvature * curvature * squared));
         float height = 0;
@@ -133,8 +134,8 @@ int cross_asphere(float gap, float curvature, float conic, float terms[{terms}],
             height = height * near + terms[power];
             rise = rise * near + (power + 2) * terms[power];
         }}
-        height = height * near * near + curvature * squared / (1 + root);
-        slope = share > near ? 0 : curvature / root + 2 * rise * near / (rim * rim);
+        slope = curvature / root + 2 * rise * near / (rim * rim);
+        height = height * near * near + curvature * squared / (1 + root) + 0.5 * slope * (share - near) * rim * rim;
         miss = at[2] - height;
         float towards = way[2] - slope * (at[0] * way[0] + at[1] * way[1]);
         at -= miss / towards * way;
