@@ -100,8 +100,8 @@ def outlines(lens: Lens, radii_mm: Doubles, boxes: Doubles, light: Light, rounds
     edge_m = np.hstack([row_m, row_m, np.where(column_dark, np.nan, tops)])
     missing = np.isnan(edge_l) | np.isnan(edge_m)
     edge_l[missing] = edge_m[missing] = np.nan
-    blocked = ~passed[:, 0, _COLUMNS // 2] & row_lit.any(axis=1)
-    inner_l, inner_m = _inner_edges(boxes, at) if blocked.any() else np.full((2, len(radii_mm), _AZIMUTHS), np.nan)
+    blocked = any(surface.inner_semi_diameter_mm for surface in lens.surfaces)
+    inner_l, inner_m = _inner_edges(boxes, at) if blocked else np.full((2, len(radii_mm), _AZIMUTHS), np.nan)
     return Outlines(edge_l, edge_m, inner_l, inner_m, boxes)
 
 
