@@ -41,6 +41,12 @@ FrameChange<double> value(const DualFrame& frame) {
 
 }  // namespace
 
+FreeformSags<Dual8, 1> dual_sags(const DualSurface& surface, const Lanes<Dual8, 1>& x, const Lanes<Dual8, 1>& y) {
+    FreeformSags<Dual8, 1> sags;
+    freeform_sags<Dual8, 1>(surface.form.front(), x, y, sags);
+    return sags;
+}
+
 AdjointPath::AdjointPath(const LensSystem& lens, LightDirection direction, double wavelength_nm,
                          std::vector<LensVariable> variables)
     : path_(lens, direction, wavelength_nm, std::move(variables), ExitFrame::lens) {}

@@ -6,7 +6,8 @@ namespace REALCAM_NAMESPACE {
 
 // Reverse-mode differentiation. A function of the rays behind a surface has derivatives by these rays: their adjoints.
 // Here they become those by the rays before the surface, and by the surface's numbers. Adjoints of vectors are vectors
-// of derivatives; `of_x` is the adjoint of x.
+// of derivatives; `of_x` is the adjoint of x. Only the host runs this: nvcc has no vectors of which dual numbers are
+// made.
 
 /// Where the adjoints of a surface's numbers stand in a list.
 enum SurfaceNumber : int {
@@ -36,8 +37,8 @@ struct AdjointStep {
     Vec3Lanes<double, N> origin, direction;
     Lanes<double, N> sums[kSurfaceNumbers];
 
-    REALCAM_INLINE void add(int number, int lane, double of_number) { sums[number][lane] += of_number; }
-    REALCAM_INLINE void add(int first, int lane, Vec3d of_vector) {
+    void add(int number, int lane, double of_number) { sums[number][lane] += of_number; }
+    void add(int first, int lane, Vec3d of_vector) {
         add(first, lane, of_vector.x), add(first + 1, lane, of_vector.y), add(first + 2, lane, of_vector.z);
     }
 };
@@ -51,14 +52,12 @@ struct ConicPoint {
     Vec3d at;
 
     /// S = z - c/2 (x^2 + y^2 + (1 + k) z^2)
-    REALCAM_INLINE Vec3d gradient() const {
-        return {-curvature * at.x, -curvature * at.y, 1 - curvature * conic_factor * at.z};
-    }
-    REALCAM_INLINE Vec3d bend(Vec3d of_gradient) const {
+    Vec3d gradient() const { return {-curvature * at.x, -curvature * at.y, 1 - curvature * conic_factor * at.z}; }
+    Vec3d bend(Vec3d of_gradient) const {
         return -curvature * Vec3d{of_gradient.x, of_gradient.y, conic_factor * of_gradient.z};
     }
     template <int N>
-    REALCAM_INLINE void add_numbers(Vec3d of_gradient, double fall, AdjointStep<N>& step, int lane) const {
+    void add_numbers(Vec3d of_gradient, double fall, AdjointStep<N>& step, int lane) const {
         const Vec3d scaled = {at.x, at.y, conic_factor * at.z};
         step.add(kCurvature, lane, 0.5 * fall * dot(scaled, at) - dot(scaled, of_gradient));
         step.add(kConicFactor, lane, curvature * at.z * (0.5 * fall * at.z - of_gradient.z));
@@ -71,7 +70,7 @@ struct AspherePoint {
     double w, root;       ///< r^2, and the square root of the conic's sag
     double slope, change;  ///< twice the first and twice the second derivative of the sag by w
 
-    REALCAM_INLINE AspherePoint(const SurfaceView<double>& surface, Vec3d point)
+    AspherePoint(const SurfaceView<double>& surface, Vec3d point)
         : curvature(surface.curvature), conic_factor(surface.conic_factor), at(point) {
         w = at.x * at.x + at.y * at.y;
         const double steepness = conic_factor * curvature * curvature;
@@ -91,13 +90,13 @@ struct AspherePoint {
     }
 
     /// S = z - sag
-    REALCAM_INLINE Vec3d gradient() const { return {-slope * at.x, -slope * at.y, 1}; }
-    REALCAM_INLINE Vec3d bend(Vec3d of_gradient) const {
+    Vec3d gradient() const { return {-slope * at.x, -slope * at.y, 1}; }
+    Vec3d bend(Vec3d of_gradient) const {
         const double turn = 2 * change * (at.x * of_gradient.x + at.y * of_gradient.y);
         return {-slope * of_gradient.x - turn * at.x, -slope * of_gradient.y - turn * at.y, 0};
     }
     template <int N>
-    REALCAM_INLINE void add_numbers(Vec3d of_gradient, double fall, AdjointStep<N>& step, int lane) const {
+    void add_numbers(Vec3d of_gradient, double fall, AdjointStep<N>& step, int lane) const {
         const double across = at.x * of_gradient.x + at.y * of_gradient.y, inverse = 1 / root;
         const double sag = curvature * w / (1 + root), cube = inverse * inverse * inverse;
         step.add(kCurvature, lane, 0.5 * fall * (w + conic_factor * sag * sag) * inverse - across * cube);
@@ -112,6 +111,9 @@ struct AspherePoint {
     }
 };
 
+/// Sag and slopes of a freeform at a place, with the derivatives that its numbers and x and y carry.
+FreeformSags<Dual8, 1> dual_sags(const DualSurface& surface, const Lanes<Dual8, 1>& x, const Lanes<Dual8, 1>& y);
+
 /// Of the numbers of a freeform, those that its dual numbers have in their lanes.
 struct FreeformPoint {
     const DualSurface* duals;
@@ -124,7 +126,7 @@ struct FreeformPoint {
         : duals(of), count(number), sums(to), at(point) {
         Lanes<Dual8, 1> x = {at.x}, y = {at.y};
         x[0].by[0] = y[0].by[1] = 1;
-        freeform_sags<Dual8, 1>(duals[0].form.front(), x, y, first);
+        first = dual_sags(duals[0], x, y);
     }
 
     Vec3d gradient() const { return {-first.slope_x[0].value, -first.slope_y[0].value, 1}; }
@@ -136,8 +138,7 @@ struct FreeformPoint {
     void add_numbers(Vec3d of_gradient, double fall, AdjointStep<N>&, int) const {
         const Lanes<Dual8, 1> x = {at.x}, y = {at.y};
         for (int i = 0; i < count; ++i) {
-            FreeformSags<Dual8, 1> sag = first;
-            if (i > 0) freeform_sags<Dual8, 1>(duals[i].form.front(), x, y, sag);
+            const FreeformSags<Dual8, 1> sag = i > 0 ? dual_sags(duals[i], x, y) : first;
             sums[i].by +=
                 fall * sag.height[0].by - of_gradient.x * sag.slope_x[0].by - of_gradient.y * sag.slope_y[0].by;
         }
@@ -149,8 +150,8 @@ struct FreeformPoint {
 /// Where S(o + t p) = 0, t changes by -dS / (gradient . p). The rest is the derivative of Snell's law (refract), whose
 /// square roots are read off the refracted ray.
 template <int N, class SurfacePoint>
-REALCAM_INLINE void pull_crossing(const SurfacePoint& point, const SurfaceView<double>& surface, Vec3d o, Vec3d p,
-                                  RayAdjoints<N>& adjoints, AdjointStep<N>& step, int lane) {
+inline void pull_crossing(const SurfacePoint& point, const SurfaceView<double>& surface, Vec3d o, Vec3d p,
+                          RayAdjoints<N>& adjoints, AdjointStep<N>& step, int lane) {
     const Vec3d behind = step.direction[lane], of_behind = adjoints.direction[lane];
     const double of_path = adjoints.path[lane];
     const Vec3d gradient = point.gradient();
@@ -175,8 +176,8 @@ REALCAM_INLINE void pull_crossing(const SurfacePoint& point, const SurfaceView<d
 
 /// From the frame of a surface to that of the one before, which the rays `before` are in.
 template <int N>
-REALCAM_INLINE void pull_frame(const FrameChange<double>& frame, const Vec3Lanes<double, N>& from,
-                               const Vec3Lanes<double, N>& along, RayAdjoints<N>& adjoints, AdjointStep<N>& step) {
+inline void pull_frame(const FrameChange<double>& frame, const Vec3Lanes<double, N>& from,
+                       const Vec3Lanes<double, N>& along, RayAdjoints<N>& adjoints, AdjointStep<N>& step) {
     REALCAM_LANES
     for (int i = 0; i < N; ++i) {
         const Vec3d of_o = adjoints.origin[i], of_p = adjoints.direction[i];
@@ -202,8 +203,8 @@ struct AdjointSurface {
 
 /// The adjoints of N rays behind a surface become those before it. before: the rays behind the surface before.
 template <int N>
-REALCAM_INLINE void pull_surface(const AdjointSurface& surface, const AdjointStep<N>& before, AdjointStep<N>& step,
-                                 RayAdjoints<N>& adjoints) {
+inline void pull_surface(const AdjointSurface& surface, const AdjointStep<N>& before, AdjointStep<N>& step,
+                         RayAdjoints<N>& adjoints) {
     const SurfaceView<double> view = surface.view;
     const FrameChange<double> frame = surface.before;
     Vec3Lanes<double, N> o, p;
