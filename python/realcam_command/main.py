@@ -6,7 +6,7 @@ import os
 import signal
 import sys
 
-from . import denoiser_library
+from . import denoiser_library, makes_film
 
 # What the extension does, with the C++ that the executable has, so that the two cannot differ.
 _IN_CPP = (["render"], ["plan"], ["devices"], ["lens", "info"], ["lens", "list"])
@@ -20,7 +20,7 @@ def main() -> None:
     if "--denoise" in arguments and (library := denoiser_library()):
         os.environ["REALCAM_OIDN"] = library
     try:
-        if any(arguments[: len(command)] == command for command in _IN_CPP) and not _makes_film(arguments):
+        if any(arguments[: len(command)] == command for command in _IN_CPP) and not makes_film(arguments):
             sys.exit(_run_in_cpp(arguments))
         from realcam.cli import run
     except ImportError as error:
@@ -29,11 +29,6 @@ def main() -> None:
 
     signal.signal(signal.SIGINT, signal.default_int_handler)
     run()
-
-
-def _makes_film(arguments: list[str]) -> bool:
-    """Whether there is more to do than the extension does."""
-    return arguments[:1] == ["render"] and any(word.lower().endswith(".mp4") for word in arguments)
 
 
 def _run_in_cpp(arguments: list[str]) -> int:

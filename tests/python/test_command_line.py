@@ -155,7 +155,7 @@ def test_help_has_one_form(name: str, monkeypatch: pytest.MonkeyPatch, capfd: py
     def paragraphs(page: str) -> list[str]:
         """One for each option, argument and heading; which column texts begin in depends on the names in a group."""
         lines = re.sub(r"\n {4,}", " ", page).replace(" [required]", "").splitlines()
-        return sorted({" ".join(line.split()) for line in lines} - {"Camera:", "Scene:", "Picture:", ""})
+        return sorted({" ".join(line.split()) for line in lines} - {"Camera:", "Scene:", "Picture:", "Film:", ""})
 
     assert paragraphs(text) == paragraphs(printed)
 

@@ -91,7 +91,10 @@ def test_left_and_right_are_the_whole(effects: tuple[str, ...], device: str) -> 
     # A quarter of the samples of the test above; dispersion has other colours at other places, which blurs little.
     assert disparity_mm(image) == pytest.approx(disparity_of_rays_mm(seen_by.lens, 2.5), rel=0.05)
     without = photograph(scene, seen_by, effects=effects, layers=(), light_tracing="off", device=device)
-    assert np.array_equal(image.pixels, without.pixels)
+    if device == "cpu":
+        assert np.array_equal(image.pixels, without.pixels)
+    else:  # another kernel, whose roundings may send single samples elsewhere
+        assert np.abs(image.pixels - without.pixels).sum() < 1e-3 * without.pixels.sum()
 
 
 def test_where_rims_cut_the_pupil_one_half_has_less_light_and_the_other_side_mirrors_it(device: str) -> None:

@@ -7,6 +7,7 @@ import warnings
 from typing import NoReturn
 
 import typer
+from realcam_command import makes_film
 
 from .. import __version__
 from .._core import LensFileError, RealcamError, one_line
@@ -57,7 +58,7 @@ def run() -> None:
     command = typer.main.get_command(app)
     finish(command)
     try:
-        if sys.argv[1:2] == ["render"]:  # one with a film as its output: all others are in C++
+        if makes_film(sys.argv[1:]):
             sys.exit(film.render_films(sys.argv[2:]))
         sys.exit(command(sys.argv[1:] or ["--help"], prog_name="realcam", standalone_mode=False))
     except UsageError as error:
