@@ -21,7 +21,7 @@ needs_two = pytest.mark.skipif(len(GPUS) < 2, reason=f"{len(GPUS)} GPUs; two are
 
 # Where a sample goes astray, a pixel changes by the share of one sample, some percent; roundings alone leave 1e-5 of it
 # at most: 2^-24 times some hundred operations.
-ASTRAY = 1e-3
+ASTRAY = 5e-4
 # An edge is as wide as the rounding of a hit, 1e-6 of the distance, against a pixel of 1e-3: with up to 64 samples and
 # a few edges in a pixel, one in a thousand pixels.
 ASTRAY_SHARE = 2e-3
