@@ -29,6 +29,14 @@ def check_target(path: str | os.PathLike[str]) -> None:
         raise ImageFileError(f"{os.fspath(path)}: {why}")
 
 
+def make_folder(path: Path) -> None:
+    """Makes a folder, and those above it, where they are missing. Raises ImageFileError."""
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise ImageFileError(f"{path}: the folder cannot be made: {error.strerror}") from None
+
+
 def write_whole(
     path: str | os.PathLike[str], content: bytes, *, replaces: bool = True, is_durable: bool = False
 ) -> bool:

@@ -14,6 +14,7 @@ import typer
 from realcam_command import denoiser_library
 
 from .._core import InputError, Lens
+from ..files import make_folder
 from . import options
 
 
@@ -41,10 +42,7 @@ def demo(
     words = ["--denoise"] if denoises else []
     new_folders = [folder for folder in (output, *output.parents) if not folder.exists()]
     signal.signal(signal.SIGTERM, lambda number, _: sys.exit(128 + number))  # by way of what cleans up
-    try:
-        output.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputError(f"{output}: the folder cannot be made: {error.strerror}") from None
+    make_folder(output)
     try:
         _render(shot, samples, quiet, output / "demo.png", output / "demo.exr", *words)
         _render(shot, max(1, samples // 4), quiet, output / "demo-thin-lens.png", "--model", "thin", *words)

@@ -13,9 +13,9 @@ from typing import NoReturn
 import numpy as np
 
 from .. import _core
-from .._core import ImageFileError, InputError
+from .._core import InputError
 from ..extras import imported
-from ..files import check_target
+from ..files import check_target, make_folder
 from ..video import write_video
 from .options import frame_numbers, say_written
 
@@ -38,10 +38,7 @@ def render_films(words: list[str]) -> int:
     for film in films:
         check_target(film)
         folder = _folder_of(film)
-        try:
-            folder.mkdir(exist_ok=True)
-        except OSError as error:
-            raise ImageFileError(f"{folder}: the folder cannot be made: {error.strerror}") from None
+        make_folder(folder)
         outputs.append(str(folder / "######.png"))
     fps = ["--fps", str(said.fps)]
     quiet = ["--quiet"] if said.quiet else []

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Optional
 import numpy as np
 import typer
 
-from .._core import ImageFileError, InputError
+from .._core import InputError
 from ..json_values import json_text
 from ..progress import progress_bar
 from ..shot import Shot
@@ -217,10 +217,7 @@ def finish(
         raise InputError("one folder is wanted for --output, or files .exr and .png")
     targets = {job.names[0]: output} if to_files else {name: [output[0] / f"{name}.{format}"] for name in job.names}
     if not to_files:
-        try:
-            output[0].mkdir(parents=True, exist_ok=True)
-        except OSError as error:
-            raise ImageFileError(f"{output[0]}: the folder cannot be made: {error.strerror}") from None
+        files.make_folder(output[0])
     for paths in targets.values():
         for path in paths:
             files.check_target(path)
