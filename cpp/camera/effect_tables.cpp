@@ -61,8 +61,10 @@ void EffectTables::set_wavelengths(FilmSpectrum spectrum) {
     const double design = lens_.wavelength_nm;
     const WavelengthRange range = effects_.dispersion ? spectrum_->range() : WavelengthRange{design, design};
     check_dispersion(lens_, range);
-    to_scene_ = index_cubics(lens_, LightDirection::to_scene, range);
-    to_film_ = index_cubics(lens_, LightDirection::to_film, range);
+    const std::vector<double> wavelengths = effects_.dispersion ? spectrum_->even_wavelengths() : std::vector{design};
+    const WavelengthVariable variable = variable_over(spectrum_->range());
+    to_scene_ = index_cubics(lens_, LightDirection::to_scene, wavelengths, variable);
+    to_film_ = index_cubics(lens_, LightDirection::to_film, wavelengths, variable);
     film_path_.emplace(lens_, LightDirection::to_film, design, film_path_ends(lens_, LightDirection::to_film));
     pupil_wavelengths_ = {std::clamp(design, range.first, range.last)};
     for (const double end : {range.first, range.last})

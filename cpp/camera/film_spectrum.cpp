@@ -192,10 +192,15 @@ FilmSpectrum::FilmSpectrum(WavelengthRange range)
     : cells_{{static_cast<float>(range.first), static_cast<float>(range.last), {1, 0, 0, 0, 1, 0, 0, 0, 1}}} {}
 
 std::vector<double> FilmSpectrum::even_wavelengths() const {
-    constexpr std::size_t kStep = 6;
+    constexpr std::size_t kCount = 32;
     std::vector<double> wavelengths;
-    for (std::size_t i = std::min(kStep / 2, cells_.size() - 1); i < cells_.size(); i += kStep)
-        wavelengths.push_back(static_cast<double>(0.5f * (cells_[i].first_nm + cells_[i].last_nm)));
+    for (std::size_t i = 0; i < kCount; ++i) {
+        const double place = (static_cast<double>(i) + 0.5) / kCount * static_cast<double>(cells_.size());
+        const WavelengthCell& cell = cells_[static_cast<std::size_t>(place)];
+        // One of many cells is narrow.
+        const double within = cells_.size() > kCount ? 0.5 : place - std::floor(place);
+        wavelengths.push_back(std::lerp(static_cast<double>(cell.first_nm), static_cast<double>(cell.last_nm), within));
+    }
     return wavelengths;
 }
 

@@ -48,7 +48,7 @@ public:
     WavelengthRange range() const {
         return {static_cast<double>(cells_.front().first_nm), static_cast<double>(cells_.back().last_nm)};
     }
-    /// About thirty, spread as the wavelengths of samples are.
+    /// 32, spread as the wavelengths of samples are.
     std::vector<double> even_wavelengths() const;
 
 private:

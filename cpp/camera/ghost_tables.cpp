@@ -153,15 +153,14 @@ void GhostTables::make_crossings(const LensSystem& lens, const FilmSpectrum* spe
     all_ = ghost_tables_detail::all_crossings(lens);
     if (!spectrum) {
         const double design = lens.wavelength_nm;
-        all_coatings_ =
-            ghost_coatings(lens, all_, fit_coatings<kOneWavelengthTerms>(lens, all_, {design}), {design, design});
+        all_coatings_ = ghost_coatings(lens, all_, fit_coatings<kOneWavelengthTerms>(lens, all_, {design}), {design});
         return;
     }
-    const WavelengthRange range = spectrum->range();
-    all_indices_ = index_cubics(lens, all_, range);
-    all_spectral_ = ghost_coatings(
-        lens, all_, fit_coatings<kGhostSpectrumTerms>(lens, all_, spectrum->even_wavelengths(), variable_over(range)),
-        range);
+    const std::vector<double> wavelengths = spectrum->even_wavelengths();
+    const WavelengthVariable variable = variable_over(spectrum->range());
+    all_indices_ = index_cubics(lens, all_, wavelengths, variable);
+    all_spectral_ = ghost_coatings(lens, all_, fit_coatings<kGhostSpectrumTerms>(lens, all_, wavelengths, variable),
+                                   wavelengths, variable);
 }
 
 void GhostTables::add(Ways& to, const LensPath<float>& path, const std::vector<Crossing>& crossings) {

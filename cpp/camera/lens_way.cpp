@@ -18,19 +18,18 @@ LensWay::LensWay(const LensSystem& lens, const std::optional<FilmSpectrum>& spec
       reach_(entry_reach(lens)) {
     const double design = lens.wavelength_nm;
     const std::vector<Crossing> way = crossings_of(lens);
-    const WavelengthRange one{design, design};
     if (!spectrum) {
         if (effects.coatings)
-            coatings_ = ghost_coatings(lens, way, fit_coatings<kOneWavelengthTerms>(lens, way, {design}), one);
+            coatings_ = ghost_coatings(lens, way, fit_coatings<kOneWavelengthTerms>(lens, way, {design}), {design});
         return;
     }
-    const WavelengthRange range = effects.dispersion ? spectrum->range() : one;
-    indices_ = index_cubics(lens, way, range);
+    const std::vector<double> all = spectrum->even_wavelengths();
+    const WavelengthVariable variable = variable_over(spectrum->range());
+    const std::vector<double> refracted = effects.dispersion ? all : std::vector{design};
+    indices_ = index_cubics(lens, way, refracted, variable);
     if (effects.coatings)
-        spectral_coatings_ = ghost_coatings(lens, way,
-                                            fit_coatings<kGhostSpectrumTerms>(lens, way, spectrum->even_wavelengths(),
-                                                                              variable_over(spectrum->range())),
-                                            range);
+        spectral_coatings_ =
+            ghost_coatings(lens, way, fit_coatings<kGhostSpectrumTerms>(lens, way, all, variable), refracted, variable);
 }
 
 GhostView LensWay::view(GhostLight light, std::int32_t pixel_samples) const {

@@ -7,12 +7,13 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// The coatings of the crossings of a way, or of several. `coatings`: their fit_coatings; `range`: of wavelengths, a
-/// single one if kWavelengthTerms is 1. Throws InputError where a glass has no index.
+/// The coatings of the crossings of a way, or of several. `coatings`: their fit_coatings; `wavelengths_nm`, `variable`:
+/// as cubics_over's, a single one if kWavelengthTerms is 1. Throws InputError where a glass has no index.
 template <int kWavelengthTerms>
 std::vector<GhostCoating<kWavelengthTerms>> ghost_coatings(
     const LensSystem& lens, const std::vector<Crossing>& way,
-    const std::vector<CoatingPolynomials<kWavelengthTerms>>& coatings, WavelengthRange range) {
+    const std::vector<CoatingPolynomials<kWavelengthTerms>>& coatings, const std::vector<double>& wavelengths_nm,
+    WavelengthVariable variable = {0, 0}) {
     const auto difference = [](const Crossing& crossing, const std::vector<double>& indices) {
         const double n = crossing.index_before(indices), other = crossing.index_beyond(indices);
         return (other - n) * (other + n);
@@ -21,8 +22,8 @@ std::vector<GhostCoating<kWavelengthTerms>> ghost_coatings(
         const double n = crossing.index_before(indices);
         return difference(crossing, indices) / (n * n);
     };
-    const std::vector<IndexCubic> changes = cubics_over(lens, way, range, change);
-    const std::vector<IndexCubic> differences = cubics_over(lens, way, range, difference);
+    const std::vector<IndexCubic> changes = cubics_over(lens, way, wavelengths_nm, variable, change);
+    const std::vector<IndexCubic> differences = cubics_over(lens, way, wavelengths_nm, variable, difference);
     std::vector<GhostCoating<kWavelengthTerms>> all;
     for (std::size_t k = 0; k < way.size(); ++k)
         all.push_back({coatings[k], changes[k], differences[k], way[k].is_reflected, {}});

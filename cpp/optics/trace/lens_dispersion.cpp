@@ -29,16 +29,20 @@ void check_dispersion(const LensSystem& lens, WavelengthRange range) {
                          " lies in glass; a lens with air behind its last surface is wanted");
 }
 
-std::vector<IndexCubic> index_cubics(const LensSystem& lens, const std::vector<Crossing>& way, WavelengthRange range) {
-    return cubics_over(lens, way, range, [](const Crossing& crossing, const std::vector<double>& indices) {
-        const double n = crossing.index_before(indices), behind = crossing.index_behind(indices);
-        return (behind - n) * (behind + n) / (n * n);
-    });
+std::vector<IndexCubic> index_cubics(const LensSystem& lens, const std::vector<Crossing>& way,
+                                     const std::vector<double>& wavelengths_nm, WavelengthVariable variable) {
+    return cubics_over(lens, way, wavelengths_nm, variable,
+                       [](const Crossing& crossing, const std::vector<double>& indices) {
+                           const double n = crossing.index_before(indices), behind = crossing.index_behind(indices);
+                           return (behind - n) * (behind + n) / (n * n);
+                       });
 }
 
-std::vector<IndexCubic> index_cubics(const LensSystem& lens, LightDirection direction, WavelengthRange range) {
+std::vector<IndexCubic> index_cubics(const LensSystem& lens, LightDirection direction,
+                                     const std::vector<double>& wavelengths_nm, WavelengthVariable variable) {
     const std::vector<Crossing> to_film = crossings_of(lens);
-    return index_cubics(lens, direction == LightDirection::to_film ? to_film : reversed(to_film), range);
+    return index_cubics(lens, direction == LightDirection::to_film ? to_film : reversed(to_film), wavelengths_nm,
+                        variable);
 }
 
 }  // namespace realcam

@@ -62,8 +62,9 @@ struct Crossings {
 
     Crossings(const LensSystem& lens, WavelengthRange range, const std::vector<double>& fitted_nm)
         : all(ghost_tables_detail::all_crossings(lens)),
-          coatings(ghost_coatings(lens, all, fit_coatings<kTerms>(lens, all, fitted_nm, variable_over(range)), range)),
-          indices(index_cubics(lens, all, range)) {}
+          coatings(ghost_coatings(lens, all, fit_coatings<kTerms>(lens, all, fitted_nm, variable_over(range)),
+                                  fitted_nm, variable_over(range))),
+          indices(index_cubics(lens, all, fitted_nm, variable_over(range))) {}
 
     /// Of one way, in the order in which it meets them.
     template <class Value>
@@ -151,21 +152,26 @@ TEST_CASE("ghosts under a line of light are those of a lens made for it") {
 
 TEST_CASE("ghosts in white light are at each wavelength those of a lens made for it") {
     const FilmSpectrum white{Illuminant()};
+    // As a share of the mean over the wavelengths, which is what a picture shows.
     const auto worst_with = [&](const Coating& coating) {
         double worst = 0;
         for (const char* const name : {"achromat-75mm", "double-gauss-50mm", "phone-4mm"}) {
             const LensSystem lens = coated(io::read_lens(name), coating);
-            for (const double nm : {430.0, 480.0, 550.0, 610.0, 650.0}) {
+            double largest = 0, mean = 0;
+            constexpr std::array kWavelengths_nm = {430.0, 480.0, 550.0, 610.0, 650.0};
+            for (const double nm : kWavelengths_nm) {
                 const auto passed = ghosts_of(lens, nm, white.range(), white.even_wavelengths());
                 REQUIRE(passed);
-                worst = std::max(worst, std::fabs(passed->of_many / passed->of_one - 1));
+                largest = std::max(largest, std::fabs(passed->of_many - passed->of_one));
+                mean += passed->of_one / kWavelengths_nm.size();
             }
+            worst = std::max(worst, largest / mean);
         }
         return worst;
     };
     hold({"Effects", "light of all ghosts in white light", "3 lenses, bare and quarter wave, 430 to 650 nm", "core",
-          "float32", std::max(worst_with(bare_surface()), worst_with(*named_coating("quarter_wave"))), 0.01, ""});
-    // A reflectance of 0.3%, which is right within 1e-4 of the light, twice.
+          "float32", std::max(worst_with(bare_surface()), worst_with(*named_coating("quarter_wave"))), 1e-3, ""});
+    // Light that was reflected twice at 0.7% each, which is right within 1e-4 of the light.
     hold({"Effects", "light of all ghosts in white light, three layers", "3 lenses, 430 to 650 nm", "core", "float32",
-          worst_with(three_layers()), 0.1, ""});
+          worst_with(three_layers()), 0.03, ""});
 }
