@@ -205,7 +205,7 @@ def test_the_samples_after_a_stop_are_others(device: str) -> None:
     after = session.image().pixels * (counts + 1.0) - before * counts
     first = rc.render(room(), camera(200, 150), effects=(), spp=1, seed=3, device=device).pixels
     # The same samples would differ by roundings only; others may agree in dark or evenly lit pixels.
-    assert (np.abs(after - first) > 1e-3 * first.max()).mean() > 0.2
+    assert (np.abs(after - first) > 1e-3 * first.max()).mean() > 0.1
 
 
 def test_threads_take_turns() -> None:
