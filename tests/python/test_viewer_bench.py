@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 import threading
 import time
 from collections.abc import Callable, Iterator
@@ -107,6 +108,28 @@ def test_a_click_focuses_at_its_point(bench: LensBench) -> None:
         told.until_final()
         sharp = bench_shots.sharpness(codes(bench))
         assert np.argmax(sharp) == round(3 * u - 0.5)
+
+
+def test_the_zoom_ring_is_undone_by_drags(bench: LensBench) -> None:
+    assert bench.set_lens(rc.Lens.load("zoom-25-50mm"))
+    for drag, focal_lengths_mm in enumerate(((26.0, 28.0, 30.0), (32.0, 34.0))):
+        for focal_length_mm in focal_lengths_mm:
+            assert bench.set_zoom(focal_length_mm, ("zoom", drag))
+    assert bench.edit(lambda lens: lens_edits.with_value(lens, 0, "radius_mm", 82.0))
+    bench.turn("zoom", 1)
+    assert bench.controls.focal_length_mm > 34.5
+    # The ring, the radius, and both drags.
+    for focal_length_mm, radius_mm in ((34, 82), (34, 80), (30, 80), (25.4988, 80)):
+        assert bench.undo()
+        found = bench.controls.camera.lens
+        assert found.first_order().effective_focal_length_mm == pytest.approx(focal_length_mm, rel=1e-5)
+        assert found.surfaces[0].radius_of_curvature_mm == radius_mm
+    for _ in range(4):
+        assert bench.redo()
+    assert bench.controls.focal_length_mm > 34.5
+    bench.turn("zoom", 100)
+    assert bench.controls.zoom == "49mm"
+    assert not bench.turn("zoom", 1)
 
 
 def test_the_drawing_and_the_sharp_range_are_of_the_film_that_is_chosen(bench: LensBench) -> None:
@@ -332,6 +355,9 @@ def assert_same_camera(one: rc.Camera, other: rc.Camera) -> None:
     assert (one.position, one.look_at, one.up) == (other.position, other.look_at, other.up)
     assert (one.exposure_time_s, one.iso, one.model) == (other.exposure_time_s, other.iso, other.model)
     assert one.lens.zoom_position == other.lens.zoom_position
+    assert one.lens.first_order().effective_focal_length_mm == pytest.approx(
+        other.lens.first_order().effective_focal_length_mm, rel=1e-9
+    )
     assert one.lens.focus_distance_m == pytest.approx(other.lens.focus_distance_m, rel=1e-9)
     assert one.lens.film_distance_mm == pytest.approx(other.lens.film_distance_mm, rel=1e-9)
     assert one.lens.stop_semi_diameter_mm == pytest.approx(other.lens.stop_semi_diameter_mm, rel=1e-9)
@@ -348,6 +374,7 @@ CHANGES: dict[str, Callable[[LensBench], object]] = {
     "another lens": lambda b: b.set_lens(rc.Lens.load("tessar-50mm")),
     "a phone": lambda b: b.set_lens(rc.Lens.load("phone-4mm")),
     "a zoom": lambda b: b.set_lens(rc.Lens.load("zoom-70-210mm")) and b.change(zoom="137mm", f_number=8.0),
+    "a zoom between positions": lambda b: b.set_lens(rc.Lens.load("zoom-70-210mm")) and b.set_zoom(99.5),
     "a lens of which a group moves": lambda b: b.set_lens(rc.Lens.load("macro-105mm")) and b.change(focus_m=0.45),
     "an edit": lambda b: b.edit(lambda lens: lens_edits.with_value(lens, 0, "radius_mm", 30.0)),
     "an asphere": lambda b: b.edit(lambda lens: lens_edits.with_value(lens, 0, "a4", 1e-7)),
@@ -395,6 +422,52 @@ def test_what_a_shot_says_of_its_diaphragm_is_kept(tmp_path: Path, more: str) ->
         bench.close()
     assert_same_camera(again.camera, shot.camera)
     assert again.camera.lens.iris_blades == shot.camera.lens.iris_blades
+
+
+def test_a_zoom_at_a_position_of_its_own_is_saved_by_its_name(tmp_path: Path) -> None:
+    path = bench_shots.write_panels_shot(tmp_path, more='zoom = "35mm"\nf_number = 8\n')
+    path.write_text(path.read_text().replace("double-gauss-50mm", "zoom-25-50mm"))
+    shot = rc.Shot.load(path)
+    bench = LensBench(shot, device="cpu")
+    try:
+        again = saved_again(bench, path, tmp_path / "saved.toml")
+    finally:
+        bench.close()
+    assert_same_camera(again.camera, shot.camera)
+    assert not (tmp_path / "saved-lens.toml").exists()
+
+
+MOVING = """[[pose]]
+time_s = 0
+position_m = [0, 0, 0]
+look_at_m = [0, 0, -2]
+[[pose]]
+time_s = 1
+position_m = [2, 0, 0]
+look_at_m = [2, 0, -2]
+[[key]]
+time_s = 0
+f_number = 4
+[[key]]
+time_s = 1
+f_number = 16
+"""
+
+
+def test_a_shot_that_moves_is_saved_as_it_is_seen(tmp_path: Path) -> None:
+    """The bench shows where camera and rings are when the shutter opens."""
+    path = bench_shots.write_panels_shot(tmp_path)
+    still = re.sub(r"(?m)^(position_m|look_at_m) = .*\n", "", path.read_text())
+    path.write_text(still + MOVING)
+    bench = LensBench(rc.Shot.load(path), device="cpu")
+    try:
+        assert bench.orbit(0.1, 0.0)
+        again = saved_again(bench, path, tmp_path / "saved.toml")
+    finally:
+        bench.close()
+    assert again.camera.position == pytest.approx(bench.controls.pose.position_m, rel=1e-12)
+    assert again.camera.lens.first_order().f_number == pytest.approx(4, rel=0.02)  # focused nearer than infinity
+    assert again.keys == ()
 
 
 @pytest.mark.filterwarnings("ignore:not in the file")

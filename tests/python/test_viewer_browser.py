@@ -130,10 +130,36 @@ def test_zoom_positions(bench: BenchPage) -> None:
     wide = bench.picture().astype(int)
     assert wide.shape[1] == bench_shots.WIDTH
     drawn = bench.page.locator("svg.rc-section").inner_html()
-    bench.choose("zoom", "49mm")
+    bench.choose("zoom position", "49mm")
     until(lambda: bench.figure("effective_focal_length_mm"), lambda f: abs(f - 49) < 1, "zoomed in")
     assert bench.page.locator("svg.rc-section").inner_html() != drawn  # the groups have moved
     assert np.abs(bench.picture() - wide).mean() > 10
+
+
+@pytest.mark.camera_alone
+def test_the_zoom_ring(bench: BenchPage) -> None:
+    assert not bench.test_id("zoom").is_visible()
+    bench.choose_lens("zoom-25-50mm")
+    bench.until_text("zoom-text", lambda text: text == "Zoom 25.5 mm")
+    wide = bench.picture().astype(int)
+    bench.turn("zoom", "PageUp", 5)  # by tenths of its range
+    middle = bench.until_text("zoom-text", lambda text: "35" in text)
+    until(lambda: f"Zoom {bench.figure('effective_focal_length_mm'):g} mm", lambda text: text == middle, "drawn")
+    assert np.abs(bench.picture() - wide).mean() > 10
+    bench.canvas.press("Shift+Z")
+    bench.until_text("zoom-text", lambda text: text < middle)
+    bench.canvas.press("z")
+    bench.until_text("zoom-text", lambda text: text == middle)
+    ring = bench.test_id("zoom").bounding_box()
+    along = [(ring["x"] + share * ring["width"], ring["y"] + 0.5 * ring["height"]) for share in (0.5, 0.7, 0.97)]
+    bench.page.mouse.move(*along[0])
+    bench.page.mouse.down()
+    for place in along[1:]:
+        bench.page.mouse.move(*place, steps=5)
+    bench.page.mouse.up()
+    bench.until_text("zoom-text", lambda text: text > "Zoom 47")
+    bench.page.get_by_role("button", name="Undo").click()
+    bench.until_text("zoom-text", lambda text: text == middle)  # the whole drag at once
 
 
 @pytest.mark.camera_alone

@@ -14,7 +14,7 @@ from realcam.viewer.camera_controls import CameraControls, opened
 from realcam.viewer.focus_scale import distance_texts, focus_scale_svg
 from realcam.viewer.lens_view import ray_view
 from realcam.viewer.pose import Pose
-from realcam.viewer.ring_scales import ISO, SHUTTER_S, aperture_ring
+from realcam.viewer.ring_scales import ISO, SHUTTER_S, aperture_ring, zoom_ring
 
 FILM = rc.Film(36, 24, (90, 60))
 POSE = Pose((0.0, 1.0, 4.0), (0.0, 1.0, 0.0))
@@ -97,6 +97,22 @@ def test_the_aperture_ring_begins_at_the_widest_opening(name: str) -> None:
     assert np.all(np.diff(np.log2(ring.values)) < 1 / 3 + 0.06)  # f/0.95 is the widest of all
 
 
+@pytest.mark.parametrize("name", rc.lens_names())
+def test_the_zoom_ring_is_even_and_has_the_positions(name: str) -> None:
+    lens = rc.Lens.load(name)
+    ring = zoom_ring(lens)
+    if not lens.zoom_positions:
+        assert ring is None
+        return
+    known = lens.zoom_focal_lengths_mm
+    assert (ring.values[0], ring.values[-1]) == (min(known), max(known))
+    assert set(known) <= set(ring.values)
+    steps = np.diff(np.log(ring.values)) / math.log(max(known) / min(known)) * (len(ring.values) - 1)
+    # A position stands within half a step of where its step would be.
+    assert np.all((steps > 0.49) & (steps < 1.51))
+    assert np.count_nonzero(abs(steps - 1) > 1e-6) <= 2 * (len(known) - 2)
+
+
 # The camera that they make.
 
 
@@ -134,6 +150,27 @@ def test_a_zoom_position_stays_where_the_lens_has_it() -> None:
     assert at_137.with_lens(rc.Lens.load("zoom-70-210mm")).zoom == "137mm"
     assert at_137.with_lens(rc.Lens.load("zoom-70-200mm")).zoom == "70mm"
     assert at_137.with_lens(rc.Lens.load("tessar-50mm")).zoom is None
+
+
+def test_a_zoom_ring_stays_where_the_lens_reaches_as_far() -> None:
+    between = replace(controls("zoom-70-210mm"), zoom=100.0)
+    assert between.camera.lens.first_order().effective_focal_length_mm == pytest.approx(100, rel=1e-9)
+    assert between.with_lens(rc.Lens.load("zoom-80-200mm")).zoom == 100.0
+    assert between.with_lens(rc.Lens.load("zoom-25-50mm")).zoom == "49mm"
+    assert between.with_lens(rc.Lens.load("tessar-50mm")).zoom is None
+    with pytest.raises(rc.InputError, match="no focal length of 300 mm"):
+        replace(between, zoom=300.0).body  # noqa: B018
+
+
+@pytest.mark.parametrize("zoom", ["35mm", 30.0])
+def test_a_zoom_that_was_stopped_down_opens_again(zoom: str | float) -> None:
+    lens = rc.Lens.load("zoom-25-50mm")
+    now = CameraControls.of(rc.Camera(lens.zoomed(zoom).stopped_down(11).focused(2), film=FILM))
+    assert now.zoom == (zoom if isinstance(zoom, str) else pytest.approx(zoom, rel=1e-9))
+    assert now.apertures.values[0] == pytest.approx(lens.zoomed(zoom).first_order().f_number, rel=1e-9)
+    for elsewhere in ("25mm", 40.0, "49mm"):
+        wide = replace(now, zoom=elsewhere, f_number=None).set_lens
+        assert wide.stop_semi_diameter_mm == lens.zoomed(elsewhere).stop_semi_diameter_mm
 
 
 def test_focus_stops_at_the_nearest() -> None:

@@ -17,12 +17,12 @@ CAMERA = rc.Camera(rc.Lens.load("tessar-50mm").focused(2.0), film=rc.Film(36, 24
 FRESH = CameraControls.of(CAMERA)
 
 
-@pytest.mark.parametrize("focus_m", [1.5, math.inf])
-def test_all_that_was_set_comes_back(focus_m: float) -> None:
+@pytest.mark.parametrize(("focus_m", "zoom"), [(1.5, "17mm"), (math.inf, 20.0)])
+def test_all_that_was_set_comes_back(focus_m: float, zoom: str | float) -> None:
     lens = rc.Lens.load("zoom-11-24mm").with_surface(0, radius_of_curvature_mm=50.0)
     before = replace(
         FRESH.with_lens(lens),
-        zoom="17mm",
+        zoom=zoom,
         f_number=5.6,
         focus_m=focus_m,
         pose=Pose((1, 2, 3), (0, 0.5, 0), (0, 0, 1)),
@@ -55,6 +55,7 @@ def test_all_that_was_set_comes_back(focus_m: float) -> None:
         ("film", [36, 24, 10, 0.5]),
         ("f_number", "wide"),
         ("iso", True),
+        ("zoom", [17]),
         ("model", 3),
     ],
 )

@@ -57,7 +57,9 @@ def restored(before: CameraControls, state: dict[str, Any]) -> CameraControls:
         compensation_ev=_number(state, "compensation_ev"),
     )
     zoom = state.get("zoom")
-    return replace(controls, zoom=zoom) if zoom in lens.zoom_positions else controls
+    if isinstance(zoom, str | None):
+        return replace(controls, zoom=zoom) if zoom in lens.zoom_positions else controls
+    return replace(controls, zoom=_number(state, "zoom"))
 
 
 def _text(state: dict[str, Any], key: str) -> str:

@@ -9,14 +9,17 @@ from typing import NamedTuple
 
 from .._core import Camera, Film, InputError, Lens
 from .pose import Pose
-from .ring_scales import ISO, SHUTTER_S, Ring, aperture_ring
+from .ring_scales import ISO, SHUTTER_S, Ring, aperture_ring, zoom_ring
+
+_ZOOM_KEY_STEPS = 10  # of the ring, for each press of its key
 
 
 class Mount(NamedTuple):
-    """A lens as edits have made it, and the film behind it."""
+    """A lens as edits have made it, the film behind it, and how its zoom ring stands (see CameraControls)."""
 
     lens: Lens
     film: Film
+    zoom: str | float | None
 
 
 def of_width(film: Film, width: int) -> Film:
@@ -28,14 +31,15 @@ def of_width(film: Film, width: int) -> Film:
 class CameraControls:
     """A lens as it was made, and how its rings and the camera's dials stand.
 
-    lens: the body of the lens, focused as its file says and wide open; edits change it. f_number: None for wide open; a
-    smaller one than the lens has means wide open, too, so that the ring stays where it is while lenses change.
+    lens: the body of the lens, focused as its file says and wide open; edits change it. zoom: one of its positions, or
+    a focal length in mm between them; None: it does not zoom. f_number: None for wide open; a smaller one than the lens
+    has means wide open, too, so that the ring stays where it is while lenses change.
     """
 
     lens: Lens
     film: Film
     pose: Pose
-    zoom: str | None = None
+    zoom: str | float | None = None
     f_number: float | None = None
     focus_m: float = math.inf
     exposure_time_s: float = 0.008
@@ -47,12 +51,21 @@ class CameraControls:
     @classmethod
     def of(cls, camera: Camera, *, is_automatic: bool = False) -> CameraControls:
         """How a camera stands. A camera that moves while it exposes is taken where it is at first."""
+        lens = camera.lens.focused(math.inf)
+        data = lens.first_order()
+        position = lens.zoom_position
+        zoom: str | float | None = position
+        if position is not None:
+            at_position_mm = lens.zoom_focal_lengths_mm[lens.zoom_positions.index(position)]
+            if not math.isclose(data.effective_focal_length_mm, at_position_mm, rel_tol=1e-5):
+                zoom = data.effective_focal_length_mm
+            lens = lens.zoomed(position)
         return cls(
-            lens=opened(camera.lens.focused(math.inf)),
+            lens=opened(lens),
             film=camera.film,
             pose=Pose(camera.position, camera.look_at, camera.up),
-            zoom=camera.lens.zoom_position,
-            f_number=camera.lens.focused(math.inf).first_order().f_number,  # as engraved
+            zoom=zoom,
+            f_number=data.f_number,  # as engraved
             focus_m=camera.lens.focus_distance_m,
             exposure_time_s=camera.exposure_time_s,
             iso=camera.iso,
@@ -62,7 +75,7 @@ class CameraControls:
 
     @cached_property
     def body(self) -> Lens:
-        """The lens at its zoom position, at its design's focus, wide open."""
+        """The lens as its zoom ring stands, at its design's focus, wide open. Raises InputError."""
         return self.lens if self.zoom is None else self.lens.zoomed(self.zoom)
 
     @cached_property
@@ -97,6 +110,24 @@ class CameraControls:
             model=self.model,
         )
 
+    @cached_property
+    def zooms(self) -> Ring | None:
+        """The zoom ring of the lens, by focal lengths in mm; None: it has none between its positions."""
+        return zoom_ring(self.lens)
+
+    @property
+    def focal_length_mm(self) -> float:
+        """Of the lens as its zoom ring stands, at its design's focus."""
+        return self.body.first_order().effective_focal_length_mm
+
+    def zoomed(self, focal_length_mm: float) -> CameraControls:
+        """With the zoom ring at a focal length, which may be that of a position."""
+        known = self.lens.zoom_focal_lengths_mm
+        at_position = focal_length_mm in known
+        return replace(
+            self, zoom=self.lens.zoom_positions[known.index(focal_length_mm)] if at_position else focal_length_mm
+        )
+
     @property
     def apertures(self) -> Ring:
         """The aperture ring of the lens."""
@@ -115,7 +146,9 @@ class CameraControls:
         return surfaces[0][surface].thickness_mm - surfaces[1][surface].thickness_mm
 
     def turned(self, ring: str, steps: int) -> CameraControls:
-        """Turns "aperture" (closes), "shutter" (longer) or "iso" by thirds of a stop. Raises InputError."""
+        """Turns "aperture" (closes), "shutter" (longer) or "iso" by thirds of a stop, or "zoom" (longer) by a thirtieth
+        of its ring. Raises InputError.
+        """
         if ring == "aperture":
             widest = self.apertures.values[0]
             return replace(self, f_number=self.apertures.turned(max(self.f_number or 0.0, widest), steps))
@@ -123,20 +156,27 @@ class CameraControls:
             return replace(self, exposure_time_s=SHUTTER_S.turned(self.exposure_time_s, steps), is_automatic=False)
         if ring == "iso":
             return replace(self, iso=ISO.turned(self.iso, steps))
+        if ring == "zoom":
+            zooms = self.zooms
+            return self.zoomed(zooms.turned(self.focal_length_mm, _ZOOM_KEY_STEPS * steps)) if zooms else self
         raise InputError(f'there is no ring "{ring:.40}"')
 
     @property
     def mount(self) -> Mount:
-        return Mount(self.lens, self.film)
+        return Mount(self.lens, self.film, self.zoom)
 
     def with_mount(self, mount: Mount) -> CameraControls:
         """Another lens with its film, of as many pixels across as now."""
-        return replace(self.with_lens(mount.lens), film=of_width(mount.film, self.film.resolution[0]))
+        film = of_width(mount.film, self.film.resolution[0])
+        return replace(self, lens=mount.lens, zoom=mount.zoom, film=film)
 
     def with_lens(self, lens: Lens) -> CameraControls:
-        """Another lens or an edited one; its zoom position stays where it has one of that name."""
-        zoom = self.zoom if self.zoom in lens.zoom_positions else lens.zoom_position
-        return replace(self, lens=lens, zoom=zoom)
+        """Another lens or an edited one; its zoom ring stays where it has that position, or reaches as far."""
+        changed = replace(self, lens=lens, zoom=self.zoom if self.zoom in lens.zoom_positions else lens.zoom_position)
+        if isinstance(self.zoom, float) and changed.zooms:
+            ends = sorted(changed.zooms.values)
+            return changed.zoomed(min(max(self.zoom, ends[0]), ends[-1]))
+        return changed
 
     def focused_within_reach(self) -> CameraControls:
         """At the nearest focus that the lens has, if the ring stands before it. Raises InputError where it has none."""
@@ -151,10 +191,11 @@ class CameraControls:
 
 
 def opened(lens: Lens) -> Lens:
-    """With the diaphragm as wide as its opening. Of a zoom lens each position has an opening of its own: these stay."""
+    """With the diaphragm as wide as its opening."""
     opening = lens.surfaces[lens.stop_index].clear_semi_diameter_mm
-    if lens.zoom_positions or lens.stop_semi_diameter_mm >= opening:
+    if lens.stop_semi_diameter_mm >= opening:
         return lens
-    # The pupil grows with the diaphragm; the last digits must not ask for more than there is.
+    # The pupil grows with the diaphragm. A little more than there is is taken for wide open, and must not be a little
+    # less: a zoom lens that is wide open stays so at all positions.
     widest = lens.first_order().f_number * lens.stop_semi_diameter_mm / opening
-    return lens.stopped_down(widest * (1 + 1e-12))
+    return lens.stopped_down(widest * (1 - 1e-9))

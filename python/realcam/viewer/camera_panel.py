@@ -49,7 +49,14 @@ class CameraPanel:
 
     def _build(self) -> None:
         with ui.element("section").classes("rc-controls").props('aria-label="Camera"'):
-            self._zoom = self._choice("Zoom", {}, lambda value: self._change(zoom=value), "Position of the zoom ring")
+            self._zoom_text = ui.label().props('data-testid="zoom-text"')
+            self._zoom = self._ring("Zoom", "A longer focal length sees less, and that larger", self._set_zoom)
+            self._position = self._choice(
+                "Zoom position",
+                {},
+                lambda value: self._run(self._bench.set_zoom, value),
+                "Where the lens's file describes the zoom",
+            )
             self._focus_text = ui.label().props('data-testid="focus-text"')
             self._focus = self._ring("Focus", "Distance from the film to the plane that is sharp", self._set_focus)
             self._scale = ui.html("", sanitize=False).classes("rc-scale")
@@ -119,8 +126,14 @@ class CameraPanel:
         """On the server's loop."""
         now = self._bench.controls
         positions = now.lens.zoom_positions
-        self._zoom.set_visibility(bool(positions))
-        show_choice(self._zoom, {name: name for name in positions}, now.zoom)
+        self._position.set_visibility(bool(positions))
+        show_choice(self._position, {name: name for name in positions}, now.zoom if now.zoom in positions else None)
+        for shown in (self._zoom, self._zoom_text):
+            shown.set_visibility(now.zooms is not None)
+        if now.zooms:
+            text = f"{now.focal_length_mm:.4g} mm"
+            self._show(self._zoom, now.zooms, now.focal_length_mm, text)
+            self._zoom_text.set_text(f"Zoom {text}")
         apertures = self._bench.apertures
         f_number = max(now.f_number or 0.0, apertures.values[0])
         self._show(self._aperture, apertures, f_number, f"f/{apertures.text_of(f_number)}")
@@ -172,6 +185,11 @@ class CameraPanel:
         if body.nearest_focus_m > 0:
             return body.nearest_focus_m
         return 0.01 * abs(body.first_order().effective_focal_length_mm)
+
+    def _set_zoom(self, step: int) -> Awaitable[Any]:
+        now = self._bench.controls
+        zoom = now.zoomed(now.zooms.values[step]).zoom if now.zooms and step < len(now.zooms.values) else now.zoom
+        return self._run(self._bench.set_zoom, zoom, ("zoom", self._zoom.gesture))
 
     def _set_focus(self, step: int) -> Awaitable[Any]:
         share = step / _FOCUS_STEPS

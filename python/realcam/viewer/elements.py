@@ -44,16 +44,20 @@ class HelpDialog(Element, component="static/help_dialog.js"):
 
 
 class RingSlider(Element, component="static/ring.js"):
-    """A slider of whole steps. What it shows while it is turned is where the hand is; else what set() has said."""
+    """A slider of whole steps. What it shows while it is turned is where the hand is; else what set() has said.
+
+    gesture: counts drags and key presses; that of the last turn.
+    """
 
     def __init__(self, label: str, help: str, turned: Callable[[int], Awaitable[None]]) -> None:
         """turned: does what a turn to that step means, after which set() has said how the ring stands."""
         super().__init__()
         self._props |= {"label": label, "help": help, "last": 0, "step": 0, "text": "", "answered": 0}
+        self.gesture: object = None
 
         async def take(event: GenericEventArguments) -> None:
             asked = event.args if isinstance(event.args, dict) else {}
-            step, turn = asked.get("step"), asked.get("turn")
+            step, turn, self.gesture = asked.get("step"), asked.get("turn"), asked.get("gesture")
             if isinstance(step, int) and 0 <= step <= self._props["last"]:
                 await turned(step)
             self._props["answered"] = turn

@@ -82,9 +82,18 @@ class LensBench:
         return self.controls.apertures
 
     def turn(self, ring: str, steps: int) -> bool:
-        """Turns a ring or dial by thirds of a stop; see CameraControls.turned. Raises InputError."""
+        """Turns a ring or dial by steps; see CameraControls.turned. Raises InputError."""
         turned = self.controls.turned(ring, steps)
+        if ring == "zoom":
+            return turned.zoom != self.controls.zoom and self.set_zoom(turned.zoom)
         return self._take(lambda: turned, of="picture")
+
+    def set_zoom(self, zoom: str | float | None, gesture: object = None) -> bool:
+        """The zoom ring (see CameraControls), which undo takes back. gesture: the same for all steps of one drag."""
+        if not self._take(lambda: replace(self.controls, zoom=zoom).focused_within_reach(), of="picture"):
+            return False
+        self._push(gesture)
+        return True
 
     def orbit(self, right: float, up: float) -> bool:
         """By shares of the picture's height: that much of it is about a radian."""
@@ -145,7 +154,8 @@ class LensBench:
 
     def set_lens(self, lens: Lens) -> bool:
         """Another lens on the camera, with its own film."""
-        if not self._take(lambda: self._fitted(Mount(lens, Film.for_lens(lens)))):
+        mount = Mount(lens, Film.for_lens(lens), self.controls.with_lens(lens).zoom)
+        if not self._take(lambda: self._fitted(mount)):
             return False
         self._push()
         return True

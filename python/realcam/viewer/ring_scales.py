@@ -1,4 +1,4 @@
-"""The rings and dials of cameras: what is engraved on them, in steps of a third of a stop.
+"""The rings and dials of cameras: what is engraved on them, but for a zoom ring in steps of a third of a stop.
 
 Engraved figures are rounded. What a ring sets is the exact power of two: f/5.6 is f/5.657, 1/60 s is 1/64 s.
 """
@@ -8,6 +8,10 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+
+from .._core import Lens
+
+_ZOOM_STEPS = 300
 
 # As texts, because 1.0 and 1/60 are not what a ring says.
 _APERTURES = (
@@ -67,3 +71,18 @@ def aperture_ring(widest: float) -> Ring:
         (widest, *(_ALL_APERTURES.values[step] for step in steps)),
         (f"{widest:.3g}", *(_ALL_APERTURES.engraved[step] for step in steps)),
     )
+
+
+def zoom_ring(lens: Lens) -> Ring | None:
+    """Focal lengths in even ratios from one end to the other, and exactly those of the lens's positions.
+
+    None: the lens has no focal lengths between positions (see Lens.zoomed).
+    """
+    known = lens.zoom_focal_lengths_mm
+    if len(known) < 2 or known not in (sorted(known), sorted(known, reverse=True)) or not min(known) > 0:
+        return None
+    ratio = (max(known) / min(known)) ** (1 / _ZOOM_STEPS)
+    values = [min(known) * ratio**step for step in range(_ZOOM_STEPS + 1)]
+    for focal_length_mm in known:
+        values[round(math.log(focal_length_mm / min(known), ratio))] = focal_length_mm
+    return Ring(tuple(values), tuple(f"{value:.4g}" for value in values))

@@ -84,7 +84,7 @@ def shot_contents(source: ShotSource, controls: CameraControls, effects: list[st
     for key in ("key", "iso_follows_s", "pose", "camera"):
         shot.pop(key, None)  # which go before what is said below
     if controls.zoom is not None:
-        shot["zoom"] = controls.zoom
+        shot["zoom" if isinstance(controls.zoom, str) else "focal_length_mm"] = controls.zoom
     widest = controls.body.first_order().f_number
     if controls.f_number is not None and controls.f_number > widest:
         shot["f_number"] = controls.f_number
@@ -107,6 +107,8 @@ def shot_contents(source: ShotSource, controls: CameraControls, effects: list[st
 def _is_bundled(lens: Lens) -> bool:
     """Not one that was edited under its old name; nor one with another diaphragm, which the shot file had."""
     bundled = opened(Lens.load(lens.name))
+    if lens.zoom_position in bundled.zoom_positions:
+        bundled = bundled.zoomed(lens.zoom_position)
     if bundled == lens:
         return True
     # One that a shot has focused has come back to infinity: there to the last digits, and its file may say a place

@@ -27,7 +27,7 @@ export default {
   </div>
   <p id="rc-picture-keys" class="rc-hidden">Arrow keys move the camera around, with Shift sideways, plus and minus
     nearer and farther. F focuses and M meters in the middle. [ and ] turn the aperture ring, comma and period the
-    shutter dial, I and Shift I the ISO dial.</p>
+    shutter dial, I and Shift I the ISO dial, Z and Shift Z the zoom ring.</p>
   <div class="rc-toolbar">
     <fieldset><legend class="rc-hidden">A click in the picture</legend>
       <label title="Bring the point that you click into focus"><input type="radio" value="focus" v-model="mode"> Focus</label>
@@ -208,7 +208,7 @@ export default {
     key(event) {
       const way = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key];
       const turn = { "[": ["aperture", -1], "]": ["aperture", 1], ",": ["shutter", -1], ".": ["shutter", 1],
-        i: ["iso", 1], I: ["iso", -1] }[event.key];
+        i: ["iso", 1], I: ["iso", -1], z: ["zoom", 1], Z: ["zoom", -1] }[event.key];
       // Many keyboards have brackets on a third level, which is reached by these keys.
       if ((event.ctrlKey || event.metaKey || event.altKey) && !"[]".includes(event.key)) return;
       if (way) {

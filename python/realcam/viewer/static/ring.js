@@ -4,9 +4,9 @@ export default {
   props: { label: String, help: String, last: Number, step: Number, text: String, answered: Number },
   template: `
 <input class="rc-ring" type="range" min="0" :max="last" :value="at" :aria-label="label" :aria-valuetext="text"
-  :title="help" @input="turn">`,
+  :title="help" @input="turn" @change="gestures += 1">`,
   data() {
-    return { turns: this.answered, turned: this.step };
+    return { turns: this.answered, turned: this.step, gestures: 0 };
   },
   computed: {
     /// Until the server has done the last turn, what it says is older than where the hand is.
@@ -18,7 +18,7 @@ export default {
     turn(event) {
       this.turned = Number(event.target.value);
       this.turns += 1;
-      this.$emit("turned", { step: this.turned, turn: this.turns });
+      this.$emit("turned", { step: this.turned, turn: this.turns, gesture: this.gestures });
     },
   },
 };
