@@ -24,14 +24,14 @@ int fail(const std::string& message) {
 }
 
 /// CLI11's objects cannot be copied or moved.
-void set_up(CLI::App& app) {
+void set_up(CLI::App& app, const FilmWriter* film_writer = nullptr) {
     app.name("realcam");
     app.description("Photographs 3D scenes through real lenses.");
     app.option_defaults()->disable_flag_override();
     set_help(app);
     app.set_version_flag("--version", "realcam " REALCAM_VERSION, "Print the version");
     app.require_subcommand(1);
-    add_render_command(app);
+    add_render_command(app, film_writer);
     add_plan_command(app);
     add_lens_command(app);
     CLI::App* devices = app.add_subcommand("devices", "List what this machine can render with.");
@@ -55,9 +55,9 @@ void list(const CLI::App& command, std::vector<std::string> words, std::vector<L
             entry.options.push_back({names_of(*option), type_of(*option), option->get_description()});
 }
 
-int run(int argc, char** argv) {
+int run(int argc, char** argv, const FilmWriter* film_writer) {
     CLI::App app;
-    set_up(app);
+    set_up(app, film_writer);
     if (argc == 1) {
         std::fputs(app.help().c_str(), stdout);
         return 0;
@@ -82,9 +82,9 @@ std::vector<ListedCommand> listed_commands() {
     return listed;
 }
 
-int run_command_line(int argc, char** argv) {
+int run_command_line(int argc, char** argv, const FilmWriter* film_writer) {
     try {
-        return run(argc, argv);
+        return run(argc, argv, film_writer);
     } catch (const Interrupted& interrupted) {
         std::fprintf(stderr, "realcam: stopped%s\n", interrupted.remark.c_str());
         return 128 + interrupted.signal;

@@ -4,6 +4,8 @@
 
 namespace realcam::app {
 
+class FilmWriter;
+
 struct ListedOption {
     std::vector<std::string> names;  ///< "-o" and "--output"; of an argument none
     std::string type;                ///< "FILE"; of a flag empty
@@ -19,6 +21,7 @@ struct ListedCommand {
 std::vector<ListedCommand> listed_commands();
 
 /// The program: `argv` as main gets it. Returns the exit code; whatever goes wrong has been told on stderr.
-int run_command_line(int argc, char** argv);
+/// film_writer: null where there is none.
+int run_command_line(int argc, char** argv, const FilmWriter* film_writer = nullptr);
 
 }  // namespace realcam::app

@@ -1,6 +1,7 @@
 #include "outputs.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cstdio>
 #include <filesystem>
 #include <regex>
@@ -23,9 +24,15 @@ bool same_file(const std::string& a, const std::string& b) {
 
 }  // namespace
 
+bool is_film(const std::string& output) {
+    std::string suffix = fs::path(output).extension().string();
+    std::transform(suffix.begin(), suffix.end(), suffix.begin(), [](unsigned char c) { return std::tolower(c); });
+    return suffix == ".mp4";
+}
+
 void check_outputs(const std::vector<std::string>& outputs) {
     for (auto it = outputs.begin(); it != outputs.end(); ++it) {
-        image_io::check_image_path(*it);
+        if (!is_film(*it)) image_io::check_image_path(*it);
         if (std::any_of(outputs.begin(), it, [&](const std::string& other) { return same_file(other, *it); }))
             throw InputError("--output: \"" + *it + "\" is given twice");
     }

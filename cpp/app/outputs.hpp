@@ -4,8 +4,11 @@
 
 namespace realcam::app {
 
-/// Throws ImageFileError where one of the pictures could not be written, and InputError where two are the same file:
-/// before the work, not after it.
+/// Whether an output is a film (see film_outputs.hpp), and no picture.
+bool is_film(const std::string& output);
+
+/// Throws ImageFileError where one of the pictures could not be written, and InputError where two outputs are the same
+/// file: before the work, not after it.
 void check_outputs(const std::vector<std::string>& outputs);
 
 /// Throws InputError where a picture would take the place of a file that it is made from.

@@ -22,6 +22,7 @@
 #include "../shot/frames.hpp"
 #include "../shot/shot.hpp"
 #include "exposure_notice.hpp"
+#include "film_outputs.hpp"
 #include "help.hpp"
 #include "interrupt.hpp"
 #include "outputs.hpp"
@@ -87,7 +88,8 @@ bool is_file(const std::string& path) {
 /// One run of the command.
 class Run {
 public:
-    explicit Run(const RenderWords& words) : words_(words) {}
+    Run(const RenderWords& words, const FilmWriter* film_writer)
+        : words_(words), outputs_(words.outputs, film_writer) {}
 
     void photograph() {
         start_ = std::chrono::steady_clock::now();
@@ -95,7 +97,7 @@ public:
         const std::vector<int> frames = words_.frames.empty() ? std::vector<int>() : frame_numbers(words_.frames);
         if (!(words_.frames_per_second > 0 && std::isfinite(words_.frames_per_second)))
             throw InputError("--fps: more than 0 frames in a second are wanted");
-        check_outputs(frames.empty() ? words_.outputs : files_of(frames.front()));
+        outputs_.check(frames);
         check_apart(words_.outputs,
                     {words_.scene, request.scene, request.lens, request.texture, request.environment_file});
         Camera camera = camera_of(request);
@@ -140,13 +142,6 @@ private:
         Denoiser* denoiser;  ///< null: noise stays
         LayerSet written_layers;
     };
-
-    /// Of a frame.
-    std::vector<std::string> files_of(int frame) const {
-        std::vector<std::string> files;
-        for (const std::string& output : words_.outputs) files.push_back(frame_file(output, frame));
-        return files;
-    }
 
     void warn(const std::string& text) {
         say("warning: " + text);
@@ -214,6 +209,7 @@ private:
 
     /// Frames that are there as files stay: files are written as a whole or not at all.
     void film(const Darkroom& darkroom, shot::Shot& shot, shot::ShotRequest& request, const std::vector<int>& frames) {
+        outputs_.begin();
         std::string decisions;
         if (request.settings.effects.is_automatic)
             decisions = follow_film_plan(darkroom.session, shot, request, frames);
@@ -227,7 +223,7 @@ private:
         std::size_t there = 0;
         std::string all_figures;
         for (const int frame : frames) {
-            const std::vector<std::string> files = files_of(frame);
+            const std::vector<std::string> files = outputs_.files_of(frame);
             if (!words_.takes_again && std::all_of(files.begin(), files.end(), is_file)) {
                 ++there;
                 continue;
@@ -248,6 +244,10 @@ private:
         if (there > 0)
             inform(std::to_string(there) + " of " + std::to_string(frames.size()) +
                    " frames were there already; --again takes them, too");
+        const auto films =
+            until_interrupted([&] { return outputs_.finish(frames, words_.frames_per_second, is_wanted); });
+        for (const std::string& film : films)
+            if (!words_.is_quiet && !words_.as_json) std::fputs(("wrote " + film + '\n').c_str(), stdout);
     }
 
     /// Takes and writes a picture; its figures.
@@ -337,13 +337,14 @@ private:
     }
 
     const RenderWords& words_;
+    FilmOutputs outputs_;
     std::chrono::steady_clock::time_point start_;
     std::vector<std::string> warnings_;  ///< that were told
 };
 
 }  // namespace
 
-void add_render_command(CLI::App& app) {
+void add_render_command(CLI::App& app, const FilmWriter* film_writer) {
     CLI::App* command = app.add_subcommand("render", "Photograph a scene through a lens.");
     const auto words = std::make_shared<RenderWords>();
     add_render_options(*command, *words);
@@ -357,8 +358,9 @@ void add_render_command(CLI::App& app) {
             "realcam render shot.toml -o picture.png --noise-codes 1 --seconds 300 --json",
             "realcam render shot.toml -o picture.png --spp 16 --denoise",
             "realcam render shot.toml -o frames/shot.####.exr --frames 1-240",
+            "realcam render shot.toml -o film.mp4 --frames 1-240 --fps 30",
         });
-    command->callback([words] { Run{*words}.photograph(); });
+    command->callback([words, film_writer] { Run{*words, film_writer}.photograph(); });
 }
 
 void add_plan_command(CLI::App& app) {
@@ -371,7 +373,7 @@ void add_plan_command(CLI::App& app) {
                                "realcam plan shot.toml",
                                "realcam plan scene.glb --lens tessar-50mm --f-number 16 --quality draft --json",
                            });
-    command->callback([=] { Run{*words}.plan(*as_json); });
+    command->callback([=] { Run(*words, nullptr).plan(*as_json); });
 }
 
 }  // namespace realcam::app

@@ -4,8 +4,11 @@
 
 namespace realcam::app {
 
-/// Adds `render`. It throws Interrupted where a signal stopped it.
-void add_render_command(CLI::App& app);
+class FilmWriter;
+
+/// Adds `render`. It throws Interrupted where a signal stopped it. film_writer: null where there is none; the pointer
+/// is kept.
+void add_render_command(CLI::App& app, const FilmWriter* film_writer);
 /// Adds `plan`, which looks at a shot and renders nothing.
 void add_plan_command(CLI::App& app);
 

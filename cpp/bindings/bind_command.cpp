@@ -1,6 +1,9 @@
+#include <pybind11/functional.h>
 #include <pybind11/stl.h>
 
 #include "../app/command_line.hpp"
+#include "../app/film_writer.hpp"
+#include "../error.hpp"
 #include "bindings.hpp"
 
 namespace realcam::bindings {
@@ -9,13 +12,42 @@ using namespace py::literals;
 
 namespace {
 
+/// Calls realcam.video.
+class FilmWriterInPython : public app::FilmWriter {
+public:
+    void check(const std::string& film) const override {
+        const py::gil_scoped_acquire locked;
+        call("check_film", text_from(film));
+    }
+
+    void write(const std::string& film, const std::vector<std::string>& pictures, double frames_per_second,
+               const KeepGoing& keep_going) const override {
+        const py::gil_scoped_acquire locked;
+        py::list names;
+        for (const std::string& picture : pictures) names.append(text_from(picture));
+        call("write_film", text_from(film), names, frames_per_second, keep_going);
+    }
+
+private:
+    template <class... Arguments>
+    static void call(const char* function, const Arguments&... arguments) {
+        try {
+            py::module_::import("realcam.video").attr(function)(arguments...);
+        } catch (py::error_already_set& error) {
+            if (error.matches(py::module_::import("realcam").attr("Cancelled"))) throw Cancelled();
+            throw Error(path_from(py::str(error.value())));
+        }
+    }
+};
+
 int run_command(std::vector<std::string> words) {
     words.insert(words.begin(), "realcam");
     std::vector<char*> pointers;
     for (std::string& word : words) pointers.push_back(word.data());
     pointers.push_back(nullptr);
+    const FilmWriterInPython film_writer;
     const Unlocked unlocked;
-    return app::run_command_line(static_cast<int>(words.size()), pointers.data());
+    return app::run_command_line(static_cast<int>(words.size()), pointers.data(), &film_writer);
 }
 
 py::list listed_commands() {

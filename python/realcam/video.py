@@ -1,15 +1,15 @@
-"""Films of 8-bit pictures."""
+"""Films of 8-bit pictures. The commands in C++ call check_film and write_film."""
 
 from __future__ import annotations
 
 import secrets
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Iterator
 from fractions import Fraction
 from pathlib import Path
 
 import numpy as np
 
-from ._core import ImageFileError, InputError
+from ._core import Cancelled, ImageFileError, InputError
 from .extras import imported
 from .files import check_target
 
@@ -50,3 +50,23 @@ def write_video(path: Path, frames: Iterable[np.ndarray], frames_per_second: flo
         raise ImageFileError(f"{path}: cannot be written: {error.strerror or error}") from None
     finally:
         temporary.unlink(missing_ok=True)
+
+
+def check_film(path: str) -> None:
+    """Raises InputError where PyAV is missing, and ImageFileError where the film could not be written."""
+    imported("av", "video")
+    check_target(path)
+
+
+def write_film(path: str, pictures: list[str], frames_per_second: float, keep_going: Callable[[], bool]) -> None:
+    """Writes the film of 8-bit pictures in files; see write_video. Raises Cancelled where keep_going() is False."""
+
+    def frames() -> Iterator[np.ndarray]:
+        av = imported("av", "video")
+        for picture in pictures:
+            if not keep_going():
+                raise Cancelled
+            with av.open(picture) as opened:
+                yield next(opened.decode(video=0)).to_ndarray(format="rgb24")
+
+    write_video(Path(path), frames(), frames_per_second)

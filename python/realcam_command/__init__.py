@@ -17,8 +17,3 @@ def denoiser_library() -> str:
     folders = (package.submodule_search_locations or ()) if package else ()
     found = (path for folder in folders for path in Path(folder).rglob("libOpenImageDenoise.so*"))
     return named or str(next(found, ""))
-
-
-def makes_film(arguments: list[str]) -> bool:
-    """Whether a command line asks `realcam render` for more than the extension does."""
-    return arguments[:1] == ["render"] and any(word.lower().endswith(".mp4") for word in arguments)

@@ -6,7 +6,7 @@ import os
 import signal
 import sys
 
-from . import denoiser_library, makes_film
+from . import denoiser_library
 
 # What the extension does, with the C++ that the executable has, so that the two cannot differ.
 _IN_CPP = (["render"], ["plan"], ["devices"], ["lens", "info"], ["lens", "list"])
@@ -20,7 +20,7 @@ def main() -> None:
     if "--denoise" in arguments and (library := denoiser_library()):
         os.environ["REALCAM_OIDN"] = library
     try:
-        if any(arguments[: len(command)] == command for command in _IN_CPP) and not makes_film(arguments):
+        if any(arguments[: len(command)] == command for command in _IN_CPP):
             sys.exit(_run_in_cpp(arguments))
         from realcam.cli import run
     except ImportError as error:

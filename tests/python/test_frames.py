@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+import signal
 import subprocess
 from pathlib import Path
 
@@ -13,7 +15,7 @@ from realcam.image_file import read_film
 from realcam.video import write_video
 
 from . import scenes
-from .programs import PROGRAM, PYTHON
+from .programs import EXECUTABLE, PROGRAM, PYTHON, wants_executable
 
 SHOT = """
 format = 1
@@ -137,20 +139,8 @@ def test_render_takes_numbered_frames_and_goes_on(folder: Path) -> None:
 
 def test_render_makes_a_film(folder: Path) -> None:
     av = pytest.importorskip("av", reason="realcam[video] is missing")
-    words = [
-        "render",
-        "pan.toml",
-        "-o",
-        "pan.mp4",
-        "-o",
-        "pan.png",
-        "--frames",
-        "1-3",
-        "--fps",
-        "12",
-        "--device",
-        "cpu",
-    ]
+    # An option is written in any way that the command has.
+    words = ["render", "pan.toml", "-opan.mp4", "--output=pan.png", "--frames=1-3", "--fps", "12", "--device", "cpu"]
     done = subprocess.run([*PYTHON, *words], capture_output=True, text=True, check=True)
     assert done.stdout.endswith("wrote pan.mp4\n")
     with av.open("pan.mp4") as film:
@@ -161,6 +151,36 @@ def test_render_makes_a_film(folder: Path) -> None:
         still = next(picture.decode(video=0)).to_ndarray(format="rgb24")
     assert np.abs(shown[1][:21, :31].astype(int) - still.astype(int)).mean() < 6
     assert not (folder / "pan.mp4.frames").exists()
+    done = subprocess.run([*PYTHON, *words, "--json"], capture_output=True, text=True, check=True)
+    assert len(json.loads(done.stdout)) == 3
+
+
+def test_a_film_that_was_stopped_goes_on(folder: Path) -> None:
+    pytest.importorskip("av", reason="realcam[video] is missing")
+    words = ["render", "pan.toml", "-o", "pan.mp4", "--frames", "1-400", "--device", "cpu"]
+    running = subprocess.Popen([*PYTHON, *words], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    assert [running.stdout.readline().split(":")[0] for _ in range(2)] == ["frame 1", "frame 2"]
+    running.send_signal(signal.SIGINT)
+    _, said = running.communicate()
+    assert running.returncode == 130
+    assert said.endswith("realcam: stopped\n")
+    there = sorted(path.name for path in (folder / "pan.mp4.frames").iterdir())
+    assert there[0] == "000001.png" and 1 < len(there) < 400
+    assert not (folder / "pan.mp4").exists()
+    words[words.index("1-400")] = "1-1"
+    done = subprocess.run([*PYTHON, *words], capture_output=True, text=True, check=True)
+    assert "1 of 1 frames were there already" in done.stderr
+    assert (folder / "pan.mp4").exists()
+    # Other frames are not lost.
+    assert sorted(path.name for path in (folder / "pan.mp4.frames").iterdir()) == there[1:]
+
+
+@wants_executable
+def test_the_executable_says_what_makes_films(folder: Path) -> None:
+    words = [*EXECUTABLE, "render", "pan.toml", "-o", "pan.mp4", "--frames", "1-3"]
+    done = subprocess.run(words, capture_output=True, text=True)
+    assert done.returncode == 2
+    assert "this program writes pictures; realcam of Python (realcam[video]) makes films" in done.stderr
 
 
 @pytest.mark.parametrize(
@@ -169,6 +189,7 @@ def test_render_makes_a_film(folder: Path) -> None:
         (["-o", "a.png", "--frames", "9-1"], '--frames: "9-1": a number, 1-240 or 1-240x2 is wanted'),
         (["-o", "a.png", "--frames", "1-2", "--fps", "0"], "--fps: more than 0 frames in a second are wanted"),
         (["-o", "nowhere/a.png", "--frames", "1-2"], "nowhere"),
+        (["-o", "a.mp4", "-oa.mp4", "--frames", "1-2"], '"a.mp4" is given twice'),
         (["-o", "a.mp4"], "--frames is missing: a film, .mp4, is made of frames, as of 1-240"),
         (["-o", "nowhere/a.mp4", "--frames", "1-2"], "nowhere"),
     ],

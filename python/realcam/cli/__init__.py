@@ -7,11 +7,10 @@ import warnings
 from typing import NoReturn
 
 import typer
-from realcam_command import makes_film
 
 from .. import __version__
 from .._core import LensFileError, RealcamError, one_line
-from . import bench, compare, cost, dataset, demo, film, job, lens, sensor, view
+from . import bench, compare, cost, dataset, demo, job, lens, sensor, view
 from .commands_in_cpp import add_command_in_cpp
 from .help_texts import finish
 from .options import advice_on
@@ -58,8 +57,6 @@ def run() -> None:
     command = typer.main.get_command(app)
     finish(command)
     try:
-        if makes_film(sys.argv[1:]):
-            sys.exit(film.render_films(sys.argv[2:]))
         sys.exit(command(sys.argv[1:] or ["--help"], prog_name="realcam", standalone_mode=False))
     except UsageError as error:
         _fail(usage_message(error))
