@@ -100,6 +100,7 @@ public:
         outputs_.check(frames);
         check_apart(words_.outputs,
                     {words_.scene, request.scene, request.lens, request.texture, request.environment_file});
+        settle_keys(request);
         Camera camera = camera_of(request);
         const LayerSet written_layers = request.settings.layers;
         if (request.denoises)
@@ -126,6 +127,7 @@ public:
     void plan(bool as_json) {
         shot::ShotRequest request = understand(words_);
         request.settings.effects.is_automatic = true;
+        settle_keys(request);
         Camera camera = camera_of(request);
         const auto session = make_session(words_.device, [this](const std::string& text) { warn(text); });
         shot::Shot shot = set_up_shot(request, std::move(camera));
@@ -178,11 +180,11 @@ private:
         }
     }
 
-    /// The same for all frames of a film, by the first, the middle and the last of them.
+    /// The same for all frames of a film, by some of them.
     std::string follow_film_plan(Session& session, shot::Shot& shot, shot::ShotRequest& request,
                                  const std::vector<int>& frames) {
         std::vector<Camera> cameras;
-        for (const int frame : {frames.front(), frames[frames.size() / 2], frames.back()})
+        for (const int frame : shot::frames_to_plan(frames, shot.camera, request.keys, words_.frames_per_second))
             cameras.push_back(camera_of_frame(shot.camera, request, frame));
         try {
             const FilmPlan plan = until_interrupted([&] {
@@ -209,6 +211,8 @@ private:
 
     /// Frames that are there as files stay: files are written as a whole or not at all.
     void film(const Darkroom& darkroom, shot::Shot& shot, shot::ShotRequest& request, const std::vector<int>& frames) {
+        // The last frame should not be the one to tell that a lens cannot be as its keys say.
+        for (const int frame : frames) camera_of_frame(shot.camera, request, frame);
         outputs_.begin();
         std::string decisions;
         if (request.settings.effects.is_automatic)

@@ -109,6 +109,7 @@ void add_shot_options(CLI::App& command, RenderWords& words) {
                r.lens = w;
                r.zoom.clear();  // a position of the shot file's lens
                r.focal_length_mm.reset();
+               r.forget(&CameraKey::lens);
                r.forget(&CameraKey::focal_length_mm);
            });
     add_lens_options(command, words.lens_file);
@@ -123,7 +124,11 @@ void add_shot_options(CLI::App& command, RenderWords& words) {
            [](Request& r, Text o, Text w) { r.film_mm = parse_size(o, w); });
     option("--film-shift",
            "The film's middle from the lens's axis, mm to the right and up as the picture shows it [0,0]", "X,Y",
-           [](Request& r, Text o, Text w) { r.film_shift_mm = parse_shift(o, w); });
+           [](Request& r, Text o, Text w) {
+               r.film_shift_mm = parse_shift(o, w);
+               r.forget(&CameraKey::film_right_mm);
+               r.forget(&CameraKey::film_up_mm);
+           });
     option("--resolution", "Pixels [960 along the longer side]", "WxH",
            [](Request& r, Text o, Text w) { r.resolution = parse_resolution(o, w); });
     option("--camera",
@@ -156,11 +161,20 @@ void add_shot_options(CLI::App& command, RenderWords& words) {
         r.forget(&CameraKey::f_number);
     });
     option("--blades", "Of the diaphragm: 3 to 24, or 0 for a round one [the lens's]", "N",
-           [](Request& r, Text o, Text w) { r.blades = parse_whole(o, w, kMaxIrisBlades); });
+           [](Request& r, Text o, Text w) {
+               r.blades = parse_whole(o, w, kMaxIrisBlades);
+               r.forget(&CameraKey::blades);
+           });
     option("--blade-rounding", "0: straight edges; 1: the opening is a circle [the lens's]", "SHARE",
-           [](Request& r, Text o, Text w) { r.blade_rounding = parse_number(o, w); });
+           [](Request& r, Text o, Text w) {
+               r.blade_rounding = parse_number(o, w);
+               r.forget(&CameraKey::blade_rounding);
+           });
     option("--blade-rotation", "Degrees by which the blades are turned about the axis [the lens's]", "DEGREES",
-           [](Request& r, Text o, Text w) { r.blade_rotation_deg = parse_number(o, w); });
+           [](Request& r, Text o, Text w) {
+               r.blade_rotation_deg = parse_number(o, w);
+               r.forget(&CameraKey::blade_rotation_deg);
+           });
     option("--exposure-time", "Seconds, such as 1/125, or auto [auto: the average lands on middle grey]", "TIME",
            [](Request& r, Text o, Text w) {
                r.exposure_time_s = parse_exposure_time(o, w);

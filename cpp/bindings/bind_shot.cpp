@@ -1,6 +1,9 @@
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
+#include <tuple>
+#include <utility>
+
 #include "../camera/camera_key.hpp"
 #include "../camera/shake.hpp"
 #include "../io/files/image_metadata.hpp"
@@ -45,9 +48,16 @@ KeyWay key_way_from(const std::string& name) {
     throw InputError("interpolation: \"" + name + "\": linear, smooth or step is wanted");
 }
 
-CameraKey make_key(double time_s, Number focus_m, Number focal_length_mm, Number f_number, Number exposure_time_s,
-                   Number iso, const std::string& interpolation) {
-    const CameraKey key{time_s, focus_m, focal_length_mm, f_number, exposure_time_s, iso, key_way_from(interpolation)};
+CameraKey make_key(double time_s, std::optional<LensSystem> lens, Number focus_m, Number focal_length_mm,
+                   Number f_number, std::optional<int> blades, Number blade_rounding, Number blade_rotation_deg,
+                   Number exposure_time_s, Number iso, std::optional<std::pair<double, double>> film_shift_mm,
+                   const std::string& interpolation) {
+    CameraKey key{time_s, focus_m, focal_length_mm, f_number, exposure_time_s, iso, key_way_from(interpolation)};
+    key.lens = std::move(lens);
+    key.blades = blades;
+    key.blade_rounding = blade_rounding;
+    key.blade_rotation_deg = blade_rotation_deg;
+    if (film_shift_mm) std::tie(key.film_right_mm, key.film_up_mm) = *film_shift_mm;
     validate(key);
     return key;
 }
@@ -57,11 +67,17 @@ std::string text_of_key(const CameraKey& key) {
     const auto add = [&](const char* before, const Number& value, const char* unit) {
         if (value) text += std::string(", ") + before + digits(*value) + unit;
     };
+    if (key.lens) text += ", " + key.lens->name;
     add("focus ", key.focus_m, " m");
     add("", key.focal_length_mm, " mm");
     add("f/", key.f_number, "");
+    if (key.blades) text += ", " + std::to_string(*key.blades) + " blades";
+    add("blades rounded ", key.blade_rounding, "");
+    add("blades turned ", key.blade_rotation_deg, " deg");
     add("", key.exposure_time_s, " s");
     add("ISO ", key.iso, "");
+    add("film ", key.film_right_mm, " mm right");
+    add("film ", key.film_up_mm, " mm up");
     return text + '>';
 }
 
@@ -107,13 +123,7 @@ py::tuple curve_of(const Shake& shake) {
 /// Throws InputError where keys are none, or the camera cannot be as one of them says.
 void check_camera_keys(const Camera& camera, const std::vector<CameraKey>& keys) {
     validate(keys);
-    for (std::size_t i = 0; i < keys.size(); ++i) {
-        try {
-            check_key(camera, key_at(keys, keys[i].time_s));
-        } catch (const InputError& error) {
-            throw InputError("key " + std::to_string(i) + " of the camera: " + error.what());
-        }
-    }
+    check_keys(keys, "the camera", [&](const CameraKey& key) { check_key(camera, key_at(keys, key.time_s)); });
 }
 
 Camera camera_at_time(const Camera& camera, const std::vector<CameraKey>& keys, const std::optional<Shake>& shake,
@@ -139,20 +149,33 @@ std::vector<double> followed_isos(const Assembly& scene, const Camera& camera, c
 void bind_key(py::module_& m) {
     py::class_<CameraKey> key(m, "CameraKey", "What the rings and dials of a camera say at a time of a film.");
     def_hashable_value(key);
-    key.def(
-           py::init(&make_key), "time_s"_a, py::kw_only(), "focus_m"_a = py::none(), "focal_length_mm"_a = py::none(),
-           "f_number"_a = py::none(), "exposure_time_s"_a = py::none(), "iso"_a = py::none(),
-           "interpolation"_a = "linear",
-           "focus_m: object plane to film, or inf. focal_length_mm: of a zoom lens at rest. What is None is that of\n"
-           "the keys beside. Between keys 1 / focus_m changes evenly, and the others by even ratios. interpolation:\n"
-           "of the way from here on; \"smooth\" goes from rest to rest, and through the smooth keys between without a\n"
-           "stop; \"step\" stays, and jumps at the next key. Raises InputError.")
+    key.def(py::init(&make_key), "time_s"_a, py::kw_only(), "lens"_a = py::none(), "focus_m"_a = py::none(),
+            "focal_length_mm"_a = py::none(), "f_number"_a = py::none(), "blades"_a = py::none(),
+            "blade_rounding"_a = py::none(), "blade_rotation_deg"_a = py::none(), "exposure_time_s"_a = py::none(),
+            "iso"_a = py::none(), "film_shift_mm"_a = py::none(), "interpolation"_a = "linear",
+            "lens: a cut to another Lens, which is on the camera from here on; until the first of them, the camera's\n"
+            "own is. The rings of a lens, focus_m to blade_rotation_deg, go between its own keys alone. One without\n"
+            "keys for focus and f-number takes over those of the lens before, whatever it has itself.\n"
+            "focus_m: object plane to film, or inf. focal_length_mm: of a zoom lens at rest. What is None is that of\n"
+            "the keys beside. film_shift_mm: (right, up). Between keys it, 1 / focus_m, and rounding and angle of the\n"
+            "blades change evenly, and the others by even ratios; lens and blades jump. interpolation: of the way\n"
+            "from here on; \"smooth\" goes from rest to rest, and through the smooth keys between without a stop;\n"
+            "\"step\" stays, and jumps at the next key. Raises InputError.")
         .def_readonly("time_s", &CameraKey::time_s)
+        .def_readonly("lens", &CameraKey::lens)
         .def_readonly("focus_m", &CameraKey::focus_m)
         .def_readonly("focal_length_mm", &CameraKey::focal_length_mm)
         .def_readonly("f_number", &CameraKey::f_number)
+        .def_readonly("blades", &CameraKey::blades)
+        .def_readonly("blade_rounding", &CameraKey::blade_rounding)
+        .def_readonly("blade_rotation_deg", &CameraKey::blade_rotation_deg)
         .def_readonly("exposure_time_s", &CameraKey::exposure_time_s)
         .def_readonly("iso", &CameraKey::iso)
+        .def_property_readonly("film_shift_mm",
+                               [](const CameraKey& k) -> std::optional<std::pair<double, double>> {
+                                   if (!k.film_right_mm || !k.film_up_mm) return std::nullopt;
+                                   return std::pair(*k.film_right_mm, *k.film_up_mm);
+                               })
         .def_property_readonly("interpolation",
                                [](const CameraKey& k) { return kWays[static_cast<std::size_t>(k.way)]; })
         .def("__repr__", &text_of_key);
@@ -205,6 +228,7 @@ py::dict read_shot(const py::object& path, const std::string& device, const py::
         request = shot::read_shot_file(name);
         request.lens_options.keep_going = heed_signals;
         request.lens_options.warn = [&](const std::string& note) { notes.push_back(note); };
+        shot::settle_keys(request);
         camera = shot::camera_of(request);
         request.lens_options = {};  // which must not outlive what they name
         scene = shot::scene_of(request, readers, heed_signals);
@@ -245,6 +269,7 @@ void bind_shot(py::module_& m) {
     bind_shake(m);
     m.def("_check_camera_keys", &check_camera_keys, "camera"_a, "keys"_a);
     m.def("_camera_at", &camera_at_time, "camera"_a, "keys"_a, "shake"_a, "opens_s"_a);
+    m.def("_frames_to_plan", &shot::frames_to_plan, "numbers"_a, "camera"_a, "keys"_a, "frames_per_second"_a);
     m.def("_frame_seed", &shot::frame_seed, "seed"_a, "number"_a);
     m.def("_followed_isos", &followed_isos, "scene"_a, "camera"_a, "keys"_a, "settings"_a, "numbers"_a,
           "frames_per_second"_a, "smoothing_s"_a, "device"_a);

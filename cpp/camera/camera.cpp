@@ -60,16 +60,7 @@ void validate(const Pose& pose) {
 }
 
 void validate(const std::vector<PoseKey>& motion) {
-    for (std::size_t k = 0; k < motion.size(); ++k) {
-        const std::string key = "key " + std::to_string(k) + " of the camera's motion: ";
-        const std::string time = key_time_error(motion[k].time_s, k > 0 ? &motion[k - 1].time_s : nullptr);
-        if (!time.empty()) throw InputError(key + time);
-        try {
-            validate(motion[k].pose);
-        } catch (const InputError& error) {
-            throw InputError(key + error.what());
-        }
-    }
+    check_keys(motion, "the camera's motion", [](const PoseKey& key) { validate(key.pose); });
 }
 
 void validate(const Camera& camera) {

@@ -3,16 +3,27 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <span>
 #include <string>
+#include <utility>
 
 #include "../math/monotone_curve.hpp"
 #include "../optics/lens/focus.hpp"
+#include "../optics/lens/lens_changes.hpp"
 #include "../optics/lens/zoom.hpp"
+#include "../optics/prescription/lens_checks.hpp"
 
 namespace realcam {
 namespace {
 
 using Value = std::optional<double> CameraKey::*;
+
+/// What becomes of a value at a cut to another lens.
+enum class AtCut {
+    goes_on,  ///< a dial of the camera
+    stays,    ///< as the ring stood
+    ends,     ///< the other lens has its own
+};
 
 /// A value and the scale on which it changes evenly.
 struct Ring {
@@ -20,7 +31,12 @@ struct Ring {
     const char* name;
     double (*scale)(double);
     double (*from_scale)(double);
+    AtCut at_cut;
 };
+
+double same(double x) {
+    return x;
+}
 
 double inverse(double x) {
     return 1 / x;
@@ -35,23 +51,49 @@ double exponential(double x) {
 }
 
 constexpr Ring kRings[] = {
-    {&CameraKey::focus_m, "focus distance", inverse, inverse},
-    {&CameraKey::focal_length_mm, "focal length", logarithm, exponential},
-    {&CameraKey::f_number, "f-number", logarithm, exponential},
-    {&CameraKey::exposure_time_s, "exposure time", logarithm, exponential},
-    {&CameraKey::iso, "ISO number", logarithm, exponential},
+    {&CameraKey::focus_m, "focus distance", inverse, inverse, AtCut::stays},
+    {&CameraKey::focal_length_mm, "focal length", logarithm, exponential, AtCut::ends},
+    {&CameraKey::f_number, "f-number", logarithm, exponential, AtCut::stays},
+    {&CameraKey::blade_rounding, "rounding of the blades", same, same, AtCut::ends},
+    {&CameraKey::blade_rotation_deg, "rotation of the blades", same, same, AtCut::ends},
+    {&CameraKey::exposure_time_s, "exposure time", logarithm, exponential, AtCut::goes_on},
+    {&CameraKey::iso, "ISO number", logarithm, exponential, AtCut::goes_on},
+    {&CameraKey::film_right_mm, "shift of the film", same, same, AtCut::goes_on},
+    {&CameraKey::film_up_mm, "shift of the film", same, same, AtCut::goes_on},
 };
 
+using Keys = std::span<const CameraKey>;
+
+/// The index of the key that puts the lens of a time on the camera, and that of the next one that puts on another. Of
+/// the first lens of all, 0 stands for the former.
+std::pair<std::size_t, std::size_t> keys_of_lens(Keys keys, double time_s) {
+    std::size_t begin = 0;
+    const LensSystem* lens = nullptr;
+    for (std::size_t i = 0; i < keys.size(); ++i) {
+        if (!keys[i].lens || (lens && *keys[i].lens == *lens)) continue;
+        if (keys[i].time_s > time_s) return {begin, i};
+        begin = i;
+        lens = &*keys[i].lens;
+    }
+    return {begin, keys.size()};
+}
+
 /// The keys that have a value of a ring.
-std::vector<const CameraKey*> keys_with(const std::vector<CameraKey>& keys, Value value) {
+std::vector<const CameraKey*> keys_with(Keys keys, Value value) {
     std::vector<const CameraKey*> found;
     for (const CameraKey& key : keys)
         if (key.*value) found.push_back(&key);
     return found;
 }
 
-std::optional<double> value_at(const std::vector<CameraKey>& all, const Ring& ring, double time_s) {
-    const auto keys = keys_with(all, ring.value);
+std::optional<double> value_at(Keys all, const Ring& ring, double time_s) {
+    const auto [begin, end] =
+        ring.at_cut == AtCut::goes_on ? std::pair(std::size_t{0}, all.size()) : keys_of_lens(all, time_s);
+    auto keys = keys_with(all.subspan(begin, end - begin), ring.value);
+    if (keys.empty() && ring.at_cut == AtCut::stays) {
+        keys = keys_with(all.first(begin), ring.value);
+        if (!keys.empty()) return keys.back()->*ring.value;
+    }
     if (keys.empty()) return std::nullopt;
     const auto value = [&](std::size_t i) { return *(keys[i]->*ring.value); };
     if (!(time_s > keys.front()->time_s)) return value(0);
@@ -75,47 +117,69 @@ std::optional<double> value_at(const std::vector<CameraKey>& all, const Ring& ri
     return ring.from_scale(MonotoneCurve(std::move(times), std::move(scaled), ends).at(time_s));
 }
 
+/// None: the diaphragm stays as it is, or wide open.
+std::optional<double> f_number_wanted(const Camera& camera, const CameraKey& key) {
+    if (key.f_number || !key.lens || camera.lens.is_wide_open()) return key.f_number;
+    return f_number_at_infinity(camera.lens);
+}
+
 }  // namespace
 
 void validate(const CameraKey& key) {
     if (const std::string why = key_time_error(key.time_s, nullptr); !why.empty()) throw InputError(why);
-    bool says_something = false;
+    bool says_something = key.lens || key.blades;
     for (const Ring& ring : kRings) {
         const std::optional<double> value = key.*ring.value;
         says_something = says_something || value;
+        if (!value) continue;
         const bool may_be_infinite = ring.value == &CameraKey::focus_m;
-        if (value && (!(*value > 0) || (std::isinf(*value) && !may_be_infinite)))
-            throw InputError(std::string("the ") + ring.name + " must be a positive number" +
-                             (may_be_infinite ? " of metres, or inf" : ""));
+        const bool may_be_negative = ring.scale == same;
+        if (!(*value > 0 || may_be_negative) || !(std::isfinite(*value) || may_be_infinite))
+            throw InputError(std::string("the ") + ring.name + " must be a " + (may_be_negative ? "" : "positive ") +
+                             "number" + (may_be_infinite ? " of metres, or inf" : ""));
     }
     if (!says_something)
-        throw InputError("a key of the camera has no value: focus, focal length, f-number, exposure time or ISO");
+        throw InputError(
+            "a key of the camera has no value: lens, focus, focal length, f-number, blades, exposure time, ISO or "
+            "shift of the film");
+    try {
+        check_iris({key.blades.value_or(0), key.blade_rounding.value_or(0), 0});
+    } catch (const LensFileError& error) {
+        throw InputError(error.what());
+    }
 }
 
 void validate(const std::vector<CameraKey>& keys) {
-    for (std::size_t k = 0; k < keys.size(); ++k) {
-        const std::string key = "key " + std::to_string(k) + " of the camera: ";
-        const std::string time = key_time_error(keys[k].time_s, k > 0 ? &keys[k - 1].time_s : nullptr);
-        if (!time.empty()) throw InputError(key + time);
-        try {
-            validate(keys[k]);
-        } catch (const InputError& error) {
-            throw InputError(key + error.what());
-        }
-    }
+    check_keys(keys, "the camera", [](const CameraKey& key) { validate(key); });
 }
 
 CameraKey key_at(const std::vector<CameraKey>& keys, double time_s) {
-    CameraKey key{.time_s = time_s};
-    for (const Ring& ring : kRings) key.*ring.value = value_at(keys, ring, time_s);
-    return key;
+    // The time of a frame is a sum, which may miss a key's by its last digits.
+    constexpr double kSame_s = 1e-7;
+    for (const CameraKey& key : keys)
+        if (std::fabs(key.time_s - time_s) <= kSame_s) time_s = key.time_s;
+    CameraKey found{.time_s = time_s};
+    for (const Ring& ring : kRings) found.*ring.value = value_at(keys, ring, time_s);
+    const auto [begin, end] = keys_of_lens(keys, time_s);
+    if (begin < end) found.lens = keys[begin].lens;
+    for (std::size_t i = begin; i < end; ++i)
+        if (keys[i].blades && (keys[i].time_s <= time_s || !found.blades)) found.blades = keys[i].blades;
+    return found;
 }
 
 Camera with_key(Camera camera, const CameraKey& key) {
     LensSystem& lens = camera.lens;
+    const std::optional<double> f_number = f_number_wanted(camera, key);
+    const double focus_before = lens.focus_distance;
+    if (key.lens) {
+        lens = *key.lens;
+        lens.stop_semi_diameter = lens.stop().clear_semi_diameter;
+    }
+    if (key.blades || key.blade_rounding || key.blade_rotation_deg)
+        lens = with_iris(std::move(lens), key.blades, key.blade_rounding, key.blade_rotation_deg);
     if (key.focal_length_mm) lens = zoomed_to_focal_length(lens, *key.focal_length_mm);
-    if (key.f_number) {
-        double wanted = *key.f_number;
+    if (f_number) {
+        double wanted = *f_number;
         if (key.focal_length_mm) {
             LensSystem open = lens;
             open.stop_semi_diameter = open.stop().clear_semi_diameter;
@@ -123,19 +187,23 @@ Camera with_key(Camera camera, const CameraKey& key) {
         }
         lens = stopped_down(std::move(lens), wanted);
     }
-    if (key.focus_m) lens = focused(lens, 1000 * *key.focus_m);
+    if (key.focus_m || key.lens) lens = focused(lens, key.focus_m ? 1000 * *key.focus_m : focus_before);
     camera.exposure_time_s = key.exposure_time_s.value_or(camera.exposure_time_s);
     camera.iso = key.iso.value_or(camera.iso);
+    camera.film.shift_mm = {key.film_right_mm.value_or(camera.film.shift_mm.x),
+                            key.film_up_mm.value_or(camera.film.shift_mm.y)};
     validate(camera);
     return camera;
 }
 
 void check_key(const Camera& camera, const CameraKey& key) {
     const double f_number = f_number_at_infinity(with_key(camera, key).lens);
+    const std::optional<double> wanted = f_number_wanted(camera, key);
     constexpr double kEngraved = 0.006;  // a little more than stopped_down takes for wide open
-    if (!key.f_number || *key.f_number > (1 - kEngraved) * f_number) return;
+    // Without a focal length, with_key has refused it.
+    if (!wanted || !key.focal_length_mm || *wanted > (1 - kEngraved) * f_number) return;
     char text[120];
-    std::snprintf(text, sizeof text, "f/%.4g is faster than the lens at %.4g mm, which opens to f/%.4g", *key.f_number,
+    std::snprintf(text, sizeof text, "f/%.4g is faster than the lens at %.4g mm, which opens to f/%.4g", *wanted,
                   *key.focal_length_mm, f_number);
     throw InputError(text);
 }

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "../error.hpp"
 #include "interpolate_affine.hpp"
 
 namespace REALCAM_NAMESPACE {
@@ -37,6 +38,23 @@ std::vector<double> sorted_once(std::vector<double> times);
 
 /// What is wrong with the time of the key after one at `last` (null: it is the first); empty: nothing.
 std::string key_time_error(double time_s, const double* last);
+
+/// Throws InputError, which names the key, where `check` does, or where times do not rise. `of`: "the camera".
+template <class Key, class Check>
+void check_keys(const std::vector<Key>& keys, const std::string& of, Check&& check) {
+    for (std::size_t k = 0; k < keys.size(); ++k) {
+        const auto fail = [&](const std::string& why) {
+            throw InputError("key " + std::to_string(k) + " of " + of + ": " + why);
+        };
+        const std::string why = key_time_error(keys[k].time_s, k > 0 ? &keys[k - 1].time_s : nullptr);
+        if (!why.empty()) fail(why);
+        try {
+            check(keys[k]);
+        } catch (const InputError& error) {
+            fail(error.what());
+        }
+    }
+}
 
 /// A motion by keys at the given times and at as many between them as the interpolation wants, to be what `at` is: a
 /// function of the time. For what moves with something else, and goes along arcs where that turns.

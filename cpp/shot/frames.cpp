@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "../math/random.hpp"
@@ -17,6 +18,18 @@ Camera camera_at(Camera camera, const std::vector<CameraKey>& keys, const Shake&
     camera.shutter.opens_s = opens_s;
     camera = with_key(std::move(camera), key_at(keys, opens_s));
     return shaken(std::move(camera), shake);
+}
+
+std::vector<int> frames_to_plan(const std::vector<int>& numbers, const Camera& camera,
+                                const std::vector<CameraKey>& keys, double frames_per_second) {
+    std::vector<int> chosen;
+    std::optional<LensSystem> lens;
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+        std::optional<LensSystem> now = key_at(keys, frame_opens_s(camera, numbers[i], frames_per_second)).lens;
+        if (i == 0 || i == numbers.size() / 2 || i + 1 == numbers.size() || now != lens) chosen.push_back(numbers[i]);
+        lens = std::move(now);
+    }
+    return chosen;
 }
 
 std::uint32_t frame_seed(std::uint32_t seed, int number) {

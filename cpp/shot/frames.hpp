@@ -16,6 +16,11 @@ double frame_opens_s(const Camera& camera, int number, double frames_per_second)
 /// dials stay as they are when the shutter opens, and the shake is that of the exposure. Throws InputError.
 Camera camera_at(Camera camera, const std::vector<CameraKey>& keys, const Shake& shake, double opens_s);
 
+/// The frames of a film by which its effects are planned: the first, the middle and the last one, and the first one
+/// after each cut to another lens. numbers: of all frames, at least one.
+std::vector<int> frames_to_plan(const std::vector<int>& numbers, const Camera& camera,
+                                const std::vector<CameraKey>& keys, double frames_per_second);
+
 /// The seed of a frame: no two frames of a shot have the same. Shots whose seeds are neighbours share none by rule.
 std::uint32_t frame_seed(std::uint32_t seed, int number);
 

@@ -14,22 +14,34 @@ std::optional<KeyWay> way_named(std::string_view name) {
 
 /// The key of the file that a value of [[key]] stands in place of.
 struct StillKey {
-    std::optional<double> CameraKey::* value;
+    bool (*has)(const CameraKey& key);
     const char* key;    ///< of [[key]]
     const char* still;  ///< of the file
+    bool is_of_lens = false;  ///< and not of the camera: what the file says is of its first lens
 };
 
-constexpr StillKey kStill[] = {{&CameraKey::focus_m, "focus_m", "focus_m"},
-                               {&CameraKey::focal_length_mm, "focal_length_mm", "focal_length_mm"},
-                               {&CameraKey::focal_length_mm, "focal_length_mm", "zoom"},
-                               {&CameraKey::f_number, "f_number", "f_number"},
-                               {&CameraKey::exposure_time_s, "exposure_time_s", "exposure_time_s"},
-                               {&CameraKey::iso, "iso", "iso"},
-                               {&CameraKey::iso, "iso", "iso_follows_s"}};
+template <auto value>
+bool has(const CameraKey& key) {
+    return (key.*value).has_value();
+}
+
+constexpr StillKey kStill[] = {{has<&CameraKey::focus_m>, "focus_m", "focus_m", true},
+                               {has<&CameraKey::focal_length_mm>, "focal_length_mm", "focal_length_mm", true},
+                               {has<&CameraKey::focal_length_mm>, "focal_length_mm", "zoom", true},
+                               {has<&CameraKey::f_number>, "f_number", "f_number", true},
+                               {has<&CameraKey::blades>, "blades", "blades", true},
+                               {has<&CameraKey::blade_rounding>, "blade_rounding", "blade_rounding", true},
+                               {has<&CameraKey::blade_rotation_deg>, "blade_rotation_deg", "blade_rotation_deg", true},
+                               {has<&CameraKey::exposure_time_s>, "exposure_time_s", "exposure_time_s"},
+                               {has<&CameraKey::iso>, "iso", "iso"},
+                               {has<&CameraKey::iso>, "iso", "iso_follows_s"},
+                               {has<&CameraKey::film_right_mm>, "film_shift_mm", "film_shift_mm"}};
 
 void read_keys(const ShotTable& shot, ShotRequest& request) {
+    bool has_other_lens = false;
     for (const ShotTable& table : shot.tables("key")) {
-        table.allow({"time_s", "focus_m", "focal_length_mm", "f_number", "exposure_time_s", "iso", "interpolation"});
+        table.allow({"time_s", "lens", "focus_m", "focal_length_mm", "f_number", "blades", "blade_rounding",
+                     "blade_rotation_deg", "exposure_time_s", "iso", "film_shift_mm", "interpolation"});
         CameraKey key{.time_s = table.number_wanted("time_s")};
         if (table.find("focus_m")) {
             key.focus_m = table.number_or_auto("focus_m", "a number of metres or inf");
@@ -40,13 +52,23 @@ void read_keys(const ShotTable& shot, ShotRequest& request) {
         key.f_number = table.number("f_number");
         key.exposure_time_s = table.number("exposure_time_s");
         key.iso = table.number("iso");
+        if (const auto blades = table.number("blades")) key.blades = table.whole("blades", *blades);
+        key.blade_rounding = table.number("blade_rounding");
+        key.blade_rotation_deg = table.number("blade_rotation_deg");
+        if (const auto shift = table.numbers("film_shift_mm", 2); !shift.empty()) {
+            key.film_right_mm = shift[0];
+            key.film_up_mm = shift[1];
+        }
         key.way = table.named("interpolation", way_named, "linear, smooth or step").value_or(key.way);
+        if (const std::string lens = lens_of(table); !lens.empty()) key.lens.emplace().name = lens;
         table.checked("time_s", [&] { validate(key); });
         const double* const last = request.keys.empty() ? nullptr : &request.keys.back().time_s;
         if (const std::string why = key_time_error(key.time_s, last); !why.empty())
             table.fail(why, table.find("time_s"));
+        has_other_lens = has_other_lens || key.lens;
         for (const StillKey& still : kStill)
-            if (const toml::node* node = key.*still.value ? shot.find(still.still) : nullptr)
+            if (const toml::node* node =
+                    still.has(key) && !(still.is_of_lens && has_other_lens) ? shot.find(still.still) : nullptr)
                 shot.fail('"' + std::string(still.still) + "\" and \"" + still.key + "\" of [[key]] exclude each other",
                           node);
         request.keys.push_back(key);
@@ -71,6 +93,11 @@ void read_shake(const ShotTable& shot, Shake& shake) {
 }
 
 }  // namespace
+
+std::string lens_of(const ShotTable& table) {
+    const std::string path = table.path("lens"), name = table.name("lens");
+    return io::is_lens_path(name, path) ? path : name;
+}
 
 void read_camera_keys(const ShotTable& shot, ShotRequest& request) {
     read_keys(shot, request);

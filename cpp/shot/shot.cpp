@@ -1,13 +1,14 @@
 #include "shot.hpp"
 
+#include <algorithm>
 #include <cstdio>
-#include <numbers>
 #include <utility>
 
 #include "../camera/default_film.hpp"
 #include "../camera/picture_angle.hpp"
 #include "../error.hpp"
 #include "../io/lens/lens_file.hpp"
+#include "../math/hypotenuse.hpp"
 #include "../optics/lens/focus.hpp"
 #include "../optics/lens/lens_changes.hpp"
 #include "../optics/lens/zoom.hpp"
@@ -27,25 +28,44 @@ void add_texture(Scene& scene, const std::string& path, const PictureReaders& re
     for (Material& material : scene.materials) material.diffuse_texture = {index, {1, 0, 0}, {0, 1, 0}};
 }
 
-IrisShape iris_of(const ShotRequest& request, IrisShape iris) {
-    iris.blades = request.blades.value_or(iris.blades);
-    iris.rounding = request.blade_rounding.value_or(iris.rounding);
-    if (request.blade_rotation_deg) iris.rotation_rad = *request.blade_rotation_deg * std::numbers::pi / 180;
-    if (iris.blades == 0 && !request.blades)
-        throw InputError("the diaphragm of " + request.lens +
-                         " is round; blade_rounding and blade_rotation want blades");
-    return iris;
+LensSystem with_blades_of(const ShotRequest& request, LensSystem lens) {
+    if (!request.blades && !request.blade_rounding && !request.blade_rotation_deg) return lens;
+    return with_iris(std::move(lens), request.blades, request.blade_rounding, request.blade_rotation_deg);
+}
+
+/// Throws InputError where the film was chosen for another lens, and this one is made for less of it.
+void check_covers_film(const ShotRequest& request, const LensSystem& lens, const Film& film) {
+    if (request.film_mm ||
+        hypotenuse(lens.film_width, lens.film_height) >= 0.99 * hypotenuse(film.width_mm, film.height_mm))
+        return;
+    char text[160];
+    std::snprintf(text, sizeof text,
+                  "the lens is made for a film of %.4g x %.4g mm, and the shot has %.4g x %.4g mm; film_mm says which "
+                  "is wanted",
+                  lens.film_width, lens.film_height, film.width_mm, film.height_mm);
+    throw InputError(text);
+}
+
+/// Work on a key of a file, whose place goes before what is wrong with it.
+template <class Work>
+void at_place(const std::string& place, Work&& work) {
+    try {
+        work();
+    } catch (const InputError& error) {
+        throw InputError(place + ": " + error.what());
+    } catch (const LensFileError& error) {
+        if (!error.file.empty()) throw;
+        throw InputError(place + ": " + error.what());
+    }
 }
 
 /// Whether the camera can be as each of the keys says.
 void check_keys(const ShotRequest& request, const Camera& camera) {
-    for (std::size_t i = 0; i < request.keys.size(); ++i) {
-        try {
+    for (std::size_t i = 0; i < request.keys.size(); ++i)
+        at_place(request.key_places[i], [&] {
+            if (request.keys[i].lens) check_covers_film(request, *request.keys[i].lens, camera.film);
             check_key(camera, key_at(request.keys, request.keys[i].time_s));
-        } catch (const InputError& error) {
-            throw InputError(request.key_places[i] + ": " + error.what());
-        }
-    }
+        });
 }
 
 }  // namespace
@@ -74,12 +94,25 @@ void settle_noise_goal(ShotRequest& request) {
     request.settings.noise = goal_of(wanted);
 }
 
+void settle_keys(ShotRequest& request) {
+    io::LensReadOptions options = request.lens_options;
+    options.glasses.clear();  // which are those of the first lens
+    for (std::size_t i = 0; i < request.keys.size(); ++i)
+        if (std::optional<LensSystem>& lens = request.keys[i].lens)
+            at_place(request.key_places[i],
+                     [&] { lens = with_blades_of(request, io::read_lens(lens->name, options)); });
+    const auto cut = std::find_if(request.keys.begin(), request.keys.end(),
+                                  [](const CameraKey& key) { return key.lens.has_value(); });
+    const bool zooms =
+        std::any_of(request.keys.begin(), cut, [](const CameraKey& key) { return key.focal_length_mm.has_value(); });
+    if (zooms && request.f_number) request.keys.front().f_number = std::exchange(request.f_number, {});
+}
+
 Camera camera_of(const ShotRequest& request) {
     Camera camera;
     camera.lens = io::read_lens(request.lens, request.lens_options);
     if (!request.zoom.empty()) camera.lens = zoomed(camera.lens, request.zoom);
-    if (request.blades || request.blade_rounding || request.blade_rotation_deg)
-        camera.lens = with_iris(camera.lens, iris_of(request, camera.lens.iris));
+    camera.lens = with_blades_of(request, std::move(camera.lens));
     if (request.focal_length_mm) camera.lens = zoomed_to_focal_length(camera.lens, *request.focal_length_mm);
     if (request.f_number) camera.lens = stopped_down(camera.lens, *request.f_number);
     camera.film = default_film(camera.lens, request.film_mm, request.resolution);
@@ -89,8 +122,10 @@ Camera camera_of(const ShotRequest& request) {
     camera.shutter = request.shutter;
     if (request.exposure_time_s) camera.exposure_time_s = *request.exposure_time_s;
     validate(camera);
-    if (request.view.focus_distance_m) focused(camera.lens, 1000 * *request.view.focus_distance_m);
-    check_keys(request, camera);
+    Camera in_focus = camera;
+    if (request.view.focus_distance_m)
+        in_focus.lens = focused(std::move(in_focus.lens), 1000 * *request.view.focus_distance_m);
+    check_keys(request, in_focus);
     return with_key(std::move(camera), request.opening_key());
 }
 

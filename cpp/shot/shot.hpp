@@ -22,8 +22,13 @@ struct Shot {
     bool is_metered = false;    ///< the exposure time was chosen
 };
 
-/// Lens, film and dials, before the camera is placed. Throws InputError and LensFileError for all that can be found
-/// wrong before the scene is read: nobody should wait for a picture and be told then.
+/// Reads the lenses of the keys, with the blades of the request. Where keys zoom its lens, they get the f-number of the
+/// request, which the lens need not reach at the position that it had before. Throws InputError and LensFileError.
+void settle_keys(ShotRequest& request);
+
+/// Lens, film and dials of a request whose keys are settled, before the camera is placed. Throws InputError and
+/// LensFileError for all that can be found wrong before the scene is read: nobody should wait for a picture and be told
+/// then.
 Camera camera_of(const ShotRequest& request);
 
 /// The scene of a request in the environment of the request. Throws InputError, SceneFileError and ImageFileError, and

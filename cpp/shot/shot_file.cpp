@@ -8,7 +8,6 @@
 
 #include "../error.hpp"
 #include "../io/files/readable_file.hpp"
-#include "../io/lens/lens_file.hpp"
 #include "../io/text/printable.hpp"
 #include "../io/text/toml_document.hpp"
 #include "../render/effect_names.hpp"
@@ -117,8 +116,7 @@ private:
     }
 
     void read_camera(ShotRequest& shot) const {
-        if (const std::string lens = table_.name("lens"); !lens.empty())
-            shot.lens = io::is_lens_path(lens, table_.path("lens")) ? table_.path("lens") : lens;
+        if (const std::string lens = lens_of(table_); !lens.empty()) shot.lens = lens;
         shot.zoom = table_.text("zoom");
         if (shot.zoom.empty() && table_.find("zoom"))
             table_.fail("\"zoom\" is empty; the name of a zoom position of the lens is wanted", table_.find("zoom"));

@@ -50,7 +50,9 @@ struct ShotRequest {
     ViewRequest view;
     std::vector<PoseKey> motion;  ///< of the camera, in place of position and look_at; empty: it stands still
     Shutter shutter;
-    std::vector<CameraKey> keys;  ///< of rings and dials, whose own values below and above are then left out
+    /// Of rings and dials, whose own values below and above are then left out. Their lenses are nothing but the names
+    /// of lenses, as `lens`, until settle_keys has read them.
+    std::vector<CameraKey> keys;
     std::vector<std::string> key_places;  ///< of each, for messages
     Shake shake;
     std::optional<double> iso_follows_s;  ///< of a film: the ISO number follows the meter, smoothed over so long
@@ -65,7 +67,8 @@ struct ShotRequest {
     ToneCurve tone = ToneCurve::film;
 
     /// Takes a value out of the keys: something else was said of it.
-    void forget(std::optional<double> CameraKey::* value) {
+    template <class T>
+    void forget(std::optional<T> CameraKey::* value) {
         for (CameraKey& key : keys) (key.*value).reset();
     }
     /// What its keys say when the shutter opens.

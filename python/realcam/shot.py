@@ -21,9 +21,9 @@ class Shot:
 
     tone: "film" or "linear", the tone curve for Image.save. What the settings say can be asked of the shot, too:
     shot.spp is shot.settings.spp.
-    keys: of the camera's rings and dials, which then go before what the camera itself says; `shake`: of a camera in the
-    hand. `camera` is as the keys have it when its shutter opens, and does not shake. iso_follows_s: in a film the ISO
-    number follows the meter, smoothed over so many seconds; None: it does not.
+    keys: of the camera's rings and dials, which then go before what the camera itself says, and of cuts to other
+    lenses; `shake`: of a camera in the hand. `camera` is as the keys have it when its shutter opens, and does not
+    shake. iso_follows_s: in a film the ISO number follows the meter, smoothed over so many seconds; None: it does not.
     Raises InputError where the camera cannot be as a key says.
     """
 
@@ -65,8 +65,9 @@ class Shot:
 
         The shutter of frame 1 opens when that of the shot does, and those of the others so many frames later. Each
         frame has a seed of its own, a hash of the shot's and of its number, so that the noise does not stand still.
-        Effects "auto" are planned for the first, the middle and the last frame together, because one that comes and
-        goes would show. The plan and the meter, where the ISO number follows it, work on `device`.
+        Effects "auto" are planned for the first, the middle and the last frame and after each cut to another lens
+        together, because one that comes and goes would show. The plan and the meter, where the ISO number follows it,
+        work on `device`.
         Raises InputError for numbers below 0 and for what the lens cannot do at a frame, and what plan raises.
         """
         numbers = list(numbers)
@@ -79,8 +80,8 @@ class Shot:
         cameras = {number: camera_of(number) for number in numbers}
         settings = self.settings
         if "auto" in settings.effects:
-            some = [cameras[number] for number in (numbers[0], numbers[len(numbers) // 2], numbers[-1])]
-            planned = settled_film(self.scene, some, settings, device, stacklevel=2)
+            some = _core._frames_to_plan(numbers, self.camera, self.keys, frames_per_second)
+            planned = settled_film(self.scene, [cameras[n] for n in some], settings, device, stacklevel=2)
             settings = planned.settings
             cameras = {number: camera.replace(model=planned.camera.model) for number, camera in cameras.items()}
         if self.iso_follows_s is not None:

@@ -80,6 +80,8 @@ MAKERS: dict[str, list[Callable[[], Any]]] = {
     "CameraKey": [
         lambda: rc.CameraKey(1, focus_m=2, f_number=4, interpolation="smooth"),
         lambda: rc.CameraKey(1, focus_m=2, f_number=4),
+        lambda: rc.CameraKey(1, lens=lens(), blades=6, film_shift_mm=(1, 2)),
+        lambda: rc.CameraKey(1, blades=7),
     ],
     "Shake": [
         lambda: rc.Shake(rms_deg=0.1, seed=2),

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import json
 import math
 import pickle
+import subprocess
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +16,7 @@ import realcam as rc
 from scipy.interpolate import CubicHermiteSpline, PchipInterpolator
 
 from . import scenes
+from .programs import PROGRAM
 
 Key = rc.CameraKey
 
@@ -101,6 +105,85 @@ def test_the_picture_breathes_as_the_lens_does() -> None:
     assert tangents[0] / tangents[1] == pytest.approx(pupil_to_film[1] / pupil_to_film[0], rel=0.01)
 
 
+def test_a_cut_to_another_lens() -> None:
+    """The rings stay as they stand, where the keys say nothing else; within a lens they go from key to key."""
+    gauss, zoom = rc.Lens.load("double-gauss-50mm"), rc.Lens.load("zoom-70-200mm")
+    camera = rc.Camera(rc.Lens.load("tessar-50mm").stopped_down(5.6).focused(2.5), film=rc.Film(36, 24, (12, 8)))
+    keys = (
+        Key(1, lens=gauss.focused(9), iso=100),
+        Key(2, focus_m=4, interpolation="smooth"),
+        Key(3, lens=zoom, focus_m=6, f_number=4, focal_length_mm=100),
+        Key(4, focal_length_mm=144, f_number=16),
+        Key(5, lens=gauss, iso=1600),
+    )
+    shot = replace(shot_of(), camera=camera, keys=keys)
+
+    def rings(time_s: float) -> tuple[str, float, float, float]:
+        lens = shot.camera_at(time_s).lens
+        data = lens.focused(math.inf).first_order()
+        return lens.name, lens.focus_distance_m, data.f_number, data.effective_focal_length_mm
+
+    fixed = gauss.first_order().effective_focal_length_mm
+    assert shot.camera_at(0.999).lens == camera.lens
+    for time_s, *wanted in (
+        (1, gauss.name, 4, 5.6, fixed),  # with the first focus that its keys have
+        (2.9, gauss.name, 4, 5.6, fixed),
+        (3, zoom.name, 6, 4, 100),
+        (3.5, zoom.name, 6, 8, 120),
+        (4.9, zoom.name, 6, 16, 144),
+        (5, gauss.name, 6, 16, fixed),
+    ):
+        assert rings(time_s) == (wanted[0], *(pytest.approx(value, rel=1e-6) for value in wanted[1:])), time_s
+    # A dial of the camera goes on over all cuts.
+    assert [shot.camera_at(t).iso for t in (2, 3, 4)] == pytest.approx([200, 400, 800], rel=1e-12)
+    assert pickle.loads(pickle.dumps(keys)) == keys
+
+
+def test_a_wide_open_lens_leaves_the_next_one_wide_open() -> None:
+    fast = rc.Lens.load("double-gauss-50mm-fast")
+    shot = shot_of(Key(1, lens=fast.stopped_down(11)), Key(2, lens=rc.Lens.load("tessar-50mm"), f_number=4))
+    assert shot.camera_at(1).lens.stop_semi_diameter_mm == fast.stop_semi_diameter_mm
+    assert shot.camera_at(2).lens.first_order().f_number == pytest.approx(4, rel=1e-9)
+
+
+def test_a_frame_whose_time_is_a_sum_is_that_of_its_key() -> None:
+    """0.7 + 0.1 is a little less than 0.8, in doubles."""
+    assert 0.7 + 0.1 < 0.8
+    shot = shot_of(Key(0.8, lens=rc.Lens.load("double-gauss-50mm")))
+    shot = replace(shot, camera=shot.camera.replace(shutter_opens_s=0.7))
+    frames = shot.frames([1, 2], frames_per_second=10)
+    assert [frame.camera.lens.name for frame in frames.values()] == ["tessar-50mm", "double-gauss-50mm"]
+
+
+def test_effects_are_planned_for_each_lens() -> None:
+    gauss, tessar = rc.Lens.load("double-gauss-50mm"), rc.Lens.load("tessar-50mm")
+    keys = [Key(10, lens=gauss), Key(11, focus_m=2), Key(12, lens=gauss), Key(13, lens=tessar)]
+    camera = rc.Camera(tessar)
+    assert rc._core._frames_to_plan(range(1, 41), camera, keys, 1.0) == [1, 11, 14, 21, 40]
+    assert rc._core._frames_to_plan([12], camera, keys, 1.0) == [12]
+
+
+def test_blades_and_film_have_keys() -> None:
+    shot = shot_of(
+        Key(0, blade_rotation_deg=10, film_shift_mm=(0, -1)),
+        Key(1, blades=6),
+        Key(2, blade_rotation_deg=-20, blade_rounding=0.5, film_shift_mm=(3, 1)),
+        Key(3, blades=9),
+    )
+    for time_s, blades, rotation_deg, shift_mm in (
+        (0, 6, 10, (0, -1)),
+        (1, 6, -5, (1.5, 0)),
+        (2.9, 6, -20, (3, 1)),
+        (3, 9, -20, (3, 1)),
+    ):
+        camera = shot.camera_at(time_s)
+        assert camera.lens.iris_blades == blades
+        assert camera.lens.iris_rounding == 0.5
+        assert camera.lens.iris_rotation_deg == pytest.approx(rotation_deg, abs=1e-12)
+        assert camera.film.shift_mm == pytest.approx(shift_mm)
+    assert shot.keys[2].film_shift_mm == (3, 1)
+
+
 @pytest.mark.parametrize(
     ("make", "wanted"),
     [
@@ -108,6 +191,21 @@ def test_the_picture_breathes_as_the_lens_does() -> None:
         (lambda: Key(0, focus_m=0), "the focus distance must be a positive number of metres, or inf"),
         (lambda: Key(0, iso=math.inf), "the ISO number must be a positive number"),
         (lambda: Key(math.nan, iso=1), "a time must lie within 1e9 s"),
+        (lambda: Key(0, blades=2), "the iris has 2 blades; 0"),
+        (lambda: Key(0, blade_rounding=1.5), "the rounding of the iris must lie between 0"),
+        (lambda: Key(0, film_shift_mm=(0, math.nan)), "the shift of the film must be a number"),
+        (lambda: shot_of(Key(0, blade_rotation_deg=9)), "key 0 of the camera: the diaphragm of tessar-50mm is round"),
+        (
+            lambda: shot_of(Key(0, f_number=4), Key(1, lens=rc.Lens.load("mirror-telephoto-500mm"))),
+            "key 1 of the camera: f/4 is faster than lens",
+        ),
+        (
+            lambda: replace(
+                shot_of(Key(1, lens=rc.Lens.load("zoom-70-200mm"), focal_length_mm=100)),
+                camera=rc.Camera(rc.Lens.load("double-gauss-50mm").stopped_down(2.4)),
+            ),
+            "key 0 of the camera: f/2.4 is faster than the lens at 100 mm, which opens to f/2.9",
+        ),
         (lambda: Key(0, iso=1, interpolation="bouncy"), 'interpolation: "bouncy": linear, smooth or step is wanted'),
         (lambda: shot_of(Key(1, iso=1), Key(1, iso=2)), "key 1 of the camera: the times must rise"),
         (lambda: shot_of(Key(0, f_number=1.2)), "key 0 of the camera: f/1.2 is faster than lens"),
@@ -157,6 +255,49 @@ def test_a_shot_file_has_keys(folder: Path) -> None:
     assert pickle.loads(pickle.dumps(shot)).keys == shot.keys
 
 
+def test_a_shot_file_cuts_to_other_lenses(folder: Path) -> None:
+    bundled = rc.Lens.load("double-gauss-50mm")
+    (folder / "mine").mkdir()
+    bundled.with_surface(0, radius_of_curvature_mm=30).save("mine/my.toml")
+    (folder / "a.toml").write_text(
+        FILE + 'zoom = "35mm"\nf_number = 5.6\nfocus_m = 3\nblades = 7\nexposure_time_s = 0.01\n'
+        '[[key]]\ntime_s = 1\nlens = "mine/my.toml"\n'
+        '[[key]]\ntime_s = 2\nlens = "zoom-70-200mm"\nfocal_length_mm = 90\n'
+        "[[key]]\ntime_s = 3\nf_number = 8\nfocus_m = 2\nblades = 9\n"
+    )
+    shot = rc.Shot.load("a.toml", device="cpu")
+    lenses = [shot.camera_at(time_s).lens for time_s in (0, 1, 2)]
+    assert [lens.name for lens in lenses] == ["zoom-25-50mm", "double-gauss-50mm", "zoom-70-200mm"]
+    assert lenses[1].surfaces[0].radius_of_curvature_mm == 30
+    at_rest = [lens.focused(math.inf).first_order() for lens in lenses]
+    assert at_rest[0].effective_focal_length_mm == pytest.approx(35.1475, rel=1e-5)
+    assert at_rest[2].effective_focal_length_mm == pytest.approx(90, rel=1e-9)
+    last = shot.camera_at(3).lens
+    assert (last.focus_distance_m, last.iris_blades) == (pytest.approx(2), 9)
+    for lens, data in zip(lenses[:2], at_rest, strict=False):
+        assert (lens.focus_distance_m, lens.iris_blades) == (pytest.approx(3), 7)
+        assert data.f_number == pytest.approx(5.6, rel=1e-9)
+    words = ["render", "a.toml", "-o", "a.#.exr", "--frames", "1-3", "--fps", "1", "--json", "--device", "cpu"]
+    for more, names in (([], [lens.name for lens in lenses]), (["--lens", "tessar-50mm"], ["tessar-50mm"] * 3)):
+        told = subprocess.run([*PROGRAM, *words, *more, "--again"], capture_output=True, text=True, check=True).stdout
+        assert [frame["lens"]["name"] for frame in json.loads(told)] == names
+
+
+def test_an_f_number_of_the_file_is_that_of_all_focal_lengths(folder: Path) -> None:
+    """Also where the lens does not open as far at the position that it had before its keys."""
+    lens = (Path(__file__).parents[2] / "lenses" / "zoom-25-50mm.toml").read_text()
+    slow = lens.replace("stop_semi_diameter_mm = 8.31038", "stop_semi_diameter_mm = 4.15519")
+    assert slow != lens
+    (folder / "slow.toml").write_text(slow)
+    text = FILE.replace("zoom-25-50mm", "./slow.toml") + "exposure_time_s = 0.01\nf_number = 4\n"
+    (folder / "a.toml").write_text(text + "[[key]]\ntime_s = 1\nfocal_length_mm = 48.8\n")
+    data = rc.Shot.load("a.toml", device="cpu").camera_at(0).lens.focused(math.inf).first_order()
+    assert data.f_number == pytest.approx(4, rel=0.005)
+    (folder / "a.toml").write_text(text + "[[key]]\ntime_s = 1\nfocal_length_mm = 25.5\n")
+    with pytest.raises(rc.InputError, match=r"a\.toml:10: f/4 is faster than the lens at 25.5 mm, .* to f/7\.998"):
+        rc.Shot.load("a.toml", device="cpu")
+
+
 @pytest.mark.parametrize(
     ("text", "line", "wanted"),
     [
@@ -172,6 +313,16 @@ def test_a_shot_file_has_keys(folder: Path) -> None:
         ("[[key]]\ntime_s = 1\nfocal_length_mm = 80\n", 8, "no focal length of 80 mm; it zooms from 25.499 to 48.801"),
         ("[[key]]\ntime_s = 1\nf_number = 2\n", 8, "f/2 is faster than lens"),
         ("[[key]]\ntime_s = 1\nfocal_length_mm = 30\nf_number = 2\n", 8, "f/2 is faster than the lens at 30 mm"),
+        ('[[key]]\ntime_s = 1\nlens = "phone-4mm"\n', 8, "the lens is made for a film of 4.8 x 3.6 mm"),
+        ('[[key]]\ntime_s = 1\nlens = "tesar-50mm"\n', 8, '"tessar-50mm"'),
+        ('[[key]]\ntime_s = 1\nlens = ""\n', 10, '"lens" is empty'),
+        ('f_number = 4.5\n[[key]]\ntime_s = 1\nlens = "mirror-telephoto-500mm"\n', 9, "f/4.5 is faster than lens"),
+        ("blades = 7\n[[key]]\ntime_s = 1\nblades = 6\n", 8, '"blades" and "blades" of [[key]] exclude each other'),
+        ("[[key]]\ntime_s = 1\nblades = 6.5\n", 10, '"blades" wants whole numbers'),
+        ("[[key]]\ntime_s = 1\nblades = 2\n", 9, "the iris has 2 blades"),
+        ("film_shift_mm = [1, 0]\n[[key]]\ntime_s = 1\nfilm_shift_mm = [0, 0]\n", 8, '"film_shift_mm" of [[key]]'),
+        ("[[key]]\ntime_s = 1\nfilm_shift_mm = 3\n", 10, '"film_shift_mm"'),
+        ("[[key]]\ntime_s = 1\nfilm_mm = [36, 24]\n", 10, 'unknown key "film_mm"'),
         ("key = 3\n", 8, "tables [[key]] are wanted"),
         ("iso_follows_s = -1\n", 8, '"iso_follows_s" must be a number of seconds, 0 or more'),
         ("[shake]\nrms_degrees = 1\n", 9, 'unknown key "rms_degrees"'),

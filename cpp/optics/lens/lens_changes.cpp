@@ -54,6 +54,17 @@ LensSystem with_iris(LensSystem lens, const IrisShape& iris) {
     return lens;
 }
 
+LensSystem with_iris(LensSystem lens, std::optional<int> blades, std::optional<double> rounding,
+                     std::optional<double> rotation_deg) {
+    IrisShape iris = lens.iris;
+    iris.blades = blades.value_or(iris.blades);
+    iris.rounding = rounding.value_or(iris.rounding);
+    if (rotation_deg) iris.rotation_rad = *rotation_deg * std::numbers::pi / 180;
+    if (iris.blades == 0 && !blades && (rounding || rotation_deg))
+        throw InputError("the diaphragm of " + lens.name + " is round; blade_rounding and blade_rotation want blades");
+    return with_iris(std::move(lens), iris);
+}
+
 LensSystem with_coating(LensSystem lens, const Coating& coating) {
     bool any = false;
     for (std::size_t i = 0; i < lens.surfaces.size(); ++i) {

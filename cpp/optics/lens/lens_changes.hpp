@@ -39,6 +39,10 @@ inline LensSystem with_surface(LensSystem lens, int index, const Surface& surfac
 /// The lens with other blades, which leave the same area open: its f-number stays. Throws LensFileError.
 LensSystem with_iris(LensSystem lens, const IrisShape& iris);
 
+/// The same where what is left out stays. Throws InputError also where a round diaphragm gets no blades.
+LensSystem with_iris(LensSystem lens, std::optional<int> blades, std::optional<double> rounding,
+                     std::optional<double> rotation_deg);
+
 /// The lens with a coating on all faces that it is for: a mirror's on all mirrors, any other on all faces between air
 /// and glass; `unknown` takes what is known of both away. Cemented faces stay as they are. Throws InputError where the
 /// lens has no such face.
