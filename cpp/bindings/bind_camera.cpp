@@ -213,6 +213,13 @@ void bind_camera(py::module_& m) {
         .def_readonly("iso", &Camera::iso)
         .def_property_readonly("shutter_opens_s", [](const Camera& c) { return c.shutter.opens_s; })
         .def_property_readonly("readout_time_s", [](const Camera& c) { return c.shutter.readout_time_s; })
+        .def(
+            "pose_at",
+            [](const Camera& camera, double time_s) {
+                const Pose pose = pose_at(camera, time_s);
+                return py::make_tuple(triple(pose.position_m), triple(pose.look_at_m), triple(pose.up));
+            },
+            "time_s"_a, "Where the motion has the camera at a time: position, look_at and up, in the scene, metres.")
         .def_property_readonly("motion", &keys_of, "Keys (time_s, position, look_at, up); none: it stands still.")
         .def_property_readonly("model", [](const Camera& c) { return io::name_of(c.model); })
         .def("__repr__", [](const Camera& c) { return text_of(c); });

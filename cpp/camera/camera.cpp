@@ -178,7 +178,13 @@ Pose pose_at(const Camera& camera, double time_s) {
         if (time_s == key.time_s) return key.pose;
     if (time_s > camera.motion.back().time_s) return camera.motion.back().pose;
     const Affine<double> map = camera_detail::motion_of(camera.motion).at(time_s);
-    return {map.origin, map.origin - map.z, map.y};
+    const auto next = std::find_if(camera.motion.begin(), camera.motion.end(),
+                                   [&](const PoseKey& key) { return key.time_s > time_s; });
+    const PoseKey &from = *(next - 1), &to = *next;
+    const double share = (time_s - from.time_s) / (to.time_s - from.time_s);
+    const auto distance = [](const Pose& pose) { return length(pose.look_at_m - pose.position_m); };
+    const double look_m = (1 - share) * distance(from.pose) + share * distance(to.pose);
+    return {map.origin, map.origin - look_m * map.z, map.y};
 }
 
 void set_motion(Camera& camera, std::vector<PoseKey> keys) {

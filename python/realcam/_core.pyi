@@ -1120,6 +1120,9 @@ class Camera(_Value):
     def shutter_opens_s(self) -> float: ...
     @property
     def readout_time_s(self) -> float: ...
+    def pose_at(
+        self, time_s: float
+    ) -> tuple[tuple[float, float, float], tuple[float, float, float], tuple[float, float, float]]: ...
     @property
     def motion(
         self,

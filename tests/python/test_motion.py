@@ -64,6 +64,20 @@ def pupil_plane(cam: rc.Camera, depth_m: float) -> float:
     return position[2] - depth_m
 
 
+def test_where_a_camera_is_at_a_time() -> None:
+    """It turns by 90 degrees in two seconds, and looks at points that are 2 and 4 m away."""
+    cam = camera(motion=[(1, (0, 0, 0), (0, 0, -2)), (3, (1, 1, 0), (5, 1, 0))])
+    half = 3 / np.sqrt(2)
+    for time_s, position, look_at in (
+        (0, (0, 0, 0), (0, 0, -2)),
+        (2, (0.5, 0.5, 0), (0.5 + half, 0.5, -half)),
+        (9, (1, 1, 0), (5, 1, 0)),
+    ):
+        np.testing.assert_allclose(cam.pose_at(time_s), (position, look_at, (0, 1, 0)), atol=1e-12)
+    still = camera(position=(1, 2, 3), look_at=(0, 0, 1))
+    assert still.pose_at(5) == (still.position, still.look_at, still.up)
+
+
 def test_a_streak_is_as_long_as_its_way(device: str) -> None:
     cam = camera()
     pixel = metres_per_pixel(cam, 2.0)

@@ -437,7 +437,8 @@ def test_a_zoom_at_a_position_of_its_own_is_saved_by_its_name(tmp_path: Path) ->
     assert not (tmp_path / "saved-lens.toml").exists()
 
 
-MOVING = """[[pose]]
+MOVING = """shutter_opens_s = 0.5
+[[pose]]
 time_s = 0
 position_m = [0, 0, 0]
 look_at_m = [0, 0, -2]
@@ -455,18 +456,21 @@ f_number = 16
 
 
 def test_a_shot_that_moves_is_saved_as_it_is_seen(tmp_path: Path) -> None:
-    """The bench shows where camera and rings are when the shutter opens."""
+    """The bench shows where camera and rings are when the shutter opens: here halfway from key to key."""
     path = bench_shots.write_panels_shot(tmp_path)
     still = re.sub(r"(?m)^(position_m|look_at_m) = .*\n", "", path.read_text())
     path.write_text(still + MOVING)
     bench = LensBench(rc.Shot.load(path), device="cpu")
     try:
+        pose = bench.controls.pose
+        assert (*pose.position_m, *pose.look_at_m, *pose.up) == pytest.approx((1, 0, 0, 1, 0, -2, 0, 1, 0))
+        assert bench.controls.camera.shutter_opens_s == 0.5
         assert bench.orbit(0.1, 0.0)
         again = saved_again(bench, path, tmp_path / "saved.toml")
     finally:
         bench.close()
     assert again.camera.position == pytest.approx(bench.controls.pose.position_m, rel=1e-12)
-    assert again.camera.lens.first_order().f_number == pytest.approx(4, rel=0.02)  # focused nearer than infinity
+    assert again.camera.lens.first_order().f_number == pytest.approx(8, rel=0.02)  # focused nearer than infinity
     assert again.keys == ()
 
 

@@ -46,11 +46,13 @@ class CameraControls:
     iso: float = 100.0
     compensation_ev: float = 0.0
     is_automatic: bool = False  #: the exposure time follows the light
+    shutter_opens_s: float = 0.0
+    readout_time_s: float = 0.0
     model: str = "full"
 
     @classmethod
     def of(cls, camera: Camera, *, is_automatic: bool = False) -> CameraControls:
-        """How a camera stands. A camera that moves while it exposes is taken where it is at first."""
+        """How a camera stands. One that moves is taken where it is when its shutter opens."""
         lens = camera.lens.focused(math.inf)
         data = lens.first_order()
         position = lens.zoom_position
@@ -63,13 +65,15 @@ class CameraControls:
         return cls(
             lens=opened(lens),
             film=camera.film,
-            pose=Pose(camera.position, camera.look_at, camera.up),
+            pose=Pose(*camera.pose_at(camera.shutter_opens_s)),
             zoom=zoom,
             f_number=data.f_number,  # as engraved
             focus_m=camera.lens.focus_distance_m,
             exposure_time_s=camera.exposure_time_s,
             iso=camera.iso,
             is_automatic=is_automatic,
+            shutter_opens_s=camera.shutter_opens_s,
+            readout_time_s=camera.readout_time_s,
             model=camera.model,
         )
 
@@ -108,6 +112,8 @@ class CameraControls:
             exposure_time_s=self.exposure_time_s,
             iso=self.iso,
             model=self.model,
+            shutter_opens_s=self.shutter_opens_s,
+            readout_time_s=self.readout_time_s,
         )
 
     @cached_property
