@@ -27,8 +27,7 @@ struct CameraKey {
     std::optional<double> iso = {};
     KeyWay way = KeyWay::linear;  ///< from here on
     std::optional<LensSystem> lens = {};  ///< from here on; none so far: the camera's own
-    std::optional<int> blades =
-        {};  ///< of the diaphragm, from here on; this and the next two: none: as the lens has it
+    std::optional<int> blades = {};  ///< from here on; of these and what follows, none: as the lens has it
     std::optional<double> blade_rounding = {}, blade_rotation_deg = {};
     std::optional<double> film_right_mm = {}, film_up_mm = {};  ///< Film::shift_mm
 
