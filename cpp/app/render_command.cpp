@@ -211,14 +211,14 @@ private:
 
     /// Frames that are there as files stay: files are written as a whole or not at all.
     void film(const Darkroom& darkroom, shot::Shot& shot, shot::ShotRequest& request, const std::vector<int>& frames) {
-        // The last frame should not be the one to tell that a lens cannot be as its keys say.
-        for (const int frame : frames) camera_of_frame(shot.camera, request, frame);
-        outputs_.begin();
         std::string decisions;
         if (request.settings.effects.is_automatic)
             decisions = follow_film_plan(darkroom.session, shot, request, frames);
         for (const std::string& notice : effect_notices(request.settings.effects, shot.camera.lens)) warn(notice);
         const Camera camera = shot.camera;
+        // The last frame should not be the one to tell that a lens cannot be as its keys say.
+        for (const int frame : frames) validate_effects(request.settings, camera_of_frame(camera, request, frame));
+        outputs_.begin();
         const std::uint32_t seed = request.settings.seed;
         std::optional<shot::FollowedIso> followed;
         if (request.iso_follows_s)

@@ -2,6 +2,7 @@
 #include <string>
 #include <vector>
 
+#include "../optics/pupil/pupil_grid.hpp"
 #include "make_plan.hpp"
 #include "plan_text.hpp"
 
@@ -15,8 +16,9 @@ struct FilmPlan {
 };
 
 /// Plans some frames, given by their cameras, together: all effects that any of them calls for, because one that comes
-/// and goes would show; and their camera model, or that of the cameras where they call for different ones. A frame that
-/// sees nothing has no say. Throws NothingToPlan where none sees anything, and what make_plan throws.
+/// and goes would show, but for those that the lens of another cannot show; and their camera model, or that of the
+/// cameras where they call for different ones. A frame that sees nothing has no say. Throws NothingToPlan where none
+/// sees anything, and what make_plan throws.
 inline FilmPlan plan_film(Session& session, const Assembly& scene, const std::vector<Camera>& cameras,
                           const RenderSettings& settings, const PupilTracer& tracer, const Progress& progress = {}) {
     std::vector<Plan> plans;
@@ -38,6 +40,10 @@ inline FilmPlan plan_film(Session& session, const Assembly& scene, const std::ve
         if (film.summary.find(summary) == std::string::npos)
             film.summary += (film.summary.empty() ? "" : "; ") + summary;
     }
+    for (const Camera& camera : cameras)
+        for (const EffectInfo& effect : kEffects)
+            if (effect.needs_round_lens && !has_radial_pupil(camera.lens) && !(settings.effects.*effect.member))
+                film.effects.*effect.member = false;
     return film;
 }
 

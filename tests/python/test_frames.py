@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import signal
 import subprocess
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -218,6 +219,21 @@ def test_effects_of_a_film_are_planned_together(folder: Path) -> None:
     assert first.effects == last.effects != ()
     assert "auto" not in first.effects
     assert first.camera.model == last.camera.model
+
+
+def test_an_effect_that_one_lens_cannot_show_is_left_out_of_the_film() -> None:
+    """Diffraction wants a lens of revolution: of a film that has an anamorphic lens, no frame has it."""
+    lamp = scenes.quad((0.1, 0.1, -2), 0.02, emission=1e6)
+    scene = scenes.scene_of(scenes.quad((0, 0, -3), 3, diffuse=0.6), lamp).with_environment(50.0)
+    lens = rc.Lens.load("tessar-50mm").stopped_down(16).focused(2)
+    shot = rc.Shot(scene, rc.Camera(lens, film=rc.Film(21, 14, (36, 24)), exposure_time_s=0.01))
+    assert "diffraction" in shot.frames([1, 2], device="cpu")["frame.0001"].effects
+    keys = (rc.CameraKey(0.04, lens=rc.Lens.load("anamorphic-65mm")),)
+    frames = replace(shot, keys=keys).frames([1, 2], device="cpu").values()
+    assert [frame.camera.lens.name for frame in frames] == ["tessar-50mm", "anamorphic-65mm"]
+    for frame in frames:
+        assert "diffraction" not in frame.effects
+        frame.render(device="cpu")
 
 
 def test_a_job_makes_numbered_pictures_and_a_film(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
