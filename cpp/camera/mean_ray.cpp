@@ -7,6 +7,23 @@
 
 namespace realcam {
 
+namespace {
+
+constexpr int kLanes = 12;  ///< of Gauss's nodes on a spoke, which the compiler makes vectors of
+using EntryLanes = Vec2<double>[kLanes];
+
+/// Calls work(entries, where they are) for as many at a time. Their number is a multiple.
+template <class Work>
+void in_lanes(const std::vector<EntryPart>& entries, Work&& work) {
+    for (std::size_t first = 0; first + kLanes <= entries.size(); first += kLanes) {
+        EntryLanes lanes;
+        for (std::size_t i = 0; i < kLanes; ++i) lanes[i] = entries[first + i].entry;
+        work(&entries[first], lanes);
+    }
+}
+
+}  // namespace
+
 MeanRays::MeanRays(const LensSystem& lens, double focus)
     : to_scene_(lens, LightDirection::to_scene, lens.wavelength_nm, film_path_ends(lens, LightDirection::to_scene)),
       to_film_(lens, LightDirection::to_film, lens.wavelength_nm, film_path_ends(lens, LightDirection::to_film)),
@@ -65,12 +82,13 @@ double MeanRays::light_of(const FilmBundle& bundle) {
 
 std::vector<MeanRays::Part> MeanRays::parts_of(const FilmBundle& bundle) {
     std::vector<Part> parts;
-    for (const EntryPart& entry : entry_parts(bundle, kSampling)) {
-        const FilmBundle::Entry at[1] = {entry.entry};
-        LensRays<double, 1> ray;
-        bundle.trace(at, ray);
-        if (ray.status[0] == 0) parts.push_back({{ray.origin[0], normalized(ray.direction[0])}, entry.area});
-    }
+    in_lanes(entry_parts(bundle, kSampling), [&](const EntryPart* entries, const EntryLanes& lanes) {
+        LensRays<double, kLanes> rays;
+        bundle.trace(lanes, rays);
+        for (int i = 0; i < kLanes; ++i)
+            if (rays.status[i] == 0)
+                parts.push_back({{rays.origin[i], normalized(rays.direction[i])}, entries[i].area});
+    });
     return parts;
 }
 
@@ -91,13 +109,17 @@ Vec2<double> MeanRays::middle_of_light(const SceneRay& ray, const std::vector<Pa
     const SceneBundle bundle(to_film_, film_, ray, focus_, in, mirrored);
     Vec2<double> sum = {0, 0};
     double light = 0;
-    for (const EntryPart& entry : entry_parts(bundle, kSampling)) {
-        const Vec2<double> at = bundle.landing(entry.entry);
-        if (!std::isfinite(at.x + at.y)) continue;
-        const double share = entry.area * bundle.light(entry.entry);
-        sum = {sum.x + share * at.x, sum.y + share * at.y};
-        light += share;
-    }
+    in_lanes(entry_parts(bundle, kSampling), [&](const EntryPart* entries, const EntryLanes& lanes) {
+        Vec2<double> landings[kLanes];
+        bundle.land(lanes, landings);
+        for (int i = 0; i < kLanes; ++i) {
+            const Vec2<double> at = landings[i];
+            if (!std::isfinite(at.x + at.y)) continue;
+            const double share = entries[i].area * bundle.light(entries[i].entry);
+            sum = {sum.x + share * at.x, sum.y + share * at.y};
+            light += share;
+        }
+    });
     return {mirrored ? 0 : sum.x / light, sum.y / light};
 }
 

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <set>
 #include <utility>
 
 #include "../math/hypotenuse.hpp"
+#include "../math/local_cubic.hpp"
 #include "../optics/analysis/film_bundle.hpp"
 #include "../optics/lens/chief_ray.hpp"
 #include "camera_setup.hpp"
@@ -13,6 +15,55 @@
 #include "mean_ray.hpp"
 
 namespace realcam {
+
+namespace {
+
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
+/// What the light of a film radius looks at, and at which radius that shows: where the light of the line's point in
+/// focus has its middle. Radii are in steps.
+struct Seen {
+    SightLine line;
+    double shown;
+};
+
+/// The lines of some of the steps, and cubics between them.
+class KnownLines {
+public:
+    explicit KnownLines(const std::vector<std::optional<Seen>>& steps) {
+        for (std::size_t k = 0; k < steps.size(); ++k) {
+            if (!steps[k]) continue;
+            radii_.push_back(static_cast<double>(k));
+            light_.push_back(steps[k]->line.light);
+            const double shown = steps[k]->shown;
+            if (!std::isfinite(shown) || (!shown_.empty() && !(shown > shown_.back()))) continue;
+            shown_.push_back(shown);
+            lines_.push_back(steps[k]->line);
+        }
+    }
+
+    /// The line that shows at a radius, without its light.
+    SightLine shown_at(double radius) const {
+        const std::optional<LocalCubic> cubic = LocalCubic::at(shown_, radius);
+        if (!cubic) return {kUnknown, kUnknown, kUnknown, kUnknown};
+        return {cubic->odd([&](std::size_t i) { return lines_[i].angle; }),
+                cubic->odd([&](std::size_t i) { return lines_[i].offset; }),
+                cubic->even([&](std::size_t i) { return lines_[i].start; }), kUnknown};
+    }
+
+    double light_at(double radius) const {
+        if (!radii_.empty() && radius == radii_.back()) return light_.back();
+        const std::optional<LocalCubic> cubic = LocalCubic::at(radii_, radius);
+        return cubic ? cubic->even([&](std::size_t i) { return light_[i]; }) : kUnknown;
+    }
+
+private:
+    std::vector<double> radii_, light_;
+    std::vector<double> shown_;  ///< rises
+    std::vector<SightLine> lines_;
+};
+
+}  // namespace
 
 SightLines::SightLines(const CameraSetup& setup, SightRay ray, const RayLoop& loop) : lines_(kSteps + 1) {
     const Camera& camera = setup.camera();
@@ -106,53 +157,51 @@ void SightLines::set(int k, const std::optional<SceneRay>& ray, double light) {
     const double cosine = std::cos(line.angle), sine = std::sin(line.angle);
     line.offset = k == 0 ? 0 : away * cosine - ahead * sine;
     line.start = away * sine + ahead * cosine;
-    if (k == 1) sign_ = line.angle < 0 || (line.angle == 0 && line.offset < 0) ? -1 : 1;
 }
 
 void SightLines::follow_light(const LensSystem& lens, const PupilView& pupil, const RayLoop& loop) {
+    // A step in the middle between two is looked at as well. If cubics through the others foretell its line, those
+    // through it too are some ten times nearer, and no more are needed there.
+    constexpr int kWidestStep = 16;
+    constexpr double kPrecision = 5e-6;  // rad, and share of the film's radius or of the light
     const MeanRays mean(lens, focus_);
-    std::vector<std::optional<MeanRay>> rays(lines_.size());
-    loop.for_all(rays.size(), [&](std::size_t first, std::size_t last) {
-        for (std::size_t k = first; k < last; ++k)
-            rays[k] = mean.of(mean.bundle(pupil, radius_of(static_cast<double>(k))));
-    });
-    std::vector<double> shown;
-    for (int k = 0; k <= kSteps; ++k) {
-        const std::optional<MeanRay>& ray = rays[static_cast<std::size_t>(k)];
-        set(k, ray ? std::optional(ray->ray) : std::nullopt, ray ? ray->light : 0);
-        shown.push_back(k == 0 ? 0 : ray ? ray->shows_at.y : kNone);
-    }
-    show_where_light_lands(shown);
-}
-
-void SightLines::show_where_light_lands(const std::vector<double>& shown) {
-    std::vector<double> radii;
-    std::vector<SightLine> seen;
-    for (std::size_t k = 0; k < shown.size(); ++k) {
-        if (!std::isfinite(shown[k]) || (!radii.empty() && !(shown[k] > radii.back()))) continue;
-        radii.push_back(shown[k]);
-        seen.push_back(lines_[k]);
-    }
-    const auto count = static_cast<std::ptrdiff_t>(radii.size());
-    for (int k = 1; k <= kSteps; ++k) {
-        const double radius = radius_of(k);
-        SightLine& line = lines_[static_cast<std::size_t>(k)];
-        line.angle = line.offset = line.start = kNone;
-        const std::ptrdiff_t above = std::upper_bound(radii.begin(), radii.end(), radius) - radii.begin();
-        if (above < 1 || above >= count) continue;
-        const std::ptrdiff_t first = std::min(above - 2, count - 4);
-        double angle = 0, offset = 0;
-        // All of it is odd in the film's radius.
-        const auto at = [&](std::ptrdiff_t i) { return static_cast<std::size_t>(std::abs(i)); };
-        const auto signed_radius = [&](std::ptrdiff_t i) { return i < 0 ? -radii[at(i)] : radii[at(i)]; };
-        for (std::ptrdiff_t i = first; i < first + 4; ++i) {
-            double share = i < 0 ? -1 : 1;
-            for (std::ptrdiff_t j = first; j < first + 4; ++j)
-                if (j != i) share *= (radius - signed_radius(j)) / (signed_radius(i) - signed_radius(j));
-            angle += share * seen[at(i)].angle;
-            offset += share * seen[at(i)].offset;
+    std::vector<std::optional<Seen>> seen(lines_.size());
+    const auto is_foretold = [&](const KnownLines& known, int k) {
+        const auto& [line, shown] = *seen[static_cast<std::size_t>(k)];
+        const SightLine foretold = known.shown_at(shown);
+        const double light = known.light_at(k);
+        return std::fabs(foretold.angle - line.angle) < kPrecision &&
+               std::fabs(foretold.offset - line.offset) < kPrecision * reach_ &&
+               std::fabs(light - line.light) < kPrecision * line.light;
+    };
+    std::set<int> wanted;
+    for (int k = 0; k <= kSteps; k += kWidestStep) wanted.insert(k);
+    for (int step = kWidestStep; !wanted.empty(); step /= 2) {
+        const KnownLines known(seen);
+        const std::vector<int> looks(wanted.begin(), wanted.end());
+        loop.for_all(looks.size(), [&](std::size_t first, std::size_t last) {
+            for (std::size_t i = first; i < last; ++i) {
+                const std::optional<MeanRay> ray = mean.of(mean.bundle(pupil, radius_of(looks[i])));
+                set(looks[i], ray ? std::optional(ray->ray) : std::nullopt, ray ? ray->light : 0);
+                const auto k = static_cast<std::size_t>(looks[i]);
+                seen[k] = {lines_[k], k == 0 ? 0 : ray ? ray->shows_at.y * kSteps / reach_ : kNone};
+            }
+        });
+        wanted.clear();
+        if (step == 1) break;
+        for (const int k : looks) {
+            if (is_foretold(known, k)) continue;
+            for (const int halves : {-3, -1, 1, 3}) {  // a cubic goes one interval beyond its own
+                const int beside = k + halves * step / 2;
+                if (beside > 0 && beside < kSteps && !seen[static_cast<std::size_t>(beside)]) wanted.insert(beside);
+            }
         }
-        line = {angle, offset, seen[at(above - 1)].start, line.light};
+    }
+    const KnownLines known(seen);
+    for (int k = 1; k <= kSteps; ++k) {
+        SightLine& line = lines_[static_cast<std::size_t>(k)];
+        line = known.shown_at(k);
+        line.light = known.light_at(k);
     }
 }
 
@@ -197,6 +246,9 @@ void SightLines::set_ideal(int k, const CameraView& view, ThinLensPlace thin) {
 }
 
 void SightLines::end_where_lines_turn_back() {
+    const auto first =
+        std::find_if(lines_.begin() + 1, lines_.end(), [](const SightLine& line) { return std::isfinite(line.angle); });
+    sign_ = first != lines_.end() && (first->angle < 0 || (first->angle == 0 && first->offset < 0)) ? -1 : 1;
     for (SightLine& line : lines_) line = {sign_ * line.angle, sign_ * line.offset, line.start, line.light};
     const double distance = std::min(focus_, 1e9);
     for (std::size_t k = 1; k < lines_.size(); ++k) {

@@ -58,11 +58,8 @@ private:
     /// What a film point at +y sees lies at -y.
     void set(int k, const std::optional<SceneRay>& ray, double light);
 
+    /// Finds the mean rays of as many film radii as it takes for cubics between them to be right.
     void follow_light(const LensSystem& lens, const PupilView& pupil, const RayLoop& loop);
-
-    /// Gives each film radius the line whose point in focus has the middle of its light there. `shown`: where that of
-    /// each line lies. By cubics through the four nearest of them, which need not lie at even radii.
-    void show_where_light_lands(const std::vector<double>& shown);
 
     void follow_chief_rays(const LensSystem& lens, const PupilView& pupil);
 

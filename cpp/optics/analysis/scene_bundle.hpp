@@ -1,4 +1,6 @@
 #pragma once
+#include <limits>
+
 #include "../pupil/bundle_quadrature.hpp"
 #include "../pupil/film_surface.hpp"
 #include "../trace/lens_path.hpp"
@@ -54,8 +56,15 @@ public:
         for (int i = 0; i < N; ++i) passed[i] = rays.status[i] == 0;
     }
 
-    /// Where the light of an entry meets the film, mm; NaN where the lens blocks it.
-    Vec2<double> landing(Entry entry) const;
+    /// Where the light of entries meets the film, mm; NaN where the lens blocks it.
+    template <int N>
+    void land(const Entry (&entries)[N], Vec2<double> (&places)[N]) const {
+        constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+        LensRays<double, N> rays;
+        trace(entries, rays);
+        for (int i = 0; i < N; ++i)
+            places[i] = rays.status[i] == 0 ? film_.landing(rays.origin[i], rays.direction[i]) : Entry{kNone, kNone};
+    }
 
     /// Light for each area of the entry plane, over that in its middle: even in solid angle.
     double light(Entry entry) const {

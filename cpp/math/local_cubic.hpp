@@ -1,0 +1,59 @@
+#pragma once
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "../platform.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// The cubic through the four nodes nearest to a place, two on either side where there are as many, of functions that
+/// are odd or even. Nodes need not lie at even distances.
+class LocalCubic {
+public:
+    /// `nodes` rise from 0 on. Nothing where the place is not between two of them, or where there are fewer than three.
+    static std::optional<LocalCubic> at(const std::vector<double>& nodes, double place) {
+        const auto count = static_cast<std::ptrdiff_t>(nodes.size());
+        const std::ptrdiff_t above = std::upper_bound(nodes.begin(), nodes.end(), place) - nodes.begin();
+        if (count < 3 || above < 1 || above >= count) return std::nullopt;
+        const std::ptrdiff_t first = std::min(above - 2, count - 4);
+        std::array<double, 4> x{};
+        LocalCubic cubic;
+        for (std::ptrdiff_t i = 0; i < 4; ++i) {
+            const std::ptrdiff_t node = first + i;  // below 0: the mirror image of one
+            const auto k = static_cast<std::size_t>(i);
+            cubic.mirrored_[k] = node < 0;
+            cubic.nodes_[k] = static_cast<std::size_t>(node < 0 ? -node : node);
+            x[k] = node < 0 ? -nodes[cubic.nodes_[k]] : nodes[cubic.nodes_[k]];
+        }
+        for (std::size_t i = 0; i < 4; ++i) {
+            cubic.shares_[i] = 1;
+            for (std::size_t j = 0; j < 4; ++j)
+                if (j != i) cubic.shares_[i] *= (place - x[j]) / (x[i] - x[j]);
+        }
+        return cubic;
+    }
+
+    /// `value`: of the node of a number.
+    template <class Value>
+    double odd(Value&& value) const {
+        double sum = 0;
+        for (std::size_t i = 0; i < 4; ++i) sum += (mirrored_[i] ? -shares_[i] : shares_[i]) * value(nodes_[i]);
+        return sum;
+    }
+    template <class Value>
+    double even(Value&& value) const {
+        double sum = 0;
+        for (std::size_t i = 0; i < 4; ++i) sum += shares_[i] * value(nodes_[i]);
+        return sum;
+    }
+
+private:
+    std::array<std::size_t, 4> nodes_{};
+    std::array<double, 4> shares_{};
+    std::array<bool, 4> mirrored_{};
+};
+
+}  // namespace REALCAM_NAMESPACE
