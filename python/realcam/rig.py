@@ -18,7 +18,7 @@ from .pickling import set_checked_state
 from .raw_image import RawImage
 from .settings import settings_of
 from .shot import Shot
-from .vision import CameraModelFit, camera_json
+from .vision import CameraModelFit, camera_json, relative_pose, save_colmap_of_rig
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -220,11 +220,8 @@ class Rig:
         As cv2.stereoCalibrate has them for relative_pose("right", "left"): axes x right, y down, z forward, from the
         middle of the entrance pupil, metres. Raises InputError.
         """
-        (rotation, translation), (from_rotation, from_translation) = (
-            self._member(name).camera.world_to_camera for name in (of, seen_from)
-        )
-        turn: Array = rotation @ from_rotation.T
-        return turn, translation - turn @ from_translation
+        pose, from_pose = (self._member(name).camera.world_to_camera for name in (of, seen_from))
+        return relative_pose(pose, from_pose)
 
     def _member(self, name: str) -> RigCamera:
         if name not in self.members:
@@ -250,6 +247,16 @@ class Rig:
     def save_calibration(self, path: str | os.PathLike[str], fits: Iterable[CameraModelFit] = ()) -> None:
         """Writes calibration() as JSON. Raises InputError, ImageFileError."""
         write_whole(path, (json.dumps(self.calibration(fits), indent=1) + "\n").encode())
+
+    def save_colmap(
+        self, folder: str | os.PathLike[str], places: Mapping[str, ArrayLike], model: str = "opencv5"
+    ) -> None:
+        """Writes a text model of COLMAP's with rig and frames, for pictures that the rig takes at some places.
+
+        places: scene_from_rig by the name that each camera's picture from there has, in a folder named as the camera.
+        model: the camera model that is fitted to each camera. Raises InputError, ImageFileError.
+        """
+        save_colmap_of_rig(folder, {name: self.moved(place).cameras for name, place in places.items()}, model)
 
     def save_colmap_rig(self, path: str | os.PathLike[str]) -> None:
         """Writes COLMAP's rig_config.json, whose pictures stand in a folder for each camera, named as it is.

@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._core import Camera, Film, InputError, Lens
-from ..files import write_whole
+from ..files import make_folder, write_whole
+from .conventions import Pose, relative_pose
 from .fit import CameraModelFit, fit_camera_model
 from .models import distortion_coefficients, model_named
 
@@ -30,33 +31,102 @@ def save_colmap(folder: str | os.PathLike[str], pictures: Mapping[str, Camera], 
     is fitted once. "opencv4" becomes COLMAP's OPENCV, "opencv5" and "opencv8" FULL_OPENCV. Poses are those of the
     middle of the entrance pupil. Raises InputError, ImageFileError.
     """
-    if model not in NAMES:
-        model_named(model)  # raises for a name that is none
-        raise InputError(f"COLMAP has no camera model {model}; one of {', '.join(NAMES)} is wanted")
-    from scipy.spatial.transform import Rotation  # slow to load
-
-    fits: dict[tuple[Lens, Film, str], tuple[int, CameraModelFit]] = {}
+    fits = _Fits(model)
+    ids: dict[_Kind, int] = {}
     images = []
     for i, (name, camera) in enumerate(pictures.items(), start=1):
-        if not name or any(c.isspace() for c in name):
-            raise InputError(f"COLMAP's text files hold no names with spaces, as {name!r}")
-        kind = (camera.lens, camera.film, camera.model)
-        if kind not in fits:
-            fits[kind] = len(fits) + 1, fit_camera_model(camera, model)
-        rotation, translation = camera.world_to_camera
-        x, y, z, w = Rotation.from_matrix(rotation).as_quat()
-        numbers = _text(np.array([w, x, y, z, *translation]))
-        images.append(f"{i} {numbers} {fits[kind][0]} {name}\n\n")  # the second line: its points
-    cameras = [f"{i} {_camera_line(fit)}\n" for i, fit in fits.values()]
-    folder = Path(folder)
-    folder.mkdir(parents=True, exist_ok=True)
-    heads = {
-        "cameras.txt": "# CAMERA_ID MODEL WIDTH HEIGHT PARAMS[]\n" + "".join(cameras),
-        "images.txt": "# IMAGE_ID QW QX QY QZ TX TY TZ CAMERA_ID NAME; then a line of POINTS2D\n" + "".join(images),
-        "points3D.txt": "# POINT3D_ID X Y Z R G B ERROR TRACK[]\n",
+        number = ids.setdefault(_kind_of(camera), len(ids) + 1)
+        images.append(_image_line(i, camera.world_to_camera, number, name))
+        fits.line_of(camera)
+    _write(folder, [f"{i} {fits.lines[kind]}" for kind, i in ids.items()], images, {})
+
+
+def save_colmap_of_rig(
+    folder: str | os.PathLike[str], moments: Mapping[str, Mapping[str, Camera]], model: str = "opencv5"
+) -> None:
+    """save_colmap for cameras that are fixed to one another, with the rigs.txt and frames.txt of COLMAP 3.12 and later.
+
+    moments: by the name that the pictures of a moment have, each in the folder of its camera, the cameras then by their
+    names. The first camera is that to which COLMAP refers the others. Raises InputError, ImageFileError.
+    """
+    fits = _Fits(model)
+    if not moments:
+        raise InputError("COLMAP wants the pictures of one moment at least")
+    rig = next(iter(moments.values()))
+    cameras = [f"{i} {fits.line_of(camera)}" for i, camera in enumerate(rig.values(), start=1)]
+    first, *others = (camera.world_to_camera for camera in rig.values())
+    sensors = [f"CAMERA {i} 1 {_pose_text(relative_pose(pose, first))}" for i, pose in enumerate(others, start=2)]
+    images: list[str] = []
+    frames: list[str] = []
+    for moment, members in moments.items():
+        poses = [camera.world_to_camera for camera in members.values()]
+        data = []
+        for i, (name, pose) in enumerate(zip(members, poses, strict=True), start=1):
+            images.append(_image_line(len(images) + 1, pose, i, f"{name}/{moment}"))
+            data.append(f"CAMERA {i} {len(images)}")
+        frames.append(f"{len(frames) + 1} 1 {_pose_text(poses[0])} {len(data)} {' '.join(data)}")
+    rigs = [" ".join([f"1 {len(cameras)} CAMERA 1", *sensors])]
+    _write(folder, cameras, images, {"rigs.txt": (_RIGS, rigs), "frames.txt": (_FRAMES, frames)})
+
+
+_RIGS = (
+    "RIG_ID NUM_SENSORS REF_SENSOR_TYPE REF_SENSOR_ID SENSORS[] (SENSOR_TYPE SENSOR_ID HAS_POSE QW QX QY QZ TX TY TZ)"
+)
+_FRAMES = "FRAME_ID RIG_ID QW QX QY QZ TX TY TZ NUM_DATA_IDS DATA_IDS[] (SENSOR_TYPE SENSOR_ID DATA_ID)"
+
+_Kind = tuple[Lens, Film, str]
+
+
+def _kind_of(camera: Camera) -> _Kind:
+    return camera.lens, camera.film, camera.model
+
+
+class _Fits:
+    """What COLMAP is told of cameras, each kind of which is fitted once. Raises InputError."""
+
+    def __init__(self, model: str) -> None:
+        if model not in NAMES:
+            model_named(model)  # raises for a name that is none
+            raise InputError(f"COLMAP has no camera model {model}; one of {', '.join(NAMES)} is wanted")
+        self._model = model
+        self.lines: dict[_Kind, str] = {}
+
+    def line_of(self, camera: Camera) -> str:
+        kind = _kind_of(camera)
+        if kind not in self.lines:
+            self.lines[kind] = _camera_line(fit_camera_model(camera, self._model))
+        return self.lines[kind]
+
+
+def _image_line(number: int, pose: Pose, camera: int, name: str) -> str:
+    if not name or any(c.isspace() for c in name):
+        raise InputError(f"COLMAP's text files hold no names with spaces, as {name!r:.60}")
+    return f"{number} {_pose_text(pose)} {camera} {name}\n"  # and an empty line of its points
+
+
+def _pose_text(pose: Pose) -> str:
+    from scipy.spatial.transform import Rotation  # slow to load
+
+    rotation, translation = pose
+    x, y, z, w = Rotation.from_matrix(rotation).as_quat()
+    return _text(np.array([w, x, y, z, *translation]))
+
+
+def _write(
+    folder: str | os.PathLike[str],
+    cameras: list[str],
+    images: list[str],
+    others: Mapping[str, tuple[str, list[str]]],
+) -> None:
+    files = {
+        "cameras.txt": ("CAMERA_ID MODEL WIDTH HEIGHT PARAMS[]", cameras),
+        "images.txt": ("IMAGE_ID QW QX QY QZ TX TY TZ CAMERA_ID NAME; then a line of POINTS2D", images),
+        "points3D.txt": ("POINT3D_ID X Y Z R G B ERROR TRACK[]", []),
+        **others,
     }
-    for file, text in heads.items():
-        write_whole(folder / file, text.encode())
+    make_folder(Path(folder))
+    for file, (head, lines) in files.items():
+        write_whole(Path(folder, file), "".join(f"{line}\n" for line in [f"# {head}", *lines]).encode())
 
 
 def _camera_line(fit: CameraModelFit) -> str:

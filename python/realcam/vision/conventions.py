@@ -28,3 +28,12 @@ def opengl_pose(rotation: Array, translation: Array) -> Array:
     pose[:3, :3] = rotation.T @ np.diag([1.0, -1.0, -1.0])
     pose[:3, 3] = -rotation.T @ translation
     return pose
+
+
+Pose = tuple[NDArray[np.float64], NDArray[np.float64]]
+
+
+def relative_pose(pose: Pose, seen_from: Pose) -> Pose:
+    """(R, t) from the axes of one camera to those of another, of their (R, t) from the scene."""
+    turn = pose[0] @ seen_from[0].T
+    return turn, pose[1] - turn @ seen_from[1]
