@@ -49,7 +49,7 @@ def write_whole(
     check_target(path)
     with _errors_named(path):
         target = _followed(path)
-        temporary = target.with_name(f".realcam-{secrets.token_hex(8)}")
+        temporary = _temporary_beside(target)
         # Not tempfile's, which are private: the system knows the umask, which a program can only ask for by setting it.
         with temporary.open("xb") as file:
             try:
@@ -69,6 +69,32 @@ def write_whole(
             finally:
                 temporary.unlink(missing_ok=True)
     return True
+
+
+def remove_leftovers(folder: Path) -> None:
+    """Removes what write_whole leaves in a folder, and in those below it, where its process is killed: files that
+    nobody has written to for a minute. What cannot be removed stays.
+    """
+    leftovers = list(folder.rglob(f"{_TEMPORARY}*"))
+    if not leftovers:
+        return
+    with suppress(OSError):
+        # Times are those of the file system, whose clock may be another machine's.
+        with _temporary_beside(folder / "now").open("xb") as file:
+            now = os.fstat(file.fileno()).st_mtime
+        Path(file.name).unlink()
+        for path in leftovers:
+            with suppress(OSError):
+                if now - path.stat().st_mtime > _QUIET_S:
+                    path.unlink()
+
+
+_TEMPORARY = ".realcam-"
+_QUIET_S = 60.0
+
+
+def _temporary_beside(target: Path) -> Path:
+    return target.with_name(f"{_TEMPORARY}{secrets.token_hex(8)}")
 
 
 def _take_name(temporary: Path, target: Path) -> None:

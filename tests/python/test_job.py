@@ -333,6 +333,18 @@ def test_a_mistake_on_the_command_line_is_told_in_one_line(
     assert errors.count("\n") == 1
 
 
+def test_what_a_killed_write_leaves_goes_when_work_goes_on(tmp_path: Path) -> None:
+    job = made(tmp_path / "job", lamp=shot(4))
+    old, new = (tmp_path / "job" / "shots" / f".realcam-{name}" for name in ("old", "new"))
+    for path in (old, new):
+        path.touch()
+    long_ago = old.stat().st_mtime - 100
+    os.utime(old, (long_ago, long_ago))
+    job.work()
+    # The other one may be a file that another process writes just now.
+    assert sorted(path.name for path in (tmp_path / "job").rglob(".realcam-*")) == [new.name]
+
+
 def test_frames_are_shots_that_share_their_scene(tmp_path: Path) -> None:
     """A rack focus of three frames, each with random numbers of its own."""
     still = shot(20)

@@ -197,30 +197,46 @@ def finish(
     quiet: options.Quiet = False,
 ) -> None:
     """Add up the units of a job, and write its pictures. The same command writes them again."""
-    from .. import files
+    from ..files import remove_leftovers
     from ..job import Job
 
     options.check_known(format, ("exr", "png"), "format")
     job = Job.load(folder)
+    remove_leftovers(job.path)
     if [path.suffix.lower() for path in output] == [".mp4"]:
-        from ..video import write_video
+        _write_film(job, output[0], fps, device, quiet)
+    else:
+        _write_pictures(job, _picture_files(job, output, format), device, quiet)
 
-        with progress_bar("adding up", is_shown=not quiet) as bar:
-            write_video(output[0], _developed(job, device, bar), fps)
-        options.say_written(output[0], quiet)
-        return
-    suffixes = (".exr", ".png")
-    to_files = all(path.suffix.lower() in suffixes for path in output)
-    if to_files and len(job.names) > 1:
-        raise InputError(f"the job has {len(job.names)} pictures; a folder is wanted for --output")
-    if not to_files and len(output) > 1:
-        raise InputError("one folder is wanted for --output, or files .exr and .png")
-    targets = {job.names[0]: output} if to_files else {name: [output[0] / f"{name}.{format}"] for name in job.names}
-    if not to_files:
+
+def _write_film(job: Job, path: Path, fps: float, device: str | None, quiet: bool) -> None:
+    from ..video import write_video
+
+    with progress_bar("adding up", is_shown=not quiet) as bar:
+        write_video(path, _developed(job, device, bar), fps)
+    options.say_written(path, quiet)
+
+
+def _picture_files(job: Job, output: list[Path], format: str) -> dict[str, list[Path]]:
+    """Into which files each picture goes. Makes the folder that `output` may be."""
+    from .. import files
+
+    is_file = [path.suffix.lower() in (".exr", ".png") for path in output]
+    if all(is_file):
+        if len(job.names) > 1:
+            raise InputError(f"the job has {len(job.names)} pictures; a folder is wanted for --output")
+        targets = {job.names[0]: output}
+    else:
+        if len(output) > 1:
+            raise InputError("one folder is wanted for --output, or files .exr and .png")
         files.make_folder(output[0])
-    for paths in targets.values():
-        for path in paths:
-            files.check_target(path)
+        targets = {name: [output[0] / f"{name}.{format}"] for name in job.names}
+    for path in (path for paths in targets.values() for path in paths):
+        files.check_target(path)
+    return targets
+
+
+def _write_pictures(job: Job, targets: dict[str, list[Path]], device: str | None, quiet: bool) -> None:
     with progress_bar("adding up", is_shown=not quiet) as bar:
         for done, (name, paths) in enumerate(targets.items()):
             bar(done / len(targets))

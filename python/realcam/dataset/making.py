@@ -6,11 +6,12 @@ import concurrent.futures
 import os
 from collections.abc import Callable
 from contextlib import ExitStack
-from itertools import islice
 from multiprocessing import get_context
 from pathlib import Path
 
 from .._core import InputError, RealcamError, devices
+from ..executing import Outcome, do_all
+from ..files import remove_leftovers
 from .recipe import Recipe
 from .sample import make_sample
 from .shards import DatasetFolder
@@ -37,6 +38,7 @@ def make(
     it. Raises InputError, DeviceError, and ImageFileError where a disk is full, say; what is done stays.
     """
     target = DatasetFolder.open(folder, recipe)
+    remove_leftovers(target.path)
     missing = target.missing()
     on_gpu = device.startswith("cuda") or (device == "auto" and any(d.name.startswith("cuda") for d in devices()))
     with ExitStack() as stack:
@@ -64,40 +66,30 @@ def _work_with(
     on_gpu: bool,
     progress: ProgressCallback | None,
 ) -> None:
-    folder, count = str(target.path.absolute()), target.recipe.count
-    left, done = iter(missing), count - len(missing)
-    given: set[concurrent.futures.Future[str]] = set()
-    try:
-        while True:
-            for number in islice(left, _WINDOW - len(given)):
-                given.add(executor.submit(_make_one, target.recipe, folder, number, device, 0 if on_gpu else 1))
-            if not given:
-                return
-            ready, given = concurrent.futures.wait(given, 1.0, concurrent.futures.FIRST_COMPLETED)
-            for future in ready:
-                try:
-                    why = future.result()
-                except (concurrent.futures.BrokenExecutor, concurrent.futures.CancelledError) as error:
-                    words = str(error).strip().partition("\n")[0] or type(error).__name__
-                    raise InputError(
-                        f"{target.path}: a process was lost ({words:.200}); start again to go on"
-                    ) from None
-                if why:
-                    raise InputError(why)
-                done += 1
-            if progress is not None and progress(done / count) is False:
-                raise InputError(f"{target.path}: stopped; start again to go on")
-    finally:
-        for future in given:
-            future.cancel()
+    folder, count, threads = str(target.path.absolute()), target.recipe.count, 0 if on_gpu else 1
+    left = missing
+
+    def wanted() -> list[int] | None:
+        nonlocal left
+        left = target.not_done(left)
+        return left or None
+
+    def submit(number: int) -> concurrent.futures.Future[Outcome]:
+        return executor.submit(_make_one, target.recipe, folder, number, device, threads)
+
+    def report() -> None:
+        if progress is not None and progress(1 - len(target.not_done(left)) / count) is False:
+            raise InputError(f"{target.path}: stopped; start again to go on")
+
+    do_all(wanted, submit, window=_WINDOW, report=report, place=str(target.path), noun="picture")
 
 
-def _make_one(recipe: Recipe, folder: str, number: int, device: str, threads: int) -> str:
-    """In a process of an executor. Returns why it failed: exceptions of this package do not travel everywhere."""
+def _make_one(recipe: Recipe, folder: str, number: int, device: str, threads: int) -> Outcome:
+    """In a process of an executor."""
     try:
         DatasetFolder(Path(folder), recipe).write_sample(number, make_sample(recipe, number, device, threads))
     except RealcamError as error:
-        return f"picture {number}: {error}"
+        return False, f"picture {number}: {error}"
     except OSError as error:
-        return f"picture {number}: {error.filename}: {error.strerror}"
-    return ""
+        return False, f"picture {number}: {error.filename}: {error.strerror}"
+    return True, ""

@@ -7,7 +7,7 @@ import io
 import json
 import os
 import tarfile
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -72,8 +72,13 @@ class DatasetFolder:
                 self.shard_path(shard).unlink()
                 held = {}
             if not held:
-                wanted += [number for number in numbers if not self.sample_path(number).exists()]
+                wanted += self.not_done(numbers)
         return wanted
+
+    def not_done(self, numbers: Iterable[int]) -> list[int]:
+        """Of numbers that are in no shard."""
+        done = {path.name for path in (self.path / "samples").iterdir()}
+        return [number for number in numbers if self.sample_path(number).name not in done]
 
     def write_sample(self, number: int, files: Mapping[str, bytes]) -> None:
         content = io.BytesIO()

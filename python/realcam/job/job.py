@@ -10,7 +10,8 @@ from dataclasses import replace
 from pathlib import Path
 
 from .._core import InputError
-from ..files import system_name
+from ..executing import do_all
+from ..files import remove_leftovers, system_name
 from ..image import Image
 from ..shot import Shot
 from .folder import JobFolder
@@ -21,8 +22,6 @@ from .worker import Worker, run_unit
 
 ProgressCallback = Callable[[float], bool | None]
 
-# How often a unit is given to another process after one was lost with it.
-_TRIES = 3
 _WINDOW = 1000  # units that an executor has at a time
 
 
@@ -97,6 +96,7 @@ class Job:
         Raises InputError, DeviceError, and ImageFileError where a disk is full, say: what is done stays, and work()
         goes on from there.
         """
+        remove_leftovers(self.path)
         report = _Report(self, progress)
         if executor is None:
             self._work_here(Worker(self._folder, threads, device), report)
@@ -161,49 +161,15 @@ class Job:
     def _work_with(self, executor: concurrent.futures.Executor, threads: int, report: _Report) -> None:
         worker = Worker(self._folder, threads)
         folder = str(self.path.absolute())
-        given: dict[concurrent.futures.Future[tuple[bool, str]], Unit] = {}
-        losses: dict[Unit, int] = {}
-        try:
-            while True:
-                is_all = True
-                if len(given) < _WINDOW // 2:
-                    in_hand = set(given.values())
-                    for _, units in self._missing(worker):
-                        is_all = False
-                        for unit in units[:_WINDOW]:
-                            if unit not in in_hand and len(given) < _WINDOW:
-                                given[executor.submit(run_unit, folder, unit, threads)] = unit
-                    if is_all:
-                        return
-                if not given:  # others have the rest in hand
-                    time.sleep(0.5)
-                    continue
-                done, _ = concurrent.futures.wait(given, 1.0, concurrent.futures.FIRST_COMPLETED)
-                is_idle = True
-                for future in done:
-                    unit = given.pop(future)
-                    try:
-                        was_done, why = future.result()
-                    except (concurrent.futures.BrokenExecutor, concurrent.futures.CancelledError) as error:
-                        raise InputError(self._of_lost(error)) from None
-                    except Exception as error:
-                        losses[unit] = losses.get(unit, 0) + 1
-                        if losses[unit] == _TRIES:
-                            raise InputError(f"{unit.name}: {self._of_lost(error)}") from None
-                        continue
-                    if why:
-                        raise InputError(why)
-                    is_idle = is_idle and not was_done
-                report()
-                if done and is_idle:
-                    time.sleep(0.1)
-        finally:
-            for future in given:
-                future.cancel()
 
-    def _of_lost(self, error: BaseException) -> str:
-        words = str(error).strip().partition("\n")[0] or type(error).__name__
-        return f"{self.path}: a process of the executor was lost ({words:.200}); what is done stays, start again"
+        def wanted() -> list[Unit] | None:
+            shots = list(self._missing(worker))
+            return [unit for _, units in shots for unit in units] if shots else None
+
+        def submit(unit: Unit) -> concurrent.futures.Future[tuple[bool, str]]:
+            return executor.submit(run_unit, folder, unit, threads)
+
+        do_all(wanted, submit, window=_WINDOW, report=report, place=str(self.path), noun="unit")
 
 
 class _Report:

@@ -34,6 +34,9 @@ class Unit:
     first: int
     spp: int
 
+    def __str__(self) -> str:
+        return self.name
+
     @property
     def name(self) -> str:
         return f"{self.shot:05d}/{self.file_name}"

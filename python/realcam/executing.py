@@ -1,0 +1,85 @@
+"""Tasks done by the processes of an executor, on this machine or on others."""
+
+from __future__ import annotations
+
+import concurrent.futures
+import time
+from collections.abc import Callable, Hashable, Iterable
+from itertools import islice
+from typing import TypeVar
+
+from ._core import InputError
+
+Task = TypeVar("Task", bound=Hashable)
+# What a task's process returns: whether it was done there, and what was wrong; empty: nothing. Exceptions of this
+# package do not travel everywhere.
+Outcome = tuple[bool, str]
+
+_TRIES = 3  # of a task with which processes are lost
+
+
+def do_all(
+    wanted: Callable[[], Iterable[Task] | None],
+    submit: Callable[[Task], concurrent.futures.Future[Outcome]],
+    *,
+    window: int,
+    report: Callable[[], None],
+    place: str,
+    noun: str,
+) -> None:
+    """Gives an executor its tasks until all are done, here or elsewhere.
+
+    wanted: the tasks that can be done now; None: all are done. submit: gives one to the executor. window: how many it
+    has at a time. report: called about once a second; what it raises ends the work. place, noun: for messages, the
+    folder and what a task is called. Raises InputError with what was wrong, and where processes are lost.
+    """
+    given: dict[concurrent.futures.Future[Outcome], Task] = {}
+    losses: dict[Task, int] = {}
+
+    def lost(error: BaseException) -> str:
+        words = str(error).strip().partition("\n")[0] or type(error).__name__
+        return f"{place}: a process of the executor was lost ({words:.200}); what is done stays, start again"
+
+    next_report_s = 0.0
+
+    def tell() -> None:
+        nonlocal next_report_s
+        if time.monotonic() >= next_report_s:
+            report()
+            next_report_s = time.monotonic() + 1.0
+
+    try:
+        while True:
+            if len(given) < (window + 1) // 2:
+                tasks = wanted()
+                if tasks is None:
+                    return
+                in_hand = set(given.values())
+                for task in islice((task for task in tasks if task not in in_hand), window - len(given)):
+                    given[submit(task)] = task
+            if not given:  # others have the rest in hand
+                tell()
+                time.sleep(0.5)
+                continue
+            done, _ = concurrent.futures.wait(given, 1.0, concurrent.futures.FIRST_COMPLETED)
+            is_idle = True
+            for future in done:
+                task = given.pop(future)
+                try:
+                    was_done, why = future.result()
+                except (concurrent.futures.BrokenExecutor, concurrent.futures.CancelledError) as error:
+                    raise InputError(lost(error)) from None
+                except Exception as error:
+                    losses[task] = losses.get(task, 0) + 1
+                    if losses[task] == _TRIES:
+                        raise InputError(f"{noun} {task}: {lost(error)}") from None
+                    continue
+                if why:
+                    raise InputError(why)
+                is_idle = is_idle and not was_done
+            tell()
+            if done and is_idle:  # other processes have done these, or are at them
+                time.sleep(0.1)
+    finally:
+        for future in given:
+            future.cancel()
