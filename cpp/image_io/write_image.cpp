@@ -106,6 +106,8 @@ LayerChannels channels_of(Layer layer) {
         case Layer::normal_middle:
             return {{"NormalMiddle.X", "NormalMiddle.Y", "NormalMiddle.Z"}, "scene axes, middle ray"};
         case Layer::motion: return {{"Motion.X", "Motion.Y"}, "pixels right and down while exposed, middle ray"};
+        case Layer::position_middle:
+            return {{"PositionMiddle.X", "PositionMiddle.Y", "PositionMiddle.Z"}, "metres in the scene, middle ray"};
         case Layer::dual_pixel_left:
             return {{"DualPixelLeft.R", "DualPixelLeft.G", "DualPixelLeft.B"}, "lux seconds, left half of the pupil"};
         case Layer::dual_pixel_right:

@@ -17,7 +17,7 @@ float mean(double sum, double weight) {
 
 }  // namespace layer_film_detail
 
-std::vector<LayerImage> developed(const LayerFilm& film, LayerSet wanted, const SurfaceIds& ids) {
+std::vector<LayerImage> developed(const LayerFilm& film, LayerSet wanted, const SurfaceIds& ids, Vec3d origin_m) {
     using namespace layer_film_detail;
     std::vector<LayerImage> images;
     const auto add = [&](Layer layer, auto&& make) {
@@ -53,6 +53,16 @@ std::vector<LayerImage> developed(const LayerFilm& film, LayerSet wanted, const 
     });
     add(Layer::material_id, [&](Layer layer) {
         return numbered(layer, film.middle, [&](const MiddleSurface& surface) { return ids.material(surface); });
+    });
+    add(Layer::position_middle, [&](Layer layer) {
+        return made(layer, film.middle, [&](const MiddleSurface& surface, float* out) {
+            constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+            const bool is_surface = surface.triangle != kNoTriangle;
+            const Vec3d at = is_surface ? static_cast<Vec3d>(surface.position) + origin_m : Vec3d{kNone, kNone, kNone};
+            out[0] = static_cast<float>(at.x);
+            out[1] = static_cast<float>(at.y);
+            out[2] = static_cast<float>(at.z);
+        });
     });
     return images;
 }

@@ -35,7 +35,7 @@ LayerImage numbered(Layer layer, const std::vector<MiddleSurface>& film, F&& f) 
 
 }  // namespace layer_film_detail
 
-/// The wanted layers among kSampledLayers and kMiddleLayers.
-std::vector<LayerImage> developed(const LayerFilm& film, LayerSet wanted, const SurfaceIds& ids);
+/// The wanted layers among kSampledLayers and kMiddleLayers, but motion. `origin_m`: of the scene as it was placed.
+std::vector<LayerImage> developed(const LayerFilm& film, LayerSet wanted, const SurfaceIds& ids, Vec3d origin_m);
 
 }  // namespace REALCAM_NAMESPACE

@@ -24,6 +24,7 @@ enum class Layer : std::uint32_t {
     object_id,
     material_id,
     motion,
+    position_middle,
     dual_pixel_left,
     dual_pixel_right,
 };
@@ -35,7 +36,7 @@ struct LayerInfo {
 };
 
 /// In the order of Layer.
-inline constexpr std::array<LayerInfo, 13> kLayers = {{
+inline constexpr std::array<LayerInfo, 14> kLayers = {{
     {"depth", 1, false},
     {"normal", 3, false},
     {"albedo", 3, false},
@@ -47,6 +48,7 @@ inline constexpr std::array<LayerInfo, 13> kLayers = {{
     {"object_id", 1, true},
     {"material_id", 1, true},
     {"motion", 2, false},
+    {"position_middle", 3, false},
     {"dual_pixel_left", 3, false},
     {"dual_pixel_right", 3, false},
 }};
@@ -81,7 +83,7 @@ private:
 inline constexpr LayerSet kSampledLayers = {Layer::normal, Layer::albedo, Layer::circle_of_confusion_mm};
 /// Those of the surface in the middle ray of each pixel.
 inline constexpr LayerSet kMiddleLayers = {Layer::depth_middle, Layer::normal_middle, Layer::object_id,
-                                           Layer::material_id, Layer::motion};
+                                           Layer::material_id,  Layer::motion,        Layer::position_middle};
 /// The exposure through the left and the right half of the exit pupil.
 inline constexpr LayerSet kHalfLayers = {Layer::dual_pixel_left, Layer::dual_pixel_right};
 

@@ -332,11 +332,10 @@ void Session::add_layers(Image& image, const LayerFilm& layers, Besides&& beside
     const LayerSet wanted = settings_.layers;
     if (wanted.has_any(kSampledLayers) || wanted.has_any(kMiddleLayers)) {
         const SurfaceIds ids(scene_);
-        image.layers = developed(layers, wanted, ids);
-        if (wanted.has(Layer::motion)) {
-            const PlacedCamera placed = placed_camera();
+        const PlacedCamera placed = placed_camera();
+        image.layers = developed(layers, wanted, ids, placed.origin_m);
+        if (wanted.has(Layer::motion))
             image.layers.push_back(motion_vectors(layers.middle, scene_, camera_, placed.view, placed.origin_m));
-        }
         if (wanted.has(Layer::object_id)) image.object_names = ids.object_names();
         if (wanted.has(Layer::material_id)) image.material_names = ids.names_of_materials();
     }

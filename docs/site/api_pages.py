@@ -48,6 +48,7 @@ GROUPS = {
     "Rigs": ("Rig", "RigCamera"),
     "Vision": (
         "ProjectionStatus", "CameraModelFit", "fit_camera_model", "camera_json", "save_camera_json", "save_colmap",
+        "OpticalFlow", "optical_flow",
     ),
     "Errors": (
         "RealcamError", "InputError", "ArgumentError", "LensFileError", "SceneFileError", "ImageFileError",

@@ -76,6 +76,7 @@ from .cuda_plugin import path_of_plugin as _path_of_plugin
 from .derivatives import Gradient, RayDerivatives, RayGradient, backpropagate_rays, ray_derivatives
 from .drawing import CrossSection, cross_section
 from .film_part import FilmPart
+from .flow import OpticalFlow, optical_flow
 from .glass_search import GlassMatch, GlassSearch, nearest_glasses, with_better_glasses
 from .image import Image
 from .image_file import read_environment
@@ -155,6 +156,7 @@ __all__ = [
     "Mirror",
     "NothingToPlan",
     "Operand",
+    "OpticalFlow",
     "Optimisation",
     "PhotographicFigures",
     "Plan",
@@ -204,6 +206,7 @@ __all__ = [
     "glass_names",
     "lens_names",
     "nearest_glasses",
+    "optical_flow",
     "optimised",
     "photographic_figures",
     "plan",

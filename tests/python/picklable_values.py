@@ -125,6 +125,10 @@ MAKERS: dict[str, list[Callable[[], Any]]] = {
         image,
         lambda: rc.render(floor_scene().with_environment(100), camera(), effects=(), spp=2, seed=1, device="cpu"),
     ],
+    "OpticalFlow": [
+        lambda: rc.OpticalFlow(np.zeros((2, 3, 2), np.float32), np.ones((2, 3), bool)),
+        lambda: rc.OpticalFlow(np.zeros((2, 3, 2), np.float32), np.zeros((2, 3), bool)),
+    ],
 }
 
 

@@ -25,9 +25,10 @@ ALL = (
     "object_id",
     "material_id",
     "motion",
+    "position_middle",
 )
 NUMBERS = ("sample_count", "object_id", "material_id")
-THREE = ("normal", "albedo", "variance", "normal_middle")
+THREE = ("normal", "albedo", "variance", "normal_middle", "position_middle")
 FILM = rc.Film(24, 16, (24, 16))
 SLANT = np.array([0.6, 0.0, 0.8])
 
@@ -98,6 +99,10 @@ def test_a_slanted_plane(device: str) -> None:
     np.testing.assert_allclose(image.layers["depth_middle"], pupil + distance, rtol=2e-4)
     # Over a pixel the distance changes by 1% of itself; the mean of 64 stratified samples is nearer to the middle's.
     np.testing.assert_allclose(image.layers["depth"], pupil + distance, rtol=2e-3)
+    # On the plane to float32, and where its own depth is.
+    position = image.layers["position_middle"]
+    np.testing.assert_allclose(position @ SLANT, SLANT[2] * -3, atol=2e-6)
+    np.testing.assert_allclose(-position[..., 2], image.layers["depth_middle"], rtol=1e-6)
     for name in ("normal", "normal_middle"):
         np.testing.assert_allclose(image.layers[name], np.broadcast_to(SLANT, (16, 24, 3)), atol=1e-6)
     np.testing.assert_allclose(
@@ -266,6 +271,7 @@ def test_where_nothing_is_met(device: str) -> None:
     layers = image.layers
     assert np.isinf(layers["depth"]).all()
     assert np.isinf(layers["depth_middle"]).all()
+    assert np.isnan(layers["position_middle"]).all()
     for name in ("normal", "normal_middle", "albedo", "object_id", "material_id"):
         assert (layers[name] == 0).all(), name
     # As of what is infinitely far: rays all over the pupil are parallel there, and as wide in the plane in focus.

@@ -170,6 +170,7 @@ CHANNELS = {
     "object_id": ("ObjectId",),
     "material_id": ("MaterialId",),
     "motion": ("Motion.X", "Motion.Y"),
+    "position_middle": ("PositionMiddle.X", "PositionMiddle.Y", "PositionMiddle.Z"),
 }
 
 

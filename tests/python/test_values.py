@@ -28,6 +28,7 @@ UNHASHABLE = {
     "TraceResult",
     "CameraRays",
     "Image",
+    "OpticalFlow",
     "RawImage",
     "FilmPart",
 }

@@ -1,0 +1,168 @@
+"""Optical flow: where what a picture shows is in the next one."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ._core import Camera, InputError, Scene
+from .files import write_whole
+from .image import Image
+from .pickling import set_checked_state
+from .render import render
+
+Array = NDArray[np.float64]
+Rows = NDArray[np.int64]
+
+LAYERS = ("object_id", "position_middle", "depth_middle")  # what flow_between wants of pictures
+
+_FAR_M = 1e9  # as infinity: from there no camera's way is seen
+_MOST_TURNS = 20
+_FLO_UNKNOWN = 1e10  # what the format has where no flow is known
+
+
+@dataclass(frozen=True, eq=False)
+class OpticalFlow:
+    """By how much what each pixel shows has moved in the next picture.
+
+    pixels: (H, W, 2) float32, columns to the right and rows down; NaN where the pixel shows nothing, and where the next
+    lens images no such point. visible: (H, W) bool, whether the next picture shows it: it lies within that picture, and
+    nothing hides it there. Raises InputError.
+    """
+
+    pixels: NDArray[np.float32]
+    visible: NDArray[np.bool_]
+
+    def __post_init__(self) -> None:
+        pixels, visible = self.pixels, self.visible
+        if not isinstance(pixels, np.ndarray) or pixels.dtype != np.float32 or pixels.shape[2:] != (2,):
+            raise InputError("pixels must be an array of (H, W, 2) float32")
+        if not isinstance(visible, np.ndarray) or visible.dtype != bool or visible.shape != pixels.shape[:2]:
+            raise InputError("visible must be an array of (H, W) bool, for the pixels' H and W")
+
+    def __setstate__(self, state: Any) -> None:
+        set_checked_state(self, state, repr)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, OpticalFlow):
+            return NotImplemented
+        return np.array_equal(self.visible, other.visible) and np.array_equal(self.pixels, other.pixels, equal_nan=True)
+
+    __hash__ = None  # type: ignore[assignment]  # its arrays may be written to
+
+    def __repr__(self) -> str:
+        height, width = self.visible.shape
+        return f"<realcam.OpticalFlow {width} x {height} pixels, {np.mean(self.visible):.0%} visible>"
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Writes .flo, the format of Middlebury's and Sintel's data: with the flow of what is hidden, too, and 1e10
+        where none is known. Raises InputError, ImageFileError.
+        """
+        if Path(path).suffix.lower() != ".flo":
+            raise InputError(f"{os.fspath(path)}: a flow is written as .flo")
+        height, width = self.visible.shape
+        head = np.array([202021.25], "<f4").tobytes() + np.array([width, height], "<i4").tobytes()
+        write_whole(path, head + np.nan_to_num(self.pixels, nan=_FLO_UNKNOWN).astype("<f4").tobytes())
+
+
+def optical_flow(
+    scene: Scene, camera: Camera, next_camera: Camera, next_scene: Scene | None = None, *, device: str = "auto"
+) -> OpticalFlow:
+    """Where what a camera's pixels show is in the picture of another camera, or of the same one later.
+
+    flow = rc.optical_flow(scene, camera, camera.replace(shutter_opens_s=1 / 24))
+
+    Of the surface in the middle ray of each pixel (docs/layers.md), from the middle of the exposure of its row to the
+    middle of that of the row that shows it then. So it has the motion of camera and objects, and the distortion and
+    breathing of lenses. What lies at infinity moves as the camera turns. next_scene: where objects have moved without
+    keys in time, the scene then, with the same instances; None: the same scene. Raises InputError, DeviceError.
+    """
+    first, second = (
+        render(seen, taken_by, spp=1, max_bounces=0, layers=list(LAYERS), effects=(), device=device)
+        for seen, taken_by in ((scene, camera), (next_scene or scene, next_camera))
+    )
+    return flow_between(first, second, scene, next_scene)
+
+
+def flow_between(first: Image, second: Image, scene: Scene, next_scene: Scene | None = None) -> OpticalFlow:
+    """optical_flow of two pictures that have LAYERS. Raises InputError."""
+    then = next_scene or scene
+    if [name for name, _ in then.instances] != [name for name, _ in scene.instances]:
+        raise InputError("next_scene must have the instances of scene, by the same names and in the same order")
+    depth = first.layers["depth_middle"]
+    row, column = np.nonzero(~np.isnan(depth))
+    middles = np.column_stack([column, row]) + 0.5
+    ids, points = first.layers["object_id"][row, column], first.layers["position_middle"][row, column].astype(float)
+    is_far = np.isinf(depth[row, column])
+    if is_far.any():
+        origins, directions = first.camera.ray(middles[is_far])
+        points[is_far] = origins + _FAR_M * directions
+    there = _placements(then, second.camera)
+    in_objects = _carried(points, ids, row, np.linalg.inv(_placements(scene, first.camera)).astype(np.float64))
+    # The row says when a thing is seen then, and the time, in which row: until they agree.
+    seen_row, last = row, second.depth.shape[0] - 1
+    for _ in range(_MOST_TURNS):
+        points_then = _carried(in_objects, ids, seen_row, there)
+        to = second.camera.project(points_then)
+        next_row = np.clip(np.nan_to_num(to[:, 1]), 0, last).astype(np.int64)
+        if len(there) == 1 or (next_row == seen_row).all():
+            break
+        seen_row = next_row
+    # The middle ray is not quite the mean of a pixel's rays, by which points are projected: to both ends alike.
+    moved = to - first.camera.project(points)
+    flow = np.full((*depth.shape, 2), np.nan, np.float32)
+    visible = np.zeros(depth.shape, bool)
+    flow[row, column] = moved
+    visible[row, column] = _is_seen(second, middles + moved, points_then, ids)
+    return OpticalFlow(flow, visible)
+
+
+def _placements(scene: Scene, camera: Camera) -> Array:
+    """(rows, instances, 4, 4): where instances are in the middle of each row's exposure; one row where that is all the
+    same."""
+    height = camera.film.resolution[1]
+    rows = height if any(scene.motions) and camera.readout_time_s > 0 else 1
+    middle_s = camera.shutter_opens_s + 0.5 * camera.exposure_time_s
+    scenes = [scene.at_time(middle_s + camera.readout_time_s * row / height) for row in range(rows)]
+    matrices = [matrix for each in scenes for _, matrix in each.instances]
+    placements: Array = np.reshape(matrices, (rows, len(scene.instances), 4, 4))
+    return placements
+
+
+def _carried(points: Array, ids: NDArray[np.uint32], rows: Rows, placements: Array) -> Array:
+    """Points with the matrices of their objects and rows; ids are those of the layer object_id."""
+    carried: Array = points.copy()
+    on = ids >= 2  # 0 is nothing, and 1 what stands still
+    matrices = placements[rows[on] if len(placements) > 1 else 0, ids[on].astype(np.int64) - 2]
+    carried[on] = np.einsum("nij,nj->ni", matrices[:, :3, :3], points[on]) + matrices[:, :3, 3]
+    return carried
+
+
+def _is_seen(picture: Image, at: Array, points: Array, ids: NDArray[np.uint32]) -> NDArray[np.bool_]:
+    """Whether a picture shows points that are projected to `at`: whether one of the four pixels around shows the same
+    object, not nearer than the point. Surfaces bend, and float32 rounds, by less than a thousandth of the distance.
+    """
+    height, width = picture.depth.shape
+    with np.errstate(invalid="ignore"):
+        inside = (at >= 0).all(axis=1) & (at[:, 0] <= width) & (at[:, 1] <= height)
+    distances = np.linalg.norm(picture.layers["position_middle"] - picture.camera.position, axis=-1)
+    distances = np.where(np.isinf(picture.layers["depth_middle"]), _FAR_M, distances)
+    seen = np.zeros(len(at), bool)
+    corner = np.clip(np.floor(at[inside] - 0.5).astype(np.int64), 0, [max(0, width - 2), max(0, height - 2)])
+    around = []
+    for down in (0, 1):
+        for right in (0, 1):
+            row, column = np.minimum(corner[:, 1] + down, height - 1), np.minimum(corner[:, 0] + right, width - 1)
+            same = picture.layers["object_id"][row, column] == ids[inside]
+            around.append(np.where(same, distances[row, column], np.nan))
+    # At the border of the picture a slanted surface goes on for half a pixel beyond the middles of the last ones.
+    farthest = np.fmax.reduce(around)
+    slant = farthest - np.fmin.reduce(around)
+    wanted = np.linalg.norm(points[inside] - picture.camera.position, axis=1)
+    seen[inside] = 0.999 * wanted <= farthest + slant
+    return seen
