@@ -55,6 +55,7 @@ void bind_live(py::module_& m);
 void bind_session(py::module_& m);
 void bind_film_parts(py::module_& m);
 void bind_sensor(py::module_& m);
+void bind_toml(py::module_& m);
 void bind_denoiser(py::module_& m);
 void bind_bench(py::module_& m);
 void bind_help(py::module_& m);

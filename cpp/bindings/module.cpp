@@ -35,6 +35,7 @@ PYBIND11_MODULE(_core, m) {
     bind_film_parts(m);
     bind_session(m);
     bind_sensor(m);
+    bind_toml(m);
     bind_denoiser(m);
     bind_bench(m);
     bind_help(m);

@@ -33,7 +33,10 @@ SMALL = Recipe(
     speed_m_s=(20, 30),
     readout_time_s=0.002,
     iso=(100, 800),
-    labels=("depth", "mask", "motion"),
+    labels=("depth", "mask", "motion", "flow"),
+    camera_speed_m_s=(0.5, 1),
+    camera_turn_deg_s=(0, 10),
+    next_after_s=0.02,
     spp=2,
     shard_size=2,
 )
@@ -64,7 +67,8 @@ def test_shards_hold_all_files_of_each_sample_in_order(made: Path) -> None:
     for path in sorted(made.glob("shard-*.tar")):
         with tarfile.open(path) as tar:
             names.append(tar.getnames())
-    suffixes = ["png", "depth.npy", "mask.png", "motion.npy", "json"]
+    flow = ["next.png", "flow.npy", "flow_visible.png"]
+    suffixes = ["png", "depth.npy", "mask.png", "motion.npy", *flow, "json"]
     keys = [["000000", "000001"], ["000002"]]
     assert names == [[f"{key}.{suffix}" for key in shard for suffix in suffixes] for shard in keys]
     assert not list((made / "samples").iterdir())
@@ -93,9 +97,15 @@ def test_labels_agree_with_the_layers_and_with_geometry(made: Path) -> None:
         seen_boards += int(visible.any())
         corners = np.array([[np.nan] * 2 if corner is None else corner for corner in board["corners_px"]])
         assert corners[visible] == pytest.approx(ideal[visible, :2], abs=4)
-        # What moves along the floor moves in the picture, and the floor (1) does not.
-        motion = np.linalg.norm(sample["motion.npy"], axis=2)
-        assert np.nanmax(motion[mask == 1]) == 0 < np.nanmax(motion)
+        # In 20 ms bodies go 0.4 m along the floor, which the camera alone moves: by 20 mm and 0.2 degrees.
+        flow, seen_there = sample["flow.npy"], sample["flow_visible.png"]
+        length = np.linalg.norm(flow, axis=2)
+        assert np.nanmedian(length[mask == 1]) < 4 < np.nanmax(length[mask > 1])
+        assert set(np.unique(seen_there)) <= {0, 255} and (seen_there[mask == 1] == 255).mean() > 0.5
+        # While the shutter is open, all moves as much less as the exposure is shorter.
+        exposed = sample["json"]["exposure_time_s"] / 0.02
+        on_floor = (mask == 1) & np.isfinite(flow).all(axis=2)
+        assert sample["motion.npy"][on_floor] == pytest.approx(exposed * flow[on_floor], abs=0.05)
     assert seen_boards > 0
 
 
@@ -183,7 +193,7 @@ def test_run_lengths_begin_with_what_the_object_is_not() -> None:
         ("format = 1\nlabels = ['depht']", 'recipe.toml:2: labels: "depht" is unknown'),
         ("format = 1\nboard = [9]", r"recipe.toml:2: board must be \[columns, rows\]"),
         ("format = 1\nsensor = 'nothing'", "recipe.toml:2: .*nothing"),
-        ("format = 1\ncount = ", "recipe.toml: "),
+        ("format = 1\ncount = ", "recipe.toml:2: not valid TOML"),
     ],
 )
 def test_mistakes_in_a_recipe_have_one_line(tmp_path: Path, text: str, message: str) -> None:

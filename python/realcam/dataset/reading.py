@@ -20,7 +20,8 @@ def samples(folder: str | os.PathLike[str], shards: slice = slice(None)) -> Iter
     """The pictures of a data set with their labels, shard by shard.
 
     Each has "__key__", a text; "png", (H, W, 3) uint8; "json", a mapping; and as the recipe has them "mask.png",
-    (H, W) uint8, ids of objects; "depth.npy", (H, W) float32, metres; "motion.npy", (H, W, 2) float32, pixels.
+    (H, W) uint8, ids of objects; "depth.npy", (H, W) float32, metres; "motion.npy" and
+    "flow.npy", (H, W, 2) float32, pixels; "next.png", as "png"; "flow_visible.png", (H, W) uint8, 0 or 255.
     shards: of those in the folder; slice(worker, None, workers) divides them among workers. Raises InputError.
     """
     paths = sorted(Path(folder).glob("shard-*.tar"))

@@ -5,33 +5,29 @@ from __future__ import annotations
 import dataclasses
 import os
 import re
-import sys
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from .._core import InputError, Sensor, _did_you_mean
+from .._core import InputError, Sensor, _did_you_mean, _read_toml
 
-if sys.version_info >= (3, 11):
-    import tomllib
-else:
-    import tomli as tomllib
-
-LABELS = ("depth", "mask", "motion")
+MOVES_FOR_S = 1.0  # what moves in a scene; no exposure and no next picture comes later
+LABELS = ("depth", "mask", "motion", "flow")
 
 
 @dataclass(frozen=True)
 class Recipe:
     """Of which pictures a data set consists. Two numbers in a pair are the ends of a range, drawn from evenly.
 
-    count: of pictures. size: columns and rows. seed: the same recipe and seed make the same pictures.
-    lenses: names or files. f_stops: factors of the lens's own f-number. objects: how many bodies a scene has. models:
-    what these are, categories and their files (.glb, .obj, ...), made one metre large; {}: boxes, balls and pyramids.
-    speed_m_s: of the bodies, along the floor. readout_time_s: of a rolling shutter. iso, sensor: of the camera.
-    board: columns and rows of the squares of a calibration board that stands in each scene; (): none. square_m: side
-    of its squares. labels: layers that are written, of depth, mask and motion. spp: samples of a pixel.
-    shard_size: pictures in a tar file. Raises InputError.
+    count: of pictures. size: columns and rows. seed: the same recipe and seed make the same pictures. lenses: names or
+    files. f_stops: factors of the lens's own f-number. objects: how many bodies a scene has. models: what these are,
+    categories and their files (.glb, .obj, ...), made one metre large; {}: boxes, balls and pyramids. speed_m_s: of the
+    bodies, along the floor. camera_speed_m_s, camera_turn_deg_s: of the camera, in any direction and about any axis.
+    next_after_s: from a picture to the next one, to which the flow leads. readout_time_s: of a rolling shutter. iso,
+    sensor: of the camera. board: columns and rows of the squares of a calibration board that stands in each scene; ():
+    none. square_m: side of its squares. labels: what is written besides, of depth, mask, motion and flow, with which
+    the next picture is written too. spp: samples of a pixel. shard_size: pictures in a tar file. Raises InputError.
     """
 
     count: int = 200
@@ -42,6 +38,9 @@ class Recipe:
     objects: tuple[int, int] = (3, 8)
     models: Mapping[str, str] = field(default_factory=dict)
     speed_m_s: tuple[float, float] = (0.0, 0.0)
+    camera_speed_m_s: tuple[float, float] = (0.0, 0.0)
+    camera_turn_deg_s: tuple[float, float] = (0.0, 0.0)
+    next_after_s: float = 0.04
     readout_time_s: float = 0.0
     iso: tuple[float, float] = (100.0, 100.0)
     sensor: str = "ideal"
@@ -54,15 +53,17 @@ class Recipe:
     def __post_init__(self) -> None:
         for name, kind in _KINDS.items():
             object.__setattr__(self, name, _as(kind, name, getattr(self, name)))
-        for name in ("count", "spp", "shard_size", "square_m"):
+        for name in ("count", "spp", "shard_size", "square_m", "next_after_s"):
             if not getattr(self, name) > 0:
                 raise InputError(f"{name} must be above 0")
         if min(self.size) < 1 or min(self.objects) < 1 or self.seed < 0 or self.readout_time_s < 0:
             raise InputError("size and objects must be 1 or more, seed and readout_time_s 0 or more")
-        for name in ("f_stops", "objects", "speed_m_s", "iso"):
+        for name in ("f_stops", "objects", "speed_m_s", "camera_speed_m_s", "camera_turn_deg_s", "iso"):
             low, high = getattr(self, name)
             if not 0 <= low <= high:
                 raise InputError(f"{name} must be a range, the smaller number first")
+        if self.next_after_s > MOVES_FOR_S / 2 or self.camera_turn_deg_s[1] >= 180:
+            raise InputError(f"next_after_s must be {MOVES_FOR_S / 2} s or less, and camera_turn_deg_s below 180")
         if self.f_stops[0] < 1 or self.iso[0] <= 0 or not self.lenses:
             raise InputError("f_stops must be 1 or more, iso above 0, and lenses name at least one")
         if self.board and (len(self.board) != 2 or min(self.board) < 2):
@@ -78,23 +79,19 @@ class Recipe:
         name = os.fspath(path)
         try:
             text = Path(path).read_text(encoding="utf-8")
-            values = tomllib.loads(text)
         except (OSError, UnicodeDecodeError) as error:
             raise InputError(f"{name}: this cannot be read: {getattr(error, 'strerror', None) or error}") from None
-        except tomllib.TOMLDecodeError as error:
-            raise InputError(f"{name}: {error}") from None
+        values, lines = _read_toml(text, name)
         if values.pop("format", None) != 1:
             raise InputError(f"{name}: format = 1 is wanted, the version of this description")
         for key in values:
             if key not in _KINDS:
-                raise InputError(
-                    f'{_where(name, text, key)}: unknown key "{key:.40}"{_did_you_mean(key, list(_KINDS))}'
-                )
+                raise InputError(f'{name}:{lines[key]}: unknown key "{key:.40}"{_did_you_mean(key, list(_KINDS))}')
         for key, value in values.items():
             try:
                 dataclasses.replace(cls(), **{key: value})
             except InputError as error:
-                raise InputError(f"{_where(name, text, key)}: {error}") from None
+                raise InputError(f"{name}:{lines[key]}: {error}") from None
         recipe = cls(**values)
         folder = Path(path).parent
 
@@ -143,11 +140,3 @@ def _as(kind: str, name: str, value: Any) -> Any:
     )
     count = "two " if kind.startswith("tuple[") and not kind.endswith("...]") else ""
     raise InputError(f"{name} must be {count}{wanted}; it is {value!r:.40}")
-
-
-def _where(file: str, text: str, key: str) -> str:
-    """The file, and the line on which a key stands."""
-    for number, line in enumerate(text.splitlines(), start=1):
-        if re.match(rf"\s*\[?\s*\"?{re.escape(key)}\b", line):
-            return f"{file}:{number}"
-    return file

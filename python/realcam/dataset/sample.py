@@ -10,7 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from .._core import Camera, Sensor
+from .. import flow
+from .._core import Camera, RenderSettings, Sensor
 from ..image import Image
 from ..render import render
 from ..vision import camera_json, fit_camera_model
@@ -19,6 +20,7 @@ from .recipe import Recipe
 from .scenes import RandomScene, random_camera, random_scene
 
 LAYERS = {"depth": "depth_middle", "mask": "object_id", "motion": "motion"}
+SEEDS_APART = 2**31  # of a picture and the next one, whose noise must differ
 WIDEST_PLANE_DEG = 120.0  # of cameras whose model is one by the tangent of the angle
 
 
@@ -27,24 +29,28 @@ def make_sample(recipe: Recipe, number: int, device: str, threads: int) -> dict[
     rng = np.random.default_rng([recipe.seed, number])
     seen = random_scene(recipe, rng)
     camera = random_camera(recipe, rng).metered(seen.scene, device=device)
-    image = render(
-        seen.scene,
-        camera,
-        spp=recipe.spp,
-        seed=number,
-        device=device,
-        threads=threads,
-        layers=sorted({"object_id", *(LAYERS[label] for label in recipe.labels)}),
-        effects=(),
-    )
-    codes = _sensed(recipe, image, number)
-    files = {"png": png_bytes(codes)}
+    layers = {"object_id", *(LAYERS[label] for label in recipe.labels if label in LAYERS)}
+    wants_flow = "flow" in recipe.labels
+
+    def taken(by: Camera, seed: int) -> Image:
+        wanted = layers.union(flow.LAYERS) if wants_flow else layers
+        settings = RenderSettings(spp=recipe.spp, seed=seed, threads=threads, layers=sorted(wanted), effects=())
+        return render(seen.scene, by, settings, device=device)
+
+    image = taken(camera, number)
+    files = {"png": png_bytes(_sensed(recipe, image, number))}
     for label in recipe.labels:
-        layer = image.layers[LAYERS[label]]
-        if label == "mask":
-            files["mask.png"] = png_bytes(layer.astype(np.uint8))
+        if label == "flow":
+            other = (number + SEEDS_APART) % 2**32
+            following = taken(camera.replace(shutter_opens_s=recipe.next_after_s), other)
+            leads = flow.flow_between(image, following, seen.scene)
+            files["next.png"] = png_bytes(_sensed(recipe, following, other))
+            files["flow.npy"] = _npy(leads.pixels)
+            files["flow_visible.png"] = png_bytes(np.where(leads.visible, 255, 0).astype(np.uint8))
+        elif label == "mask":
+            files["mask.png"] = png_bytes(image.layers["object_id"].astype(np.uint8))
         else:
-            files[f"{label}.npy"] = _npy(layer.astype(np.float32))
+            files[f"{label}.npy"] = _npy(image.layers[LAYERS[label]].astype(np.float32))
     files["json"] = json.dumps(_labels(recipe, seen, camera, image)).encode()
     return files
 

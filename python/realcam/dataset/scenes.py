@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .._core import Camera, Film, InputError, Lens, Material, Scene
-from .recipe import Recipe
+from .recipe import MOVES_FOR_S, Recipe
 
 Array = NDArray[np.float64]
 
@@ -86,10 +87,10 @@ def random_scene(recipe: Recipe, rng: np.random.Generator) -> RandomScene:
         matrix = _standing(place, float(size), rng.uniform(0, 2 * np.pi)) @ own
         scene = scene.with_instance(body, matrix, name=name)
         speed, heading = rng.uniform(*recipe.speed_m_s), rng.uniform(0, 2 * np.pi)
-        if speed > 0:  # over a second, which no exposure is
+        if speed > 0:
             there = matrix.copy()
-            there[[0, 2], 3] += speed * np.array([np.cos(heading), np.sin(heading)])
-            scene = scene.moved(name, np.stack([matrix, there]), (0.0, 1.0))
+            there[[0, 2], 3] += MOVES_FOR_S * speed * np.array([np.cos(heading), np.sin(heading)])
+            scene = scene.moved(name, np.stack([matrix, there]), (0.0, MOVES_FOR_S))
         categories.append(category)
         middles.append(place + np.array([0, size / 2, 0]))
     corners = None
@@ -139,8 +140,16 @@ def _lens(name: str) -> Lens:
     return Lens.load(name)
 
 
+def _direction(rng: np.random.Generator) -> Array:
+    direction: Array = rng.normal(size=3)
+    direction /= np.linalg.norm(direction)
+    return direction
+
+
 def random_camera(recipe: Recipe, rng: np.random.Generator) -> Camera:
     """Any of the lenses, stopped down and focused somewhere, that looks at the middle of the floor."""
+    from scipy.spatial.transform import Rotation  # slow to load
+
     lens = _lens(recipe.lenses[rng.integers(len(recipe.lenses))])
     lens = lens.stopped_down(float(lens.first_order().f_number * rng.uniform(*recipe.f_stops)))
     film = Film.for_lens(lens, resolution=recipe.size)
@@ -154,6 +163,15 @@ def random_camera(recipe: Recipe, rng: np.random.Generator) -> Camera:
     target = rng.uniform([-0.2, 0.05, -0.2], [0.2, 0.3, 0.2])
     lens = lens.focused(max(1.05 * lens.nearest_focus_m, float(distance * rng.uniform(0.8, 1.2))))
     roll = rng.uniform(-0.2, 0.2)
-    return camera.replace(
-        lens=lens, position=tuple(target + distance * away), look_at=tuple(target), up=(np.sin(roll), 1, 0)
-    )
+    position, up = target + distance * away, np.array([np.sin(roll), 1, 0])
+    motion: list[Any] = []
+    speed_m_s, turn_deg_s = (rng.uniform(*each) for each in (recipe.camera_speed_m_s, recipe.camera_turn_deg_s))
+    if speed_m_s > 0 or turn_deg_s > 0:
+        way, axis = speed_m_s * _direction(rng), np.radians(turn_deg_s) * _direction(rng)
+        turned = Rotation.from_rotvec(MOVES_FOR_S * axis)
+        there = position + MOVES_FOR_S * way
+        motion = [
+            (0.0, tuple(position), tuple(target), tuple(up)),
+            (MOVES_FOR_S, tuple(there), tuple(there + turned.apply(target - position)), tuple(turned.apply(up))),
+        ]
+    return camera.replace(lens=lens, position=tuple(position), look_at=tuple(target), up=tuple(up), motion=motion)
