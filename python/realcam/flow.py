@@ -105,14 +105,18 @@ def flow_between(first: Image, second: Image, scene: Scene, next_scene: Scene | 
     there = _placements(then, second.camera)
     in_objects = _carried(points, ids, row, np.linalg.inv(_placements(scene, first.camera)).astype(np.float64))
     # The row says when a thing is seen then, and the time, in which row: until they agree.
-    seen_row, last = row, second.depth.shape[0] - 1
+    seen_row, last = row.copy(), second.depth.shape[0] - 1
+    points_then, to = np.empty_like(points), np.empty_like(middles)
+    left = np.arange(len(row))
     for _ in range(_MOST_TURNS):
-        points_then = _carried(in_objects, ids, seen_row, there)
-        to = second.camera.project(points_then)
-        next_row = np.clip(np.nan_to_num(to[:, 1]), 0, last).astype(np.int64)
-        if len(there) == 1 or (next_row == seen_row).all():
+        points_then[left] = _carried(in_objects[left], ids[left], seen_row[left], there)
+        to[left] = second.camera.project(points_then[left])
+        next_row = np.clip(np.nan_to_num(to[left, 1]), 0, last).astype(np.int64)
+        has_moved = (next_row != seen_row[left]) & (len(there) > 1)
+        seen_row[left] = next_row
+        left = left[has_moved]
+        if len(left) == 0:
             break
-        seen_row = next_row
     # The middle ray is not quite the mean of a pixel's rays, by which points are projected: to both ends alike.
     moved = to - first.camera.project(points)
     flow = np.full((*depth.shape, 2), np.nan, np.float32)

@@ -7,7 +7,7 @@ using realcam::LocalCubic;
 
 TEST_CASE("odd and even cubics are found again between any nodes") {
     const std::vector<double> nodes = {0, 0.3, 0.4, 1.1, 1.3, 2};
-    for (const double x : {0.0, 0.1, 0.35, 0.4, 1, 1.2, 1.9}) {
+    for (const double x : {0.0, 0.1, 0.35, 0.4, 1.0, 1.2, 1.9}) {
         const auto cubic = LocalCubic::at(nodes, x);
         REQUIRE(cubic);
         CHECK(cubic->odd([&](std::size_t i) { return 2 * nodes[i] - std::pow(nodes[i], 3); }) ==
