@@ -21,6 +21,7 @@ import realcam as rc
 from realcam.dataset import Recipe, make, samples
 from realcam.dataset.pictures import codes_of, png_bytes
 from realcam.dataset.sample import _run_lengths
+from realcam.dataset.scenes import random_camera, random_scene
 
 pytestmark = pytest.mark.picture_files
 
@@ -157,6 +158,19 @@ def test_a_kill_leaves_whole_files_and_the_next_run_goes_on(tmp_path: Path) -> N
     make(Recipe.load(recipe), out, executor, device="cpu")
     assert executor.calls <= 6 - len(done)
     assert [sample["__key__"] for sample in samples(out)] == [f"{i:06d}" for i in range(6)]
+
+
+def test_a_camera_stands_outside_of_all_bodies() -> None:
+    """A fisheye comes so near that every tenth one stood in a body, and one in a box sees no light to be metered."""
+    recipe = dataclasses.replace(Recipe(), lenses=("fisheye-6mm-220deg",), objects=(8, 8))
+    for number in range(12):
+        rng = np.random.default_rng([1, number])
+        seen = random_scene(recipe, rng)
+        camera = random_camera(recipe, seen, rng)
+        sizes = 2 * seen.middles_m[:, 1]
+        # A body is within the cube of its size, turned about the vertical.
+        across = np.linalg.norm((seen.middles_m - camera.position)[:, [0, 2]], axis=1)
+        assert ((across > np.sqrt(0.5) * sizes) | (camera.position[1] > sizes)).all()
 
 
 def test_models_of_files_are_bodies_of_their_category(tmp_path: Path) -> None:

@@ -18,7 +18,7 @@ from .shards import DatasetFolder
 
 ProgressCallback = Callable[[float], bool | None]
 
-_WINDOW = 64  # samples that an executor has at a time, for each of its processes or machines
+_WINDOW = 1000  # pictures that an executor has at a time
 
 
 def make(

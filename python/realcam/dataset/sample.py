@@ -28,7 +28,7 @@ def make_sample(recipe: Recipe, number: int, device: str, threads: int) -> dict[
     """The files of a picture, by what stands behind its key and a dot."""
     rng = np.random.default_rng([recipe.seed, number])
     seen = random_scene(recipe, rng)
-    camera = random_camera(recipe, rng).metered(seen.scene, device=device)
+    camera = random_camera(recipe, seen, rng).metered(seen.scene, device=device)
     layers = {"object_id", *(LAYERS[label] for label in recipe.labels if label in LAYERS)}
     wants_flow = "flow" in recipe.labels
 

@@ -146,8 +146,24 @@ def _direction(rng: np.random.Generator) -> Array:
     return direction
 
 
-def random_camera(recipe: Recipe, rng: np.random.Generator) -> Camera:
-    """Any of the lenses, stopped down and focused somewhere, that looks at the middle of the floor."""
+def _view_from(distance: float, rng: np.random.Generator) -> tuple[Array, Array]:
+    """A place so far from the middle of the floor, and what a camera looks at from there."""
+    turn, rise = rng.uniform(0, 2 * np.pi), rng.uniform(0.15, 0.9)
+    away = np.array([np.cos(rise) * np.sin(turn), np.sin(rise), np.cos(rise) * np.cos(turn)])
+    target = rng.uniform([-0.2, 0.05, -0.2], [0.2, 0.3, 0.2])
+    return target + distance * away, target
+
+
+def _is_in_a_body(seen: RandomScene, place: Array) -> bool:
+    """Whether it lies in a ball around a body, which holds a cube of its size, or just before one."""
+    sizes = 2 * seen.middles_m[:, 1]  # they stand on the floor
+    return bool((np.linalg.norm(seen.middles_m - place, axis=1) < 0.87 * sizes + 0.05).any())
+
+
+def random_camera(recipe: Recipe, seen: RandomScene, rng: np.random.Generator) -> Camera:
+    """Any of the lenses, stopped down and focused somewhere, that looks at the middle of the floor from outside of all
+    bodies.
+    """
     from scipy.spatial.transform import Rotation  # slow to load
 
     lens = _lens(recipe.lenses[rng.integers(len(recipe.lenses))])
@@ -158,12 +174,13 @@ def random_camera(recipe: Recipe, rng: np.random.Generator) -> Camera:
     # So far away that about two metres fill the picture's width; a fisheye stands nearer than that.
     half_angle = np.radians(min(camera.field_of_view_deg.horizontal, 120) / 2)
     distance = max(0.6, rng.uniform(0.8, 1.3) / np.tan(half_angle))
-    turn, rise = rng.uniform(0, 2 * np.pi), rng.uniform(0.15, 0.9)
-    away = np.array([np.cos(rise) * np.sin(turn), np.sin(rise), np.cos(rise) * np.cos(turn)])
-    target = rng.uniform([-0.2, 0.05, -0.2], [0.2, 0.3, 0.2])
+    position, target = _view_from(distance, rng)
+    while _is_in_a_body(seen, position):
+        distance *= 1.05
+        position, target = _view_from(distance, rng)
     lens = lens.focused(max(1.05 * lens.nearest_focus_m, float(distance * rng.uniform(0.8, 1.2))))
     roll = rng.uniform(-0.2, 0.2)
-    position, up = target + distance * away, np.array([np.sin(roll), 1, 0])
+    up = np.array([np.sin(roll), 1, 0])
     motion: list[Any] = []
     speed_m_s, turn_deg_s = (rng.uniform(*each) for each in (recipe.camera_speed_m_s, recipe.camera_turn_deg_s))
     if speed_m_s > 0 or turn_deg_s > 0:
