@@ -157,16 +157,18 @@ def _is_seen(picture: Image, at: Array, points: Array, ids: NDArray[np.uint32]) 
     distances = np.linalg.norm(picture.layers["position_middle"] - picture.camera.position, axis=-1)
     distances = np.where(np.isinf(picture.layers["depth_middle"]), _FAR_M, distances)
     seen = np.zeros(len(at), bool)
-    corner = np.clip(np.floor(at[inside] - 0.5).astype(np.int64), 0, [max(0, width - 2), max(0, height - 2)])
-    around = []
-    for down in (0, 1):
-        for right in (0, 1):
-            row, column = np.minimum(corner[:, 1] + down, height - 1), np.minimum(corner[:, 0] + right, width - 1)
+    corner = np.floor(at[inside] - 0.5).astype(np.int64)
+    farthest, nearest = np.full((2, len(corner)), np.nan)
+    for down in range(-1, 3):
+        for right in range(-1, 3):
+            row, column = np.clip(corner[:, 1] + down, 0, height - 1), np.clip(corner[:, 0] + right, 0, width - 1)
             same = picture.layers["object_id"][row, column] == ids[inside]
-            around.append(np.where(same, distances[row, column], np.nan))
-    # At the border of the picture a slanted surface goes on for half a pixel beyond the middles of the last ones.
-    farthest = np.fmax.reduce(around)
-    slant = farthest - np.fmin.reduce(around)
+            shown = np.where(same, distances[row, column], np.nan)
+            nearest = np.fmin(nearest, shown)
+            if 0 <= down <= 1 and 0 <= right <= 1:
+                farthest = np.fmax(farthest, shown)
+    # Where a slanted surface ends, it goes on beyond the middles of the last pixels that show it.
+    slant = farthest - nearest
     wanted = np.linalg.norm(points[inside] - picture.camera.position, axis=1)
     seen[inside] = 0.999 * wanted <= farthest + slant
     return seen

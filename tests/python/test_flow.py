@@ -119,6 +119,20 @@ def test_a_card_hides_of_the_wall_what_lies_behind_it() -> None:
     assert visible[clear & inside].all()
 
 
+def test_nothing_hides_a_floor_that_is_seen_at_a_grazing_angle() -> None:
+    """Its last pixels are half a metre deep, and land between pixels of which some show the sky."""
+    floor = scenes.scene_of(scenes.quad((0, -0.3, -5), 50, 4.5, up=(0, 0, -1), diffuse=0.5)).with_environment(1.0)
+    first = scenes.pinhole(FILM, up=(0.2, 1, 0))
+    on_floor = rc.render(floor, first, spp=1, effects=(), layers=["object_id"]).layers["object_id"] == 1
+    assert on_floor.mean() > 0.3
+    turn = np.radians(0.5)
+    second = scenes.pinhole(FILM, look_at=(0, np.sin(turn), -np.cos(turn)), up=(0.2, 1, 0))
+    flow = rc.optical_flow(floor, first, second)
+    to = middles() + flow.pixels
+    inside = ((to > 0) & (to < FILM.resolution)).all(axis=-1)
+    assert flow.visible[on_floor & inside].all()
+
+
 def test_rows_that_are_exposed_later_see_things_later() -> None:
     """A card falls at b rows a second, and rows are exposed tau seconds after one another. What is in row r is seen at
     t = tau r, and in the next picture, T later, in r' = r + b (T + tau r' - tau r): so r' - r = b T / (1 - b tau)."""
