@@ -81,6 +81,7 @@ double MeanRays::light_of(const FilmBundle& bundle) {
 }
 
 std::vector<MeanRays::Part> MeanRays::parts_of(const FilmBundle& bundle) {
+    static_assert(kSampling.nodes % kLanes == 0);
     std::vector<Part> parts;
     in_lanes(entry_parts(bundle, kSampling), [&](const EntryPart* entries, const EntryLanes& lanes) {
         LensRays<double, kLanes> rays;
