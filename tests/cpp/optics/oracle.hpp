@@ -16,6 +16,15 @@ namespace realcam::test {
 
 using Real = boost::multiprecision::number<boost::multiprecision::cpp_bin_float<50>, boost::multiprecision::et_off>;
 
+/// By Newton's method from long double's 19 digits, which each step doubles: thrice as fast as cpp_bin_float's own,
+/// which finds one bit after the other.
+inline Real sqrt(const Real& v) {
+    if (!(v > 1e-300 && v < 1e300)) return boost::multiprecision::sqrt(v);
+    const Real start = 1 / std::sqrt(static_cast<long double>(v));
+    const Real inverse = start + start * (1 - v * start * start) / 2, root = v * inverse;
+    return root + inverse * (v - root * root) / 2;
+}
+
 struct RealVector {
     Real x, y, z;
 };
@@ -47,19 +56,36 @@ inline RealVector normalized(const RealVector& v) {
     return (1 / length(v)) * v;
 }
 
+/// The sag of a conic with an even polynomial, by the square of the distance from the axis.
+template <class T>
+struct OracleSag {
+    T curvature, conic;
+    std::vector<T> aspheric;
+
+    T operator()(const T& r2) const {
+        using std::sqrt;
+        T polynomial = 0;
+        for (std::size_t i = aspheric.size(); i-- > 0;) polynomial = polynomial * r2 + aspheric[i];
+        return curvature * r2 / (1 + sqrt(1 - (1 + conic) * curvature * curvature * r2)) + r2 * r2 * polynomial;
+    }
+};
+
 /// A surface in its own vertex frame.
 class OracleSurface {
 public:
-    explicit OracleSurface(const Surface& surface) : c_(surface.curvature), k_(surface.conic) {
-        for (const double a : surface.aspheric) aspheric_.push_back(a);
-    }
+    explicit OracleSurface(const Surface& surface)
+        : c_(surface.curvature),
+          k_(surface.conic),
+          sag_{c_, k_, {surface.aspheric.begin(), surface.aspheric.end()}},
+          long_sag_{surface.curvature, surface.conic, {surface.aspheric.begin(), surface.aspheric.end()}} {}
 
-    bool is_polynomial() const { return !aspheric_.empty(); }
+    bool is_polynomial() const { return !sag_.aspheric.empty(); }
 
-    Real sag(const Real& r2) const { return sag_of<Real>(r2); }
+    Real sag(const Real& r2) const { return sag_(r2); }
     Real sag_derivative(const Real& r2) const {  // by r^2
         Real value = 0;
-        for (std::size_t i = aspheric_.size(); i-- > 0;) value = value * r2 + (static_cast<int>(i) + 2) * aspheric_[i];
+        const std::vector<Real>& terms = sag_.aspheric;
+        for (std::size_t i = terms.size(); i-- > 0;) value = value * r2 + (static_cast<int>(i) + 2) * terms[i];
         return c_ / (2 * sqrt(1 - (1 + k_) * c_ * c_ * r2)) + r2 * value;
     }
     /// Unit, towards the film, of the near cap.
@@ -113,7 +139,7 @@ public:
         const Long ox(o.x), oy(o.y), oz(o.z), dx(d.x), dy(d.y), dz(d.z);
         const auto beyond = [&](Long t) {
             const Long x = ox + t * dx, y = oy + t * dy;
-            return direction_sign * (oz + t * dz - sag_of<Long>(std::min(x * x + y * y, static_cast<Long>(rim) * rim)));
+            return direction_sign * (oz + t * dz - long_sag_(std::min(x * x + y * y, static_cast<Long>(rim) * rim)));
         };
         const Long across = dx * dx + dy * dy, middle = across > 0 ? -(ox * dx + oy * dy) / across : -oz / dz;
         const Long x = ox + middle * dx, y = oy + middle * dy;
@@ -139,14 +165,6 @@ public:
     }
 
 private:
-    template <class T>
-    T sag_of(T r2) const {
-        const T c(c_), k(k_);
-        T polynomial = 0;
-        for (std::size_t i = aspheric_.size(); i-- > 0;) polynomial = polynomial * r2 + T(aspheric_[i]);
-        return c * r2 / (1 + sqrt(1 - (1 + k) * c * c * r2)) + r2 * r2 * polynomial;
-    }
-
     Real polished(Real t, const RealVector& o, const RealVector& d) const {
         for (int i = 0; i < 4; ++i) {
             const RealVector at = o + t * d;
@@ -159,7 +177,8 @@ private:
     }
 
     Real c_, k_;
-    std::vector<Real> aspheric_;
+    OracleSag<Real> sag_;
+    OracleSag<long double> long_sag_;
 };
 
 /// Snell's law for unit vectors, d' = mu d + (sqrt(1 - mu^2 (1 - cos^2)) - mu cos) N with N along the light; nothing

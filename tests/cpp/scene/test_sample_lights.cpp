@@ -206,6 +206,7 @@ TEST_CASE("a light is chosen from the tree with the probability that is said of 
     const SceneView view = placed.view();
     const int lights = view.point_count + view.area_count;
     unsigned seed = 1;
+    double worst = 0;
     for (const Vec3f position : {Vec3f{0, 0, 0.5f}, Vec3f{1, -1, -3}, Vec3f{50, 20, 10}})
         for (const Vec3f normal : {Vec3f{0, 0, 0}, Vec3f{0, 0, 1}, Vec3f{0, 0, -1}, Vec3f{-1, 0, 0}}) {
             const LightReceiver receiver{position, normal};
@@ -216,12 +217,15 @@ TEST_CASE("a light is chosen from the tree with the probability that is said of 
             for (int i = 0; i < kSamples; ++i) {
                 const LightChoice choice = choose_light(view, receiver, uniform(), static_cast<std::uint32_t>(i));
                 REQUIRE((choice.light >= 0 && choice.light < lights && choice.fresh >= 0 && choice.fresh < 1));
-                CHECK(choice.probability == doctest::Approx(light_probability(view, receiver, choice.light)));
-                ++counts[static_cast<std::size_t>(choice.light)];
+                const auto light = static_cast<std::size_t>(choice.light);
+                worst = std::max(worst,
+                                 std::fabs(kSamples * static_cast<double>(choice.probability) / expected[light] - 1));
+                ++counts[light];
             }
             tests.add(expected, counts);
         }
     tests.hold();
+    CHECK(worst < 1e-5);
 }
 
 namespace {

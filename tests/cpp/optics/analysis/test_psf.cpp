@@ -46,12 +46,16 @@ double largest_difference(const Psf& a, const Psf& b) {
 /// the direction cosine s = sin T: energy r dr on s ds, so that the amplitude is the root of r dr / s ds, and the field
 /// the integral of it times J0(k s q).
 double perfect(double f, double f_number, double wavelength_nm, double q_um) {
-    constexpr int kNodes = 200;
+    constexpr int kNodes = 100;  // for 11 periods of J0 at most
+    static const std::vector<GaussNode> nodes = [] {
+        std::vector<GaussNode> all;
+        for (int i = 0; i < kNodes; ++i) all.push_back(gauss_node(kNodes, i));
+        return all;
+    }();
     const double k = 2000 * M_PI / wavelength_nm, edge = 0.5 / f_number;  // 1/um
     const double height = 2 * f * std::tan(0.5 * std::asin(edge));
     double field = 0;
-    for (int i = 0; i < kNodes; ++i) {
-        const GaussNode node = gauss_node(kNodes, i);
+    for (const GaussNode& node : nodes) {
         const double s = edge * node.node, cosine = std::sqrt(1 - s * s);
         const double energy = 4 * f * f * std::tan(0.5 * std::asin(s)) / (1 + cosine) / cosine / s;  // r dr/ds / s
         field += node.weight * edge * std::sqrt(energy) * std::cyl_bessel_j(0.0, k * s * q_um) * s;

@@ -64,9 +64,9 @@ TEST_CASE("every ray that a lens lets pass is the one that is aimed at its place
                 if (std::isfinite(object_distance) && std::fabs(field.angle_rad) > 1.4) continue;
                 const RayAimer aim(lens, lens.wavelength_nm, field);
                 const double middle = aim.chief_ray().entry.y, reach = 0.8 * data.entrance_pupil_diameter;
-                for (int i = 0; i < 60; ++i)
-                    for (int k = 0; k < 60; ++k) {
-                        const ObjectPoint::Entry entry{reach * (2 * i - 59) / 59, middle + reach * (2 * k - 59) / 59};
+                for (int i = 0; i < 30; ++i)
+                    for (int k = 0; k < 30; ++k) {
+                        const ObjectPoint::Entry entry{reach * (2 * i - 29) / 29, middle + reach * (2 * k - 29) / 29};
                         if (trace_to(path, count, aim.object, entry).status != RayStatus::ok) continue;
                         const Met stop = trace_to(path, lens.stop_index() + 1, aim.object, entry);
                         const AimedRay found = aim({stop.at.x, stop.at.y});
@@ -76,7 +76,7 @@ TEST_CASE("every ray that a lens lets pass is the one that is aimed at its place
                     }
             }
         }
-        CHECK(tried > 50000);
+        CHECK(tried > 12500);
         // The stop is met within 1e-10 of its radius; the entry lies within that of its own, times the distortion of
         // the pupil, below 10 here.
         hold({"Truth", "rays aimed at the real stop against those that pass, entry over pupil radius",
@@ -156,7 +156,7 @@ TEST_CASE("rays that are aimed together are those that are aimed one by one") {
     }
     std::vector<double> worst(loops.size()), led(loops.size());
     std::size_t tried = 0;
-    const std::vector<PupilPoint> pattern = hexapolar(20);
+    const std::vector<PupilPoint> pattern = hexapolar(18);
     const auto compare = [&](const LensSystem& lens, double angle) {
         CAPTURE(lens.name);
         CAPTURE(angle);
@@ -187,7 +187,7 @@ TEST_CASE("rays that are aimed together are those that are aimed one by one") {
         }
     };
     for (const std::string& name : centred_lens_names())
-        for (const double share : {0.0, 0.5, 1.0}) {
+        for (const double share : {0.0, 1.0}) {
             const LensSystem lens = io::read_lens(name);
             compare(lens, share * half_field(lens));
         }
@@ -198,6 +198,6 @@ TEST_CASE("rays that are aimed together are those that are aimed one by one") {
         CHECK(led[k] > 0.9 * static_cast<double>(tried));
         // Both meet the stop within 2.5e-11 of its radius; what becomes of that as above.
         hold({"Truth", "rays aimed together against those aimed one by one: entry, path, direction",
-              "every bundled lens, 3 fields x 1261 places", loops[k].first, "float64", worst[k], 1e-9, "of the pupil"});
+              "every bundled lens, 2 fields x 1027 places", loops[k].first, "float64", worst[k], 1e-9, "of the pupil"});
     }
 }

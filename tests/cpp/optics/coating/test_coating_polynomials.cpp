@@ -46,9 +46,9 @@ void compare(const LensSystem& lens, LightDirection direction, double wavelength
         const SurfaceView<double>& view = path.view().surfaces[k];
         const double before = std::sqrt(view.index_squared);
         const double square_behind = view.index_squared * (1 + view.squared_index_change);
-        for (int i = 1; i <= 300; ++i) {
+        for (int i = 1; i <= 100; ++i) {
             // Of the medium with the lower index, so that there is light on both sides.
-            const double cosine = i / 300.0, lower = std::min(before, std::sqrt(square_behind));
+            const double cosine = i / 100.0, lower = std::min(before, std::sqrt(square_behind));
             const double component = lower * cosine;
             const double in = std::sqrt(component * component + view.index_squared - lower * lower);
             const double out = std::sqrt(component * component + square_behind - lower * lower);

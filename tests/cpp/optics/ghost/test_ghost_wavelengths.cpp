@@ -23,7 +23,7 @@ using namespace realcam;
 using namespace realcam::test;
 
 constexpr int kRays = 16;
-constexpr std::size_t kMostPairs = 25;  ///< of a lens, spread over all that it has
+constexpr std::size_t kMostPairs = 10;  ///< of a lens, spread over all that it has
 
 LensSystem coated(LensSystem lens, const Coating& coating) {
     for (std::size_t i = 0; i < lens.surfaces.size(); ++i)

@@ -133,7 +133,7 @@ void try_all(const LensSystem& lens, Outcomes& outcomes) {
 TEST_CASE("absurd lenses end in numbers or in errors") {
     Random random(77);
     Outcomes outcomes;
-    for (int trial = 0; trial < 160; ++trial) {
+    for (int trial = 0; trial < 80; ++trial) {
         const LensSystem lens = absurd_lens(random, random.between(0, 8));
         try {
             validate(lens);
@@ -143,8 +143,8 @@ TEST_CASE("absurd lenses end in numbers or in errors") {
         CAPTURE(trial);
         try_all(lens, outcomes);
     }
-    CHECK(outcomes.numbers > 400);
-    CHECK(outcomes.errors > 200);
+    CHECK(outcomes.numbers > 200);
+    CHECK(outcomes.errors > 100);
     hold({"Iteration", "absurd lenses: first order, focus, stop, exposure, field, camera rays, aiming that end in NaN",
           std::to_string(outcomes.lenses) + " lenses, " + std::to_string(outcomes.numbers) + " answers, " +
               std::to_string(outcomes.errors) + " errors",

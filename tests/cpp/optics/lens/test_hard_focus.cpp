@@ -104,17 +104,15 @@ TEST_CASE("every bundled lens is sharp at the distance asked for, from its neare
         CAPTURE(name);
         LensSystem lens = io::read_lens(name);
         if (lens.focusing.moves_group())
-            for (const double distance : {1.0, 1.001, 2.0, 10.0, 1e10})
-                try_at(lens, lens.focusing.nearest_mm * distance);
+            for (const double distance : {1.0, 1.001, 10.0, 1e10}) try_at(lens, lens.focusing.nearest_mm * distance);
         lens.focusing = {};
-        // The nearest distance that is not refused, to the last digits.
+        // The nearest distance that is not refused, to 1e5 mm / 2^45 = 3e-9 mm.
         double refused = 0.5 * lens.film_position(), near = 1e5;
-        for (int i = 0; i < 60; ++i) {
+        for (int i = 0; i < 45; ++i) {
             const double middle = 0.5 * (refused + near);
             (message_of([&] { focused(lens, middle); }) == "(no error)" ? near : refused) = middle;
         }
-        for (const double share : {0.0, 1e-9, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 0.1, 1.0, 100.0, 1e8})
-            try_at(lens, near * (1 + share));
+        for (const double share : {0.0, 1e-9, 1e-6, 1e-4, 1e-2, 1.0, 1e8}) try_at(lens, near * (1 + share));
         CHECK(contains(message_of([&] { focused(lens, refused * (1 - 1e-9)); }), "cannot focus at "));
     }
     // 1e-9 of the distance is what focused promises.

@@ -79,7 +79,7 @@ double passing_share(const LensSystem& lens, const Pupil& pupil) {
     Random random(23);
     long sampled = 0, passed = 0;
     constexpr int kSamples = 64;
-    for (int k = 0; k < 1500; ++k) {
+    for (int k = 0; k < 400; ++k) {
         const Vec3f film = static_cast<Vec3f>(point_on_film(lens, random));
         std::vector<PupilSample> samples(kSamples);
         for (PupilSample& s : samples)

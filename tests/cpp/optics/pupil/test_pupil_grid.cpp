@@ -12,7 +12,7 @@ using namespace realcam::test;
 
 namespace {
 
-constexpr int kSamples = 1 << 18;
+constexpr int kSamples = 1 << 16;
 
 struct GridCase {
     std::string lens;
@@ -90,9 +90,9 @@ TEST_CASE("the pupil over the film gives the irradiance that the radial table gi
             trace_samples(lens, [&](float x, float y, float u, float v) { return sample_pupil(view, x, y, u, v); });
         const Traced by_radius =
             trace_samples(lens, [&](float x, float y, float u, float v) { return sample_pupil(row_view, x, y, u, v); });
-        // A share p of samples of equal weight passes, with a deviation of sqrt((1 - p) / (p n)): 4.5e-4 at 95%. The
+        // A share p of samples of equal weight passes, with a deviation of sqrt((1 - p) / (p n)): 9e-4 at 95%. The
         // points are stratified, which only makes it less. Four of them, of both.
-        CHECK(by_place.irradiance == doctest::Approx(by_radius.irradiance).epsilon(2.5e-3));
+        CHECK(by_place.irradiance == doctest::Approx(by_radius.irradiance).epsilon(5e-3));
         CHECK(by_place.passed >= state.least_passing * by_place.sampled);
     }
 }

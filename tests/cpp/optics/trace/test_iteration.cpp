@@ -264,7 +264,7 @@ TEST_CASE("the pupil search ends within its bound, whatever passes") {
         for (int i = 0; i < view.rows * view.sectors; ++i) CHECK(std::isfinite(view.outline[i].x + view.outline[i].dx));
     };
     for (const LensSystem& lens : {gauss, fisheye})
-        for (const double radius : {1e-30, 1e-6, 21.0, 1e6, 1e9}) {
+        for (const double radius : {1e-30, 21.0, 1e9}) {
             look(lens, radius, [](Vec3f, long) { return false; });
             look(lens, radius, [](Vec3f, long) { return true; });
             look(lens, radius, [](Vec3f, long ray) { return hash32(static_cast<std::uint32_t>(ray)) % 2 == 0; });
