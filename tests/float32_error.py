@@ -22,7 +22,7 @@ IMAGE_RADIUS_MM = {"fisheye-6mm-220deg": 10.47}
 BEYOND_UM = 0.25
 
 FILM_RADII = 33
-RAYS_PER_RADIUS = 16_000
+RAYS_PER_RADIUS = 4_000
 
 
 def limit_um(lens: rc.Lens) -> float:

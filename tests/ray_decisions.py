@@ -14,7 +14,7 @@ from .float32_error import Rays, exact_rays, passes, pupil_boxes, rounded_rays, 
 SHARE_LIMIT = 1e-5
 EDGE_LIMIT = 1e-4
 
-PAIRS_PER_RADIUS = 200
+PAIRS_PER_RADIUS = 100
 RAYS_PER_PAIR = 12
 
 

@@ -31,6 +31,7 @@ VARIABLES = {
     "film": rc.Variable.film_distance(),
 }
 N3 = 1.5
+ENOUGH = mpf(10) ** -25  # the last step of Newton's method, mm: the next one would be 1e-20 of it or less
 
 
 def tilted_anamorphic() -> rc.Lens:
@@ -78,7 +79,10 @@ def met(o: list[Any], d: list[Any], cx: Any, cy: Any) -> tuple[Any, list[Any]]:
         r2 = x * x + y * y if cx else y * y
         root = mpmath.sqrt(1 - cy * cy * r2)
         normal = [-cy * x / root if cx else mpf(0), -cy * y / root, mpf(1)]
-        t -= (z - cy * r2 / (1 + root)) / dot(normal, d)
+        change = (z - cy * r2 / (1 + root)) / dot(normal, d)
+        t -= change
+        if abs(change) < ENOUGH:
+            break
     return t, unit(normal)
 
 
@@ -87,23 +91,23 @@ def refracted(d: list[Any], normal: list[Any], mu: Any) -> list[Any]:
     return plus([mu * a for a in d], mpmath.sqrt(1 - mu * mu * (1 - cosine * cosine)) - mu * cosine, normal)
 
 
-def turned(v: list[Any], of: dict[str, Any], sign: int) -> list[Any]:
+def turned(v: list[Any], tilt: list[Any], sign: int) -> list[Any]:
     """From the frame of the tilted face to the axis's (1), or back (-1): about x, then about the y that is turned."""
-    a, b = mpmath.radians(of["tilt_x"]), mpmath.radians(of["tilt_y"])
-    cos, sin = mpmath.cos, mpmath.sin
+    cos_a, sin_a, cos_b, sin_b = tilt
 
-    def about_x(w: list[Any], a: Any) -> list[Any]:
-        return [w[0], cos(a) * w[1] - sin(a) * w[2], sin(a) * w[1] + cos(a) * w[2]]
+    def about_x(w: list[Any], sin: Any) -> list[Any]:
+        return [w[0], cos_a * w[1] - sin * w[2], sin * w[1] + cos_a * w[2]]
 
-    def about_y(w: list[Any], b: Any) -> list[Any]:
-        return [cos(b) * w[0] + sin(b) * w[2], w[1], -sin(b) * w[0] + cos(b) * w[2]]
+    def about_y(w: list[Any], sin: Any) -> list[Any]:
+        return [cos_b * w[0] + sin * w[2], w[1], -sin * w[0] + cos_b * w[2]]
 
-    return about_x(about_y(v, b), a) if sign > 0 else about_y(about_x(v, -a), -b)
+    return about_x(about_y(v, sin_b), sin_a) if sign > 0 else about_y(about_x(v, -sin_a), -sin_b)
 
 
 def traced(of: dict[str, Any], o: list[Any], d: list[Any]) -> tuple[list[Any], list[Any], list[Any], Any]:
     """Place on the stop; point and direction on the film's plane, which is z = 0; optical path."""
     path, z = mpf(0), mpf(0)
+    tilt = [f(mpmath.radians(of[angle])) for angle in ("tilt_x", "tilt_y") for f in (mpmath.cos, mpmath.sin)]
     stop: list[Any] = []
     for k, (cx, cy, before, after, thickness) in enumerate(
         [
@@ -118,14 +122,14 @@ def traced(of: dict[str, Any], o: list[Any], d: list[Any]) -> tuple[list[Any], l
         vertex = [of["dx"], of["dy"], z] if k == 1 else [mpf(0), mpf(0), z]
         o = plus(o, -1, vertex)
         if k == 1:
-            o, d = turned(o, of, -1), turned(d, of, -1)
+            o, d = turned(o, tilt, -1), turned(d, tilt, -1)
         t, normal = met(o, d, cx, cy)
         o, path = plus(o, t, d), path + before * t
         d = refracted(d, normal, mpf(before) / after)
         if k == 2:
             stop = o[:2]
         if k == 1:
-            o, d = turned(o, of, 1), turned(d, of, 1)
+            o, d = turned(o, tilt, 1), turned(d, tilt, 1)
         if k < 5:
             o = plus(o, 1, vertex)
         z += thickness
@@ -150,9 +154,7 @@ class Truth:
         # Rays at the edge are aimed at 5e-11 inside of it.
         places = [[STOP * (1 - mpf(5e-11)) * mpf(v) for v in place] for place in (*pupil, (0, 0))]
         starts = near.entries if near else [(mpf(0), mpf(0))] * len(places)
-        self.entries = [
-            self._entry(place, start, 2 if near else 7) for place, start in zip(places, starts, strict=True)
-        ]
+        self.entries = [self._entry(place, start) for place, start in zip(places, starts, strict=True)]
         *self.rays, self.chief = (self._ray(*entry)[1] for entry in self.entries)
         self.start = self._ray(*self.entries[-1])[0]
 
@@ -166,13 +168,15 @@ class Truth:
         stop, o, p, path = traced(self.of, at, d)
         return (at, d), (stop, o, p, path + before)
 
-    def _entry(self, place: list[Any], start: tuple[Any, Any], steps: int) -> tuple[Any, Any]:
+    def _entry(self, place: list[Any], start: tuple[Any, Any]) -> tuple[Any, Any]:
         (x, y), h = start, mpf(10) ** -20
-        for _ in range(steps):
+        for _ in range(7):
             s, sx, sy = (self._ray(*at)[1][0] for at in ((x, y), (x + h, y), (x, y + h)))
             slope = mpmath.matrix([[(sx[i] - s[i]) / h, (sy[i] - s[i]) / h] for i in (0, 1)])
             change = mpmath.lu_solve(slope, mpmath.matrix([place[i] - s[i] for i in (0, 1)]))
             x, y = x + change[0], y + change[1]
+            if mpmath.norm(change) < ENOUGH:
+                break
         return x, y
 
     def spot_mm(self) -> Any:

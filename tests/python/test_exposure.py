@@ -83,10 +83,10 @@ def test_relative_illumination_equals_the_integral_summed_by_force(name: str) ->
     radius = np.hypot(y[:, None], x[None, :]).reshape(rows, 4, columns, 4)
     middle = radius.mean(axis=(1, 3))
 
-    axis = yardsticks.brute_force_irradiance(lens, 0.0)
-    rendered_axis = axial_exposure(lens)
+    axis = yardsticks.brute_force_irradiance(lens, 0.0, 180)
+    rendered_axis, lit_mm = axial_exposure(lens), illuminated_radius(lens)
     for share in (0.35, 0.65, 0.9):
-        wanted = share * illuminated_radius(lens)
+        wanted = share * lit_mm
         ring = np.abs(middle - wanted) < 0.6 * pitch
         # Over the width of the ring, and of its pixels, the irradiance is a parabola through three sums.
         nodes = wanted + 1.2 * pitch * np.array([-1, 0, 1])

