@@ -13,6 +13,7 @@ from pathlib import Path
 
 import pytest
 
+pytestmark = pytest.mark.pictures  # nvcc compiles for ten seconds
 ROOT = Path(__file__).parents[2]
 KERNEL = """
 #include "cuda/render_kernel_template.hpp"

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import signal
+import subprocess
 from collections.abc import Iterator
 from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any
 
 import pytest
 import realcam as rc
+from realcam_command.main import main
 
 if TYPE_CHECKING:
     from .bench_pages import BenchPage, Server
+    from .programs import Command
 
 # A shell's background jobs ignore Ctrl-C, and so would the programs that tests start and interrupt.
 if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
@@ -28,6 +31,23 @@ def device(request: pytest.FixtureRequest) -> str:
 def backend(device: str) -> str:
     """What a measurement calls it."""
     return {"cpu": "Embree", "cuda": "CUDA"}.get(device, device)
+
+
+@pytest.fixture
+def command(monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]) -> Command:
+    """`realcam WORDS...` in this process: one of its own takes half a second to start."""
+
+    def run(*words: object) -> subprocess.CompletedProcess[str]:
+        monkeypatch.setattr("sys.argv", ["realcam", *map(str, words)])
+        handler = signal.getsignal(signal.SIGINT)
+        try:
+            with pytest.raises(SystemExit) as ended:
+                main()
+        finally:
+            signal.signal(signal.SIGINT, handler)
+        return subprocess.CompletedProcess(words, int(ended.value.code or 0), *capfd.readouterr())
+
+    return run
 
 
 # What tests of the lens bench share; those that ask for it say where nicegui, playwright or chromium is missing.

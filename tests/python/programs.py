@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -12,6 +14,8 @@ PYTHON = [sys.executable, "-m", "realcam"]
 # CMake builds it beside the folder of the extension; an installed package has none.
 _BUILT = Path(_core.__file__).resolve().parents[1] / "realcam"
 EXECUTABLE = [str(_BUILT)] if _BUILT.is_file() else []
+
+Command = Callable[..., subprocess.CompletedProcess[str]]  # of the fixture `command`
 
 # The executable starts sooner. Both run the same C++.
 PROGRAM = EXECUTABLE or PYTHON

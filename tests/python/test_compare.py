@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import json
 import math
-import subprocess
-import sys
 from pathlib import Path
 
 import matplotlib.image
@@ -15,6 +13,7 @@ import realcam as rc
 from realcam.sheet import _wrapped, save_sheet
 from realcam.variations import variations
 
+from .programs import Command
 from .scenes import quad, scene_of
 
 FOCUS_M = 1.5
@@ -119,23 +118,23 @@ def test_a_sheet_has_every_pixel_of_its_pictures(tmp_path: Path) -> None:
         (["--vary", "f_number=4", "--theme", "pink"], "theme"),
     ],
 )
-def test_the_command_says_what_is_wrong_in_one_line(options: list[str], words: str, tmp_path: Path) -> None:
+def test_the_command_says_what_is_wrong_in_one_line(
+    options: list[str], words: str, tmp_path: Path, command: Command
+) -> None:
     (tmp_path / "quad.obj").write_text("v -1 -1 -3\nv 1 -1 -3\nv 1 1 -4\nv -1 1 -4\nf 1 2 3 4\n")
     (tmp_path / "shot.toml").write_text('format = 1\nscene = "quad.obj"\nlens = "tessar-50mm"\nf_number = 4\n')
-    command = [sys.executable, "-m", "realcam", "compare", tmp_path / "shot.toml", "-o", tmp_path / "sheet.png"]
-    run = subprocess.run([*command, *options], capture_output=True, text=True, check=False)
+    run = command("compare", tmp_path / "shot.toml", "-o", tmp_path / "sheet.png", *options)
     assert run.returncode == 2
     assert words in run.stderr
     assert len(run.stderr.splitlines()) == 1
     assert not (tmp_path / "sheet.png").exists()
 
 
-def test_the_command_writes_the_sheet_and_says_what_was_taken(tmp_path: Path) -> None:
+def test_the_command_writes_the_sheet_and_says_what_was_taken(tmp_path: Path, command: Command) -> None:
     (tmp_path / "quad.obj").write_text("v -1 -1 -3\nv 1 -1 -3\nv 1 1 -4\nv -1 1 -4\nf 1 2 3 4\n")
     (tmp_path / "shot.toml").write_text('format = 1\nscene = "quad.obj"\nlens = "tessar-50mm"\nfocus_m = 3.0\n')
     words = ["--vary", "f_number=4,8", "--size", "24", "--noise-codes", "20", "--seconds", "5", "--json"]
-    command = [sys.executable, "-m", "realcam", "compare", tmp_path / "shot.toml", "-o", tmp_path / "sheet.png"]
-    run = subprocess.run([*command, *words], capture_output=True, text=True, check=True)
+    run = command("compare", tmp_path / "shot.toml", "-o", tmp_path / "sheet.png", *words)
     rows = json.loads(run.stdout)
     assert [row["label"] for row in rows] == ["f/4", "f/8"]
     assert rows[1]["exposure_time_s"] == pytest.approx(4 * rows[0]["exposure_time_s"], rel=1e-3)

@@ -161,13 +161,7 @@ def test_zoom(seq, tmp_path):
     assert lens.with_surface(0, thickness_mm=5.5).zoomed("tele").surfaces[0].thickness_mm == 5.5
 
 
-def command(*arguments):
-    return subprocess.run(
-        [sys.executable, "-m", "realcam", *map(str, arguments)], capture_output=True, text=True, check=False
-    )
-
-
-def test_commands(seq, tmp_path):
+def test_commands(seq, tmp_path, command):
     path = seq("XY_SCHOTT", extra="ZOO 2\nZOO TIT 'wide' 'tele'\nZOO THI S2 6 9\n")
     refused = command("lens", "info", path)
     assert refused.returncode == 2
@@ -248,7 +242,7 @@ def test_code_v_double_gauss(tmp_path):
     assert out.directions[0, 0] / out.directions[0, 2] == pytest.approx(-0.258832, abs=2e-6)
 
 
-def test_errors_say_what_settles_them_as_data_and_not_in_words(seq):
+def test_errors_say_what_settles_them_as_data_and_not_in_words(seq, command):
     """The browser shows messages too, where neither an option nor an argument can be given."""
     with pytest.raises(rc.LensFileError) as several:
         rc.Lens.load(seq("F4"))

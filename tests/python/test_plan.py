@@ -5,8 +5,6 @@ from __future__ import annotations
 import copy
 import json
 import re
-import subprocess
-import sys
 import warnings
 from pathlib import Path
 
@@ -16,6 +14,7 @@ import realcam as rc
 from realcam.image_file import read_film
 
 from . import scenes
+from .programs import Command
 
 WAVELENGTH_MM = 550e-6
 
@@ -286,10 +285,6 @@ def test_a_lamp_behind_an_object_makes_neither_ghosts_nor_stars() -> None:
         assert of["diffraction"].is_kept == is_seen
 
 
-def command(*words: str) -> subprocess.CompletedProcess[str]:
-    return subprocess.run([sys.executable, "-m", "realcam", *words], capture_output=True, text=True, check=False)
-
-
 @pytest.fixture
 def shot_file(tmp_path: Path) -> Path:
     """A quad in an .obj, and a shot of it."""
@@ -301,7 +296,7 @@ def shot_file(tmp_path: Path) -> Path:
     return tmp_path / "shot.toml"
 
 
-def test_both_programs_plan_alike(shot_file: Path) -> None:
+def test_both_programs_plan_alike(shot_file: Path, command: Command) -> None:
     printed = command("plan", str(shot_file), "--device", "cpu", "--json")
     assert printed.returncode == 0, printed.stderr
     told = json.loads(printed.stdout)
@@ -328,7 +323,7 @@ def test_shot_files_may_ask_for_a_plan(shot_file: Path) -> None:
     assert "coatings" in picture.plan
 
 
-def test_explanations_are_printed_and_kept(shot_file: Path, tmp_path: Path) -> None:
+def test_explanations_are_printed_and_kept(shot_file: Path, tmp_path: Path, command: Command) -> None:
     out = tmp_path / "picture.exr"
     words = ["--device", "cpu", "--effects", "auto", "--explain", "--spp", "1", "-o", str(out)]
     printed = command("render", str(shot_file), *words)
@@ -339,7 +334,7 @@ def test_explanations_are_printed_and_kept(shot_file: Path, tmp_path: Path) -> N
     assert read_film(out)[1]["realcam:plan"] == plan.summary
 
 
-def test_an_unknown_quality_is_said(shot_file: Path) -> None:
+def test_an_unknown_quality_is_said(shot_file: Path, command: Command) -> None:
     printed = command("plan", str(shot_file), "--quality", "best")
     assert printed.returncode == 2
     assert printed.stderr == 'realcam: error: --quality: "best": draft, photo or reference is wanted\n'

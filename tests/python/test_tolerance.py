@@ -336,29 +336,24 @@ def test_better_grades_make_better_lenses(name):
     assert spread < {"commercial": 3.0, "precision": 0.6, "high": 0.1}[name]
 
 
-def command(*words):
-    return subprocess.run(
-        [sys.executable, "-m", "realcam", "lens", "tolerance", *words], capture_output=True, text=True, check=False
-    )
-
-
-def test_the_command_writes_a_report_and_json(tmp_path):
+def test_the_command_writes_a_report_and_json(tmp_path, command):
     report = tmp_path / "report.html"
-    asked = command("tessar-50mm", "--copies", "20", "--grade", "precision", "--seed", "4", "-o", str(report), "--json")
+    words = ("tessar-50mm", "--copies", 8, "--grade", "precision", "--seed", 4, "-o", report, "--json")
+    asked = command("lens", "tolerance", *words)
     assert asked.returncode == 0, asked.stderr
     told = json.loads(asked.stdout)
-    assert (told["copies"], told["grade"], told["is_whole"]) == (20, "precision", True)
-    study = tolerance_study(Lens.load("tessar-50mm"), "precision", 20, seed=4)
+    assert (told["copies"], told["grade"], told["is_whole"]) == (8, "precision", True)
+    study = tolerance_study(Lens.load("tessar-50mm"), "precision", 8, seed=4)
     assert told["quantiles"]["mtf"]["0.5"] == pytest.approx(study.quantiles("mtf", [0.5])[0])
     page = report.read_text()
     assert "Worst offenders" in page and page.count("<tr>") > len(study.items)
 
 
-def test_the_command_prints_what_it_found():
-    asked = command("tessar-50mm", "--copies", "8", "--grade", "high")
+def test_the_command_prints_what_it_found(command):
+    asked = command("lens", "tolerance", "tessar-50mm", "--copies", 8, "--grade", "high")
     assert asked.returncode == 0, asked.stderr
     assert "worst offenders" in asked.stdout and "yield" in asked.stdout
-    assert command("tessar-50mm", "--copies", "8", "--quiet").stdout == ""
+    assert command("lens", "tolerance", "tessar-50mm", "--copies", 8, "--quiet").stdout == ""
 
 
 @pytest.mark.parametrize(
@@ -370,7 +365,7 @@ def test_the_command_prints_what_it_found():
         (("-o", "report.doc"), ".html is wanted"),
     ],
 )
-def test_the_command_names_a_mistake_in_one_line(words, message):
-    asked = command("tessar-50mm", *words)
+def test_the_command_names_a_mistake_in_one_line(words, message, command):
+    asked = command("lens", "tolerance", "tessar-50mm", *words)
     assert asked.returncode != 0
     assert message in asked.stderr and len(asked.stderr.strip().splitlines()) == 1
