@@ -1,8 +1,8 @@
 cmake_minimum_required(VERSION 3.25)
 
 # Builds one part of realcam as docs/cpp.md says (OPTION), installs it into an empty prefix, then configures, builds and runs
-# the consumer of that PART against it.
-file(REMOVE_RECURSE ${WORK})
+# the consumer of that PART against it. The build of realcam is kept, so that the next one compiles what has changed.
+file(REMOVE_RECURSE ${WORK}/prefix ${WORK}/build ${WORK}/refused)
 set(run COMMAND_ERROR_IS_FATAL ANY)
 set(compiler --no-warn-unused-cli -G ${GENERATOR} -DCMAKE_CXX_COMPILER=${COMPILER})
 # Neither a package that another build registered, nor what else the machine has, may stand in for what is missing.

@@ -32,7 +32,7 @@ double run(fuzz::Target target, std::uint64_t Findings::* counts, std::uint64_t 
 }  // namespace
 
 TEST_CASE("fuzzed rays end with finite numbers and keep the laws of optics") {
-    const double broken = run(fuzz::fuzz_lens_trace, &Findings::rays, 2000000);
+    const double broken = run(fuzz::fuzz_lens_trace, &Findings::rays, 1000000);
     const Findings& all = fuzz::findings();
     CHECK(all.passed > all.rays / 40);  // it is not all waste
     hold({"Rays", "fuzzed rays that end with a NaN, an infinity or a broken invariant",
@@ -41,8 +41,8 @@ TEST_CASE("fuzzed rays end with finite numbers and keep the laws of optics") {
 }
 
 TEST_CASE("a mutated lens file is a lens or a LensFileError") {
-    const double broken = run(fuzz::fuzz_lens_file, &Findings::files, 1000);
-    CHECK(fuzz::findings().files_read > 20);
+    const double broken = run(fuzz::fuzz_lens_file, &Findings::files, 400);
+    CHECK(fuzz::findings().files_read > 8);
     hold({"Lenses", "mutated lens files that end in anything but a lens or a LensFileError",
           std::to_string(fuzz::findings().files) + " files", "core", "float64", broken, 0, "files"});
 }
