@@ -338,12 +338,12 @@ def test_better_grades_make_better_lenses(name):
 
 def test_the_command_writes_a_report_and_json(tmp_path, command):
     report = tmp_path / "report.html"
-    words = ("tessar-50mm", "--copies", 8, "--grade", "precision", "--seed", 4, "-o", report, "--json")
+    words = ("singlet-100mm", "--copies", 8, "--grade", "precision", "--seed", 4, "-o", report, "--json")
     asked = command("lens", "tolerance", *words)
     assert asked.returncode == 0, asked.stderr
     told = json.loads(asked.stdout)
     assert (told["copies"], told["grade"], told["is_whole"]) == (8, "precision", True)
-    study = tolerance_study(Lens.load("tessar-50mm"), "precision", 8, seed=4)
+    study = tolerance_study(Lens.load("singlet-100mm"), "precision", 8, seed=4)
     assert told["quantiles"]["mtf"]["0.5"] == pytest.approx(study.quantiles("mtf", [0.5])[0])
     page = report.read_text()
     assert "Worst offenders" in page and page.count("<tr>") > len(study.items)

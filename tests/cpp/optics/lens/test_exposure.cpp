@@ -70,8 +70,8 @@ double axial_irradiance(const LensSystem& lens) {
 
 // The source paper's equations 6 and 7 over the last surface: integral of cos(theta') cos(theta'') / d^2 dA
 // over the points that see the scene. On an even grid in x and y: a coarse one finds the part with light, first of the
-// whole surface, then of what it found; a fine one sums over that part. Without blades one half of
-// the surface gives a film point on the axis as much light as the other.
+// whole surface, then of what it found; a fine one sums over that part. Without blades one half
+// of the surface gives a film point on the axis as much light as the other.
 double irradiance_over_last_surface(const LensSystem& lens, double film_x, double film_y) {
     constexpr int kBlock = 128, kCoarse = 96, kFine = 160;
     const Surface& last = lens.surfaces.back();
