@@ -7,25 +7,25 @@ towards the scene and 1 between two mirrors.
 
 SPHERE = """\
 // Takes a ray across a sphere or a plane, `gap` before the vertex it is given from. Returns whether it passes.
-int cross_sphere(float gap, float curvature, float rim, float bend, float forwards,
+// `before` and `behind`: squares of the indices, as the light goes.
+int cross_sphere(float gap, float curvature, float rim, float before, float behind, float forwards,
                  output point at, output vector way)
 {
     at[2] += gap;
-    float squared = dot(way, way);
     float f = curvature * dot(at, at) - 2 * at[2];
     float g = way[2] - curvature * dot(at, way);
-    float inside = g * g - curvature * squared * f;
-    if (inside <= 0) return 0;
-    float root = forwards * sqrt(inside);
+    // The squares of what is along the normal differ as those of the indices: both roots are there before the path.
+    float inside = g * g - curvature * before * f;
+    float refracted = inside + (behind - before);
+    if (inside <= 0 || refracted < 0) return 0;
+    float along = forwards * (curvature == 0 ? abs(g) : sqrt(inside));
     // Of the two forms of a quadratic equation's solution, the one in which nothing cancels.
-    float path = g * forwards >= 0 ? f / (g + root) : (g - root) / (curvature * squared);
+    float path = g * forwards >= 0 ? f / (g + along) : (g - along) / (curvature * before);
     at += path * way;
-    vector facing = vector(-curvature * at[0], -curvature * at[1], 1 - curvature * at[2]);
-    if (at[0] * at[0] + at[1] * at[1] > rim * rim || facing[2] <= 0) return 0;
-    float along = g - curvature * squared * path;
-    float refracted = along * along + bend * squared;
-    if (refracted < 0) return 0;
-    way += (forwards * sqrt(refracted) - along) * facing;
+    float facing = 1 - curvature * at[2];
+    if (at[0] * at[0] + at[1] * at[1] > rim * rim || facing <= 0) return 0;
+    float turn = forwards * sqrt(refracted) - along;
+    way += turn * vector(-curvature * at[0], -curvature * at[1], facing);
     return 1;
 }
 """
@@ -40,10 +40,10 @@ int misses_hole(float hole, point at)
 
 MIRROR = """\
 // The same of a mirror.
-int cross_mirror(float gap, float curvature, float rim, float forwards,
+int cross_mirror(float gap, float curvature, float rim, float medium, float forwards,
                  output point at, output vector way)
 {
-    if (!cross_sphere(gap, curvature, rim, 0, forwards, at, way)) return 0;
+    if (!cross_sphere(gap, curvature, rim, medium, medium, forwards, at, way)) return 0;
     vector facing = vector(-curvature * at[0], -curvature * at[1], 1 - curvature * at[2]);
     way -= 2 * dot(way, facing) * facing;
     return 1;
@@ -51,12 +51,18 @@ int cross_mirror(float gap, float curvature, float rim, float forwards,
 """
 
 PLANE = """\
-// Takes a ray to a plane that only blocks.
-int cross_plane(float gap, float rim, output point at, output vector way)
+// Where a ray meets the plane z = 0.
+point met(point at, vector way)
+{
+    return at - at[2] / way[2] * way;
+}
+
+// Whether a ray passes a plane that only blocks. The ray begins where it did before.
+int pass_plane(float gap, float rim, output point at, vector way)
 {
     at[2] += gap;
-    at -= at[2] / way[2] * way;
-    return at[0] * at[0] + at[1] * at[1] <= rim * rim;
+    point here = met(at, way);
+    return here[0] * here[0] + here[1] * here[1] <= rim * rim;
 }
 """
 
@@ -98,56 +104,75 @@ float apothem_of(float blades, float rounding, float radius, float rim)
     return high;
 }
 
-// Takes a ray to the diaphragm. Its blades are arcs at the apothem's distance, or straight; none is beyond the corners.
-int cross_stop(float gap, float corner, float blades, float rounding, float rotation, float apothem,
-               output point at, output vector way)
+// Whether a ray passes the diaphragm. Its blades are arcs at the apothem's distance, or straight; none is beyond the
+// corners.
+int pass_stop(float gap, float corner, float blades, float rounding, float rotation, float apothem,
+              output point at, vector way)
 {
-    if (!cross_plane(gap, corner, at, way)) return 0;
+    if (!pass_plane(gap, corner, at, way)) return 0;
     if (blades < 3) return 1;
-    float squared = at[0] * at[0] + at[1] * at[1];
+    point here = met(at, way);
+    float squared = here[0] * here[0] + here[1] * here[1];
     float width = 2 * M_PI / blades;
-    float turned = mod(atan2(at[1], at[0]) - rotation + 0.5 * width, width) - 0.5 * width;
+    float turned = mod(atan2(here[1], here[0]) - rotation + 0.5 * width, width) - 0.5 * width;
     float bow = rounding / apothem;
     return bow * (squared + apothem * apothem) + 2 * (1 - rounding) * sqrt(squared) * cos(turned) <= 2 * apothem;
 }
 """
 
 ASPHERE = """\
-// The same of a conic with even terms from r^4 on, counted in shares of the rim.
-int cross_asphere(float gap, float curvature, float conic, float terms[{terms}], float rim, float bend,
-                  float forwards, output point at, output vector way)
+// Of surface {number} the height over its vertex in mm and its derivatives. t is -1 on the axis and 1 at the rim, and
+// grows as the square of the distance from the axis.
+void shape_{number}(float t, output float height, output float slope, output float bow)
+{{
+{powers}    height = {height};
+    slope = {slope};
+    bow = {bow};
+}}
+
+// The same as cross_sphere, by Newton's method from the plane z = {start} on.
+int cross_surface_{number}(float gap, float before, float behind, float forwards, output point at, output vector way)
 {{
     at[2] += gap;
-    at -= at[2] / way[2] * way;
+    // Along the ray t is a quadratic polynomial of the path.
+    float start = {scale} * (at[0] * at[0] + at[1] * at[1]) - 1;
+    float b = {scale} * (at[0] * way[0] + at[1] * way[1]);
+    float a = {scale} * (way[0] * way[0] + way[1] * way[1]);
+    float path = ({start} - at[2]) / way[2];
+    float next = start + path * (2 * b + path * a);
+    float t = next;
+    float height = 0;
     float slope = 0;
-    float miss = 1;
-    for (int step = 0; step < {steps} && abs(miss) > {tolerance} * rim; ++step) {{
-        // Newton's method. Beyond the rim the surface goes on as a paraboloid of the same slope: no power runs away,
-        // and there is no edge about which the steps could go to and fro.
-        float share = (at[0] * at[0] + at[1] * at[1]) / (rim * rim);
-        float near = min(share, 1);
-        float squared = near * rim * rim;
-        float root = sqrt(max(1e-3, 1 - conic * curvature * curvature * squared));
-        float height = 0;
-        float rise = 0;
-        for (int power = {terms} - 1; power >= 0; --power) {{
-            height = height * near + terms[power];
-            rise = rise * near + (power + 2) * terms[power];
-        }}
-        slope = curvature / root + 2 * rise * near / (rim * rim);
-        height = height * near * near + curvature * squared / (1 + root) + 0.5 * slope * (share - near) * rim * rim;
-        miss = at[2] - height;
-        float towards = way[2] - slope * (at[0] * way[0] + at[1] * way[1]);
-        at -= miss / towards * way;
-    }}
-    if (abs(miss) > 1e-4 * rim || at[0] * at[0] + at[1] * at[1] > rim * rim) return 0;
-    vector facing = normalize(vector(-slope * at[0], -slope * at[1], 1));
-    float along = dot(way, facing);
-    float refracted = along * along + bend * dot(way, way);
+    float bow = 0;
+    float step = 0;
+{steps}    if (abs(step) > {farthest} || next > 1) return 0;
+    at += path * way;
+    // At the end of the last step the slope is another one.
+    slope += bow * (next - t);
+    float lean = {lean} * slope;
+    float along = way[2] - 2 * slope * (b + path * a);
+    float squared = 1 + 2 * lean * slope * (1 + next);
+    float refracted = along * along + (behind - before) * squared;
     if (refracted < 0 || along * forwards <= 0) return 0;
-    way += (forwards * sqrt(refracted) - along) * facing;
+    way += {turn} * (1 / squared) * vector(-lean * at[0], -lean * at[1], 1);
     return 1;
 }}
+"""
+
+ROUGH_STEP = """\
+    // With a polynomial of few terms.
+    slope = {slope};
+    path -= (at[2] + path * way[2] - ({height})) / (way[2] - 2 * slope * (b + path * a));
+    next = start + path * (2 * b + path * a);
+"""
+
+STEP = """\
+    // With the surface, which goes on beyond the rim with the slope in t that it has there.
+    t = next;
+    shape_{number}(min(t, 1), height, slope, bow);
+    step = (at[2] + path * way[2] - height - slope * max(t - 1, 0)) / (way[2] - 2 * slope * (b + path * a));
+    path -= step;
+    next = start + path * (2 * b + path * a);
 """
 
 PUPIL = """\

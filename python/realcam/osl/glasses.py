@@ -35,16 +35,14 @@ def media_indices(lens: Lens, wavelength_nm: float) -> list[float]:
     return indices
 
 
-def bends(lens: Lens, wavelengths_nm: Sequence[float]) -> list[list[float]]:
-    """Of each surface n'^2 / n^2 - 1 for light towards the scene, as a polynomial of the colour variable.
+def squared_indices(lens: Lens, wavelengths_nm: Sequence[float]) -> list[list[float]]:
+    """Of the medium before the lens and of that behind each surface n^2, as a polynomial of the colour variable.
 
     The constant is exact. One that is the same for all wavelengths has that alone.
     """
 
     def at(wavelength_nm: float) -> NDArray[np.float64]:
-        n = np.array(media_indices(lens, wavelength_nm), dtype=np.float64)
-        changes: NDArray[np.float64] = (n[:-1] / n[1:]) ** 2 - 1
-        return changes
+        return np.array(media_indices(lens, wavelength_nm), dtype=np.float64) ** 2
 
     own = at(lens.wavelength_nm)
     places = colour_variable(lens, np.array(wavelengths_nm))

@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Sequence
 
 import numpy as np
 
-from .._core import Lens, Surface, _film_of_white
+from .._core import Lens, _film_of_white
+from .aspheres import aspheres, is_asphere
 from .expressible import check_expressible
+from .figures import array_text, float_text, horner
 from .focus_range import FocusRange, focus_range, gaps_of, wide_f_number
-from .functions import ASPHERE, HOLE, MIRROR, PLANE, PUPIL, SPHERE, STOP
-from .glasses import POLE_NM, bends, colour_scale, colour_variable
+from .functions import HOLE, MIRROR, PLANE, PUPIL, SPHERE, STOP
+from .glasses import POLE_NM, colour_scale, colour_variable, squared_indices
 from .pupil_table import STOPS, PupilTable, pupil_table
 
 _CELLS = 64
@@ -31,19 +32,18 @@ def shader_text(lens: Lens) -> str:
     focusing = focus_range(lens)
     spectrum = _film_of_white("D65")
     edges_nm = np.append(spectrum[:, 0], spectrum[-1, 1])
-    changes = bends(lens, list(np.linspace(edges_nm[1], edges_nm[-2], 40)))
-    disperses = any(len(change) > 1 for change in changes)
+    squares = squared_indices(lens, list(np.linspace(edges_nm[1], edges_nm[-2], 40)))
+    disperses = any(len(square) > 1 for square in squares)
     seen = (lens.wavelength_nm, *_SEEN_NM) if disperses else (lens.wavelength_nm,)
     table = pupil_table(focusing, dict(zip(seen, colour_variable(lens, np.array(seen)), strict=True)))
-    aspheres = [s for s in lens.surfaces if s.type in ("refracting", "mirror") and (s.conic or s.aspheric_coefficients)]
-    terms = max((len(_terms(s)) for s in aspheres), default=0)
+    shapes = aspheres(focusing, table, seen)
     numbers = {
-        "reach": _float(table.reach_mm),
-        "wide": _float(wide_f_number(lens)),
+        "reach": float_text(table.reach_mm),
+        "wide": float_text(wide_f_number(lens)),
         "full": _full(lens),
-        "length": _float(_length(lens, focusing)),
+        "length": float_text(_length(lens, focusing)),
         "moves": "".join(f" + gap_{i + 1}" for i in focusing.gaps_mm),
-        "focal_length": _float(abs(lens.first_order().effective_focal_length_mm)),
+        "focal_length": float_text(abs(lens.first_order().effective_focal_length_mm)),
     }
     parts = [
         _heading(lens),
@@ -52,7 +52,7 @@ def shader_text(lens: Lens) -> str:
         MIRROR if any(s.type == "mirror" for s in lens.surfaces) else "",
         PLANE,
         STOP,
-        ASPHERE.format(terms=terms, steps=10, tolerance=1e-6) if aspheres else "",
+        *(shape.function(i + 1, lens.surfaces[i].type == "mirror") for i, shape in shapes.items()),
         PUPIL.format(rows=table.ellipses.shape[2], stops=len(STOPS), last=STOPS[-1], **_pupil_numbers(table)),
         _parameters(lens, focusing, disperses),
         "{",
@@ -60,7 +60,7 @@ def shader_text(lens: Lens) -> str:
         _focus(focusing),
         _colour(lens, spectrum, edges_nm) if disperses else "    float colour = 0;\n    color film = 1;\n",
         _DRAW.format(**numbers),
-        _surfaces(lens, focusing, changes, terms),
+        _surfaces(lens, focusing, squares),
         _END.format(**numbers),
         "}",
     ]
@@ -172,7 +172,7 @@ def _parameters(lens: Lens, focusing: FocusRange, disperses: bool) -> str:
             hints.append('string widget = "checkBox"')
         if least is not None:
             hints.append(f"float min = {least}")
-        written.append(f"    {kind} {name} = {_float(value)} [[ {', '.join(hints)} ]],")
+        written.append(f"    {kind} {name} = {float_text(value)} [[ {', '.join(hints)} ]],")
     outputs = [
         "point position",
         "vector direction",
@@ -192,11 +192,11 @@ def _focus(focusing: FocusRange) -> str:
         "        object = object < 0.0001 ? 0 : object * metres_per_unit;",
         "    }",
         "    float focus = 0;",
-        f"    if (object > 0) focus = object > {_float(focusing.nearest_m)} ? "
-        f"{_float(focusing.nearest_m - focusing.start_m)} / (object - {_float(focusing.start_m)}) : 1;",
+        f"    if (object > 0) focus = object > {float_text(focusing.nearest_m)} ? "
+        f"{float_text(focusing.nearest_m - focusing.start_m)} / (object - {float_text(focusing.start_m)}) : 1;",
     ]
     lines += [
-        f"    float gap_{index + 1} = {_horner(list(polynomial.coef), 'focus')};"
+        f"    float gap_{index + 1} = {horner(list(polynomial.coef), 'focus')};"
         for index, polynomial in focusing.gaps_mm.items()
     ]
     return "\n".join(lines) + "\n"
@@ -211,45 +211,58 @@ def _colour(lens: Lens, spectrum: np.ndarray, edges_nm: np.ndarray) -> str:
     float colour = 0;
     color film = 1;
     if (dispersion) {{
-        float edges_nm[{len(edges_nm)}] = {_array(edges_nm)};
-        float whites[{3 * len(spectrum)}] = {_array(spectrum[:, 2:].ravel())};
+        float edges_nm[{len(edges_nm)}] = {array_text(edges_nm)};
+        float whites[{3 * len(spectrum)}] = {array_text(spectrum[:, 2:].ravel())};
         int cell = min((int)(chance[0] * {_CELLS}), {_CELLS - 1});
         float within = {parts} * noise("hash", chance[0] * 4096, chance[1] * 4096);
         int part = {parts} * cell + min((int)within, {parts - 1});
         float wavelength_nm = mix(edges_nm[part], edges_nm[part + 1], within - floor(within));
-        colour = {_float(scale)} / (wavelength_nm - {POLE_NM:g}) - {_float(offset)};
+        colour = {float_text(scale)} / (wavelength_nm - {POLE_NM:g}) - {float_text(offset)};
         film = color(whites[3 * part], whites[3 * part + 1], whites[3 * part + 2]);
         chance[0] = chance[0] * {_CELLS} - cell;
     }}
 """
 
 
-def _surfaces(lens: Lens, focusing: FocusRange, changes: list[list[float]], terms: int) -> str:
+def _media(squares: list[list[float]]) -> tuple[list[str], list[str]]:
+    """Declarations of the squared indices that change with the wavelength, and of each medium the name or number."""
+    names: dict[tuple[float, ...], str] = {}
+    declared = ["    // Squares of the indices of glasses."]
+    for square in map(tuple, squares):
+        if len(square) == 1:
+            names[square] = float_text(square[0])
+        elif square not in names:
+            names[square] = f"glass_{len(declared)}"
+            declared.append(f"    float {names[square]} = {horner(square, 'colour')};")
+    return declared if len(declared) > 1 else [], [names[tuple(square)] for square in squares]
+
+
+def _surfaces(lens: Lens, focusing: FocusRange, squares: list[list[float]]) -> str:
     gaps = gaps_of(focusing.lens)
-    lines = ["    // The surfaces, from the film to the scene."]
+    lines, media = _media(squares)
+    lines.append("    // The surfaces, from the film to the scene.")
     forwards = -1
     for index in reversed(range(len(lens.surfaces))):
         surface = lens.surfaces[index]
-        gap = f"gap_{index + 1}" if index in focusing.gaps_mm else _float(gaps[index])
-        rim = _float(surface.clear_semi_diameter_mm)
-        shape = [gap, _float(surface.curvature_per_mm)]
-        bend = _horner(changes[index], "colour")
+        gap = f"gap_{index + 1}" if index in focusing.gaps_mm else float_text(gaps[index])
+        curvature, rim = float_text(surface.curvature_per_mm), float_text(surface.clear_semi_diameter_mm)
+        before, behind = media[index + 1], media[index]
+        where = "at"
         if surface.type == "stop":
-            call = f"cross_stop({gap}, corner, blades, rounding, rotation, apothem, at, way)"
+            call, where = f"pass_stop({gap}, corner, blades, rounding, rotation, apothem, at, way)", "met(at, way)"
         elif surface.type == "aperture":
-            call = f"cross_plane({gap}, {rim}, at, way)"
+            call, where = f"pass_plane({gap}, {rim}, at, way)", "met(at, way)"
+        elif is_asphere(surface):
+            call = f"cross_surface_{index + 1}({gap}, {before}, {behind}, {forwards}, at, way)"
         elif surface.type == "mirror":
-            call = f"cross_mirror({', '.join(shape)}, {rim}, {forwards}, at, way)"
-            forwards = -forwards
-        elif surface.conic or surface.aspheric_coefficients:
-            lines.append(f"    float terms_{index + 1}[{terms}] = {_array(_terms(surface, terms))};")
-            shape += [_float(1 + surface.conic), f"terms_{index + 1}"]
-            call = f"cross_asphere({', '.join(shape)}, {rim}, {bend}, {forwards}, at, way)"
+            call = f"cross_mirror({gap}, {curvature}, {rim}, {before}, {forwards}, at, way)"
         else:
-            call = f"cross_sphere({', '.join(shape)}, {rim}, {bend}, {forwards}, at, way)"
+            call = f"cross_sphere({gap}, {curvature}, {rim}, {before}, {behind}, {forwards}, at, way)"
+        if surface.type == "mirror":
+            forwards = -forwards
         lines.append(f"    if (!{call}) return;")
         if surface.inner_semi_diameter_mm:
-            lines.append(f"    if (!misses_hole({_float(surface.inner_semi_diameter_mm)}, at)) return;")
+            lines.append(f"    if (!misses_hole({float_text(surface.inner_semi_diameter_mm)}, {where})) return;")
     return "\n".join(lines) + "\n"
 
 
@@ -258,15 +271,7 @@ def _length(lens: Lens, focusing: FocusRange) -> float:
 
 
 def _full(lens: Lens) -> str:
-    return _float(lens.surfaces[lens.stop_index].clear_semi_diameter_mm)
-
-
-def _terms(surface: Surface, count: int = 0) -> list[float]:
-    """From r^4 on, in mm at the rim."""
-    powers = surface.aspheric_coefficients
-    count = max(count, max(powers, default=4) // 2 - 1)
-    rim_mm = surface.clear_semi_diameter_mm
-    return [powers.get(2 * i + 4, 0.0) * rim_mm ** (2 * i + 4) for i in range(count)]
+    return float_text(lens.surfaces[lens.stop_index].clear_semi_diameter_mm)
 
 
 def _pupil_numbers(table: PupilTable) -> dict[str, object]:
@@ -276,28 +281,13 @@ def _pupil_numbers(table: PupilTable) -> dict[str, object]:
     return {
         "columns": columns,
         "count": table.ellipses[..., :columns].size,
-        "ellipses": _array(table.ellipses[..., :columns].ravel()),
+        "ellipses": array_text(table.ellipses[..., :columns].ravel()),
         "foci": table.ellipses.shape[0],
         "choice": " : ".join(f"open > {stop:.6g} ? {i}" for i, stop in enumerate(STOPS[1:-1])) + f" : {len(STOPS) - 2}",
-        "levels": _array(STOPS),
-        "drifts": f"\n    float drifts[{table.drift.size}] = {_array(table.drift.ravel())};" if drifts else "",
+        "levels": array_text(STOPS),
+        "drifts": f"\n    float drifts[{table.drift.size}] = {array_text(table.drift.ravel())};" if drifts else "",
         "drift": f"\n        middle += weight * colour * drifts[(state + next_state) * {rows} + row + next_row];"
         if drifts
         else "",
         "hole": "\n        hole += weight * mix(ellipses[wide + 4], ellipses[narrow + 4], closing);" if blocked else "",
     }
-
-
-def _horner(coefficients: list[float], variable: str) -> str:
-    text = _float(coefficients[-1])
-    for coefficient in reversed(coefficients[:-1]):
-        text = f"{_float(coefficient)} + {variable} * ({text})"
-    return text
-
-
-def _float(value: float) -> str:
-    return f"{value:.9g}"
-
-
-def _array(values: Sequence[float] | np.ndarray) -> str:
-    return "{" + ", ".join(f"{value:.6g}" for value in values) + "}"
