@@ -104,6 +104,66 @@ def test_cycles_takes_pictures_through_the_lens_of_the_panel(scene: Any, tmp_pat
     assert light == pytest.approx(lens.film_pupil().irradiance, rel=5e-3)
 
 
+def test_the_focus_follows_an_object(scene: Any, tmp_path: Path) -> None:
+    import bpy
+
+    data = scene.camera.data
+    scene.camera.location = (1.0, 2.0, 3.0)
+    scene.camera.rotation_euler = (0.0, np.pi / 2, 0.0)  # looks along -x
+    data.realcam.lens = "singlet-100mm"
+    # The shader paints the distance in metres that it focuses at, instead of light.
+    text = data.custom_shader
+    painted = text.as_string().replace("throughput = brightness * film;", "throughput = color(object, 1, 0);")
+    assert painted != text.as_string()
+    text.from_string(painted)
+    data.custom_shader = None
+    data.custom_shader = text
+    target = bpy.data.objects.new("target", None)
+    scene.collection.objects.link(target)
+    data.dof.focus_object = target
+    scene.cycles.samples = 8
+
+    def focus_m() -> float:
+        bpy.ops.render.render(write_still=True)
+        image = bpy.data.images.load(str(tmp_path / "picture.exr"))
+        pixels = np.array(image.pixels[:]).reshape(-1, 4)
+        bpy.data.images.remove(image)
+        # Of the rays that pass.
+        return float(pixels[:, 0].sum() / pixels[:, 1].sum())
+
+    for frame, x in ((1, -3.0), (11, -9.0)):
+        target.location = (x, 2.5, 3.5)
+        target.keyframe_insert("location", frame=frame)
+    for frame, x in ((1, -3.0), (11, -9.0)):
+        scene.frame_set(frame)
+        assert focus_m() == pytest.approx(1.0 - x, rel=1e-4)
+    # An object that hangs on another one; and a scene in tenths of metres.
+    target.animation_data_clear()
+    parent = bpy.data.objects.new("parent", None)
+    scene.collection.objects.link(parent)
+    target.parent, target.location, parent.location = parent, (0.0, 0.0, 0.0), (-49.0, 2.0, 3.0)
+    scene.unit_settings.scale_length = 0.1
+    data.realcam.f_number = 8.0
+    assert focus_m() == pytest.approx(5.0, rel=1e-4)
+    data.dof.focus_object = None
+    data.dof.focus_distance = 20.0
+    assert focus_m() == pytest.approx(2.0, rel=1e-4)
+
+
+def test_the_ring_turns_by_third_stops(scene: Any) -> None:
+    import bpy
+
+    data = scene.camera.data
+    data.realcam.lens = "singlet-100mm"
+    widest = rc.Lens.load("singlet-100mm").first_order().f_number
+    data.realcam.f_number = 8.0
+    with bpy.context.temp_override(camera=data):
+        for clicks, expected in ((1, 9.0), (1, 10.1), (-3, 7.1), (-30, widest)):
+            bpy.ops.camera.realcam_turn_ring(clicks=clicks)
+            assert data.realcam.f_number == pytest.approx(expected, abs=0.06)
+            assert data.cycles_custom["f_number"] == pytest.approx(data.realcam.f_number)
+
+
 def test_the_way_back(scene: Any, tmp_path: Path) -> None:
     import bpy
     from mathutils import Vector
