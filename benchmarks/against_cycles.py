@@ -1,15 +1,16 @@
 """Bundled lenses as OSL cameras of Cycles against realcam's own pictures: light, lost rays, lamps, colours and cost.
 
-    python benchmarks/against_cycles.py [LENS ...] [--more] [-o TABLE.md]
+    python benchmarks/against_cycles.py [LENS ...] [--cost] [-o TABLE.md]
 
 Needs Blender's Python package bpy, which has its own version of Python. About ten seconds of CPU time a lens. Light is
 that of a white world in five places from the middle to a corner, or to the edge of a smaller image. Lamps are squares
 in six places of the film; in focus they show distortion, out of focus the bokeh. A figure is the largest error of all
 places, beside the largest noise, which pairs of pictures with two seeds show.
 
-With --more there are colours and cost. Colours are the distance of a lamp's red image from its blue one, compared with
-rays through glasses of exact index. The cost is the CPU time of a ray that passes over that of a ray of Cycles' own
-camera, in a closed room with a lamp.
+Colours are the distance of a lamp's red image from its blue one, compared with rays through glasses of exact index.
+
+With --cost there is the CPU time of a ray that passes over that of a ray of Cycles' own camera, in a closed room with a
+lamp. The time in which Blender compiles a shader is not in it.
 """
 
 from __future__ import annotations
@@ -31,8 +32,10 @@ from realcam.osl.expressible import check_expressible
 
 WIDE = 1200
 """Pixels along the longer side of the film; a tenth of one is 3 um of a film of 36 mm."""
-FINE = 12000
-"""The same where colours are measured."""
+FINE = (12000, 3000)
+"""The same where colours are measured, the first in which the image of the lamp has room. They are measured at this
+f-number or wide open: so the images are small."""
+COLOUR_F_NUMBER = 8.0
 LARGEST_PX = 128
 """Sides of the picture of a lamp."""
 BLUR_PX = 12
@@ -51,8 +54,9 @@ class Row(NamedTuple):
     distortion_px: tuple[float, float]
     bokeh_px: tuple[float, float]
     colour_um: tuple[float, float, float]
-    """Red to blue by realcam's rays, what Cycles has more, and the noise; NaN: not measured."""
+    """Red to blue by realcam's rays, what Cycles has more, and the noise."""
     cost: float
+    """NaN: not measured."""
 
 
 class Frame:
@@ -123,7 +127,7 @@ def passing(cycles: CyclesCamera, lens: rc.Lens, shader: str) -> float:
     frame = Frame(lens, 60)
     cycles.film(*frame.film_mm, frame.resolution)
     cycles.background(1)
-    cycles.lens(counted, keep_brightness=0, dispersion=0)
+    cycles.lens(counted, keep_brightness=0, dispersion=0, f_number=0)
     picture = cycles.picture(256)
     cycles.background(0)
     light, passed = picture[..., 0], picture[..., 1]
@@ -146,21 +150,20 @@ class Lamp:
         )
 
 
-def pictures_of(
-    cycles: CyclesCamera, frame: Frame, lens: rc.Lens, lamp: Lamp, place: tuple[float, float], effects: tuple[str, ...]
-) -> tuple[list[np.ndarray], list[np.ndarray]]:
-    """The lamp in two of realcam's pictures and in two of Cycles with 1024 samples in all, out to where its light
-    ends."""
+def lit_window(frame: Frame, lens: rc.Lens, lamp: Lamp, place: tuple[float, float], effects: tuple[str, ...]) -> Window:
+    """Out to where the lamp's light ends."""
     window = frame.window(place, LARGEST_PX)
     rough = rc.render(lamp.scene, frame.camera(lens, window), effects=effects, spp=16).pixels.sum(axis=2)
     rows, columns = (np.flatnonzero(rough.sum(axis=axis) > 1e-4 * rough.sum()) for axis in (1, 0))
     first = (max(columns[0] - 2, 0), max(rows[0] - 2, 0))
     last = (min(columns[-1] + 3, window.columns), min(rows[-1] + 3, window.rows))
-    window = Window(window.column + first[0], window.row + first[1], last[0] - first[0], last[1] - first[1])
-    camera = frame.camera(lens, window)
-    own = [rc.render(lamp.scene, camera, effects=effects, spp=1024, seed=seed).pixels for seed in (0, 1)]
+    return Window(window.column + first[0], window.row + first[1], last[0] - first[0], last[1] - first[1])
+
+
+def pictures_of(cycles: CyclesCamera, lamp: Lamp, window: Window) -> list[np.ndarray]:
+    """Two pictures by Cycles, with 1024 samples in all."""
     cycles.mesh("lamp", lamp.vertices_m, np.array([[0, 1, 2, 3]]), 0, 1)
-    return own, [cycles.picture(512, window, seed) for seed in (0, 1)]
+    return [cycles.picture(512, window, seed) for seed in (0, 1)]
 
 
 def centroids(picture: np.ndarray) -> np.ndarray:
@@ -186,7 +189,11 @@ def lamp_errors(cycles: CyclesCamera, lens: rc.Lens, lit: float, lamp_m: float, 
     errors, noise = [], []
     for x, y in LAMPS:
         place = (lit * x, lit * y)
-        own, seen = pictures_of(cycles, frame, focused, Lamp(frame, focused, place, lamp_m, 3), place, ())
+        lamp = Lamp(frame, focused, place, lamp_m, 3)
+        window = lit_window(frame, focused, lamp, place, ())
+        camera = frame.camera(focused, window)
+        own = [rc.render(lamp.scene, camera, effects=(), spp=1024, seed=seed).pixels for seed in (0, 1)]
+        seen = pictures_of(cycles, lamp, window)
         measures = np.array([[np.append(centroids(each)[1], radius(each)) for each in pair] for pair in (own, seen)])
         errors.append(np.abs(np.diff(measures.mean(axis=1), axis=0)))
         noise.append(0.5 * np.hypot(*np.diff(measures, axis=1)))
@@ -220,13 +227,17 @@ def colour_errors(
     cycles: CyclesCamera, lens: rc.Lens, shader: str, lit: float, lamp_m: float
 ) -> tuple[float, float, float]:
     """Of a lamp in focus near the corner, from its red image to its blue one away from the axis, um."""
-    frame, focused, place = Frame(lens, FINE), lens.focused(lamp_m), (0.85 * lit, 0.85 * lit)
+    place = (0.85 * lit, 0.85 * lit)
+    focused = lens.focused(lamp_m).stopped_down(max(COLOUR_F_NUMBER, wide_f_number(lens)))
+    for longer in FINE:
+        frame = Frame(lens, longer)
+        lamp = Lamp(frame, focused, place, lamp_m, 20)
+        window = lit_window(frame, focused, lamp, place, ("dispersion",))
+        if LARGEST_PX not in (window.columns, window.rows):
+            break
     cycles.film(*frame.film_mm, frame.resolution)
-    cycles.lens(shader, dispersion=1, keep_brightness=0, focus_m=lamp_m)
-    lamp = Lamp(frame, focused, place, lamp_m, 20)
-    _, seen = pictures_of(cycles, frame, focused, lamp, place, ("dispersion",))
-    if max(seen[0].shape) == LARGEST_PX:  # light is cut off
-        return math.nan, math.nan, math.nan
+    cycles.lens(shader, dispersion=1, keep_brightness=0, focus_m=lamp_m, f_number=COLOUR_F_NUMBER)
+    seen = pictures_of(cycles, lamp, window)
     outwards = np.array(frame.film_mm) / math.hypot(*frame.film_mm)
     distances = [
         1e3 * frame.pitch_mm * float((outwards * [1, -1]) @ (centroids(each)[2] - centroids(each)[0]))
@@ -248,14 +259,14 @@ def cost(cycles: CyclesCamera, lens: rc.Lens, shader: str, share: float) -> floa
     times: dict[str, list[float]] = {"thin": [], "real": []}
     for _ in range(4):
         cycles.thin_lens(abs(data.effective_focal_length_mm), data.f_number, 0.5 * SIDE_M)
-        times["thin"].append(cycles.cpu_s(samples) - cycles.cpu_s(1))
-        cycles.lens(shader)
-        times["real"].append(cycles.cpu_s(samples) - cycles.cpu_s(1))
+        times["thin"].append(cycles.path_s(samples))
+        cycles.lens(shader, f_number=0)
+        times["real"].append(cycles.path_s(samples))
     cycles.remove("room")
     return min(times["real"]) / min(times["thin"]) / share
 
 
-def measured(cycles: CyclesCamera, lens: rc.Lens, more: bool) -> Row:
+def measured(cycles: CyclesCamera, lens: rc.Lens, with_cost: bool) -> Row:
     shader, lens = shader_text(lens), lens.focused(math.inf)
     lit, data = lit_share(lens), lens.first_order()
     focal_mm = abs(data.effective_focal_length_mm)
@@ -266,7 +277,7 @@ def measured(cycles: CyclesCamera, lens: rc.Lens, more: bool) -> Row:
     near_m = 1 / (1 / lamp_m + 1e3 * blur_mm * wide_f_number(lens) / focal_mm**2)
     cycles.remove("lamp")
     share = passing(cycles, lens, shader)
-    cycles.lens(shader, keep_brightness=0, dispersion=0, focus_m=0)
+    cycles.lens(shader, keep_brightness=0, dispersion=0, focus_m=0, f_number=0)
     cycles.data.dof.use_dof = False
     irradiance, light = light_errors(cycles, lens, lit)
     return Row(
@@ -276,36 +287,35 @@ def measured(cycles: CyclesCamera, lens: rc.Lens, more: bool) -> Row:
         share,
         lamp_errors(cycles, lens, lit, lamp_m, lamp_m),
         lamp_errors(cycles, lens, lit, lamp_m, max(near_m, nearest_m)),
-        colour_errors(cycles, lens, shader, lit, lamp_m) if more else (math.nan, math.nan, math.nan),
-        cost(cycles, lens, shader, share) if more else math.nan,
+        colour_errors(cycles, lens, shader, lit, lamp_m),
+        cost(cycles, lens, shader, share) if with_cost else math.nan,
     )
 
 
-HEADING = "| lens | irradiance, middle | light | rays that pass | distortion, px | bokeh, px |"
-MORE = " red to blue, um | in Cycles, um | cost |"
+HEADING = (
+    "| lens | irradiance, middle | light | rays that pass | distortion, px | bokeh, px | red to blue, um | more, um |"
+)
 
 
 def line(row: Row) -> str:
     error, noise = (100 * np.abs(row.light).max(axis=0)).tolist()
+    own, more, doubt = row.colour_um
     text = (
         f"| `{row.lens}` | {row.irradiance:.4f} | {error:.2f} ± {noise:.2f}% | {100 * row.passing:.0f}% "
-        f"| {row.distortion_px[0]:.3f} ± {row.distortion_px[1]:.3f} | {row.bokeh_px[0]:.3f} ± {row.bokeh_px[1]:.3f} |"
+        f"| {row.distortion_px[0]:.3f} ± {row.distortion_px[1]:.3f} | {row.bokeh_px[0]:.3f} ± {row.bokeh_px[1]:.3f} "
+        f"| {own:.2f} | {more:+.3f} ± {doubt:.3f} |"
     )
-    if math.isfinite(row.cost):
-        own, more, doubt = row.colour_um
-        text += f" {own:.2f} | {more:+.2f} ± {doubt:.2f} |" if math.isfinite(own) else " | |"
-        text += f" {row.cost:.2f} |"
-    return text
+    return text + (f" {row.cost:.2f} |" if math.isfinite(row.cost) else "")
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("lenses", nargs="*", default=rc.lens_names())
-    parser.add_argument("--more", action="store_true", help="also colours and cost, which take three times as long")
+    parser.add_argument("--cost", action="store_true", help="also the cost, which takes twice as long")
     parser.add_argument("-o", "--output", type=Path)
     arguments = parser.parse_args()
     cycles = CyclesCamera()
-    heading = HEADING + (MORE if arguments.more else "")
+    heading = HEADING + (" cost |" if arguments.cost else "")
     lines, refused = [heading, re.sub(r"[^|]+", "---", heading)], []
     for name in arguments.lenses:
         lens = rc.Lens.load(name)
@@ -314,7 +324,7 @@ def main() -> None:
         except rc.InputError as error:
             refused.append(f"- {error}")
         else:
-            lines.append(line(measured(cycles, lens, arguments.more)))
+            lines.append(line(measured(cycles, lens, arguments.cost)))
         text = "\n".join([f"bpy {bpy.app.version_string}, {machine()}", "", *lines, "", *refused]) + "\n"
         if arguments.output:
             arguments.output.write_text(text)
