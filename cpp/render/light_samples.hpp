@@ -84,7 +84,7 @@ template <int N>
 class LightKindsLanes {
 public:
     template <class SurfacesT>
-    REALCAM_INLINE LightKindsLanes(const SceneView& scene, bool is_first, const SurfacesT& surfaces, int count) {
+    REALCAM_INLINE LightKindsLanes(const SceneView& scene, SkySampling sky, const SurfacesT& surfaces, int count) {
         const int places = whole_vectors<N>(count);
         Lanes<float, N> local = {}, suns = {};
         if (count_light_kinds(scene) > 1) {
@@ -102,7 +102,7 @@ public:
         }
         REALCAM_LANES
         for (int i = 0; i < places; ++i) {
-            const LightKinds kinds = light_kinds(scene, is_first, local[i], suns[i]);
+            const LightKinds kinds = light_kinds(scene, sky, local[i], suns[i]);
             even_[i] = kinds.shares.even;
             scale_[i] = kinds.shares.scale;
             local_[i] = kinds.local_probability;

@@ -55,8 +55,8 @@ REALCAM_INLINE void light_glossy(const PathSettings& settings, int bounce, const
 
 /// The next ray for these surfaces, as scatter_path finds it for one path. Others keep their paths.
 template <SceneKind scene_kind, int N>
-REALCAM_INLINE void scatter_glossy(const PathSettings& settings, int bounce, const GlossySurfaces<N>& surfaces,
-                                   const PathNumbers<N>& u, PathState<N>& path) {
+REALCAM_INLINE void scatter_glossy(const PathSettings& settings, int bounce, SkySampling sky,
+                                   const GlossySurfaces<N>& surfaces, const PathNumbers<N>& u, PathState<N>& path) {
     const GlossySenders senders(settings, bounce);
     const int places = whole_vectors<N>(path.count);
     REALCAM_LANES
@@ -82,8 +82,7 @@ REALCAM_INLINE void scatter_glossy(const PathSettings& settings, int bounce, con
         path.rays.origin.set(i, ray_start(place, direction));
         path.rays.direction.set(i, select(is_used, direction, arriving));
         path.pdf[i] = select(is_used, pdf, path.pdf[i]);
-        if constexpr (scene_kind == SceneKind::any)
-            path.receiver_is_first[i] = select(is_used, bounce == 0 ? 1 : 0, path.receiver_is_first[i]);
+        if constexpr (scene_kind == SceneKind::any) path.receiver_sky[i] = select(is_used, sky, path.receiver_sky[i]);
         path.receiver_position.set(i, select(is_used, place.position, path.receiver_position[i]));
         path.receiver_normal.set(i, select(is_used, normal, path.receiver_normal[i]));
     }
@@ -106,14 +105,15 @@ REALCAM_INLINE void scatter_glossy_paths(const SceneView& view, const PathSettin
         surfaces.copy(0, i);
         path.rays.direction.set(i, path.rays.direction[0]);
     }
-    const LightKindsLanes<N> kinds(view, bounce == 0, surfaces, path.count);
+    const SkySampling sky = sky_sampling(view, goes_on(settings, bounce), bounce == 0);
+    const LightKindsLanes<N> kinds(view, sky, surfaces, path.count);
     for (int k = 0; k < kLightSampleCount; ++k) {
-        if (!has_light(view, bounce == 0, k)) continue;
+        if (!has_light(view, sky, k)) continue;
         LightSamples<N> lights;
         sample_lights<scene_kind>(view, kinds, k, surfaces, path, light_numbers, seed, lights);
         light_glossy(settings, bounce, surfaces, lights, path, shadow[k]);
     }
-    scatter_glossy<scene_kind>(settings, bounce, surfaces, scatter_numbers, path);
+    scatter_glossy<scene_kind>(settings, bounce, sky, surfaces, scatter_numbers, path);
     for (int i = 0; i < path.count; ++i) {
         darkens[i] = 0;
         if (!surfaces.is_glossy[i])

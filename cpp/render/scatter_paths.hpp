@@ -6,12 +6,6 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Whether all lobes of a surface send out rays. After the last bounce, one more ray looks for the light that narrow
-/// lobes show.
-REALCAM_INLINE bool goes_on(const PathSettings& settings, int bounce) {
-    return bounce < settings.max_bounces && settings.transport == LightTransport::paths;
-}
-
 /// Keeps the lobes that send out a ray where not all do.
 template <class BsdfT>
 REALCAM_INLINE void keep_senders(const PathSettings& settings, BsdfT& bsdf) {
@@ -73,9 +67,9 @@ REALCAM_INLINE LightSample light_by_illuminance(const SceneView& scene, LightRec
         const auto random = [&] { return unit_float(seed = hash32(seed)); };
         REALCAM_NO_UNROLL
         for (int k = 0; k < kLightSampleCount; ++k) {
-            if (!has_light(scene, true, k)) continue;
+            if (!has_light(scene, SkySampling::apart, k)) continue;
             const Vec2f u = {random(), random()};
-            const LightSample light = sample_light<scene_kind>(scene, true, receiver, k, u, hash32(seed));
+            const LightSample light = sample_light<scene_kind>(scene, SkySampling::apart, receiver, k, u, hash32(seed));
             const float cosine = dot(receiver.normal, light.direction);
             const float illuminance = cosine > 0.0f ? cosine * luminance(light.irradiance) : 0.0f;
             sum += illuminance;
@@ -113,17 +107,18 @@ REALCAM_INLINE bool scatter_at(const SceneView& view, const PathSettings& settin
     }
     auto bsdf = make_bsdf<scene_kind>(point, -direction);
     const LightReceiver receiver = {point.position, bsdf.is_opaque() ? point.normal : Vec3f{0, 0, 0}, time};
+    const SkySampling sky = sky_sampling(view, goes_on(settings, bounce), bounce == 0);
     // One copy of the code, because a GPU's cache of instructions is full.
     REALCAM_NO_UNROLL
     for (int k = 0; k < kLightSampleCount; ++k) {
-        if (!has_light(view, bounce == 0, k)) continue;
-        const LightSample light = sample_light<scene_kind>(view, bounce == 0, receiver, k, light_numbers[place], seed);
+        if (!has_light(view, sky, k)) continue;
+        const LightSample light = sample_light<scene_kind>(view, sky, receiver, k, light_numbers[place], seed);
         light_path(settings, bounce, place, point, bsdf, light, path, shadow[k]);
         shadow.trace(k, false);
     }
     const bool refracted =
         scatter_path(settings, bounce, place, point, receiver, bsdf, scatter_numbers, unit_float(seed), path);
-    if constexpr (scene_kind == SceneKind::any) path.receiver_is_first[place] = bounce == 0 ? 1 : 0;
+    if constexpr (scene_kind == SceneKind::any) path.receiver_sky[place] = sky;
     if constexpr (scene_kind != SceneKind::plain) {
         if (refracted) path.absorption.set(place, point.is_front ? point.material->absorption : Color{0, 0, 0});
     }

@@ -65,9 +65,10 @@ REALCAM_INLINE void scatter_plain_paths(const SceneView& view, const PathSetting
     const auto seed = [&](int i) { return block.bits(path.lane(i), first_dimension); };
     const PathNumbers<N> light_numbers(block, path, first_dimension + dimension::light);
     const bool all_send = goes_on(settings, bounce);
-    const LightKindsLanes<N> kinds(view, bounce == 0, surfaces, path.count);
+    const SkySampling sky = sky_sampling(view, goes_on(settings, bounce), bounce == 0);
+    const LightKindsLanes<N> kinds(view, sky, surfaces, path.count);
     for (int k = 0; k < kLightSampleCount; ++k) {
-        if (!has_light(view, bounce == 0, k)) continue;
+        if (!has_light(view, sky, k)) continue;
         LightSamples<N> lights;
         sample_lights<SceneKind::plain>(view, kinds, k, surfaces, path, light_numbers, seed, lights);
         if (surfaces.has_phong) {

@@ -135,9 +135,7 @@ REALCAM_INLINE float sun_importance(const SunLight& sun, Vec3f normal) {
     return select(cosine > 0.0f, cosine * luminance(sun.illuminance), 0.0f);
 }
 
-/// Samples of the lights at a surface. The first is of one of the lights. The second is of the environment, at the
-/// first surface of a path where that brings a good part of the light: it lights what the other lights leave dark, and
-/// a choice between the two would be noisiest there.
+/// Samples of the lights at a surface: of one of the lights, and of the environment where it is apart.
 inline constexpr int kLightSampleCount = 2;
 
 /// The estimated share of a receiver's light from which on the environment has a sample of its own.
@@ -166,49 +164,59 @@ REALCAM_INLINE int count_light_kinds(const SceneView& scene) {
     return (scene.light_node_count > 0) + scene.sun_count + scene.has_environment;
 }
 
-/// Whether a scene has any light for the sample of this number. `is_first`: at the first surface of a path.
-REALCAM_INLINE bool has_light(const SceneView& scene, bool is_first, int number) {
-    if (number == 1) return is_first && scene.has_environment;
-    return scene.light_node_count + scene.sun_count > 0 || (!is_first && scene.has_environment);
+/// `goes_on`: whether the surface's lobes send out rays; `is_first`: of its path.
+REALCAM_INLINE SkySampling sky_sampling(const SceneView& scene, bool goes_on, bool is_first) {
+    if (scene.light_node_count + scene.sun_count == 0) return SkySampling::chosen;
+    if (goes_on) return scene.environment.pixels ? SkySampling::chosen : SkySampling::left_to_rays;
+    return is_first ? SkySampling::apart : SkySampling::chosen;
 }
 
-/// `is_first`: at the first surface of a path. `local`, `suns`: importances of all point and area lights, and of all
-/// suns; 0 where there is but one kind. Becomes vector code for many receivers.
-REALCAM_INLINE LightKinds light_kinds(const SceneView& scene, bool is_first, float local, float suns) {
+/// Whether a scene has any light for the sample of this number.
+REALCAM_INLINE bool has_light(const SceneView& scene, SkySampling sky, int number) {
+    if (number == 1) return sky == SkySampling::apart && scene.has_environment;
+    return scene.light_node_count + scene.sun_count > 0 || scene.has_environment;
+}
+
+/// `local`, `suns`: importances of all point and area lights, and of all suns; 0 where there is but one kind. Becomes
+/// vector code for many receivers.
+REALCAM_INLINE LightKinds light_kinds(const SceneView& scene, SkySampling sampling, float local, float suns) {
     const int count = count_light_kinds(scene);
     const float sky = count > 1 ? environment_importance(scene) : 0.0f, others = local + suns;
-    const bool is_apart = is_first & scene.has_environment & (sky >= kApartShare * (sky + others));
-    const LightShares shares = light_shares(static_cast<float>(count) - select(is_apart & (count > 1), 1.0f, 0.0f),
-                                            select(is_apart, others, others + sky));
+    const bool is_apart =
+                   (sampling == SkySampling::apart) & scene.has_environment & (sky >= kApartShare * (sky + others)),
+               is_chosen = scene.has_environment & !is_apart & (sampling != SkySampling::left_to_rays);
+    const bool is_left_out = scene.has_environment & !is_chosen;
+    const LightShares shares = light_shares(static_cast<float>(count) - select(is_left_out, 1.0f, 0.0f),
+                                            select(is_chosen, others + sky, others));
     return {shares, scene.light_node_count > 0 ? shares.probability(local) : 0.0f,
-            select(is_apart | !scene.has_environment, 0.0f, shares.probability(sky)), is_apart};
+            select(is_chosen, shares.probability(sky), 0.0f), is_apart};
 }
 
-REALCAM_INLINE LightKinds light_kinds(const SceneView& scene, bool is_first, LightReceiver receiver) {
+REALCAM_INLINE LightKinds light_kinds(const SceneView& scene, SkySampling sampling, LightReceiver receiver) {
     float local = 0.0f, suns = 0.0f;
     if (count_light_kinds(scene) > 1) {
         if (scene.light_node_count > 0) local = most_illuminance(scene.light_nodes[0], receiver);
         for (int i = 0; i < scene.sun_count; ++i) suns += sun_importance(scene.suns[i], receiver.normal);
     }
-    return light_kinds(scene, is_first, local, suns);
+    return light_kinds(scene, sampling, local, suns);
 }
 
 /// Density per steradian of sample_light in a direction in which the environment is seen. One of its two samples may
 /// be in that direction, and which one depends on the receiver alone.
-REALCAM_INLINE float environment_light_pdf(const SceneView& scene, bool is_first, LightReceiver receiver,
+REALCAM_INLINE float environment_light_pdf(const SceneView& scene, SkySampling sampling, LightReceiver receiver,
                                            Vec3f direction) {
-    return light_kinds(scene, is_first, receiver).environment_chance() *
+    return light_kinds(scene, sampling, receiver).environment_chance() *
            environment_pdf(scene.environment, receiver.normal, direction);
 }
 
 /// The same in a direction in which an area light is met, at this distance and with this cosine at it.
 template <SceneKind scene_kind>
-REALCAM_INLINE float emitter_light_pdf(const SceneView& scene, bool is_first, LightReceiver receiver,
+REALCAM_INLINE float emitter_light_pdf(const SceneView& scene, SkySampling sampling, LightReceiver receiver,
                                        std::int32_t area_light, float distance, float cosine) {
     const AreaLight& light = scene.areas[area_light];
     float area = light.area;
     if constexpr (scene_kind == SceneKind::any) area = area_light_at(scene, light, receiver.time).area;
-    return light_kinds(scene, is_first, receiver).local_probability *
+    return light_kinds(scene, sampling, receiver).local_probability *
            light_probability(scene, receiver, scene.point_count + area_light) *
            area_light_pdf(area, distance * distance, cosine);
 }
@@ -299,9 +307,9 @@ REALCAM_INLINE LightSample sample_picked(const SceneView& scene, LightReceiver r
 
 /// Chooses one light for the sample of this number, for which the scene must have one, and a place on it. Black: none.
 template <SceneKind scene_kind>
-REALCAM_INLINE LightSample sample_light(const SceneView& scene, bool is_first, LightReceiver receiver, int number,
-                                        Vec2f u, std::uint32_t seed) {
-    const LightPick pick = pick_light(scene, receiver, light_kinds(scene, is_first, receiver), number, u, seed);
+REALCAM_INLINE LightSample sample_light(const SceneView& scene, SkySampling sampling, LightReceiver receiver,
+                                        int number, Vec2f u, std::uint32_t seed) {
+    const LightPick pick = pick_light(scene, receiver, light_kinds(scene, sampling, receiver), number, u, seed);
     if (!(pick.probability > 0.0f)) return {{0, 1, 0}, kFarAway, 1.0f, {0, 0, 0}, kDelta};
     LightSample sample = sample_picked<scene_kind>(scene, receiver, pick);
     sample.irradiance = bounded_light((1.0f / pick.probability) * sample.irradiance);

@@ -40,8 +40,8 @@ double seen(const SceneView& scene, LightReceiver receiver, Vec2f u) {
     const PlainBsdf white{receiver.normal, receiver.normal, receiver.normal, grey_of_pi(), {0, 0, 0}, 0};
     double sum = 0;
     for (int k = 0; k < kLightSampleCount; ++k) {
-        if (!has_light(scene, true, k)) continue;
-        const LightSample light = sample_light<SceneKind::plain>(scene, true, receiver, k, u, 7);
+        if (!has_light(scene, SkySampling::apart, k)) continue;
+        const LightSample light = sample_light<SceneKind::plain>(scene, SkySampling::apart, receiver, k, u, 7);
         sum += static_cast<double>((white.eval(light.direction) * light.irradiance).r);
     }
     return sum;

@@ -268,15 +268,15 @@ TEST_CASE("kinds of light are chosen with the probabilities of LightKinds, which
         for (const Vec3f normal : {Vec3f{0, 1, 0}, Vec3f{0, 0, -1}, Vec3f{0, -1, 0}, Vec3f{0, 0, 0}}) {
             CAPTURE(sky);
             const LightReceiver receiver{{0.2f, 0, 0.1f}, normal};
-            const LightKinds kinds = light_kinds(view, true, receiver);
+            const LightKinds kinds = light_kinds(view, SkySampling::apart, receiver);
             CHECK((!kinds.environment_is_apart || sky == 1.0f));
             check_kinds(tests, view, receiver, kinds, seed++);
-            check_kinds(tests, view, receiver, light_kinds(view, false, receiver), seed++);
+            check_kinds(tests, view, receiver, light_kinds(view, SkySampling::chosen, receiver), seed++);
         }
     }
     tests.hold();
 
     const Scene dark = bare_scene();
     const RenderSpaceScene nothing(dark, {0, 0, 0});
-    for (int k = 0; k < kLightSampleCount; ++k) CHECK_FALSE(has_light(nothing.view(), true, k));
+    for (int k = 0; k < kLightSampleCount; ++k) CHECK_FALSE(has_light(nothing.view(), SkySampling::apart, k));
 }
