@@ -26,6 +26,7 @@ REALCAM_INLINE SkySampling receiver_sky(const SceneView& scene, const PathSettin
                                         int bounce, int lane) {
     // A ray that has gone through surfaces which show nothing but shadows left one further back.
     if constexpr (scene_kind == SceneKind::any) return path.receiver_sky[lane];
+    if (bounce == 0) return SkySampling::chosen;  // straight from the lens (set_first_density)
     return sky_sampling(scene, goes_on(settings, bounce - 1), bounce == 1);
 }
 
