@@ -1,7 +1,6 @@
 #include "outputs.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <cstdio>
 #include <filesystem>
 #include <regex>
@@ -9,6 +8,7 @@
 
 #include "../error.hpp"
 #include "../image_io/image_file.hpp"
+#include "../io/lens/lens_text.hpp"
 
 namespace realcam::app {
 namespace {
@@ -25,9 +25,7 @@ bool same_file(const std::string& a, const std::string& b) {
 }  // namespace
 
 bool is_film(const std::string& output) {
-    std::string suffix = fs::path(output).extension().string();
-    std::transform(suffix.begin(), suffix.end(), suffix.begin(), [](unsigned char c) { return std::tolower(c); });
-    return suffix == ".mp4";
+    return io::upper_case(fs::path(output).extension().string()) == ".MP4";
 }
 
 void check_outputs(const std::vector<std::string>& outputs) {
