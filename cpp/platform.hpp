@@ -30,10 +30,13 @@
 // Written before a loop of a constant number of turns: arrays that it indexes can then live in registers.
 #if defined(__CUDA_ARCH__)
 #define REALCAM_UNROLL _Pragma("unroll")
+#define REALCAM_NO_UNROLL _Pragma("unroll 1")
 #elif defined(__CUDACC__)
 #define REALCAM_UNROLL
+#define REALCAM_NO_UNROLL
 #else
 #define REALCAM_UNROLL _Pragma("GCC unroll 16")
+#define REALCAM_NO_UNROLL
 #endif
 
 // A translation unit that is built for one instruction set defines REALCAM_ISA (v2, v3, v4). The whole core then

@@ -35,6 +35,83 @@ REALCAM_INLINE bool any_active(const SceneRays<N>& rays) {
     return any != 0;
 }
 
+/// Traces shadow rays, and adds the light that comes along them. `darkens`: whether a path ends where its light is
+/// hidden.
+template <SceneKind scene_kind, int N, class SceneT, class Probe, class Darkens>
+REALCAM_INLINE void add_light(const ShadowRays<N>& light, SceneT&& scene, Probe&& probe, const Darkens& darkens,
+                              PathState<N>& path, PathResults<N>& results) {
+    if (!any_active(light.rays)) return;
+    Lanes<std::int32_t, N> hidden;
+    probe.enter(RenderStage::scene);
+    scene.occluded(light.rays, hidden);
+    probe.enter(RenderStage::other);
+    const int places = path.places();
+    for (int i = 0; i < places; ++i) {
+        const int lane = path.lane(i);
+        if (light.rays.active[i] & !hidden[i])
+            results.irradiance.set(lane, results.irradiance[lane] + light.unshadowed[i]);
+        if constexpr (scene_kind == SceneKind::any) {
+            if (darkens(i) & light.rays.active[i] & hidden[i]) path.rays.active[i] = 0;
+        }
+    }
+}
+
+/// What scenes of SceneKind::any ask of a shadow ray to a surface's light of this number.
+template <SceneKind scene_kind, int N>
+REALCAM_INLINE void number_shadow_ray(const PathState<N>& path, int place, int number, SceneRays<N>& rays) {
+    if constexpr (scene_kind == SceneKind::any) {
+        rays.number[place] = shadow_ray_number(hash32(path.rays.number[place] + static_cast<std::uint32_t>(number)));
+        rays.time[place] = path.rays.time[place];
+    }
+}
+
+/// Scatters the path of a GPU's thread, which has no room for more than one shadow ray: each is traced when it is set.
+template <SceneKind scene_kind, class SceneT, class Probe>
+REALCAM_INLINE void scatter_one(const SceneView& view, const PathSettings& settings, const SampleBlock<1>& block,
+                                int bounce, const Surfaces<1>& surfaces, SceneT&& scene, Probe&& probe,
+                                PathState<1>& path, PathResults<1>& results) {
+    struct {
+        ShadowRays<1> ray;
+        SceneT& scene;
+        Probe& probe;
+        PathState<1>& path;
+        PathResults<1>& results;
+
+        REALCAM_INLINE ShadowRays<1>& operator[](int number) {
+            number_shadow_ray<scene_kind>(path, 0, number, ray.rays);
+            return ray;
+        }
+        REALCAM_INLINE void trace(int, bool darkens) {
+            add_light<scene_kind>(ray, scene, probe, [=](int) { return darkens; }, path, results);
+        }
+    } shadow{{}, scene, probe, path, results};
+    const std::uint32_t first_dimension = dimension::of_bounce(bounce);
+    scatter_at<scene_kind>(view, settings, bounce, 0, surfaces.points[0],
+                           PathNumbers<1>(block, path, first_dimension + dimension::light),
+                           PathNumbers<1>(block, path, first_dimension + dimension::scatter),
+                           block.bits(0, first_dimension), path, shadow);
+}
+
+/// Scatters the paths of many lanes, and then traces all their shadow rays.
+template <SceneKind scene_kind, int N, class SurfacesT, class SceneT, class Probe>
+REALCAM_INLINE void scatter_many(const SceneView& view, const PathSettings& settings, const SampleBlock<N>& block,
+                                 int bounce, SurfacesT& surfaces, SceneT&& scene, Probe&& probe, PathState<N>& path,
+                                 PathResults<N>& results) {
+    LightRays<N> shadow;
+    std::int32_t darkens[N];  // surfaces that show nothing but shadows
+    for (int k = 0; k < kLightSampleCount; ++k) {
+        REALCAM_LANES
+        for (int i = 0; i < N; ++i) shadow[k].rays.active[i] = 0;  // also of the places that are not in use
+        for (int i = 0; i < path.count; ++i) number_shadow_ray<scene_kind>(path, i, k, shadow[k].rays);
+    }
+    if constexpr (scene_kind == SceneKind::plain)
+        scatter_plain_paths(view, settings, block, bounce, surfaces, path, shadow);
+    else
+        scatter_glossy_paths<scene_kind>(view, settings, block, bounce, surfaces, path, shadow, darkens);
+    for (const ShadowRays<N>& light : shadow.rays)
+        add_light<scene_kind>(light, scene, probe, [&](int i) { return darkens[i]; }, path, results);
+}
+
 }  // namespace advance_path_detail
 
 /// Rays from the film through the lens.
@@ -68,10 +145,6 @@ REALCAM_HD inline bool advance_paths(const SceneView& view, const CameraView& ca
     constexpr bool kIsPlain = scene_kind == SceneKind::plain;
     Hits<N> hits;
     std::conditional_t<N == 1, Surfaces<N>, std::conditional_t<kIsPlain, PlainSurfaces<N>, GlossySurfaces<N>>> surfaces;
-    ShadowRays<N> shadow;
-    Lanes<std::int32_t, N> hidden;
-    std::int32_t darkens[N];  // surfaces that show nothing but shadows
-
     if constexpr (scene_kind == SceneKind::any) {
         const int places = path.places();
         for (int i = 0; i < places; ++i) path.rays.number[i] = ray_number(block, path.lane(i), bounce);
@@ -82,38 +155,13 @@ REALCAM_HD inline bool advance_paths(const SceneView& view, const CameraView& ca
     meet_surfaces<scene_kind>(view, camera, settings, block, bounce, hits, path, results, surfaces);
     if (path.count == 0) return false;  // on a GPU, so that registers do not keep what only continuing paths need
     const int places = path.places();
-    if constexpr (N > 1) {  // also of the places that are not in use
-        REALCAM_LANES
-        for (int i = 0; i < N; ++i) shadow.rays.active[i] = 0;
-    }
-    if constexpr (scene_kind == SceneKind::any) {
-        for (int i = 0; i < places; ++i) {
-            shadow.rays.number[i] = shadow_ray_number(hash32(path.rays.number[i]));
-            shadow.rays.time[i] = path.rays.time[i];
-        }
-    }
     if constexpr (N == 1)
-        scatter_paths<scene_kind>(view, settings, block, bounce, surfaces, path, shadow, darkens);
-    else if constexpr (kIsPlain)
-        scatter_plain_paths(view, settings, block, bounce, surfaces, path, shadow);
+        scatter_one<scene_kind>(view, settings, block, bounce, surfaces, scene, probe, path, results);
     else
-        scatter_glossy_paths<scene_kind>(view, settings, block, bounce, surfaces, path, shadow, darkens);
+        scatter_many<scene_kind>(view, settings, block, bounce, surfaces, scene, probe, path, results);
     if (bounce >= kFirstRoulette) {
         for (int i = 0; i < places; ++i)
             if (path.rays.active[i]) play_roulette(block, bounce, i, path);
-    }
-    if (any_active(shadow.rays)) {
-        probe.enter(RenderStage::scene);
-        scene.occluded(shadow.rays, hidden);
-        probe.enter(RenderStage::other);
-        for (int i = 0; i < places; ++i) {
-            const int lane = path.lane(i);
-            if (shadow.rays.active[i] & !hidden[i])
-                results.irradiance.set(lane, results.irradiance[lane] + shadow.unshadowed[i]);
-            if constexpr (scene_kind == SceneKind::any) {
-                if (darkens[i] & shadow.rays.active[i] & hidden[i]) path.rays.active[i] = 0;
-            }
-        }
     }
     return any_active(path.rays);
 }

@@ -77,12 +77,14 @@ struct PickedLights {
     }
 };
 
+}  // namespace light_samples_detail
+
 /// light_kinds of all surfaces.
 template <int N>
 class LightKindsLanes {
 public:
     template <class SurfacesT>
-    REALCAM_INLINE LightKindsLanes(const SceneView& scene, const SurfacesT& surfaces, int count) {
+    REALCAM_INLINE LightKindsLanes(const SceneView& scene, SkySampling sky, const SurfacesT& surfaces, int count) {
         const int places = whole_vectors<N>(count);
         Lanes<float, N> local = {}, suns = {};
         if (count_light_kinds(scene) > 1) {
@@ -100,20 +102,24 @@ public:
         }
         REALCAM_LANES
         for (int i = 0; i < places; ++i) {
-            const LightKinds kinds = light_kinds(scene, local[i], suns[i]);
+            const LightKinds kinds = light_kinds(scene, sky, local[i], suns[i]);
             even_[i] = kinds.shares.even;
             scale_[i] = kinds.shares.scale;
             local_[i] = kinds.local_probability;
             environment_[i] = kinds.environment_probability;
+            is_apart_[i] = kinds.environment_is_apart;
         }
     }
     REALCAM_INLINE LightKinds operator[](int lane) const {
-        return {{even_[lane], scale_[lane]}, local_[lane], environment_[lane]};
+        return {{even_[lane], scale_[lane]}, local_[lane], environment_[lane], is_apart_[lane] != 0};
     }
 
 private:
     Lanes<float, N> even_, scale_, local_, environment_;
+    Lanes<std::int32_t, N> is_apart_;
 };
+
+namespace light_samples_detail {
 
 /// Where it is at a time, with the radiance of the place that these numbers choose.
 template <SceneKind scene_kind>
@@ -132,14 +138,15 @@ REALCAM_INLINE bool fits_lanes(const EnvironmentView& environment) {
 
 /// As pick_light does for one receiver.
 template <SceneKind scene_kind, int N, class SurfacesT, class Seeds>
-REALCAM_INLINE void pick_lights(const SceneView& scene, const SurfacesT& surfaces, const PathState<N>& path,
-                                const PathNumbers<N>& u, const Seeds& seed, PickedLights<N>& picked) {
-    const LightKindsLanes<N> kinds(scene, surfaces, path.count);
+REALCAM_INLINE void pick_lights(const SceneView& scene, const LightKindsLanes<N>& kinds, int number,
+                                const SurfacesT& surfaces, const PathState<N>& path, const PathNumbers<N>& u,
+                                const Seeds& seed, PickedLights<N>& picked) {
+    const int places = whole_vectors<N>(path.count);
+    for (int i = 0; i < places; ++i) picked.source[i] = Source::none;  // also of the places that are not in use
     for (int i = 0; i < path.count; ++i) {
-        picked.source[i] = Source::none;
         if (!surfaces.is_in_lanes(i)) continue;
         const LightReceiver receiver = {surfaces.position[i], surfaces.normal[i], time_of<scene_kind>(path, i)};
-        const LightPick pick = pick_light(scene, receiver, kinds[i], u[i], seed(i));
+        const LightPick pick = pick_light(scene, receiver, kinds[i], number, u[i], seed(i));
         if (!(pick.probability > 0.0f)) continue;
         picked.u.set(i, pick.u);
         picked.probability[i] = pick.probability;
@@ -154,14 +161,15 @@ REALCAM_INLINE void pick_lights(const SceneView& scene, const SurfacesT& surface
 
 }  // namespace light_samples_detail
 
-/// A sample for each path whose surface is_in_lanes(place); others get no light. `u` and `seed(place)`: as
-/// sample_light's.
+/// A sample of this number for each path whose surface is_in_lanes(place); others get no light, from their normal. `u`
+/// and `seed(place)`: as sample_light's.
 template <SceneKind scene_kind, int N, class SurfacesT, class Seeds>
-REALCAM_INLINE void sample_lights(const SceneView& scene, const SurfacesT& surfaces, const PathState<N>& path,
-                                  const PathNumbers<N>& u, const Seeds& seed, LightSamples<N>& samples) {
+REALCAM_INLINE void sample_lights(const SceneView& scene, const LightKindsLanes<N>& kinds, int number,
+                                  const SurfacesT& surfaces, const PathState<N>& path, const PathNumbers<N>& u,
+                                  const Seeds& seed, LightSamples<N>& samples) {
     using namespace light_samples_detail;
     PickedLights<N> picked;
-    pick_lights<scene_kind>(scene, surfaces, path, u, seed, picked);
+    pick_lights<scene_kind>(scene, kinds, number, surfaces, path, u, seed, picked);
     const int count = path.count, places = whole_vectors<N>(count);
     if (picked.any_area) {
         REALCAM_LANES
@@ -200,13 +208,15 @@ REALCAM_INLINE void sample_lights(const SceneView& scene, const SurfacesT& surfa
         for (int i = 0; i < count; ++i)
             if (picked.source[i] == Source::other) samples.set(i, picked.others[i]);
     }
+    // Lanes without a light hold what was in memory, and a BSDF looks up tables by the direction.
     REALCAM_LANES
     for (int i = 0; i < places; ++i) {
         const float probability = picked.probability[i];
-        const bool is_lit = (picked.source[i] != Source::none) & (probability > 0.0f);
+        const bool is_lit = picked.source[i] != Source::none;
+        samples.direction.set(i, select(is_lit, samples.direction[i], surfaces.normal[i]));
         samples.irradiance.set(
             i, select(is_lit, bounded_light((1.0f / probability) * samples.irradiance[i]), Color{0, 0, 0}));
-        samples.pdf[i] = probability * samples.pdf[i];
+        samples.pdf[i] = select(is_lit, probability * samples.pdf[i], kDelta);
     }
 }
 

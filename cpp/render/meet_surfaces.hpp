@@ -76,7 +76,7 @@ REALCAM_INLINE void end_at_image(const SceneView& view, const PathSettings& sett
     for (int k = 0; k < count; ++k) {
         const int i = ending[k], lane = path.lane(i);
         const float limit = bounce > 0 ? settings.clamp * path.weight[i] : 0.0f;
-        const Color light = environment_image_light<scene_kind>(view, path, i, pixels[k]);
+        const Color light = environment_image_light<scene_kind>(view, settings, path, bounce, i, pixels[k]);
         results.irradiance.set(lane, results.irradiance[lane] + clamped(light, limit));
     }
 }
@@ -107,7 +107,8 @@ REALCAM_INLINE void meet_surfaces(const SceneView& view, const CameraView& camer
         if (hit.triangle == kNoTriangle) {
             if (view.has_environment)
                 results.irradiance.set(
-                    lane, results.irradiance[lane] + clamped(environment_light<scene_kind>(view, path, i), limit));
+                    lane, results.irradiance[lane] +
+                              clamped(environment_light<scene_kind>(view, settings, path, bounce, i), limit));
             continue;
         }
         const SurfacePoint point = surface_point<scene_kind>(view, hit, path.rays.origin[i], direction, time, [&] {
@@ -120,9 +121,10 @@ REALCAM_INLINE void meet_surfaces(const SceneView& view, const CameraView& camer
                 path.throughput.set(i, path.throughput[i] * absorbed(absorption, hit.distance * length(direction)));
         }
         if (!is_black(point.emission))
-            results.irradiance.set(lane,
-                                   results.irradiance[lane] +
-                                       clamped(emitter_light<scene_kind>(view, camera, path, i, hit, point), limit));
+            results.irradiance.set(
+                lane,
+                results.irradiance[lane] +
+                    clamped(emitter_light<scene_kind>(view, camera, settings, path, bounce, i, hit, point), limit));
         if (bounce == 0) results.depth[lane] = depth_at<scene_kind>(camera, point.position, time);
         if (bounce <= settings.max_bounces) path.template move<scene_kind>(i, path.count++);
     }

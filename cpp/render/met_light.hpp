@@ -1,6 +1,7 @@
 #pragma once
 #include "../scene/light.hpp"
 #include "../scene/surface_point.hpp"
+#include "path_settings.hpp"
 #include "traced_light_weight.hpp"
 
 namespace REALCAM_NAMESPACE {
@@ -19,33 +20,48 @@ REALCAM_INLINE LightReceiver receiver_of(const PathState<N>& path, int lane) {
     return {path.receiver_position[lane], path.receiver_normal[lane], time_of<scene_kind>(path, lane)};
 }
 
+/// How the environment was looked for at the surface that a ray left. `bounce`: at which the ray ends.
+template <SceneKind scene_kind, int N>
+REALCAM_INLINE SkySampling receiver_sky(const SceneView& scene, const PathSettings& settings, const PathState<N>& path,
+                                        int bounce, int lane) {
+    // A ray that has gone through surfaces which show nothing but shadows left one further back.
+    if constexpr (scene_kind == SceneKind::any) return path.receiver_sky[lane];
+    if (bounce == 0) return SkySampling::chosen;  // straight from the lens (set_first_density)
+    return sky_sampling(scene, goes_on(settings, bounce - 1), bounce == 1);
+}
+
 /// Light that the environment sends along the ray of a lane.
 template <SceneKind scene_kind, int N>
-REALCAM_INLINE Color environment_light(const SceneView& scene, const PathState<N>& path, int lane) {
+REALCAM_INLINE Color environment_light(const SceneView& scene, const PathSettings& settings, const PathState<N>& path,
+                                       int bounce, int lane) {
     const Vec3f direction = path.rays.direction[lane];
     const float pdf = path.pdf[lane];
     float weight = 1.0f;
     if (pdf >= 0.0f && pdf < kDelta)
-        weight = mis_weight(pdf, environment_light_pdf(scene, receiver_of<scene_kind>(path, lane), direction));
+        weight =
+            mis_weight(pdf, environment_light_pdf(scene, receiver_sky<scene_kind>(scene, settings, path, bounce, lane),
+                                                  receiver_of<scene_kind>(path, lane), direction));
     return (weight * path.throughput[lane]) * environment_radiance(scene.environment, direction);
 }
 
 /// The same for an environment's image, in whose pixel the ray ends.
 template <SceneKind scene_kind, int N>
-REALCAM_INLINE Color environment_image_light(const SceneView& scene, const PathState<N>& path, int lane,
-                                             EnvironmentPixel pixel) {
+REALCAM_INLINE Color environment_image_light(const SceneView& scene, const PathSettings& settings,
+                                             const PathState<N>& path, int bounce, int lane, EnvironmentPixel pixel) {
     const float pdf = path.pdf[lane];
     float weight = 1.0f;
     if (pdf >= 0.0f && pdf < kDelta)
-        weight = mis_weight(pdf, light_kinds(scene, receiver_of<scene_kind>(path, lane)).environment_probability *
+        weight = mis_weight(pdf, light_kinds(scene, receiver_sky<scene_kind>(scene, settings, path, bounce, lane),
+                                             receiver_of<scene_kind>(path, lane))
+                                         .environment_chance() *
                                      environment_image_pdf(scene.environment, pixel, path.rays.direction[lane]));
     return (weight * path.throughput[lane]) * pixel_radiance(scene.environment, pixel);
 }
 
 /// Light that the emitter at a hit sends along the ray of a lane.
 template <SceneKind scene_kind, int N>
-REALCAM_INLINE Color emitter_light(const SceneView& scene, const CameraView& camera, const PathState<N>& path, int lane,
-                                   Hit hit, const SurfacePoint& point) {
+REALCAM_INLINE Color emitter_light(const SceneView& scene, const CameraView& camera, const PathSettings& settings,
+                                   const PathState<N>& path, int bounce, int lane, Hit hit, const SurfacePoint& point) {
     const float pdf = path.pdf[lane];
     float weight = 1.0f;
     if (pdf == kFromFilm) {
@@ -55,7 +71,8 @@ REALCAM_INLINE Color emitter_light(const SceneView& scene, const CameraView& cam
         const float cosine = -dot(path.rays.direction[lane], point.geometric_normal);
         const Vec3f way = point.position - receiver.position;
         weight = mis_weight(
-            pdf, emitter_light_pdf<scene_kind>(scene, receiver, area_light_of(scene, hit), length(way), cosine));
+            pdf, emitter_light_pdf<scene_kind>(scene, receiver_sky<scene_kind>(scene, settings, path, bounce, lane),
+                                               receiver, area_light_of(scene, hit), length(way), cosine));
     }
     return (weight * path.throughput[lane]) * point.emission;
 }

@@ -26,4 +26,10 @@ struct PathSettings {
     constexpr bool operator==(const PathSettings&) const = default;
 };
 
+/// Whether all lobes of a surface send out rays. After the last bounce, one more ray looks for the light that narrow
+/// lobes show.
+REALCAM_INLINE bool goes_on(const PathSettings& settings, int bounce) {
+    return bounce < settings.max_bounces && settings.transport == LightTransport::paths;
+}
+
 }  // namespace REALCAM_NAMESPACE

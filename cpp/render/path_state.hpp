@@ -45,6 +45,7 @@ struct PathState {
     Lanes<float, N> weight;  ///< the throughput with which the path began
     Lanes<float, N> pdf;  ///< with which the ray's direction was drawn, per steradian
     Vec3Lanes<float, N> receiver_position, receiver_normal;  ///< of the surface that the ray left (LightReceiver)
+    Lanes<SkySampling, N> receiver_sky;  ///< how the environment was looked for there; for SceneKind::any alone
     ColorLanes<N> absorption;  ///< of the medium that the ray is in, per metre
 
     REALCAM_INLINE PathState() {
@@ -75,6 +76,7 @@ struct PathState {
                 pdf[to] = pdf[from];
                 receiver_position.set(to, receiver_position[from]);
                 receiver_normal.set(to, receiver_normal[from]);
+                receiver_sky[to] = receiver_sky[from];
             }
         }
     }

@@ -7,57 +7,82 @@ namespace REALCAM_NAMESPACE {
 
 namespace scatter_glossy_paths_detail {
 
-/// Light and the next ray for surfaces that GlossyBsdf describes, as scatter_path finds them for one path. Others keep
-/// their paths. Numbers that are 1 or 0 stand for questions that are the same for all lanes: gcc makes no vector code
-/// of a loop that asks them.
+/// Which of a surface's lobes send out a ray, and how often each is chosen. Numbers that are 1 or 0 stand for questions
+/// that are the same for all lanes: gcc makes no vector code of a loop that asks them.
+struct GlossySenders {
+    float diffuse_sends, specular_sends;
+
+    /// After the last bounce rough lobes alone send one, and for mirrors alone none of these.
+    REALCAM_INLINE GlossySenders(const PathSettings& settings, int bounce)
+        : diffuse_sends(goes_on(settings, bounce) ? 1.0f : 0.0f),
+          specular_sends(settings.transport == LightTransport::whitted ? 0.0f : 1.0f) {}
+
+    struct Shares {
+        float diffuse, specular;
+
+        REALCAM_INLINE float pdf_of(const GlossyBsdf::Value& v) const {
+            return diffuse * v.diffuse_pdf + specular * v.specular_pdf;
+        }
+    };
+    REALCAM_INLINE Shares shares_of(const GlossyBsdf& bsdf) const {
+        const float diffuse = diffuse_sends * bsdf.diffuse_albedo(), specular = specular_sends * bsdf.specular_albedo(),
+                    albedo = diffuse + specular;
+        return {select(albedo > 0.0f, diffuse / albedo, 0.0f), select(albedo > 0.0f, specular / albedo, 0.0f)};
+    }
+};
+
+/// Light for surfaces that GlossyBsdf describes, as light_path finds it for one path. Others stay dark.
 template <int N>
-REALCAM_INLINE void scatter_glossy(const PathSettings& settings, int bounce, const GlossySurfaces<N>& surfaces,
-                                   const LightSamples<N>& lights, const PathNumbers<N>& u, PathState<N>& path,
-                                   ShadowRays<N>& shadow) {
-    const bool goes_on = bounce < settings.max_bounces && settings.transport == LightTransport::paths;
-    // What sends out a ray: after the last bounce rough lobes alone, and for mirrors alone none of these.
-    const float diffuse_sends = goes_on ? 1.0f : 0.0f;
-    const float specular_sends = settings.transport == LightTransport::whitted ? 0.0f : 1.0f;
+REALCAM_INLINE void light_glossy(const PathSettings& settings, int bounce, const GlossySurfaces<N>& surfaces,
+                                 const LightSamples<N>& lights, const PathState<N>& path, ShadowRays<N>& shadow) {
+    const GlossySenders senders(settings, bounce);
     const float clamp = bounce > 0 ? settings.clamp : 0.0f;
+    const int places = whole_vectors<N>(path.count);
+    REALCAM_LANES
+    for (int i = 0; i < places; ++i) {
+        const SurfacePlace place = surfaces[i];
+        const GlossyBsdf bsdf(surfaces.glossy(i), surfaces.normal[i], place.geometric_normal, -path.rays.direction[i]);
+        const LightSample light = lights[i];
+        const GlossyBsdf::Value to_light = bsdf.eval(light.direction);
+        const float weight = mis_weight(light.pdf, senders.shares_of(bsdf).pdf_of(to_light));
+        const float diffuse_weight = senders.diffuse_sends * weight + (1.0f - senders.diffuse_sends);
+        const Color scattered = diffuse_weight * to_light.diffuse + weight * to_light.specular;
+        const Color seen = scattered * path.throughput[i] * light.irradiance;
+        const bool is_used = surfaces.is_glossy[i] != 0;
+        shadow.set(i, place, light, clamped(select(is_used, seen, Color{0, 0, 0}), clamp * path.weight[i]));
+    }
+}
+
+/// The next ray for these surfaces, as scatter_path finds it for one path. Others keep their paths.
+template <SceneKind scene_kind, int N>
+REALCAM_INLINE void scatter_glossy(const PathSettings& settings, int bounce, SkySampling sky,
+                                   const GlossySurfaces<N>& surfaces, const PathNumbers<N>& u, PathState<N>& path) {
+    const GlossySenders senders(settings, bounce);
     const int places = whole_vectors<N>(path.count);
     REALCAM_LANES
     for (int i = 0; i < places; ++i) {
         const SurfacePlace place = surfaces[i];
         const Vec3f normal = surfaces.normal[i], arriving = path.rays.direction[i];
         const GlossyBsdf bsdf(surfaces.glossy(i), normal, place.geometric_normal, -arriving);
-        const float diffuse_albedo = diffuse_sends * bsdf.diffuse_albedo(),
-                    specular_albedo = specular_sends * bsdf.specular_albedo(),
-                    albedo = diffuse_albedo + specular_albedo;
-        const float diffuse_share = select(albedo > 0.0f, diffuse_albedo / albedo, 0.0f),
-                    specular_share = select(albedo > 0.0f, specular_albedo / albedo, 0.0f);
-        const auto pdf_of = [&](const GlossyBsdf::Value& v) {
-            return diffuse_share * v.diffuse_pdf + specular_share * v.specular_pdf;
-        };
-        const LightSample light = lights[i];
+        const GlossySenders::Shares shares = senders.shares_of(bsdf);
         const Color throughput = path.throughput[i];
-        const GlossyBsdf::Value to_light = bsdf.eval(light.direction);
-        const float weight = mis_weight(light.pdf, pdf_of(to_light));
-        const float diffuse_weight = diffuse_sends * weight + (1.0f - diffuse_sends);
-        const Color scattered = diffuse_weight * to_light.diffuse + weight * to_light.specular;
-        const Color seen = scattered * throughput * light.irradiance;
         const bool is_used = surfaces.is_glossy[i] != 0;
-        shadow.set(i, place, light, clamped(select(is_used, seen, Color{0, 0, 0}), clamp * path.weight[i]));
-
         Vec2f number = u[i];
-        const bool is_diffuse = number.x < diffuse_share;
-        number.x = select(is_diffuse, number.x / diffuse_share, (number.x - diffuse_share) / specular_share);
+        const bool is_diffuse = number.x < shares.diffuse;
+        number.x = select(is_diffuse, number.x / shares.diffuse, (number.x - shares.diffuse) / shares.specular);
         number.x = select(number.x < 0x1.fffffep-1f, number.x, 0x1.fffffep-1f);
         const Vec3f direction = bsdf.sample(is_diffuse, number);
         const GlossyBsdf::Value value = bsdf.eval(direction);
-        const float pdf = pdf_of(value);
+        const float pdf = shares.pdf_of(value);
         // The diffuse lobe that sends no ray is left out.
-        const Color sum = diffuse_sends * value.diffuse + value.specular;
+        const Color sum = senders.diffuse_sends * value.diffuse + value.specular;
         const Color next = select(pdf > 0.0f, (1.0f / pdf) * throughput * sum, Color{0, 0, 0});
         path.rays.active[i] = (is_used & !is_black(next)) ? 1 : 0;
         path.throughput.set(i, select(is_used, next, throughput));
         path.rays.origin.set(i, ray_start(place, direction));
         path.rays.direction.set(i, select(is_used, direction, arriving));
         path.pdf[i] = select(is_used, pdf, path.pdf[i]);
+        if constexpr (scene_kind == SceneKind::any) path.receiver_sky[i] = select(is_used, sky, path.receiver_sky[i]);
         path.receiver_position.set(i, select(is_used, place.position, path.receiver_position[i]));
         path.receiver_normal.set(i, select(is_used, normal, path.receiver_normal[i]));
     }
@@ -69,7 +94,7 @@ REALCAM_INLINE void scatter_glossy(const PathSettings& settings, int bounce, con
 template <SceneKind scene_kind, int N>
 REALCAM_INLINE void scatter_glossy_paths(const SceneView& view, const PathSettings& settings,
                                          const SampleBlock<N>& block, int bounce, GlossySurfaces<N>& surfaces,
-                                         PathState<N>& path, ShadowRays<N>& shadow, std::int32_t (&darkens)[N]) {
+                                         PathState<N>& path, LightRays<N>& shadow, std::int32_t (&darkens)[N]) {
     using namespace scatter_glossy_paths_detail;
     const std::uint32_t first_dimension = dimension::of_bounce(bounce);
     const PathNumbers<N> light_numbers(block, path, first_dimension + dimension::light),
@@ -80,9 +105,15 @@ REALCAM_INLINE void scatter_glossy_paths(const SceneView& view, const PathSettin
         surfaces.copy(0, i);
         path.rays.direction.set(i, path.rays.direction[0]);
     }
-    LightSamples<N> lights;
-    sample_lights<scene_kind>(view, surfaces, path, light_numbers, seed, lights);
-    scatter_glossy(settings, bounce, surfaces, lights, scatter_numbers, path, shadow);
+    const SkySampling sky = sky_sampling(view, goes_on(settings, bounce), bounce == 0);
+    const LightKindsLanes<N> kinds(view, sky, surfaces, path.count);
+    for (int k = 0; k < kLightSampleCount; ++k) {
+        if (!has_light(view, sky, k)) continue;
+        LightSamples<N> lights;
+        sample_lights<scene_kind>(view, kinds, k, surfaces, path, light_numbers, seed, lights);
+        light_glossy(settings, bounce, surfaces, lights, path, shadow[k]);
+    }
+    scatter_glossy<scene_kind>(settings, bounce, sky, surfaces, scatter_numbers, path);
     for (int i = 0; i < path.count; ++i) {
         darkens[i] = 0;
         if (!surfaces.is_glossy[i])

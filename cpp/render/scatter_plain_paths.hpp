@@ -47,31 +47,46 @@ REALCAM_INLINE void scatter_lambert(const PlainSurfaces<N>& surfaces, const Path
     }
 }
 
+template <int N>
+REALCAM_INLINE PlainBsdf phong_bsdf(const PlainSurfaces<N>& surfaces, const PathState<N>& path, int i) {
+    return {surfaces.normal[i], surfaces.geometric_normal[i], -path.rays.direction[i], surfaces.diffuse[i],
+            surfaces.phong[i],  surfaces.shininess[i]};
+}
+
 }  // namespace scatter_plain_paths_detail
 
 /// scatter_paths for a plain scene and many lanes: Lambert's lobe, which most surfaces have alone, as vector code.
 template <int N>
 REALCAM_INLINE void scatter_plain_paths(const SceneView& view, const PathSettings& settings,
                                         const SampleBlock<N>& block, int bounce, const PlainSurfaces<N>& surfaces,
-                                        PathState<N>& path, ShadowRays<N>& shadow) {
+                                        PathState<N>& path, LightRays<N>& shadow) {
     using namespace scatter_plain_paths_detail;
     const std::uint32_t first_dimension = dimension::of_bounce(bounce);
     const auto seed = [&](int i) { return block.bits(path.lane(i), first_dimension); };
-    LightSamples<N> lights;
-    sample_lights<SceneKind::plain>(view, surfaces, path,
-                                    PathNumbers<N>(block, path, first_dimension + dimension::light), seed, lights);
-    const bool goes_on = bounce < settings.max_bounces && settings.transport == LightTransport::paths;
-    if (!surfaces.has_phong && !goes_on) return light_lambert<false>(settings, bounce, surfaces, lights, path, shadow);
-    const PathNumbers<N> u(block, path, first_dimension + dimension::scatter);
-    if (!surfaces.has_phong) {
-        light_lambert<true>(settings, bounce, surfaces, lights, path, shadow);
-        return scatter_lambert(surfaces, u, path);
+    const PathNumbers<N> light_numbers(block, path, first_dimension + dimension::light);
+    const bool all_send = goes_on(settings, bounce);
+    const SkySampling sky = sky_sampling(view, goes_on(settings, bounce), bounce == 0);
+    const LightKindsLanes<N> kinds(view, sky, surfaces, path.count);
+    for (int k = 0; k < kLightSampleCount; ++k) {
+        if (!has_light(view, sky, k)) continue;
+        LightSamples<N> lights;
+        sample_lights<SceneKind::plain>(view, kinds, k, surfaces, path, light_numbers, seed, lights);
+        if (surfaces.has_phong) {
+            for (int i = 0; i < path.count; ++i)
+                light_path(settings, bounce, i, surfaces[i], phong_bsdf(surfaces, path, i), lights[i], path, shadow[k]);
+        } else if (all_send) {
+            light_lambert<true>(settings, bounce, surfaces, lights, path, shadow[k]);
+        } else {
+            light_lambert<false>(settings, bounce, surfaces, lights, path, shadow[k]);
+        }
     }
+    if (!surfaces.has_phong && !all_send) return;
+    const PathNumbers<N> u(block, path, first_dimension + dimension::scatter);
+    if (!surfaces.has_phong) return scatter_lambert(surfaces, u, path);
     for (int i = 0; i < path.count; ++i) {
-        PlainBsdf bsdf{surfaces.normal[i], surfaces.geometric_normal[i], -path.rays.direction[i], surfaces.diffuse[i],
-                       surfaces.phong[i],  surfaces.shininess[i]};
-        scatter_path(settings, bounce, i, surfaces[i], {surfaces.position[i], surfaces.normal[i]}, bsdf, lights[i], u,
-                     unit_float(seed(i)), path, shadow);
+        PlainBsdf bsdf = phong_bsdf(surfaces, path, i);
+        scatter_path(settings, bounce, i, surfaces[i], {surfaces.position[i], surfaces.normal[i]}, bsdf, u,
+                     unit_float(seed(i)), path);
     }
 }
 

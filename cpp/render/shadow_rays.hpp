@@ -1,4 +1,5 @@
 #pragma once
+#include "../scene/light.hpp"
 #include "../scene/surface_point.hpp"
 #include "path_state.hpp"
 
@@ -29,6 +30,15 @@ struct ShadowRays {
         rays.active[lane] = is_black(seen) ? 0 : 1;
         unshadowed.set(lane, seen);
     }
+};
+
+/// The shadow rays of many paths, to be traced together: one for each sample of the lights.
+template <int N>
+struct LightRays {
+    ShadowRays<N> rays[kLightSampleCount];
+
+    REALCAM_INLINE ShadowRays<N>& operator[](int number) { return rays[number]; }
+    REALCAM_INLINE void trace(int, bool) {}
 };
 
 }  // namespace REALCAM_NAMESPACE

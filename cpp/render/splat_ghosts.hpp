@@ -103,7 +103,7 @@ REALCAM_INLINE void choose_lights(const SceneView& view, const CameraView& camer
         const LensFrame frame = lens_frame(camera, samples.time[i]);
         const LightReceiver middle{front_vertex(frame.camera, frame.front_vertex_m), {0, 0, 0}, samples.time[i]};
         LightPick& light = samples.lights[i];
-        light = pick_light(view, middle, light_kinds(view, middle), u[i], samples.number[i]);
+        light = pick_light(view, middle, light_kinds(view, SkySampling::chosen, middle), 0, u[i], samples.number[i]);
         Vec3f from = {0, 0, 1};  // behind the lens
         samples.light_density[i] = kDelta;
         if (light.probability > 0.0f) {

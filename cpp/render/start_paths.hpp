@@ -9,8 +9,10 @@ namespace REALCAM_NAMESPACE {
 template <SceneKind scene_kind, int N>
 REALCAM_INLINE void set_first_density(const CameraView& camera, float density, int lane, PathState<N>& path) {
     Vec3f front = front_vertex(camera, camera.front_vertex_m);
-    if constexpr (scene_kind == SceneKind::any)
+    if constexpr (scene_kind == SceneKind::any) {
         front = front_vertex(camera_at(camera, path.rays.time[lane]), camera.front_vertex_m);
+        path.receiver_sky[lane] = SkySampling::chosen;
+    }
     path.pdf[lane] = density;
     path.receiver_position.set(lane, front);
     path.receiver_normal.set(lane, {0, 0, 0});

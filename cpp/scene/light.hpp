@@ -135,6 +135,12 @@ REALCAM_INLINE float sun_importance(const SunLight& sun, Vec3f normal) {
     return select(cosine > 0.0f, cosine * luminance(sun.illuminance), 0.0f);
 }
 
+/// Samples of the lights at a surface: of one of the lights, and of the environment where it is apart.
+inline constexpr int kLightSampleCount = 2;
+
+/// The estimated share of a receiver's light from which on the environment has a sample of its own.
+inline constexpr float kApartShare = 0.1f;
+
 /// What is known of the kinds of light at a receiver, to choose one of them. Half of the probability goes by the
 /// estimated illuminance of each kind if nothing stands in between. The other half is even, because the brightest kind
 /// may be occluded.
@@ -142,6 +148,12 @@ struct LightKinds {
     LightShares shares;
     float local_probability;  ///< of point and area lights, together
     float environment_probability;
+    bool environment_is_apart;  ///< it has a sample of its own, and is not among those of which one is chosen
+
+    /// Of the sample of either number.
+    REALCAM_INLINE float environment_chance() const {
+        return select(environment_is_apart, 1.0f, environment_probability);
+    }
 
     REALCAM_INLINE float sun_probability(const SunLight& sun, Vec3f normal) const {
         return shares.probability(select(shares.scale > 0.0f, sun_importance(sun, normal), 0.0f));
@@ -152,39 +164,59 @@ REALCAM_INLINE int count_light_kinds(const SceneView& scene) {
     return (scene.light_node_count > 0) + scene.sun_count + scene.has_environment;
 }
 
-/// `local`, `suns`: importances of all point and area lights, and of all suns; 0 where there is but one kind. Becomes
-/// vector code for many receivers.
-REALCAM_INLINE LightKinds light_kinds(const SceneView& scene, float local, float suns) {
-    const int count = count_light_kinds(scene);
-    const float sky = count > 1 ? environment_importance(scene) : 0.0f;
-    const LightShares shares = light_shares(static_cast<float>(count), local + sky + suns);
-    return {shares, scene.light_node_count > 0 ? shares.probability(local) : 0.0f,
-            scene.has_environment ? shares.probability(sky) : 0.0f};
+/// `goes_on`: whether the surface's lobes send out rays; `is_first`: of its path.
+REALCAM_INLINE SkySampling sky_sampling(const SceneView& scene, bool goes_on, bool is_first) {
+    if (scene.light_node_count + scene.sun_count == 0) return SkySampling::chosen;
+    if (goes_on) return scene.environment.pixels ? SkySampling::chosen : SkySampling::left_to_rays;
+    return is_first ? SkySampling::apart : SkySampling::chosen;
 }
 
-REALCAM_INLINE LightKinds light_kinds(const SceneView& scene, LightReceiver receiver) {
+/// Whether a scene has any light for the sample of this number.
+REALCAM_INLINE bool has_light(const SceneView& scene, SkySampling sky, int number) {
+    if (number == 1) return sky == SkySampling::apart && scene.has_environment;
+    return scene.light_node_count + scene.sun_count > 0 || scene.has_environment;
+}
+
+/// `local`, `suns`: importances of all point and area lights, and of all suns; 0 where there is but one kind. Becomes
+/// vector code for many receivers.
+REALCAM_INLINE LightKinds light_kinds(const SceneView& scene, SkySampling sampling, float local, float suns) {
+    const int count = count_light_kinds(scene);
+    const float sky = count > 1 ? environment_importance(scene) : 0.0f, others = local + suns;
+    const bool is_apart =
+                   (sampling == SkySampling::apart) & scene.has_environment & (sky >= kApartShare * (sky + others)),
+               is_chosen = scene.has_environment & !is_apart & (sampling != SkySampling::left_to_rays);
+    const bool is_left_out = scene.has_environment & !is_chosen;
+    const LightShares shares = light_shares(static_cast<float>(count) - select(is_left_out, 1.0f, 0.0f),
+                                            select(is_chosen, others + sky, others));
+    return {shares, scene.light_node_count > 0 ? shares.probability(local) : 0.0f,
+            select(is_chosen, shares.probability(sky), 0.0f), is_apart};
+}
+
+REALCAM_INLINE LightKinds light_kinds(const SceneView& scene, SkySampling sampling, LightReceiver receiver) {
     float local = 0.0f, suns = 0.0f;
     if (count_light_kinds(scene) > 1) {
         if (scene.light_node_count > 0) local = most_illuminance(scene.light_nodes[0], receiver);
         for (int i = 0; i < scene.sun_count; ++i) suns += sun_importance(scene.suns[i], receiver.normal);
     }
-    return light_kinds(scene, local, suns);
+    return light_kinds(scene, sampling, local, suns);
 }
 
-/// Density per steradian of sample_light in a direction in which the environment is seen.
-REALCAM_INLINE float environment_light_pdf(const SceneView& scene, LightReceiver receiver, Vec3f direction) {
-    return light_kinds(scene, receiver).environment_probability *
+/// Density per steradian of sample_light in a direction in which the environment is seen. One of its two samples may
+/// be in that direction, and which one depends on the receiver alone.
+REALCAM_INLINE float environment_light_pdf(const SceneView& scene, SkySampling sampling, LightReceiver receiver,
+                                           Vec3f direction) {
+    return light_kinds(scene, sampling, receiver).environment_chance() *
            environment_pdf(scene.environment, receiver.normal, direction);
 }
 
 /// The same in a direction in which an area light is met, at this distance and with this cosine at it.
 template <SceneKind scene_kind>
-REALCAM_INLINE float emitter_light_pdf(const SceneView& scene, LightReceiver receiver, std::int32_t area_light,
-                                       float distance, float cosine) {
+REALCAM_INLINE float emitter_light_pdf(const SceneView& scene, SkySampling sampling, LightReceiver receiver,
+                                       std::int32_t area_light, float distance, float cosine) {
     const AreaLight& light = scene.areas[area_light];
     float area = light.area;
     if constexpr (scene_kind == SceneKind::any) area = area_light_at(scene, light, receiver.time).area;
-    return light_kinds(scene, receiver).local_probability *
+    return light_kinds(scene, sampling, receiver).local_probability *
            light_probability(scene, receiver, scene.point_count + area_light) *
            area_light_pdf(area, distance * distance, cosine);
 }
@@ -212,9 +244,10 @@ struct LightPick {
 };
 
 /// Chooses one light. One pair of numbers does that and chooses a place on it, so that what is even over a pixel's
-/// samples is even over each light. `seed` as in choose_light.
-REALCAM_INLINE LightPick pick_light(const SceneView& scene, LightReceiver receiver, const LightKinds& kinds, Vec2f u,
-                                    std::uint32_t seed) {
+/// samples is even over each light. `number`: of the sample. `seed` as in choose_light.
+REALCAM_INLINE LightPick pick_light(const SceneView& scene, LightReceiver receiver, const LightKinds& kinds, int number,
+                                    Vec2f u, std::uint32_t seed) {
+    if (number == 1) return {LightKind::environment, 0, kinds.environment_is_apart ? 1.0f : 0.0f, u};
     float probability = kinds.local_probability;
     const auto rescale = [&] {
         const float fresh = u.x / probability;
@@ -272,10 +305,11 @@ REALCAM_INLINE LightSample sample_picked(const SceneView& scene, LightReceiver r
     return {-sun.direction, kFarAway, 1.0f, sun.illuminance, kDelta};
 }
 
-/// Chooses one light, and a place on it.
+/// Chooses one light for the sample of this number, for which the scene must have one, and a place on it. Black: none.
 template <SceneKind scene_kind>
-REALCAM_INLINE LightSample sample_light(const SceneView& scene, LightReceiver receiver, Vec2f u, std::uint32_t seed) {
-    const LightPick pick = pick_light(scene, receiver, light_kinds(scene, receiver), u, seed);
+REALCAM_INLINE LightSample sample_light(const SceneView& scene, SkySampling sampling, LightReceiver receiver,
+                                        int number, Vec2f u, std::uint32_t seed) {
+    const LightPick pick = pick_light(scene, receiver, light_kinds(scene, sampling, receiver), number, u, seed);
     if (!(pick.probability > 0.0f)) return {{0, 1, 0}, kFarAway, 1.0f, {0, 0, 0}, kDelta};
     LightSample sample = sample_picked<scene_kind>(scene, receiver, pick);
     sample.irradiance = bounded_light((1.0f / pick.probability) * sample.irradiance);

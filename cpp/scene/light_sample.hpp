@@ -1,4 +1,6 @@
 #pragma once
+#include <cstdint>
+
 #include "../math/color.hpp"
 
 namespace REALCAM_NAMESPACE {
@@ -10,6 +12,14 @@ struct LightReceiver {
     Vec3f position;
     Vec3f normal;  ///< of the surface, on the side that light can reach; zero: light may come from all sides
     float time = 0;  ///< share of the exposure; for SceneKind::any alone
+};
+
+/// How the environment is looked for at a surface beside other lights. A choice between the two is noisiest where the
+/// stronger one is hidden.
+enum class SkySampling : std::int32_t {
+    chosen,       ///< as one of the lights
+    apart,        ///< by a sample of its own, where it brings a good part of the light
+    left_to_rays  ///< by the scattered ray alone, whose directions have the density that samples would have
 };
 
 /// A direction from which light may come to a receiver.

@@ -35,11 +35,16 @@ Color grey_of_pi() {
     return grey(static_cast<float>(M_PI));
 }
 
-/// Light of a direct light sample, where an irradiance of E becomes a radiance of E.
+/// Light of direct light samples, where an irradiance of E becomes a radiance of E.
 double seen(const SceneView& scene, LightReceiver receiver, Vec2f u) {
-    const LightSample light = sample_light<SceneKind::plain>(scene, receiver, u, 7);
     const PlainBsdf white{receiver.normal, receiver.normal, receiver.normal, grey_of_pi(), {0, 0, 0}, 0};
-    return static_cast<double>((white.eval(light.direction) * light.irradiance).r);
+    double sum = 0;
+    for (int k = 0; k < kLightSampleCount; ++k) {
+        if (!has_light(scene, SkySampling::apart, k)) continue;
+        const LightSample light = sample_light<SceneKind::plain>(scene, SkySampling::apart, receiver, k, u, 7);
+        sum += static_cast<double>((white.eval(light.direction) * light.irradiance).r);
+    }
+    return sum;
 }
 
 LightReceiver receiver_at(Vec3d position, Vec3d normal) {

@@ -107,3 +107,33 @@ TEST_CASE("smooth normals that turn away from the eye are the same in all lanes"
     for (Vec3f& n : scene.normals) n = normalized(n);
     check_lanes<SceneKind::opaque>(Assembly(scene), PathSettings{5}, kTolerance);
 }
+
+TEST_CASE("a lane without a light holds a direction that tables can be read by, whatever was in memory") {
+    constexpr int kLanes = 16;
+    Scene scene = room(varnished());
+    scene.environment.constant = grey(1e-6f);  // too dim for a sample of its own
+    const BothTraversals traversals{Assembly(scene)};
+    const SceneView view = traversals.scene();
+    SampleBlock<kLanes> block;
+    PathState<kLanes> path;
+    PathResults<kLanes> results;
+    begin_all_around(0, block, path, results);
+    path.count = 5;
+    GlossySurfaces<kLanes> surfaces;
+    for (int i = 0; i < kLanes; ++i) {
+        SurfacePoint point{};
+        point.normal = point.geometric_normal = {0, 1, 0};
+        point.material = &view.materials[1];
+        surfaces.set(i, point);
+    }
+    LightSamples<kLanes> samples;
+    for (int i = 0; i < kLanes; ++i) samples.set(i, {{1e30f, 1e30f, 1e30f}, 1e30f, 1e30f, grey(1e30f), 1e30f});
+    const LightKindsLanes<kLanes> kinds(view, SkySampling::apart, surfaces, path.count);
+    const PathNumbers<kLanes> numbers(block, path, dimension::of_bounce(0) + dimension::light);
+    sample_lights<SceneKind::opaque>(view, kinds, 1, surfaces, path, numbers, [](int) { return 1u; }, samples);
+    for (int i = 0; i < whole_vectors<kLanes>(path.count); ++i) {
+        CHECK(samples[i].direction.y == 1.0f);
+        CHECK(is_black(samples[i].irradiance));
+        CHECK(samples[i].pdf == kDelta);
+    }
+}

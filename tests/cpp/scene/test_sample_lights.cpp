@@ -206,6 +206,7 @@ TEST_CASE("a light is chosen from the tree with the probability that is said of 
     const SceneView view = placed.view();
     const int lights = view.point_count + view.area_count;
     unsigned seed = 1;
+    double worst = 0;
     for (const Vec3f position : {Vec3f{0, 0, 0.5f}, Vec3f{1, -1, -3}, Vec3f{50, 20, 10}})
         for (const Vec3f normal : {Vec3f{0, 0, 0}, Vec3f{0, 0, 1}, Vec3f{0, 0, -1}, Vec3f{-1, 0, 0}}) {
             const LightReceiver receiver{position, normal};
@@ -216,45 +217,67 @@ TEST_CASE("a light is chosen from the tree with the probability that is said of 
             for (int i = 0; i < kSamples; ++i) {
                 const LightChoice choice = choose_light(view, receiver, uniform(), static_cast<std::uint32_t>(i));
                 REQUIRE((choice.light >= 0 && choice.light < lights && choice.fresh >= 0 && choice.fresh < 1));
-                CHECK(choice.probability == doctest::Approx(light_probability(view, receiver, choice.light)));
-                ++counts[static_cast<std::size_t>(choice.light)];
+                const auto light = static_cast<std::size_t>(choice.light);
+                worst = std::max(worst,
+                                 std::fabs(kSamples * static_cast<double>(choice.probability) / expected[light] - 1));
+                ++counts[light];
             }
             tests.add(expected, counts);
         }
     tests.hold();
+    CHECK(worst < 1e-5);
 }
 
+namespace {
+
+/// How often each kind is picked, against its probability: point and area lights, two suns, and a sky.
+void check_kinds(ChiSquareTests& tests, const SceneView& view, LightReceiver receiver, const LightKinds& kinds,
+                 unsigned seed) {
+    const double share[] = {static_cast<double>(kinds.local_probability),
+                            static_cast<double>(kinds.sun_probability(view.suns[0], receiver.normal)),
+                            static_cast<double>(kinds.sun_probability(view.suns[1], receiver.normal)),
+                            static_cast<double>(kinds.environment_probability)};
+    CHECK(share[0] + share[1] + share[2] + share[3] == doctest::Approx(1).epsilon(1e-6));
+    CHECK((share[3] > 0) != kinds.environment_is_apart);
+    std::vector<double> expected, counts(4);
+    for (const double s : share) expected.push_back(s * kSamples);
+    Uniform uniform(seed);
+    for (int i = 0; i < kSamples; ++i) {
+        const LightPick pick = pick_light(view, receiver, kinds, 0, uniform.pair(), 1);
+        ++counts[pick.kind == LightKind::sun           ? static_cast<std::size_t>(1 + pick.index)
+                 : pick.kind == LightKind::environment ? 3u
+                                                       : 0u];
+    }
+    tests.add(expected, counts);
+    const LightPick second = pick_light(view, receiver, kinds, 1, {0.5f, 0.5f}, 1);
+    CHECK(second.kind == LightKind::environment);
+    CHECK(second.probability == (kinds.environment_is_apart ? 1.0f : 0.0f));
+}
+
+}  // namespace
+
 TEST_CASE("kinds of light are chosen with the probabilities of LightKinds, which add up to 1") {
-    ChiSquareTests tests("sample_light: the choice of a kind");
-    // Told apart by colour: a point, a shining triangle, two suns, a sky.
-    Scene scene = with_lamps({{{0, 2, 0}, {1, 2, 0}, {0, 2, 1}, 1}});
-    scene.materials.back().emission = {0, 0, 5};
-    scene.suns = {{{0, -1, 0}, {1, 1, 0}}, {{0, -0.6f, 0.8f}, {0, 10, 0}}};
-    scene.environment.constant = {1, 0, 1};
-    const RenderSpaceScene placed(scene, {0, 0, 0});
+    ChiSquareTests tests("pick_light: the choice of a kind");
     unsigned seed = 1;
-    for (const Vec3f normal : {Vec3f{0, 1, 0}, Vec3f{0, 0, -1}, Vec3f{0, -1, 0}, Vec3f{0, 0, 0}}) {
-        const LightReceiver receiver{{0.2f, 0, 0.1f}, normal};
+    for (const float sky : {1.0f, 1e-3f}) {
+        Scene scene = with_lamps({{{0, 2, 0}, {1, 2, 0}, {0, 2, 1}, 1}});
+        scene.suns = {{{0, -1, 0}, {1, 1, 0}}, {{0, -0.6f, 0.8f}, {0, 10, 0}}};
+        scene.environment.constant = {sky, 0, sky};
+        const RenderSpaceScene placed(scene, {0, 0, 0});
         const SceneView view = placed.view();
-        const LightKinds kinds = light_kinds(view, receiver);
-        const std::vector<double> share = {static_cast<double>(kinds.local_probability),
-                                           static_cast<double>(kinds.environment_probability),
-                                           static_cast<double>(kinds.sun_probability(view.suns[0], normal)),
-                                           static_cast<double>(kinds.sun_probability(view.suns[1], normal))};
-        CHECK(share[0] + share[1] + share[2] + share[3] == doctest::Approx(1).epsilon(1e-6));
-        std::vector<double> expected, counts(4);
-        for (const double s : share) expected.push_back(s * kSamples);
-        Uniform uniform(seed++);
-        for (int i = 0; i < kSamples; ++i) {
-            const LightSample s = sample_light<SceneKind::plain>(view, receiver, uniform.pair(), 1);
-            const bool is_sun = s.pdf == kDelta && s.distance >= kFarAway;
-            ++counts[is_sun ? (s.irradiance.r > 0 ? 2u : 3u) : s.distance >= kFarAway ? 1u : 0u];
+        for (const Vec3f normal : {Vec3f{0, 1, 0}, Vec3f{0, 0, -1}, Vec3f{0, -1, 0}, Vec3f{0, 0, 0}}) {
+            CAPTURE(sky);
+            const LightReceiver receiver{{0.2f, 0, 0.1f}, normal};
+            const LightKinds kinds = light_kinds(view, SkySampling::apart, receiver);
+            // A dim sky is all the light of what is turned away from the others.
+            CHECK((!kinds.environment_is_apart || sky == 1.0f || normal.y < 0));
+            check_kinds(tests, view, receiver, kinds, seed++);
+            check_kinds(tests, view, receiver, light_kinds(view, SkySampling::chosen, receiver), seed++);
         }
-        tests.add(expected, counts);
     }
     tests.hold();
 
     const Scene dark = bare_scene();
     const RenderSpaceScene nothing(dark, {0, 0, 0});
-    CHECK(is_black(sample_light<SceneKind::plain>(nothing.view(), {{0, 0, 0}, {0, 1, 0}}, {0.5f, 0.5f}, 1).irradiance));
+    for (int k = 0; k < kLightSampleCount; ++k) CHECK_FALSE(has_light(nothing.view(), SkySampling::apart, k));
 }
