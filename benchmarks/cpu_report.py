@@ -67,13 +67,13 @@ def markdown(record: dict, plot: str) -> str:
         f"Mitsuba {record['mitsuba']}; {machine['date']}. Made by benchmarks/against_mitsuba_cpu.py.",
         "",
         f"The same work: {record['triangles']} triangles, one area light and a sky, 640 x 640 x {record['spp']} "
-        "samples of a camera ray and one shadow ray. Mitsuba uses `direct` with one emitter sample and none of the "
+        "samples of a camera ray and two shadow rays. Mitsuba uses `direct` with two emitter samples and none of the "
         "BSDF, and has the double Gauss as a sensor in Python. Least of 4 rounds in turns, without compilation:",
         "",
         *same_work_table(record),
         "",
         "Error over time: the same scene through the thin lens; each of Mitsuba's integrators with its best sampler "
-        "(multijitter; ldsampler for one emitter sample).",
+        "(multijitter; ldsampler for two emitter samples).",
         "",
         *error_tables(record),
         "",
