@@ -83,10 +83,7 @@ class Server:
         return self.log.read_text()
 
     def start(self) -> None:
-        program = (
-            f"import sys; sys.path.append({str(Path(__file__).parent)!r}); import bench_server; bench_server.run()"
-        )
-        command = [sys.executable, "-c", program, "view", self.shot.name, "--no-browser", "--port", str(self.port)]
+        command = [sys.executable, "-c", _PROGRAM, "view", self.shot.name, "--no-browser", "--port", str(self.port)]
         # NiceGUI has a mode for tests that are run within it, which this variable turns on.
         environment = {name: value for name, value in os.environ.items() if name != "PYTEST_CURRENT_TEST"}
         # Appended to, so that a server that is started anew hides no traceback of the first.
@@ -158,6 +155,14 @@ async () => {
     await new Promise((done) => setTimeout(done, 110));
     const key = [...realcamStreams.keys()][0].split("/").pop();
     return (await fetch(`/tests/asked/${key}`)).json();
+}
+"""
+# The same after the last frame has been acknowledged; null before. The server answers a slow acknowledgement with the
+# same picture as a better JPEG, which has a serial of its own.
+_ASKED_IN_THE_END = """
+async () => {
+    const key = [...realcamStreams.keys()][0].split("/").pop();
+    return (await fetch(`/tests/asked_in_the_end/${key}`)).json();
 }
 """
 # The canvas, if it shows these pictures and they are done.
@@ -249,10 +254,12 @@ class BenchPage:
 
     def picture(self) -> np.ndarray:
         """The picture of all that was done on this page before, as soon as nothing will be added: (H, W, 3) codes."""
-        asked = self.page.evaluate(_ASKED)
-        width, height, content = until(
-            lambda: self.page.evaluate(_SHOWN, asked), bool, f"the picture ({self.status}) of {asked} does not come"
-        )
+        asked, before = self.page.evaluate(_ASKED), None
+        while asked != before:
+            width, height, content = until(
+                lambda asked=asked: self.page.evaluate(_SHOWN, asked), bool, f"the picture ({self.status}) of {asked}"
+            )
+            before, asked = asked, until(lambda: self.page.evaluate(_ASKED_IN_THE_END), bool, "no acknowledgement")
         return np.frombuffer(base64.b64decode(content), np.uint8).reshape(height, width, 4)[..., :3]
 
     def shown(self) -> np.ndarray:

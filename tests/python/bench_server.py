@@ -39,6 +39,16 @@ async def asked(key: str) -> dict[str, int]:
     return await window.do(lambda: window.bench.asked)
 
 
+@app.get("/tests/asked_in_the_end/{key}")
+async def asked_in_the_end(key: str) -> dict[str, int] | None:
+    """The same, when the page has acknowledged all frames; None before."""
+    window = _opened[0].get(key)
+    assert window is not None
+    if window.stream._sent or window.stream._frames:
+        return None
+    return await window.do(lambda: window.bench.asked)
+
+
 @app.get("/tests/left/{key}")
 async def left(key: str) -> None:
     """Closes the window of a page that has gone. It would refine its picture for half a minute yet."""
