@@ -36,6 +36,8 @@ FINE = (12000, 3000)
 """The same where colours are measured, the first in which the image of the lamp has room. They are measured at this
 f-number or wide open: so the images are small."""
 COLOUR_F_NUMBER = 8.0
+ENDS_NM = (400.0, 550.0, 700.0)
+"""Pupils of these wavelengths hold between them those of all others."""
 LARGEST_PX = 128
 """Sides of the picture of a lamp."""
 BLUR_PX = 12
@@ -220,7 +222,8 @@ def colour_of_rays(lens: rc.Lens, lamp: Lamp, outwards: np.ndarray) -> float:
     # The pupil of a wide lens moves and grows towards the corner: it is looked for farther and farther out.
     for reach in (0.75, 1.5, 3, 6, 12):
         across = np.linspace(-reach, reach, 121) * data.entrance_pupil_diameter_mm
-        lit = traced(across, across, lens.wavelength_nm)[0].reshape(121, 121)
+        # Blue light has another pupil than red, where the front bends it much.
+        lit = np.any([traced(across, across, at_nm)[0] for at_nm in ENDS_NM], axis=0).reshape(121, 121)
         if lit.any() and not (lit[[0, -1]].any() or lit[:, [0, -1]].any()):
             break
     else:

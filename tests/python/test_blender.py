@@ -150,6 +150,51 @@ def test_the_focus_follows_an_object(scene: Any, tmp_path: Path) -> None:
     assert focus_m() == pytest.approx(2.0, rel=1e-4)
 
 
+def test_a_lens_is_compiled_whatever_the_engine(scene: Any, tmp_path: Path) -> None:
+    import bpy
+
+    # Blender begins with EEVEE, which compiles no cameras.
+    scene.render.engine = "BLENDER_EEVEE"
+    scene.camera.data.realcam.lens = "singlet-100mm"
+    scene.camera.data.realcam.dispersion = False
+    assert scene.render.engine == "BLENDER_EEVEE"
+    scene.render.engine = "CYCLES"
+    bpy.ops.render.render(write_still=True)
+    image = bpy.data.images.load(str(tmp_path / "picture.exr"))
+    # A white world is white in the middle, but for the extension of 1% by which the lens is focused at 10 m.
+    assert np.array(image.pixels[:]).reshape(40, 60, 4)[18:22, 28:32, 1].mean() == pytest.approx(0.98, rel=0.01)
+
+
+def test_keys_of_the_ring_and_units_reach_the_shader(scene: Any, tmp_path: Path) -> None:
+    import bpy
+
+    rings = scene.camera.data.realcam
+    rings.lens, rings.keep_brightness = "singlet-100mm", False
+    for frame, f_number in ((1, 16.0), (2, 32.0)):
+        rings.f_number = f_number
+        rings.keyframe_insert("f_number", frame=frame)
+    scene.unit_settings.scale_length = 0.01
+    scene.frame_start, scene.frame_end, scene.cycles.samples = 1, 2, 64
+    scene.render.filepath = str(tmp_path / "frame")
+    bpy.ops.render.render(animation=True)
+    light = [np.array(bpy.data.images.load(str(tmp_path / f"frame000{i}.exr")).pixels[:]).sum() for i in (1, 2)]
+    light = np.subtract(light, 60 * 40)  # of the channel of opacity
+    # The area of the stop is a fourth; and pupils as small as that are not cut anywhere.
+    assert light[0] / light[1] == pytest.approx(4, rel=0.02)
+    assert scene.camera.data.cycles_custom["metres_per_unit"] == pytest.approx(0.01)
+
+
+def test_files_keep_their_lens_when_the_extension_gets_more_of_them(scene: Any, monkeypatch: Any) -> None:
+    from realcam_lenses import settings
+
+    scene.camera.data.realcam.lens = "singlet-100mm"
+    # A lens that comes first, as an extension with more of them has it.
+    more = {"a": {"title": "a", "source": ""}, **settings.lenses()}
+    monkeypatch.setattr(settings, "lenses", lambda: more)
+    settings._MENU.clear()
+    assert scene.camera.data.realcam.lens == "singlet-100mm"
+
+
 def test_the_ring_turns_by_third_stops(scene: Any) -> None:
     import bpy
 

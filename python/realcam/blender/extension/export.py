@@ -24,7 +24,7 @@ class RealcamExportShot(bpy.types.Operator, ExportHelper):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         camera = context.scene.camera
-        return camera is not None and camera.data.realcam.lens != "none"
+        return camera is not None and camera.data.realcam.lens in lenses()
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         write_shot(context.scene, Path(self.filepath))

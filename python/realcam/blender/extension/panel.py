@@ -19,7 +19,7 @@ class RealcamTurnRing(bpy.types.Operator):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         camera = getattr(context, "camera", None)
-        return camera is not None and camera.realcam.lens != "none"
+        return camera is not None and camera.realcam.lens in lenses()
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         rings = context.camera.realcam
@@ -47,7 +47,7 @@ class RealcamPanel(bpy.types.Panel):
         layout = self.layout
         layout.use_property_split = True
         layout.prop(rings, "lens")
-        if rings.lens == "none":
+        if rings.lens not in lenses():
             return
         figures = lenses()[rings.lens]
         layout.prop(rings, "film")

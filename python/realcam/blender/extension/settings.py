@@ -2,26 +2,32 @@
 
 from __future__ import annotations
 
+from zlib import crc32
+
 import bpy
+from bpy.app.handlers import persistent
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty
 
 from .lenses import FILMS_MM, film_mm, lenses, shader_of
 
 # Blender keeps no reference of its own to the texts of a menu.
-_MENU: list[tuple[str, str, str]] = []
+_MENU: list[tuple[str, str, str, str, int]] = []
 
 
-def lens_menu(_self: object, _context: object) -> list[tuple[str, str, str]]:
+def lens_menu(_self: object, _context: object) -> list[tuple[str, str, str, str, int]]:
+    """A .blend file keeps the numbers, so that they have to be the same where the extension has other lenses."""
     if not _MENU:
-        _MENU.append(("none", "None: Blender's own", "A perspective camera"))
-        _MENU.extend((key, lens["title"], lens["source"]) for key, lens in lenses().items())
+        _MENU.append(("none", "None: Blender's own", "A perspective camera", "", 0))
+        _MENU.extend(
+            (key, lens["title"], lens["source"], "", crc32(key.encode()) >> 1) for key, lens in lenses().items()
+        )
     return _MENU
 
 
 def set_lens(self: RealcamLens, _context: object) -> None:
     """Gives the camera the shader of the lens, as a text inside of the file, which then needs no extension."""
     camera = self.id_data
-    if self.lens == "none":
+    if self.lens not in lenses():
         camera.type = "PERSP"
         return
     name = f"{self.lens}.osl"
@@ -29,20 +35,18 @@ def set_lens(self: RealcamLens, _context: object) -> None:
     text.from_string(shader_of(self.lens))
     camera.type = "CUSTOM"
     camera.custom_mode = "INTERNAL"
-    # Blender compiles the text when it becomes the camera's, and makes the parameters.
-    camera.custom_shader = None
-    camera.custom_shader = text
+    _compile(camera, text)
     # A perspective of the same angle is what the viewport shows without Cycles.
     camera.lens = lenses()[self.lens]["focal_length_mm"]
     if not camera.dof.use_dof:
         camera.dof.use_dof = True
-        camera.dof.focus_distance = 10 / _metres_per_unit()
+        camera.dof.focus_distance = 10 / bpy.context.scene.unit_settings.scale_length
     set_film(self, None)
     set_rings(self, None)
 
 
 def set_film(self: RealcamLens, _context: object) -> None:
-    if self.lens == "none":
+    if self.lens not in lenses():
         return
     camera = self.id_data
     width_mm, height_mm = film_mm(self.lens, self.film)
@@ -52,23 +56,45 @@ def set_film(self: RealcamLens, _context: object) -> None:
 
 
 def set_rings(self: RealcamLens, _context: object) -> None:
-    if self.lens == "none":
-        return
-    camera = self.id_data
-    parameters = camera.cycles_custom
-    parameters["focus_m"] = 0.0  # the focus of Blender's depth of field, which can be an object
-    parameters["f_number"] = max(self.f_number, lenses()[self.lens]["f_number"])
-    parameters["blades"] = float(self.blades)
-    parameters["rounding"] = self.rounding
-    parameters["rotation_deg"] = self.rotation_deg
-    parameters["dispersion"] = int(self.dispersion)
-    parameters["keep_brightness"] = int(self.keep_brightness)
-    parameters["metres_per_unit"] = _metres_per_unit()
-    camera.update_tag()
+    if self.lens in lenses():
+        _give_parameters(self.id_data, self, bpy.context.scene)
 
 
-def _metres_per_unit() -> float:
-    return bpy.context.scene.unit_settings.scale_length if bpy.context.scene else 1.0
+@persistent
+def follow(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
+    """Gives the shaders what the rings show in this frame: keys and units change without a call of `set_rings`."""
+    for camera in bpy.data.cameras:
+        rings = camera.evaluated_get(depsgraph).realcam
+        if rings.lens in lenses():
+            _give_parameters(camera, rings, scene)
+
+
+def _compile(camera: bpy.types.Camera, text: bpy.types.Text) -> None:
+    """Blender has the scene's engine compile a text when it becomes the camera's. Only Cycles can."""
+    render = bpy.context.scene.render
+    engine, render.engine = render.engine, "CYCLES"
+    try:
+        camera.custom_shader = None
+        camera.custom_shader = text
+    finally:
+        render.engine = engine
+
+
+def _give_parameters(camera: bpy.types.Camera, rings: RealcamLens, scene: bpy.types.Scene) -> None:
+    parameters = {
+        "focus_m": 0.0,  # the focus of Blender's depth of field, which can be an object
+        "f_number": max(rings.f_number, lenses()[rings.lens]["f_number"]),
+        "blades": float(rings.blades),
+        "rounding": rings.rounding,
+        "rotation_deg": rings.rotation_deg,
+        "dispersion": int(rings.dispersion),
+        "keep_brightness": int(rings.keep_brightness),
+        "metres_per_unit": scene.unit_settings.scale_length,
+    }
+    if any(camera.cycles_custom.get(name) != value for name, value in parameters.items()):
+        for name, value in parameters.items():
+            camera.cycles_custom[name] = value
+        camera.update_tag()
 
 
 class RealcamLens(bpy.types.PropertyGroup):
@@ -104,9 +130,11 @@ class RealcamLens(bpy.types.PropertyGroup):
 def register() -> None:
     bpy.utils.register_class(RealcamLens)
     bpy.types.Camera.realcam = PointerProperty(type=RealcamLens)
+    bpy.app.handlers.frame_change_post.append(follow)
 
 
 def unregister() -> None:
+    bpy.app.handlers.frame_change_post.remove(follow)
     del bpy.types.Camera.realcam
     bpy.utils.unregister_class(RealcamLens)
     _MENU.clear()
