@@ -74,6 +74,14 @@ class GrowingPicture:
         self.noise_codes = self.noise.codes(*developed)
         self.noise_tiles = self.noise.tiles(*developed)
 
+    def wants_measurement(self) -> bool:
+        """Whether its samples have doubled, or are as many as the noise that is asked for takes by the last one."""
+        if self.noise.is_doubled(self.samples):
+            return True
+        if self.noise_codes is None:
+            return False
+        return self.noise_codes**2 * self.noise.samples <= self.request.noise_codes**2 * self.samples
+
     def is_good_enough(self) -> bool:
         is_quiet = self.noise_codes is not None and self.noise_codes <= self.request.noise_codes
         return is_quiet or self.samples >= self.request.max_spp

@@ -15,19 +15,27 @@ _ROUNDING = 1 / 6  # variance of the difference of two 8-bit codes that are roun
 
 
 class NoiseMeasurement:
-    """Keeps two pictures, of which the second has the samples of the first and as many more."""
+    """Compares the newest picture with an earlier one, which has at most about half of its samples."""
 
     def __init__(self) -> None:
         # Samples and illuminance (lx): what the exposure is has no say in it.
-        self._pictures: deque[tuple[int, NDArray[np.float32]]] = deque(maxlen=2)
+        self._doublings: deque[tuple[int, NDArray[np.float32]]] = deque(maxlen=2)
+        self._newest: tuple[int, NDArray[np.float32]] | None = None
 
-    def is_due(self, samples: int) -> bool:
-        """Whether there are twice as many as the last picture had."""
-        return not self._pictures or samples >= 2 * self._pictures[-1][0]
+    @property
+    def samples(self) -> int:
+        """Of the newest picture."""
+        return self._newest[0] if self._newest else 0
+
+    def is_doubled(self, samples: int) -> bool:
+        """Whether there are twice as many as at the last doubling."""
+        return not self._doublings or samples >= 2 * self._doublings[-1][0]
 
     def add(self, samples: int, illuminance_lx: NDArray[np.float32]) -> None:
         """illuminance_lx: (height, width, 3), the mean of all samples."""
-        self._pictures.append((samples, illuminance_lx))
+        self._newest = samples, illuminance_lx
+        if self.is_doubled(samples):
+            self._doublings.append(self._newest)
 
     def codes(self, exposure_time_s: float, iso: float, tone: str) -> float | None:
         """Root mean square in 8-bit codes of the picture as it is developed; None where too few samples are there.
@@ -54,9 +62,9 @@ class NoiseMeasurement:
 
     def _squares(self, exposure_time_s: float, iso: float, tone: str) -> NDArray[np.float32] | None:
         """Estimates of the variance, (height, width, 3), some of which are below 0."""
-        if len(self._pictures) < 2:
+        if self._newest is None or len(self._doublings) < 2:
             return None
-        (samples, before), (all_samples, after) = self._pictures
+        (samples, before), (all_samples, after) = self._doublings[0], self._newest
         codes = [
             develop(illuminance * np.float32(exposure_time_s), iso, tone).astype(np.float32)
             for illuminance in (before, after)

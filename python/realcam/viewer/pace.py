@@ -9,6 +9,7 @@ from collections import deque
 _PREVIEW_S = 0.032  # what the first frame of a change may take, so that 25 of them fit into a second
 _QUICK_S = 0.008  # for so long it takes more than one sample, on a GPU: 60 frames a second remain
 _REFINING_S = 0.040  # what a frame may take that only refines, as long as it is more than a sample
+_MOST_REFINING_S = 1.0  # and one that adds no more than an eighth of the samples, of which little is seen
 _SLOW_S = 0.050  # a frame that takes longer must not keep the user waiting for what needs no new samples
 _MOST_SPP = 64  # of one frame, so that a fast GPU shows how a picture grows
 _DIVISORS = (1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0)  # of the width: few, because each size is prepared anew
@@ -48,8 +49,11 @@ class Pace:
         is_nearly_whole = coarse[0] > 0.7 * whole[0]
         return whole if is_nearly_whole or self._seconds(1, whole) < 8 * _PREVIEW_S else coarse
 
-    def refining_spp(self, size: Size) -> int:
-        return self._affordable_spp(_REFINING_S * statistics.median(self._rates), size)
+    def refining_spp(self, size: Size, samples: int) -> int:
+        """samples: of each pixel, which are there. Few large frames take less time than many small ones."""
+        rate = statistics.median(self._rates)
+        quick, slow = (self._affordable_spp(seconds * rate, size) for seconds in (_REFINING_S, _MOST_REFINING_S))
+        return max(quick, min(slow, samples // 8))
 
     def is_slow(self, spp: int, size: Size) -> bool:
         """Whether a frame that refines is foreseen to keep the user waiting."""

@@ -223,8 +223,8 @@ class PictureLoop:
         is_new_size = picture.size != picture.whole
         if is_new_size:
             picture.size = pace.next_size(picture.size, picture.whole)
-        missing = request.max_spp - (0 if is_new_size else picture.samples)
-        spp = min(pace.refining_spp(picture.size), max(1, missing))
+        samples = 0 if is_new_size else picture.samples
+        spp = min(pace.refining_spp(picture.size, samples), max(1, request.max_spp - samples))
         if picture.kept is None and pace.is_slow(spp, picture.size):
             self._taker.keep(picture)
         with self._wake:

@@ -104,7 +104,7 @@ class PictureTaker:
 
     def measure_noise(self, picture: GrowingPicture) -> None:
         """Where it is due; and whether the picture is good enough with it."""
-        if picture.noise.is_due(picture.samples):
+        if picture.wants_measurement():
             exposure, _ = self.arrays(picture)
             picture.noise.add(picture.samples, exposure / np.float32(picture.exposure_time_s))
             picture.tell_noise(self.camera(picture).exposure_time_s)
