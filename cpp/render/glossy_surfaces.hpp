@@ -38,6 +38,9 @@ struct GlossySurfaces {
     REALCAM_INLINE GlossySurface glossy(int place) const {
         return {base[place], f0[place], f90[place], metallic[place], alpha[place]};
     }
+    REALCAM_INLINE LightLobe lobe(int place, Vec3f to_eye) const {
+        return light_lobe(glossy(place), normal[place], to_eye);
+    }
     REALCAM_INLINE bool is_in_lanes(int place) const { return is_glossy[place] != 0; }
 
 private:

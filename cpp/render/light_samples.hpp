@@ -145,7 +145,8 @@ REALCAM_INLINE void pick_lights(const SceneView& scene, const LightKindsLanes<N>
     for (int i = 0; i < places; ++i) picked.source[i] = Source::none;  // also of the places that are not in use
     for (int i = 0; i < path.count; ++i) {
         if (!surfaces.is_in_lanes(i)) continue;
-        const LightReceiver receiver = {surfaces.position[i], surfaces.normal[i], time_of<scene_kind>(path, i)};
+        const LightReceiver receiver = {surfaces.position[i], surfaces.normal[i], time_of<scene_kind>(path, i),
+                                        surfaces.lobe(i, -path.rays.direction[i])};
         const LightPick pick = pick_light(scene, receiver, kinds[i], number, u[i], seed(i));
         if (!(pick.probability > 0.0f)) continue;
         picked.u.set(i, pick.u);

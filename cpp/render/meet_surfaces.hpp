@@ -33,6 +33,7 @@ struct PlainSurfaces {
     REALCAM_INLINE SurfacePlace operator[](int place) const {
         return {position[place], geometric_normal[place], self_offset[place]};
     }
+    REALCAM_INLINE LightLobe lobe(int, Vec3f) const { return {}; }
     REALCAM_INLINE bool is_in_lanes(int) const { return true; }
 };
 

@@ -17,7 +17,10 @@ REALCAM_INLINE Color clamped(Color c, float limit) {
 
 template <SceneKind scene_kind, int N>
 REALCAM_INLINE LightReceiver receiver_of(const PathState<N>& path, int lane) {
-    return {path.receiver_position[lane], path.receiver_normal[lane], time_of<scene_kind>(path, lane)};
+    LightLobe lobe;
+    if constexpr (scene_kind != SceneKind::plain)
+        lobe = {path.receiver_to_eye[lane], path.receiver_alpha[lane], path.receiver_share[lane]};
+    return {path.receiver_position[lane], path.receiver_normal[lane], time_of<scene_kind>(path, lane), lobe};
 }
 
 /// How the environment was looked for at the surface that a ray left. `bounce`: at which the ray ends.

@@ -45,6 +45,8 @@ struct PathState {
     Lanes<float, N> weight;  ///< the throughput with which the path began
     Lanes<float, N> pdf;  ///< with which the ray's direction was drawn, per steradian
     Vec3Lanes<float, N> receiver_position, receiver_normal;  ///< of the surface that the ray left (LightReceiver)
+    Vec3Lanes<float, N> receiver_to_eye;  ///< its LightLobe, not for SceneKind::plain
+    Lanes<float, N> receiver_alpha, receiver_share;
     Lanes<SkySampling, N> receiver_sky;  ///< how the environment was looked for there; for SceneKind::any alone
     ColorLanes<N> absorption;  ///< of the medium that the ray is in, per metre
 
@@ -59,6 +61,11 @@ struct PathState {
     REALCAM_INLINE int lane(int place) const {
         if constexpr (N > 1) return lane_[place];
         return 0;
+    }
+    REALCAM_INLINE void set_receiver_lobe(int place, LightLobe lobe) {
+        receiver_to_eye.set(place, lobe.to_eye);
+        receiver_alpha[place] = lobe.alpha;
+        receiver_share[place] = lobe.share;
     }
     /// Moves what a path at a surface still needs of its way there.
     template <SceneKind scene_kind>
@@ -77,6 +84,7 @@ struct PathState {
                 receiver_position.set(to, receiver_position[from]);
                 receiver_normal.set(to, receiver_normal[from]);
                 receiver_sky[to] = receiver_sky[from];
+                set_receiver_lobe(to, {receiver_to_eye[from], receiver_alpha[from], receiver_share[from]});
             }
         }
     }

@@ -82,6 +82,10 @@ REALCAM_INLINE void scatter_glossy(const PathSettings& settings, int bounce, Sky
         path.rays.origin.set(i, ray_start(place, direction));
         path.rays.direction.set(i, select(is_used, direction, arriving));
         path.pdf[i] = select(is_used, pdf, path.pdf[i]);
+        const LightLobe lobe = surfaces.lobe(i, -arriving);
+        path.receiver_to_eye.set(i, select(is_used, lobe.to_eye, path.receiver_to_eye[i]));
+        path.receiver_alpha[i] = select(is_used, lobe.alpha, path.receiver_alpha[i]);
+        path.receiver_share[i] = select(is_used, lobe.share, path.receiver_share[i]);
         if constexpr (scene_kind == SceneKind::any) path.receiver_sky[i] = select(is_used, sky, path.receiver_sky[i]);
         path.receiver_position.set(i, select(is_used, place.position, path.receiver_position[i]));
         path.receiver_normal.set(i, select(is_used, normal, path.receiver_normal[i]));

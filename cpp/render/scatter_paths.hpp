@@ -1,5 +1,5 @@
 #pragma once
-#include "../scene/make_bsdf.hpp"
+#include "../scene/glossy_bsdf.hpp"
 #include "meet_surfaces.hpp"
 #include "path_numbers.hpp"
 #include "shadow_rays.hpp"
@@ -106,7 +106,8 @@ REALCAM_INLINE bool scatter_at(const SceneView& view, const PathSettings& settin
         }
     }
     auto bsdf = make_bsdf<scene_kind>(point, -direction);
-    const LightReceiver receiver = {point.position, bsdf.is_opaque() ? point.normal : Vec3f{0, 0, 0}, time};
+    LightReceiver receiver = {point.position, bsdf.is_opaque() ? point.normal : Vec3f{0, 0, 0}, time};
+    if constexpr (scene_kind != SceneKind::plain) receiver.lobe = light_lobe(point, -direction);
     const SkySampling sky = sky_sampling(view, goes_on(settings, bounce), bounce == 0);
     // One copy of the code, because a GPU's cache of instructions is full.
     REALCAM_NO_UNROLL
@@ -120,6 +121,7 @@ REALCAM_INLINE bool scatter_at(const SceneView& view, const PathSettings& settin
         scatter_path(settings, bounce, place, point, receiver, bsdf, scatter_numbers, unit_float(seed), path);
     if constexpr (scene_kind == SceneKind::any) path.receiver_sky[place] = sky;
     if constexpr (scene_kind != SceneKind::plain) {
+        path.set_receiver_lobe(place, receiver.lobe);
         if (refracted) path.absorption.set(place, point.is_front ? point.material->absorption : Color{0, 0, 0});
     }
     return false;

@@ -13,6 +13,7 @@ REALCAM_INLINE void set_first_density(const CameraView& camera, float density, i
         front = front_vertex(camera_at(camera, path.rays.time[lane]), camera.front_vertex_m);
         path.receiver_sky[lane] = SkySampling::chosen;
     }
+    if constexpr (scene_kind != SceneKind::plain) path.set_receiver_lobe(lane, {});
     path.pdf[lane] = density;
     path.receiver_position.set(lane, front);
     path.receiver_normal.set(lane, {0, 0, 0});

@@ -1,4 +1,5 @@
 #pragma once
+#include "light_sample.hpp"
 #include "make_bsdf.hpp"
 
 namespace REALCAM_NAMESPACE {
@@ -27,6 +28,22 @@ REALCAM_INLINE GlossySurface glossy_surface(const SurfacePoint& point) {
     if (m.model == MaterialModel::phong) return {point.diffuse, {0, 0, 0}, 0.0f, 0.0f, 1.0f};
     return {unit_range(point.diffuse), unit_range((point.specular_weight * normal_reflectance(m.ior)) * point.specular),
             point.specular_weight, unit_range(point.metallic), alpha_of(point.roughness)};
+}
+
+/// What of a surface decides which lights it shows. `normal`: turned to the eye.
+REALCAM_INLINE LightLobe light_lobe(const GlossySurface& surface, Vec3f normal, Vec3f to_eye) {
+    const float cosine = dot(normal, to_eye), left = 1.0f - select(cosine > 0.0f, cosine, 0.0f),
+                grazing = left * left * left * left * left;
+    const float base = largest(surface.base), f0 = largest(surface.f0);
+    const float dielectric = f0 + (surface.f90 - f0) * grazing, metal = base + (1.0f - base) * grazing;
+    const float specular = dielectric + (metal - dielectric) * surface.metallic,
+                diffuse = (1.0f - surface.metallic) * base;
+    return {to_eye, surface.alpha, select(specular > 0.0f, specular / (specular + diffuse), 0.0f)};
+}
+
+/// The same of any point; where GlossyBsdf does not describe it, lights are chosen by their illuminance.
+REALCAM_INLINE LightLobe light_lobe(const SurfacePoint& point, Vec3f to_eye) {
+    return is_glossy(point) ? light_lobe(glossy_surface(point), point.normal, to_eye) : LightLobe{};
 }
 
 /// What Bsdf is for most opaque surfaces: Lambert's lobe under one of rough microfacets. Without branches, so that it

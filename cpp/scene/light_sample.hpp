@@ -7,11 +7,19 @@ namespace REALCAM_NAMESPACE {
 
 inline constexpr float kFarAway = 3.0e38f;
 
+/// A lobe of rough facets, by which lights are chosen that it shows.
+struct LightLobe {
+    Vec3f to_eye = {0, 0, 0};  ///< unit
+    float alpha = 1;           ///< of the facets (ggx.hpp)
+    float share = 0;           ///< of what the surface scatters, about; the rest is Lambert's
+};
+
 /// Where and when light is wanted.
 struct LightReceiver {
     Vec3f position;
     Vec3f normal;  ///< of the surface, on the side that light can reach; zero: light may come from all sides
     float time = 0;  ///< share of the exposure; for SceneKind::any alone
+    LightLobe lobe = {};
 };
 
 /// How the environment is looked for at a surface beside other lights. A choice between the two is noisiest where the

@@ -38,6 +38,7 @@ struct NodeView {
     float squared_radius;
     float cos_bounds;  ///< of the angle in which the bounds appear; from inside, lights are in all directions
     float cos_axis, cos_normal;  ///< of the way with the axis of what the lights emit, and with the receiver's normal
+    Vec3f to_middle;  ///< unit, from the receiver
 
     REALCAM_INLINE NodeView(const LightNode& node, LightReceiver receiver) {
         const Vec3f middle = 0.5f * (node.low + node.high), half = node.high - middle;
@@ -49,23 +50,48 @@ struct NodeView {
         const float inverse = 1.0f / std::sqrt(select(squared_distance > 1e-30f, squared_distance, 1e-30f));
         cos_axis = inverse * dot(node.axis, way);
         cos_normal = -inverse * dot(receiver.normal, way);
+        to_middle = -inverse * way;
     }
 };
+
+/// About the mean of the lobe of rough facets over the directions of a node: BSDF times cosine over the lobe's albedo,
+/// as a share of what Lambert's lobe has at most.
+REALCAM_INLINE float lobe_importance(const NodeView& seen, LightReceiver receiver) {
+    const auto at_least = [](float v, float least) { return select(v > least, v, least); };
+    const Vec3f sum = receiver.lobe.to_eye + seen.to_middle;
+    const float squared = at_least(dot(sum, sum), 1e-6f), along = dot(sum, receiver.normal),
+                cosine2 = along * along / squared;
+    // The facets' normal is along the sum, and turns the more over the node the shorter the sum is. The lobe is made
+    // wider by this.
+    const float sin2 = select(seen.cos_bounds > 0.0f, 1.0f - seen.cos_bounds * seen.cos_bounds, 1.0f),
+                width2 = receiver.lobe.alpha * receiver.lobe.alpha + 0.25f * sin2 / squared,
+                a2 = select(width2 < 1.0f, width2, 1.0f), k = (1.0f - cosine2) + a2 * cosine2;
+    const float value = a2 / (4.0f * k * k * at_least(dot(receiver.normal, receiver.lobe.to_eye), 1e-2f));
+    // The mean is at most that of a lobe which lies wholly in the node.
+    const float most = 0.5f / at_least(1.0f - seen.cos_bounds, 1e-6f);
+    return select(value < most, value, most);
+}
 
 REALCAM_INLINE bool has_normal(LightReceiver receiver) {
     return dot(receiver.normal, receiver.normal) > 0.0f;
 }
 
 /// About the illuminance, in lux, that a node's lights bring to a receiver if nothing stands in between: a mean over
-/// where they may be and how they may be turned. Without branches, so that it becomes vector code for many receivers.
+/// where they may be and how they may be turned. With a lobe of rough facets, the part of it that the lobe scatters
+/// counts as much more or less as the lobe has in their directions than Lambert's.
 REALCAM_INLINE float light_importance(const LightNode& node, LightReceiver receiver) {
     const NodeView seen(node, receiver);
     const float emitted = mean_cosine(seen.cos_axis, cosine_of_sum(node.cos_spread, seen.cos_bounds)),
                 received = mean_cosine(seen.cos_normal, seen.cos_bounds);
+    float scattered = select(has_normal(receiver), received, 1.0f);
+    if (receiver.lobe.share > 0.0f && received > 0.0f) {
+        // Lights that the estimate for the lobe overlooks keep a chance.
+        constexpr float kTrust = 0.9f;
+        scattered += kTrust * receiver.lobe.share * (lobe_importance(seen, receiver) - received);
+    }
     // Over a ball, one over the squared distance from its middle has the mean 3 / radius^2.
     const float inside = (1.0f / 3.0f) * seen.squared_radius;
-    return node.intensity * select(node.is_isotropic != 0, 1.0f, emitted) *
-           select(has_normal(receiver), received, 1.0f) /
+    return node.intensity * select(node.is_isotropic != 0, 1.0f, emitted) * scattered /
            select(seen.squared_distance > inside, seen.squared_distance, inside);
 }
 
