@@ -38,7 +38,10 @@ REALCAM_INLINE LightLobe light_lobe(const GlossySurface& surface, Vec3f normal, 
     const float dielectric = f0 + (surface.f90 - f0) * grazing, metal = base + (1.0f - base) * grazing;
     const float specular = dielectric + (metal - dielectric) * surface.metallic,
                 diffuse = (1.0f - surface.metallic) * base;
-    return {to_eye, surface.alpha, select(specular > 0.0f, specular / (specular + diffuse), 0.0f)};
+    // A lobe about as broad as Lambert's shows the same lights, and needs no second look at each node of their tree.
+    constexpr float kBroad = 0.5f;
+    const bool is_used = (specular > 0.0f) & (surface.alpha < kBroad);
+    return {to_eye, surface.alpha, select(is_used, specular / (specular + diffuse), 0.0f)};
 }
 
 /// The same of any point; where GlossyBsdf does not describe it, lights are chosen by their illuminance.

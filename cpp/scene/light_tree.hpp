@@ -59,17 +59,18 @@ struct NodeView {
 REALCAM_INLINE float lobe_importance(const NodeView& seen, LightReceiver receiver) {
     const auto at_least = [](float v, float least) { return select(v > least, v, least); };
     const Vec3f sum = receiver.lobe.to_eye + seen.to_middle;
-    const float squared = at_least(dot(sum, sum), 1e-6f), along = dot(sum, receiver.normal),
-                cosine2 = along * along / squared;
+    const float inverse = 1.0f / at_least(dot(sum, sum), 1e-6f), along = dot(sum, receiver.normal),
+                cosine2 = along * along * inverse;
     // The facets' normal is along the sum, and turns the more over the node the shorter the sum is. The lobe is made
     // wider by this.
     const float sin2 = select(seen.cos_bounds > 0.0f, 1.0f - seen.cos_bounds * seen.cos_bounds, 1.0f),
-                width2 = receiver.lobe.alpha * receiver.lobe.alpha + 0.25f * sin2 / squared,
+                width2 = receiver.lobe.alpha * receiver.lobe.alpha + 0.25f * sin2 * inverse,
                 a2 = select(width2 < 1.0f, width2, 1.0f), k = (1.0f - cosine2) + a2 * cosine2;
-    const float value = a2 / (4.0f * k * k * at_least(dot(receiver.normal, receiver.lobe.to_eye), 1e-2f));
-    // The mean is at most that of a lobe which lies wholly in the node.
-    const float most = 0.5f / at_least(1.0f - seen.cos_bounds, 1e-6f);
-    return select(value < most, value, most);
+    const float density = 4.0f * k * k * at_least(dot(receiver.normal, receiver.lobe.to_eye), 1e-2f);
+    // The mean, a2 over this, is at most that of a lobe which lies wholly in the node.
+    const float apparent = 2.0f * at_least(1.0f - seen.cos_bounds, 1e-6f);
+    const bool is_less = a2 * apparent < density;
+    return select(is_less, a2, 1.0f) / select(is_less, density, apparent);
 }
 
 REALCAM_INLINE bool has_normal(LightReceiver receiver) {
