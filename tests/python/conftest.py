@@ -98,19 +98,15 @@ def first_state(server: Server) -> dict[str, Any]:
 def bench(
     kept_page: BenchPage, server: Server, first_state: dict[str, Any], request: pytest.FixtureRequest
 ) -> Iterator[BenchPage]:
-    """A page of it, with a window of its own on the server; for tests marked camera_alone perhaps that of the test
-    before, with camera, lens and effects as at first."""
-    is_shared = request.node.get_closest_marker("camera_alone") is not None
-    if is_shared and kept_page.first_look:
-        kept_page.bring_back(first_state)
-    else:
+    """A page of it that looks as at first, with a window of its own on the server; perhaps that of the test before."""
+    if not (kept_page.first_look and kept_page.bring_back(first_state)):
         kept_page.open_anew(server.url)
     first_look, kept_page.first_look = kept_page.first_look, None
     failed = request.session.testsfailed
     yield kept_page
     kept_page.check()
     assert server.complaints() == [], server.complaints()
-    if is_shared and request.session.testsfailed == failed:
+    if request.session.testsfailed == failed:
         kept_page.first_look = first_look
 
 

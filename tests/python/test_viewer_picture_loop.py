@@ -141,27 +141,27 @@ def test_the_newest_request_wins(watched: Watched) -> None:
 
 def test_every_request_that_is_begun_gets_its_first_frame(watched: Watched) -> None:
     """So that the picture moves while the mouse does, however often that tells of itself."""
-    stop, count = time.monotonic() + 3.0, 0
-    while time.monotonic() < stop:
+    count, deadline = 0, time.monotonic() + 60
+    while len({frame.serial for frame in watched.frames}) < 20:
+        assert time.monotonic() < deadline
         watched.loop.submit(PictureRequest(camera(0.001 * count)))
         count += 1
         time.sleep(0.005)
-    watched.until(lambda: len({frame.serial for frame in watched.frames}) >= 5)
     gaps = np.diff(sorted({frame.serial for frame in watched.frames}))
     assert gaps.max() < count / 2
 
 
 def test_a_frame_that_refines_is_given_up_for_a_change(scene: rc.Scene) -> None:
-    big = rc.Film(36, 24, (1800, 1200))
+    big = rc.Film(36, 24, (1200, 800))
     watched = Watched(scene)
     try:
         watched.loop.submit(PictureRequest(camera(film=big), noise_codes=0.01))
         watched.until(lambda: len([f for f in watched.frames if not f.is_preview]) >= 2)
-        # A frame of that size takes a second or more; the change is shown as soon as ever.
-        for k in range(1, 6):
+        # A frame of that size takes some tenths of a second; the change is shown as soon as ever.
+        for k in range(1, 4):
             serial = watched.loop.submit(PictureRequest(camera(0.1 * k, film=big), noise_codes=0.01))
             watched.until(lambda serial=serial: watched.frames[-1].serial == serial)
-            time.sleep(0.3)
+            time.sleep(0.2)
         assert watched.errors == []
     finally:
         watched.loop.close()
@@ -277,13 +277,16 @@ def test_a_slow_frame_has_the_exposure_set_meanwhile(watched: Watched, monkeypat
     monkeypatch.setattr(Pace, "is_slow", lambda *_: True)
     monkeypatch.setattr(Pace, "was_slow", lambda *_: True)
     monkeypatch.setattr(Pace, "next_size", lambda self, size, whole: whole)
-    monkeypatch.setattr(Pace, "refining_spp", lambda *_: 400)
+    monkeypatch.setattr(Pace, "refining_spp", lambda *_: 100)
     film = FILM.replace(resolution=(360, 240))
-    bright = PictureRequest(camera(film=film), noise_codes=0.0, max_spp=400, tone="linear")
+    bright = PictureRequest(camera(film=film), noise_codes=0.0, max_spp=100, tone="linear")
     dark = replace(bright, camera=camera(film=film, exposure_time_s=0.01 / 16))
     serial = watched.loop.submit(bright)
     watched.until(lambda: watched.frames and watched.frames[-1].serial == serial)
-    time.sleep(0.2)  # the frame that refines is under way, for a second or more
+    begun = time.monotonic()
+    while not watched.loop._refines:  # from now on for some tenths of a second
+        assert time.monotonic() < begun + 60
+        time.sleep(0.001)
     assert not watched.frames[-1].is_final
     serial = watched.photograph(dark).serial
     expected = light_of(rc.render(watched.scene, dark.camera, spp=16, effects=()).developed("linear"))

@@ -15,7 +15,6 @@ from .bench_pages import CHROMIUM, BenchPage, until
 pytestmark = [
     pytest.mark.picture_files,
     pytest.mark.skipif(CHROMIUM is None, reason="no chromium"),
-    pytest.mark.camera_alone,
 ]
 
 

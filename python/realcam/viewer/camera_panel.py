@@ -73,6 +73,7 @@ class CameraPanel:
                 self._automatic = ui.switch("Automatic exposure").props('data-testid="automatic"')
                 self._automatic.on("update:model-value", lambda e: self._change(is_automatic=bool(_value(e))))
                 self._automatic.tooltip("The exposure time follows the mean brightness of the picture")
+                self._compensation_ev = 0.0  # as it was told last
                 self._compensation = ui.number("Correction (EV)", value=0, min=-5, max=5, step=1 / 3, format="%.2f")
                 self._compensation.on("update:model-value", self._set_compensation, throttle=0.1)
                 self._compensation.tooltip(
@@ -149,6 +150,9 @@ class CameraPanel:
         self._focus_text.set_text(f"Focus {distance_text(now.focus_m)}")
         self._show_scale()
         self._automatic.set_value(now.is_automatic)
+        if now.compensation_ev != self._compensation_ev:  # else a number may be half typed
+            self._compensation_ev = now.compensation_ev
+            self._compensation.set_value(now.compensation_ev)
         self._model.set_value(now.model)
         width = now.film.resolution[0]
         show_choice(self._width, {w: f"{w} pixels across" for w in sorted({*WIDTHS, width})}, width)
