@@ -52,8 +52,8 @@ std::vector<int> frame_numbers(const std::string& text) {
         const auto number = [&](std::size_t i, int without) {
             return found[i].matched ? std::stoi(found[i]) : without;
         };
-        const int first = number(1, 0), last = number(2, first), step = std::max(1, number(3, 1));
-        for (int n = first; n <= last; n += step) numbers.push_back(n);
+        const int first = number(1, 0), last = number(2, first), step = number(3, 1);
+        for (int n = first; n <= last && step > 0; n += step) numbers.push_back(n);
     }
     if (numbers.empty())
         throw InputError("--frames: \"" + text.substr(0, 40) +

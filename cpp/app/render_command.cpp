@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <set>
 
 #include "../denoise/denoiser.hpp"
 #include "../devices/devices.hpp"
@@ -94,7 +95,7 @@ public:
     void photograph() {
         start_ = std::chrono::steady_clock::now();
         shot::ShotRequest request = understand(words_);
-        const std::vector<int> frames = words_.frames.empty() ? std::vector<int>() : frame_numbers(words_.frames);
+        const std::vector<int> frames = words_.frames ? frame_numbers(*words_.frames) : std::vector<int>();
         if (!(words_.frames_per_second > 0 && std::isfinite(words_.frames_per_second)))
             throw InputError("--fps: more than 0 frames in a second are wanted");
         outputs_.check(frames);
@@ -214,10 +215,15 @@ private:
         std::string decisions;
         if (request.settings.effects.is_automatic)
             decisions = follow_film_plan(darkroom.session, shot, request, frames);
-        for (const std::string& notice : effect_notices(request.settings.effects, shot.camera.lens)) warn(notice);
         const Camera camera = shot.camera;
         // The last frame should not be the one to tell that a lens cannot be as its keys say.
-        for (const int frame : frames) validate_effects(request.settings, camera_of_frame(camera, request, frame));
+        std::set<std::string> notices;
+        for (const int frame : frames) {
+            const Camera taken_by = camera_of_frame(camera, request, frame);
+            validate_effects(request.settings, taken_by);
+            for (const std::string& notice : effect_notices(request.settings.effects, taken_by.lens))
+                if (notices.insert(notice).second) warn(notice);
+        }
         outputs_.begin();
         const std::uint32_t seed = request.settings.seed;
         std::optional<shot::FollowedIso> followed;

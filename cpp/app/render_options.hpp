@@ -1,6 +1,7 @@
 #pragma once
 #include <CLI/CLI.hpp>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,7 +15,7 @@ struct RenderWords {
     std::string scene, device = "auto";
     std::vector<std::function<void(shot::ShotRequest&)>> changes;  ///< to what the shot file says, by the other options
     std::vector<std::string> outputs;
-    std::string frames;  ///< of a film; empty: a single picture
+    std::optional<std::string> frames;  ///< of a film; none: a single picture
     double frames_per_second = 24;
     bool takes_again = false;  ///< frames that are there, too
     bool verbose = false, explains = false, as_json = false, is_quiet = false;

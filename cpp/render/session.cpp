@@ -332,7 +332,8 @@ void Session::add_layers(Image& image, const LayerFilm& layers, Besides&& beside
     const LayerSet wanted = settings_.layers;
     if (wanted.has_any(kSampledLayers) || wanted.has_any(kMiddleLayers)) {
         const SurfaceIds ids(scene_);
-        const PlacedCamera placed = placed_camera();
+        const bool needs_camera = wanted.has_any({Layer::motion, Layer::position_middle});
+        const PlacedCamera placed = needs_camera ? placed_camera() : PlacedCamera{};
         image.layers = developed(layers, wanted, ids, placed.origin_m);
         if (wanted.has(Layer::motion))
             image.layers.push_back(motion_vectors(layers.middle, scene_, camera_, placed.view, placed.origin_m));

@@ -283,6 +283,20 @@ def test_a_shot_file_cuts_to_other_lenses(folder: Path) -> None:
         assert [frame["lens"]["name"] for frame in json.loads(told)] == names
 
 
+def test_each_lens_of_a_film_tells_what_it_cannot_show(folder: Path) -> None:
+    (folder / "a.toml").write_text(
+        FILE.replace("effects = []", 'effects = ["dispersion"]') + "exposure_time_s = 0.01\n"
+        '[[key]]\ntime_s = 1\nlens = "planar-50mm-1897"\n[[key]]\ntime_s = 2\nlens = "telephoto-250mm"\n'
+    )
+    words = ["render", "a.toml", "-o", "a.png", "--frames", "1-4", "--fps", "1", "--quiet", "--device", "cpu"]
+    told = subprocess.run([*PROGRAM, *words], capture_output=True, text=True, check=True).stderr
+    # Once for each of the lenses whose files name indices alone.
+    lines = told.splitlines()
+    assert len(lines) == 2, told
+    for line, lens in zip(lines, ("planar-50mm-1897", "telephoto-250mm"), strict=True):
+        assert "dispersion: the glasses of" in line and lens in line
+
+
 def test_an_f_number_of_the_file_is_that_of_all_focal_lengths(folder: Path) -> None:
     """Also where the lens does not open as far at the position that it had before its keys."""
     lens = (Path(__file__).parents[2] / "lenses" / "zoom-25-50mm.toml").read_text()

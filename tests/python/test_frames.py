@@ -188,6 +188,8 @@ def test_the_executable_says_what_makes_films(folder: Path) -> None:
     ("words", "wanted"),
     [
         (["-o", "a.png", "--frames", "9-1"], '--frames: "9-1": a number, 1-240 or 1-240x2 is wanted'),
+        (["-o", "a.png", "--frames", "1-9x0"], '--frames: "1-9x0": a number, 1-240 or 1-240x2 is wanted'),
+        (["-o", "a.png", "--frames", ""], '--frames: "": a number, 1-240 or 1-240x2 is wanted'),
         (["-o", "a.png", "--frames", "1-2", "--fps", "0"], "--fps: more than 0 frames in a second are wanted"),
         (["-o", "nowhere/a.png", "--frames", "1-2"], "nowhere"),
         (["-o", "a.mp4", "-oa.mp4", "--frames", "1-2"], '"a.mp4" is given twice'),
@@ -264,7 +266,7 @@ def test_a_film_is_written_as_a_whole_or_not_at_all(tmp_path: Path) -> None:
     assert list(tmp_path.iterdir()) == []
 
 
-@pytest.mark.parametrize("frames", ["9-1", "a-b", "1-2x0.5", "-3", ""])
+@pytest.mark.parametrize("frames", ["9-1", "a-b", "1-2x0.5", "1-2x0", "-3", ""])
 def test_frames_that_are_no_range_are_refused(
     folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], frames: str
 ) -> None:

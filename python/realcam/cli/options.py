@@ -36,7 +36,8 @@ def number(text: str, what: str, wanted: str = "a number") -> float:
 def frame_numbers(text: str) -> range:
     """The numbers of frames: 7, 1-240, or 1-240x10 for every tenth. Raises InputError."""
     found = re.fullmatch(r"(\d{1,6})(?:-(\d{1,6})(?:x(\d{1,6}))?)?", text)
-    numbers = range(int(found[1]), int(found[2] or found[1]) + 1, int(found[3] or 1) or 1) if found else range(0)
+    step = int(found[3] or 1) if found else 0
+    numbers = range(int(found[1]), int(found[2] or found[1]) + 1, step) if found and step else None
     if not numbers:
         raise InputError(f'--frames: "{text:.40}": a number, 1-240 or 1-240x2 is wanted, the smaller one first')
     return numbers
