@@ -55,6 +55,18 @@ def test_a_worker_that_is_killed_is_replaced(tmp_path: Path) -> None:
     assert job.image() == picture(SHOT)
 
 
+def test_workers_that_end_before_they_are_ready_are_told_of(monkeypatch: pytest.MonkeyPatch) -> None:
+    import distributed
+
+    def ends(**_: object) -> None:
+        raise RuntimeError("Nanny failed to start.")  # as Dask has it where its process was killed
+
+    monkeypatch.setattr(distributed, "LocalCluster", ends)
+    message = r"^this machine: Dask's worker processes did not start: Nanny failed"
+    with pytest.raises(rc.InputError, match=message), dask_executor(workers=1):
+        pass
+
+
 @pytest.fixture
 def address() -> str:
     with socket.socket() as probe:

@@ -56,6 +56,8 @@ def dask_executor(
         except (OSError, TimeoutError, ValueError) as error:
             where = scheduler or batch_system or "this machine"
             raise InputError(f"{where}: no Dask scheduler answers there: {_line_of(error)}") from None
+        except RuntimeError as error:  # a process was ended before it was ready
+            raise InputError(f"this machine: Dask's worker processes did not start: {_line_of(error)}") from None
         yield client.get_executor(pure=False)
 
 
