@@ -518,7 +518,7 @@ def test_the_shot_file_s_ways_of_taking_pictures_are_kept(tmp_path: Path) -> Non
     path = bench_shots.write_panels_shot(tmp_path, more=more)
     path.write_text(path.read_text().replace("effects = []", 'effects = ["dispersion"]'))
     shot = rc.Shot.load(path)
-    bench = LensBench(shot, device="cpu")
+    bench = LensBench(shot, device="cpu", noise_codes=2.0)
     try:
         told = Told(bench)
         bench.show()
@@ -546,7 +546,7 @@ def test_clamped_light_is_seen(tmp_path: Path) -> None:
     """What bounces bring is cut off at the clamp, as rc.render cuts it."""
     path = bench_shots.write_panels_shot(tmp_path, more="clamp_cd_m2 = 1.0\nmax_bounces = 3\n")
     shot = rc.Shot.load(path)
-    bench = LensBench(shot, device="cpu")
+    bench = LensBench(shot, device="cpu", noise_codes=2.0)
     try:
         told = Told(bench)
         bench.show()

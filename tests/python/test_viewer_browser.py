@@ -91,6 +91,7 @@ def test_metering_by_a_click(bench: BenchPage) -> None:
     bench.page.get_by_role("radio", name="Meter").check()
     bench.click_picture(0.5, 0.5)
     assert bench.picture().mean() > 50
+    bench.page.get_by_role("radio", name="Focus").check()  # as before, so that the next test need not load the page
 
 
 def test_camera_models(bench: BenchPage) -> None:
@@ -186,6 +187,7 @@ def test_a_thin_lens_to_compare_with(bench: BenchPage) -> None:
     bench.page.get_by_label("Where one picture ends").fill("0")
     # It does not vignette: at the same f-number its corners are brighter.
     assert bench.picture().mean() > 1.02 * before
+    bench.choose("compare", "nothing")
 
 
 def test_peaking_clipping_and_the_histogram(bench: BenchPage) -> None:
@@ -207,6 +209,7 @@ def test_peaking_clipping_and_the_histogram(bench: BenchPage) -> None:
     bench.turn("shutter", "PageUp", 3)  # by tenths of its range
     until(marked, lambda count: count > 500, "much is clipped")
     until(lambda: bench.status, lambda text: "clipped" in text, "the status says so")
+    bench.page.get_by_label("Clipping").uncheck()
 
 
 SYNTHETIC = """
@@ -656,6 +659,7 @@ def test_the_magnifier_enlarges_what_the_page_shows(bench: BenchPage) -> None:
     row = np.array(seen).reshape(-1, 4)[:, :3]
     side = 4 * box["width"] / bench_shots.WIDTH
     assert len(np.unique(row, axis=0)) <= len(row) / side + 2
+    bench.page.get_by_label("Magnifier").uncheck()
 
 
 # Without a mouse.
