@@ -1,16 +1,54 @@
 #include <pybind11/stl.h>
 
+#include "../optics/lens/lens_changes.hpp"
 #include "../optics/lens/lens_edits.hpp"
 #include "../optics/lens/lens_tilts.hpp"
 #include "../optics/lens/tilt_shift.hpp"
 #include "bindings.hpp"
+#include "surface_changes.hpp"
 
 namespace realcam::bindings {
 
 using namespace py::literals;
 
 void bind_lens_edits(py::module_& m) {
-    py::reinterpret_borrow<py::class_<LensSystem>>(m.attr("Lens"))
+    auto lens_class = py::reinterpret_borrow<py::class_<LensSystem>>(m.attr("Lens"));
+    def_surface_changes(
+        lens_class, "with_surface",
+        [](const LensSystem& lens, int index, const SurfaceChanges& changes) {
+            const bool exists = index >= 0 && index < static_cast<int>(lens.surfaces.size());
+            return with_surface(
+                lens, index,
+                exists ? changed_surface(lens.surfaces[static_cast<std::size_t>(index)], changes) : Surface());
+        },
+        "The lens with one surface changed: its index from 0, as in surfaces, and what Surface() takes. What is not\n"
+        "given stays; so do focus group, iris, film and title, and the film where it is: focused() brings the picture\n"
+        "into focus again. Raises InputError, and LensFileError where the lens cannot be built.",
+        "index"_a);
+    lens_class
+        .def(
+            "with_iris",
+            [](const LensSystem& lens, int blades, std::optional<double> rounding, std::optional<double> rotation_deg) {
+                const auto radians = [](double degrees) { return degrees * std::numbers::pi / 180; };
+                return with_iris(lens, {blades, rounding.value_or(lens.iris.rounding),
+                                        rotation_deg ? radians(*rotation_deg) : lens.iris.rotation_rad});
+            },
+            "blades"_a, "rounding"_a = py::none(), "rotation_deg"_a = py::none(),
+            "The lens with another diaphragm: blades, rounding and rotation as Lens() takes them; None stays. The\n"
+            "f-number stays too, because it is the open area that it means. Raises LensFileError.")
+        .def(
+            "with_coating",
+            [](const LensSystem& lens, const py::object& coating, const std::optional<std::vector<int>>& surfaces) {
+                return surfaces ? with_coating(lens, coating_from(coating), *surfaces)
+                                : with_coating(lens, coating_from(coating));
+            },
+            "coating"_a, "surfaces"_a = py::none(),
+            "The lens with another coating, as Surface() takes it, on the surfaces of these indices; None: on all that "
+            "it "
+            "is\n"
+            "for, a mirror's on all mirrors, any other on all faces between air and glass. Cemented faces stay as they "
+            "are.\n"
+            "Raises InputError, and LensFileError where a coating does not fit its surface.")
         .def("with_surfaces", &with_surfaces, "surfaces"_a,
              "The lens with other surfaces in place of some: a dict of index, from 0, and Surface. All else stays, as "
              "in\n"

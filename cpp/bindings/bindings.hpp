@@ -26,7 +26,11 @@ namespace py = pybind11;
 // One function for each file of this folder.
 void bind_errors(py::module_& m);
 void bind_coating(py::module_& m);
+void bind_glass(py::module_& m);
+void bind_surface(py::module_& m);
+void bind_first_order(py::module_& m);
 void bind_lens(py::module_& m);
+void bind_lens_file(py::module_& m);
 void bind_lens_edits(py::module_& m);
 void bind_tolerance(py::module_& m);
 void bind_device_array(py::module_& m);
@@ -101,6 +105,8 @@ inline py::str text_from(const std::string& text) {
 
 /// A medium as users write it: an index, (n_d, V_d), the name of a glass of the catalogue, a Glass; None is air.
 Glass glass_from(const py::object& material);
+/// A medium in words, for __repr__.
+std::string glass_text(const Glass& glass);
 
 /// The design wavelength where none is given. Throws InputError outside the limits of Lens.trace.
 double wavelength_or_design(const LensSystem& lens, std::optional<double> nm);

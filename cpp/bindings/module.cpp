@@ -8,7 +8,11 @@ PYBIND11_MODULE(_core, m) {
     m.attr("_STATE_FORMAT") = kStateFormat;
     bind_errors(m);
     bind_coating(m);
+    bind_glass(m);
+    bind_surface(m);
+    bind_first_order(m);
     bind_lens(m);
+    bind_lens_file(m);
     bind_lens_edits(m);
     bind_device_array(m);
     bind_trace(m);

@@ -1,0 +1,83 @@
+#pragma once
+#include <pybind11/stl.h>
+
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "coating_from.hpp"
+#include "form_from.hpp"
+
+namespace realcam::bindings {
+
+/// What a user gives of a surface; the rest stays as it is.
+struct SurfaceChanges {
+    using Number = std::optional<double>;
+    using Numbers = std::optional<std::vector<double>>;
+    using Name = std::optional<std::string>;
+    using Dict = std::optional<py::dict>;
+    using Dicts = std::optional<std::vector<py::dict>>;
+    using RadialTerms = std::optional<std::map<int, double>>;
+    using XyTerms = std::optional<std::map<std::pair<int, int>, double>>;
+
+    Number radius_of_curvature_mm, thickness_mm;
+    std::optional<Glass> material;
+    Number clear_semi_diameter_mm, conic;
+    RadialTerms aspheric_coefficients;
+    Number inner_semi_diameter_mm;
+    Name type;
+    std::optional<Coating> coating;
+    Numbers decentre_mm, tilt_deg;
+    std::optional<bool> returns;
+    FormChanges form;
+};
+
+/// Throws InputError for values that no surface has.
+Surface changed_surface(Surface surface, const SurfaceChanges& to);
+
+template <class>
+using Index = int;
+
+/// Defines a method whose arguments are `first`, and by their names those of Surface. What is left out stays; because
+/// None is air, a material that stays is `...`.
+template <class T, class Function, class... First>
+void def_surface_changes(py::class_<T>& type, const char* name, Function function, const char* text, First... first) {
+    using C = SurfaceChanges;
+    using namespace py::literals;
+    type.def(
+        name,
+        [function](const T& self, Index<First>... place, C::Number radius, C::Number thickness,
+                   const py::object& material, C::Number clear, C::Number conic, const C::RadialTerms& aspheric,
+                   C::Number inner, const C::Name& surface_type, const py::object& coating, const C::Numbers& decentre,
+                   const C::Numbers& tilt, std::optional<bool> returns, const C::Name& form, C::Number radius_x,
+                   C::Number conic_x, const C::RadialTerms& radial, const C::XyTerms& xy, const C::Dict& zernike,
+                   const C::Dict& forbes, const C::Dict& aperture, const C::Dicts& obscurations) {
+            const bool stays = material.is(py::ellipsis());
+            const SurfaceChanges changes{
+                radius,
+                thickness,
+                stays ? std::nullopt : std::optional(glass_from(material)),
+                clear,
+                conic,
+                aspheric,
+                inner,
+                surface_type,
+                coating.is_none() ? std::nullopt : std::optional(coating_from(coating)),
+                decentre,
+                tilt,
+                returns,
+                {form, radius_x, conic_x, radial, xy, zernike, forbes, aperture, obscurations}};
+            return function(self, place..., changes);
+        },
+        first..., py::kw_only(), "radius_of_curvature_mm"_a = py::none(), "thickness_mm"_a = py::none(),
+        "material"_a = py::ellipsis(), "clear_semi_diameter_mm"_a = py::none(), "conic"_a = py::none(),
+        "aspheric_coefficients"_a = py::none(), "inner_semi_diameter_mm"_a = py::none(), "type"_a = py::none(),
+        "coating"_a = py::none(), "decentre_mm"_a = py::none(), "tilt_deg"_a = py::none(), "returns"_a = py::none(),
+        "form"_a = py::none(), "radius_of_curvature_x_mm"_a = py::none(), "conic_x"_a = py::none(),
+        "radial_terms"_a = py::none(), "xy_terms"_a = py::none(), "zernike"_a = py::none(), "forbes"_a = py::none(),
+        "aperture"_a = py::none(), "obscurations"_a = py::none(), text);
+}
+
+}  // namespace realcam::bindings
