@@ -8,7 +8,7 @@
 
 #include "../error.hpp"
 #include "../image_io/image_file.hpp"
-#include "../io/lens/lens_text.hpp"
+#include "../io/files/file_suffix.hpp"
 
 namespace realcam::app {
 namespace {
@@ -25,7 +25,7 @@ bool same_file(const std::string& a, const std::string& b) {
 }  // namespace
 
 bool is_film(const std::string& output) {
-    return io::upper_case(fs::path(output).extension().string()) == ".MP4";
+    return io::suffix_of(output) == ".mp4";
 }
 
 void check_outputs(const std::vector<std::string>& outputs) {

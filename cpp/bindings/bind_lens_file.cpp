@@ -2,6 +2,7 @@
 
 #include <map>
 
+#include "../io/files/file_suffix.hpp"
 #include "../io/lens/lens_format.hpp"
 #include "bindings.hpp"
 
@@ -45,7 +46,7 @@ std::pair<LensSystem, std::vector<std::string>> read_lens_with_notes(const py::o
 /// The content of its file, and what a file with that suffix cannot say.
 std::pair<py::bytes, std::vector<std::string>> file_content(const LensSystem& lens, const py::object& path) {
     const std::string file = path_from(path);
-    if (io::suffix_of(file) == ".OSL")
+    if (io::suffix_of(file) == ".osl")
         return {py::module_::import("realcam.osl").attr("shader_text")(lens).attr("encode")(), {}};
     io::LensText text = io::lens_text_for(lens, file);
     return {py::bytes(text.text), std::move(text.warnings)};

@@ -1,9 +1,8 @@
 #include "image_format.hpp"
 
-#include <algorithm>
-#include <cctype>
-#include <filesystem>
 #include <string_view>
+
+#include "../io/files/file_suffix.hpp"
 
 namespace realcam::image_io {
 
@@ -17,9 +16,7 @@ std::string image_format(std::span<const std::uint8_t> first_bytes, const std::s
     if (begins("#?RADIANCE"sv) || begins("#?RGBE"sv)) return "hdr";
     if (begins("II*\0"sv) || begins("MM\0*"sv)) return "tiff";
     if (begins("BM"sv)) return "bmp";
-    std::string suffix = std::filesystem::path(path).extension().string();
-    std::transform(suffix.begin(), suffix.end(), suffix.begin(), [](unsigned char c) { return std::tolower(c); });
-    return suffix == ".tga" ? "targa" : "";
+    return io::suffix_of(path) == ".tga" ? "targa" : "";
 }
 
 }  // namespace realcam::image_io

@@ -1,10 +1,10 @@
 #include <algorithm>
-#include <cctype>
 #include <cstring>
 #include <filesystem>
 #include <vector>
 
 #include "../error.hpp"
+#include "../io/files/file_suffix.hpp"
 #include "../io/text/json_writer.hpp"
 #include "../io/text/printable.hpp"
 #include "image_file.hpp"
@@ -17,8 +17,7 @@ namespace {
 constexpr int kRows = 64;
 
 std::string format_of(const std::string& path) {
-    std::string suffix = std::filesystem::path(path).extension().string();
-    for (char& c : suffix) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    const std::string suffix = io::suffix_of(path);
     if (suffix == ".png" || suffix == ".exr") return suffix.substr(1);
     throw ImageFileError(path + ": " + (suffix.empty() ? "there is no suffix" : "\"" + suffix + "\" is not written") +
                          "; .png (developed) or .exr (exposure and depth) is wanted");

@@ -1,10 +1,7 @@
 #include "scene_file.hpp"
 
-#include <algorithm>
-#include <cctype>
 #include <climits>
 #include <cmath>
-#include <filesystem>
 #include <new>
 #include <stdexcept>
 #include <utility>
@@ -12,6 +9,7 @@
 #include "../error.hpp"
 #include "../scene/instance_names.hpp"
 #include "../scene/scene_checks.hpp"
+#include "files/file_suffix.hpp"
 #include "files/regular_file.hpp"
 #include "gltf/gltf_file.hpp"
 #include "gltf/gltf_nodes.hpp"
@@ -154,8 +152,8 @@ constexpr SceneFormat kFormats[] = {
     {".glb", &read_gltf_scene}, {".gltf", &read_gltf_scene}, {".obj", &read_obj_scene}, {".ply", &read_ply_scene}};
 
 const SceneFormat& format_of(const std::string& path) {
-    std::string suffix = std::filesystem::path(path).extension().string(), known;
-    std::transform(suffix.begin(), suffix.end(), suffix.begin(), [](unsigned char c) { return std::tolower(c); });
+    const std::string suffix = suffix_of(path);
+    std::string known;
     for (const SceneFormat& format : kFormats) {
         if (format.suffix == suffix) return format;
         known.append(known.empty() ? "" : &format == std::end(kFormats) - 1 ? " or " : ", ").append(format.suffix);

@@ -3,6 +3,7 @@
 #include "../../optics/lens/focus.hpp"
 #include "../../optics/prescription/lens_checks.hpp"
 #include "../../optics/prescription/lens_limits.hpp"
+#include "../files/file_suffix.hpp"
 #include "../files/regular_file.hpp"
 #include "../text/toml_document.hpp"
 #include "bundled_lenses.hpp"
@@ -348,9 +349,8 @@ std::string_view bundled_lens_text(const std::string& name) {
 bool is_lens_path(const std::string& name, const std::string& path) {
     for (const BundledFile& file : bundled_lens_files())
         if (file.name == name) return false;
-    const std::string suffix = suffix_of(name);
     std::error_code nothing;  // what cannot be looked at is no file of that name
-    return name.find('/') != name.npos || suffix == ".TOML" || foreign_format_of(name) ||
+    return name.find('/') != name.npos || suffix_of(name) == ".toml" || foreign_format_of(name) ||
            std::filesystem::is_regular_file(path, nothing);
 }
 
@@ -367,7 +367,7 @@ LensSystem parse_lens_file(std::string_view bytes, const std::string& file, cons
             table = parse_toml(bytes, file, raise_lens_file_error, options.keep_going);
         } catch (const LensFileError&) {
             const std::string suffix = suffix_of(file);
-            if (suffix == ".TOML") throw;
+            if (suffix == ".toml") throw;
             const std::string why = suffix.empty()
                                         ? "it has no ending"
                                         : "its ending is " + in_quotes(file.substr(file.size() - suffix.size()));

@@ -17,13 +17,10 @@ struct LensFormat {
 };
 
 /// By the suffix of a file's name, in any case. Null: realcam's own, TOML.
-const LensFormat* foreign_format_of(std::string_view path);
+const LensFormat* foreign_format_of(const std::string& path);
 
 /// The suffixes that are read, or those that are written, in a sentence: ".toml, .zmx or .seq".
 std::string lens_suffixes(bool written);
-
-/// The suffix of a file's name in capital letters, with its point; empty where there is none.
-std::string suffix_of(std::string_view path);
 
 /// "after" or "before". Throws InputError.
 PbrtThickness pbrt_thickness_named(const std::string& name);

@@ -5,6 +5,7 @@
 
 #include "../../optics/prescription/lens_checks.hpp"
 #include "../../optics/prescription/named_coatings.hpp"
+#include "../files/file_suffix.hpp"
 #include "../text/printable.hpp"
 #include "../text/text_number.hpp"
 #include "../text/utf8.hpp"
@@ -282,7 +283,7 @@ LensText lens_text_for(const LensSystem& lens, const std::string& path) {
     const LensFormat* format = foreign_format_of(path);
     if (format && format->write) return format->write(lens);
     // Without the suffix nobody could read it again by its name.
-    if (suffix_of(path) == ".TOML") return {lens_as_toml(lens), {}};
+    if (suffix_of(path) == ".toml") return {lens_as_toml(lens), {}};
     throw InputError(path + ": the suffix " + lens_suffixes(true) + " is wanted");
 }
 

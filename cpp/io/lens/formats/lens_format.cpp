@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <vector>
 
+#include "../../files/file_suffix.hpp"
 #include "../lens_readers.hpp"
-#include "../lens_text.hpp"
 #include "../lens_writers.hpp"
 
 namespace realcam::io {
@@ -32,16 +32,10 @@ constexpr LensFormat kFormats[] = {
 
 }  // namespace
 
-std::string suffix_of(std::string_view path) {
-    const std::string_view name = path.substr(path.find_last_of('/') == path.npos ? 0 : path.find_last_of('/') + 1);
-    const std::size_t point = name.find_last_of('.');
-    return upper_case(point == name.npos ? std::string_view() : name.substr(point));
-}
-
-const LensFormat* foreign_format_of(std::string_view path) {
+const LensFormat* foreign_format_of(const std::string& path) {
     const std::string suffix = suffix_of(path);
     const auto found = std::find_if(std::begin(kFormats), std::end(kFormats),
-                                    [&](const LensFormat& format) { return upper_case(format.suffix) == suffix; });
+                                    [&](const LensFormat& format) { return format.suffix == suffix; });
     return found == std::end(kFormats) ? nullptr : found;
 }
 
