@@ -5,6 +5,7 @@
 #include <limits>
 #include <sstream>
 
+#include "../io/files/file_suffix.hpp"
 #include "../render/effect_names.hpp"
 #include "../shot/names.hpp"
 #include "../shot/shot_file.hpp"
@@ -18,9 +19,7 @@ bool is_shot_file(const std::string& path) {
 }
 
 bool is_exr(const std::string& path) {
-    const std::string suffix = std::filesystem::path(path).extension().string();
-    return suffix.size() == 4 && suffix[0] == '.' && (suffix[1] | 0x20) == 'e' && (suffix[2] | 0x20) == 'x' &&
-           (suffix[3] | 0x20) == 'r';
+    return io::suffix_of(path) == ".exr";
 }
 
 /// Between commas.
@@ -79,29 +78,49 @@ T one_of(const std::optional<T>& found, const std::string& option, const char* w
     return *found;
 }
 
-}  // namespace
+int parse_blades(const std::string& option, const std::string& word) {
+    return static_cast<int>(parse_whole(option, word, kMaxIrisBlades));
+}
 
-void add_shot_options(CLI::App& command, RenderWords& words) {
-    using Request = shot::ShotRequest;
-    using Text = const std::string&;
-    // An empty word would read as an option that was left out.
-    const auto not_empty = CLI::Validator([](std::string& word) { return word.empty() ? "is empty" : ""; }, "", "");
-    const auto is_given = [&command](const char* name) { return command.count(name) > 0; };
-    // `read`: what the option changes; in the order in which they are declared.
-    const auto option = [&](const char* name, const std::string& help, const char* type, const auto& read) {
-        const auto keep = [&words, name, read](const std::string& word) {
+using Request = shot::ShotRequest;
+using Text = const std::string&;
+
+/// Declares options. What they change is changed in the order in which they are declared.
+struct OptionAdder {
+    CLI::App& command;
+    RenderWords& words;
+
+    /// An empty word would read as an option that was left out.
+    static CLI::Validator not_empty() {
+        return CLI::Validator([](std::string& word) { return word.empty() ? "is empty" : ""; }, "", "");
+    }
+
+    /// `read(request, name, word)`: what the option changes.
+    template <class Read>
+    void operator()(const char* name, const std::string& help, const char* type, const Read& read) const {
+        const auto keep = [&words = words, name, read](const std::string& word) {
             words.changes.emplace_back([=](Request& request) { read(request, name, word); });
         };
-        command.add_option_function<std::string>(name, keep, help)->type_name(type)->check(not_empty);
+        command.add_option_function<std::string>(name, keep, help)->type_name(type)->check(not_empty());
+    }
+
+    /// Whether an option stands in the command line, once that is read.
+    auto is_given(const char* name) const {
+        return [&command = command, name] { return command.count(name) > 0; };
+    }
+};
+
+/// Reads a member of the request. What the keys of a shot file say of it is forgotten.
+template <class Member, class Parse, class... Keys>
+auto into(Member Request::* member, Parse parse, Keys... keys) {
+    return [=](Request& request, Text name, Text word) {
+        request.*member = parse(name, word);
+        (request.forget(keys), ...);
     };
-    command
-        .add_option("SCENE", words.scene,
-                    "The scene: .obj (with .mtl), .gltf, .glb or .ply; or a shot file: .toml, whose values hold for "
-                    "all options that are not given")
-        ->type_name("SCENE")
-        ->check(not_empty)
-        ->required();
-    command.option_defaults()->group("Camera");
+}
+
+void add_lens_and_film(const OptionAdder& option) {
+    option.command.option_defaults()->group("Camera");
     option("--lens",
            "Bundled lens (`realcam lens list`), or a lens file: .toml, .zmx, .seq, .len, .dat, .json, .roa "
            "[double-gauss-50mm]",
@@ -112,25 +131,23 @@ void add_shot_options(CLI::App& command, RenderWords& words) {
                r.forget(&CameraKey::lens);
                r.forget(&CameraKey::focal_length_mm);
            });
-    add_lens_options(command, words.lens_file);
+    add_lens_options(option.command, option.words.lens_file);
     option("--focal-length", "Of a zoom lens, between those of its positions [that of its position]", "MM",
            [](Request& r, Text o, Text w) {
                r.focal_length_mm = parse_number(o, w);
                r.zoom.clear();
                r.forget(&CameraKey::focal_length_mm);
            });
-    command.get_option("--focal-length")->excludes(command.get_option("--zoom"));
+    option.command.get_option("--focal-length")->excludes(option.command.get_option("--zoom"));
     option("--film", "Film in mm [the lens's, in the shape of the resolution]", "WxH",
-           [](Request& r, Text o, Text w) { r.film_mm = parse_size(o, w); });
+           into(&Request::film_mm, parse_size));
     option("--film-shift",
            "The film's middle from the lens's axis, mm to the right and up as the picture shows it [0,0]", "X,Y",
-           [](Request& r, Text o, Text w) {
-               r.film_shift_mm = parse_shift(o, w);
-               r.forget(&CameraKey::film_right_mm);
-               r.forget(&CameraKey::film_up_mm);
-           });
-    option("--resolution", "Pixels [960 along the longer side]", "WxH",
-           [](Request& r, Text o, Text w) { r.resolution = parse_resolution(o, w); });
+           into(&Request::film_shift_mm, parse_shift, &CameraKey::film_right_mm, &CameraKey::film_up_mm));
+    option("--resolution", "Pixels [960 along the longer side]", "WxH", into(&Request::resolution, parse_resolution));
+}
+
+void add_view(const OptionAdder& option) {
     option("--camera",
            "Camera of a glTF whose place, direction and motion to take, by the name of its node; or none [the first]",
            "NAME", [](Request& r, Text, Text w) {
@@ -140,13 +157,13 @@ void add_shot_options(CLI::App& command, RenderWords& words) {
            });
     option("--position",
            "Middle of the film, metres [in front of look-at, along +z, such that the scene fills the film]", "X,Y,Z",
-           [is_given](Request& r, Text o, Text w) {
-               if (!is_given("--camera")) r.view.camera.clear();
+           [is_given = option.is_given("--camera")](Request& r, Text o, Text w) {
+               if (!is_given()) r.view.camera.clear();
                r.view.position_m = parse_point(o, w);
            });
     option("--look-at", "Point in the middle of the picture [middle of the scene]", "X,Y,Z",
-           [is_given](Request& r, Text o, Text w) {
-               if (!is_given("--camera")) r.view.camera.clear();
+           [is_given = option.is_given("--camera")](Request& r, Text o, Text w) {
+               if (!is_given()) r.view.camera.clear();
                r.view.look_at_m = parse_point(o, w);
            });
     option("--up", "Direction that is up in the picture [0,1,0]", "X,Y,Z",
@@ -156,30 +173,19 @@ void add_shot_options(CLI::App& command, RenderWords& words) {
                r.view.focus_distance_m = parse_focus(o, w);
                r.forget(&CameraKey::focus_m);
            });
-    option("--f-number", "Close the diaphragm to f/N [wide open]", "N", [](Request& r, Text o, Text w) {
-        r.f_number = parse_number(o, w);
-        r.forget(&CameraKey::f_number);
-    });
+}
+
+void add_exposure(const OptionAdder& option) {
+    option("--f-number", "Close the diaphragm to f/N [wide open]", "N",
+           into(&Request::f_number, parse_number, &CameraKey::f_number));
     option("--blades", "Of the diaphragm: 3 to 24, or 0 for a round one [the lens's]", "N",
-           [](Request& r, Text o, Text w) {
-               r.blades = parse_whole(o, w, kMaxIrisBlades);
-               r.forget(&CameraKey::blades);
-           });
+           into(&Request::blades, parse_blades, &CameraKey::blades));
     option("--blade-rounding", "0: straight edges; 1: the opening is a circle [the lens's]", "SHARE",
-           [](Request& r, Text o, Text w) {
-               r.blade_rounding = parse_number(o, w);
-               r.forget(&CameraKey::blade_rounding);
-           });
+           into(&Request::blade_rounding, parse_number, &CameraKey::blade_rounding));
     option("--blade-rotation", "Degrees by which the blades are turned about the axis [the lens's]", "DEGREES",
-           [](Request& r, Text o, Text w) {
-               r.blade_rotation_deg = parse_number(o, w);
-               r.forget(&CameraKey::blade_rotation_deg);
-           });
+           into(&Request::blade_rotation_deg, parse_number, &CameraKey::blade_rotation_deg));
     option("--exposure-time", "Seconds, such as 1/125, or auto [auto: the average lands on middle grey]", "TIME",
-           [](Request& r, Text o, Text w) {
-               r.exposure_time_s = parse_exposure_time(o, w);
-               r.forget(&CameraKey::exposure_time_s);
-           });
+           into(&Request::exposure_time_s, parse_exposure_time, &CameraKey::exposure_time_s));
     option("--shutter-opens", "When, in seconds of a scene that moves [0]", "SECONDS",
            [](Request& r, Text o, Text w) { r.shutter.opens_s = parse_number(o, w); });
     option("--readout-time", "Of a rolling shutter: seconds from the top row of pixels to the bottom [0]", "SECONDS",
@@ -191,9 +197,11 @@ void add_shot_options(CLI::App& command, RenderWords& words) {
     });
     option("--model", "full, full_double, polynomial, thick, mapped, thin or pinhole [full]", "MODEL",
            [](Request& r, Text, Text w) { r.model = parse_model(w); });
-    command.option_defaults()->group("Scene");
-    option("--scale", "Metres per unit of the scene's file [1]", "METRES",
-           [](Request& r, Text o, Text w) { r.scale = parse_number(o, w); });
+}
+
+void add_scene(const OptionAdder& option) {
+    option.command.option_defaults()->group("Scene");
+    option("--scale", "Metres per unit of the scene's file [1]", "METRES", into(&Request::scale, parse_number));
     option("--environment",
            "Light from all around: cd/m^2, or a latitude-longitude picture [the scene's light; daylight if it has "
            "none]",
@@ -203,7 +211,10 @@ void add_shot_options(CLI::App& command, RenderWords& words) {
     option("--environment-rotation",
            "Degrees by which the environment is turned about the vertical, counterclockwise from above [0]", "DEGREES",
            [](Request& r, Text o, Text w) { r.environment_change.rotation_deg = parse_number(o, w); });
-    command.option_defaults()->group("Picture");
+}
+
+void add_samples(const OptionAdder& option) {
+    option.command.option_defaults()->group("Picture");
     option(
         "--spp",
         "Samples per pixel, or auto: as many as the noise needs, by tile of the film, until it is 1 code [until it is "
@@ -215,8 +226,8 @@ void add_shot_options(CLI::App& command, RenderWords& words) {
                r.noise.noise_codes.reset();
            });
     option("--noise-codes", "The same in 8-bit codes of the developed picture", "CODES",
-           [is_given](Request& r, Text o, Text w) {
-               if (!is_given("--noise")) r.noise.noise.reset();
+           [is_given = option.is_given("--noise")](Request& r, Text o, Text w) {
+               if (!is_given()) r.noise.noise.reset();
                r.noise.noise_codes = parse_number(o, w);
            });
     option("--seconds", "After which no more samples are taken, unless --spp is a number", "SECONDS",
@@ -236,10 +247,13 @@ void add_shot_options(CLI::App& command, RenderWords& words) {
     option("--clamp",
            "Cut off light above this that comes by a bounce: fewer bright dots, and a picture too dark [0: never]",
            "CD_M2", [](Request& r, Text o, Text w) { r.settings.clamp = parse_number(o, w); });
+}
+
+void add_picture(const OptionAdder& option) {
     option("--tone", "Tone mapping of .png: film (soft highlights) or linear (clipped) [film]", "CURVE",
            [](Request& r, Text, Text w) { r.tone = parse_tone(w); });
     option("--layers", "Also write to .exr, separated by commas: all, or some of " + layer_names() + " [none]", "NAMES",
-           [&words](Request& r, Text o, Text w) {
+           [&words = option.words](Request& r, Text o, Text w) {
                if (!writes_layers(words))
                    throw InputError("--layers: layers are written to .exr, and no --output is one");
                r.settings.layers = named(o, [&] { return layers_named(words_in(w)); });
@@ -264,10 +278,24 @@ void add_shot_options(CLI::App& command, RenderWords& words) {
            "Of " + effects_that(&EffectInfo::has_wavelengths) +
                ", the spectrum of all light: " + std::string(Illuminant::kWanted) + " [D65]",
            "SPECTRUM", [](Request& r, Text, Text w) { r.settings.illuminant = Illuminant::parse(w); });
+}
+
+}  // namespace
+
+void add_shot_options(CLI::App& command, RenderWords& words) {
+    const OptionAdder option{command, words};
+    command
+        .add_option("SCENE", words.scene,
+                    "The scene: .obj (with .mtl), .gltf, .glb or .ply; or a shot file: .toml, whose values hold for "
+                    "all options that are not given")
+        ->type_name("SCENE")
+        ->check(OptionAdder::not_empty())
+        ->required();
+    for (const auto add : {add_lens_and_film, add_view, add_exposure, add_scene, add_samples, add_picture}) add(option);
     option("--threads", "0: all [0]", "N", [](Request& r, Text o, Text w) { r.settings.threads = whole<int>(o, w); });
     command.add_option("--device", words.device, "auto (a GPU if there is one), cpu, cuda, or cuda:1 [auto]")
         ->type_name("DEVICE")
-        ->check(not_empty);
+        ->check(OptionAdder::not_empty());
 }
 
 void add_render_options(CLI::App& command, RenderWords& w) {
