@@ -58,7 +58,7 @@ FilmPinhole pinhole_of_any_lens(const LensSystem& lens) {
         return Seen{{-d.x / d.z, d.y / d.z}, {at.x - along * slope.x, at.y - along * slope.y}, slope};
     };
     const double step = 1e-3 * rays.film_distance();
-    Matrix2 direction, place, slope;  // by x and y on the film as the picture shows it, upside down
+    Matrix2 direction{}, place{}, slope{};  // by x and y on the film as the picture shows it, upside down
     for (const bool is_y : {false, true}) {
         const auto at = [&](double steps) {
             return seen_from(

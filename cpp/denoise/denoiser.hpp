@@ -8,9 +8,6 @@
 
 namespace realcam {
 
-/// What the denoiser goes by, besides the light. Both are noisy as the picture is.
-inline constexpr LayerSet kDenoiserLayers = {Layer::albedo, Layer::normal};
-
 enum class DenoiseQuality {
     high,  ///< first the layers are denoised, then the picture by them
     fast,  ///< the picture by the layers as they are: for previews
@@ -46,8 +43,8 @@ private:
     std::unique_ptr<Parts> parts_;
 };
 
-/// Takes the noise from the exposure of a picture with kDenoiserLayers. Layers that are not `wanted` go, and so does
-/// the variance, which would be that of the noise. Throws as Denoiser.
+/// Takes the noise from the exposure of a picture, by its layers albedo and normal, which it must have. Layers that are
+/// not `wanted` go, and so does the variance, which would be that of the noise. Throws as Denoiser.
 void denoise(Image& image, LayerSet wanted, Denoiser& denoiser, const KeepGoing& keep_going);
 
 }  // namespace realcam

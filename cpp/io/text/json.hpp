@@ -40,7 +40,6 @@ public:
 
     bool is_null() const { return std::holds_alternative<std::monostate>(value_); }
     bool is_number() const { return std::holds_alternative<double>(value_); }
-    bool is_text() const { return std::holds_alternative<std::string>(value_); }
     bool is_true() const { return std::holds_alternative<bool>(value_) && std::get<bool>(value_); }
     /// Elements of an array; 0 for anything else.
     std::size_t size() const;
