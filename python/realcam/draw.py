@@ -92,34 +92,10 @@ def draw_states(
     return figure_of(rows, style, width_px=width_px, insets=insets and rays_from == "object", align="film")
 
 
-def save_states(
-    states: Sequence[tuple[str, Lens]],
-    path: str | os.PathLike[str],
-    *,
-    rays: int = 7,
-    rays_from: str = "object",
-    fields: Sequence[float] = (0.0, 0.7, 1.0),
-    wavelengths_nm: Sequence[float] | None = None,
-    radius_colours: bool = False,
-    marks: bool = False,
-    insets: bool = True,
-    theme: str = "light",
-    width_px: int = 1600,
-) -> None:
-    """Writes draw_states as .svg, .png or .pdf. Raises ImageFileError and InputError."""
+def save_states(states: Sequence[tuple[str, Lens]], path: str | os.PathLike[str], **options: Any) -> None:
+    """Writes draw_states, with the options of that, as .svg, .png or .pdf. Raises ImageFileError and InputError."""
     target = check_figure_target(path)
-    figure = draw_states(
-        states,
-        rays=rays,
-        rays_from=rays_from,
-        fields=fields,
-        wavelengths_nm=wavelengths_nm,
-        radius_colours=radius_colours,
-        marks=marks,
-        insets=insets,
-        theme=theme,
-        width_px=width_px,
-    )
+    figure = draw_states(states, **options)
     save_figure(figure, target, dpi=figure.dpi)
 
 

@@ -12,7 +12,6 @@ from matplotlib.figure import Figure
 from matplotlib.transforms import Bbox
 
 from . import files
-from ._core import ImageFileError
 
 NOTEBOOK_DPI = 100
 FORMATS = (".svg", ".png", ".pdf")
@@ -29,11 +28,7 @@ class ShownFigure(Figure):
 
 def check_figure_target(path: str | os.PathLike[str]) -> Path:
     """Raises ImageFileError where no figure can be written to this name."""
-    target = Path(path)
-    if target.suffix.lower() not in FORMATS:
-        raise ImageFileError(f"{target}: unknown suffix; {', '.join(FORMATS[:-1])} or {FORMATS[-1]} is wanted")
-    files.check_target(target)
-    return target
+    return files.check_target(path, FORMATS)
 
 
 def figure_bytes(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import secrets
 import stat
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
@@ -20,13 +20,18 @@ def system_name(path: str | os.PathLike[str]) -> bytes:
     return name
 
 
-def check_target(path: str | os.PathLike[str]) -> None:
-    """Raises ImageFileError where no file of this name can be made, and InputError where it is no name."""
+def check_target(path: str | os.PathLike[str], suffixes: Sequence[str] = ()) -> Path:
+    """The path. Raises ImageFileError where no file of this name can be made or its suffix, in any case, is none of
+    these, and InputError where it is no name."""
     system_name(path)
+    if suffixes and Path(path).suffix.lower() not in suffixes:
+        known = ", ".join(suffixes[:-1]) + (" or " if suffixes[1:] else "") + suffixes[-1]
+        raise ImageFileError(f"{os.fspath(path)}: unknown suffix; {known} is wanted")
     with _errors_named(path):
         why = _why_no_file(_followed(path))
     if why:
         raise ImageFileError(f"{os.fspath(path)}: {why}")
+    return Path(path)
 
 
 def make_folder(path: Path) -> None:

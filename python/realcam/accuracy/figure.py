@@ -5,7 +5,6 @@ from __future__ import annotations
 import html
 import os
 import textwrap
-from pathlib import Path
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -24,12 +23,9 @@ MOST_CODES = 32.0  # white in the thumbnails
 
 def save_figure(cost: Measurements, path: str | os.PathLike[str]) -> None:
     """Writes .svg, or .html with the table below; either holds all that it shows. Raises ImageFileError."""
-    target = Path(path)
-    if target.suffix.lower() not in (".svg", ".html"):
-        raise ImageFileError(f"{target}: unknown suffix; .svg or .html is wanted")
+    target = files.check_target(path, (".svg", ".html"))
     if not cost.rungs:
         raise ImageFileError(f"{target}: there is nothing to draw: no level was measured")
-    files.check_target(target)
     figure = _drawing(cost)
     if target.suffix.lower() == ".svg":
         files.write_whole(target, figure_bytes(figure, ".svg", dpi=110))

@@ -8,13 +8,14 @@ import io
 import json
 import math
 import os
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from .. import files
-from .._core import ImageFileError, InputError
+from .._core import InputError
+
+FORMATS = (".json", ".csv")
 
 
 def as_json(data: Any) -> str:
@@ -39,18 +40,9 @@ def as_csv(data: Any) -> str:
 
 def save_numbers(data: Any, path: str | os.PathLike[str]) -> None:
     """Writes .json or .csv, as a whole or not at all. Raises ImageFileError."""
-    target = check_numbers_target(path)
+    target = files.check_target(path, FORMATS)
     text = as_json(data) + "\n" if target.suffix.lower() == ".json" else as_csv(data)
     files.write_whole(target, text.encode())
-
-
-def check_numbers_target(path: str | os.PathLike[str]) -> Path:
-    """Raises ImageFileError where no such file can be written."""
-    target = Path(path)
-    if target.suffix.lower() not in (".json", ".csv"):
-        raise ImageFileError(f"{target}: unknown suffix; .json or .csv is wanted")
-    files.check_target(target)
-    return target
 
 
 def _is_numeric(value: Any) -> bool:

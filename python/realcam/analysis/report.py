@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import os
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from .. import files
-from .._core import ImageFileError, InputError, Lens
+from .._core import InputError, Lens
 from ..drawing.themes import theme_named
 from . import style
 from .fields import bundles_of, three_fields, wavelengths_of
@@ -37,10 +36,7 @@ def save_report(
     What a lens cannot have (a plane grid of a fisheye, say) has its reason in its place.
     Raises ImageFileError for the file, and InputError where no light passes.
     """
-    target = Path(path)
-    if target.suffix.lower() not in (".pdf", ".html"):
-        raise ImageFileError(f"{target}: unknown suffix; .pdf or .html is wanted")
-    files.check_target(target)
+    target = files.check_target(path, (".pdf", ".html"))
     if theme is not None:
         theme_named(theme)
     source = bundles_of(lens, object_distance_m, None)

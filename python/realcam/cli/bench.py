@@ -5,18 +5,18 @@ from __future__ import annotations
 import json
 import sys
 from pathlib import Path
-from typing import Annotated, Optional
+from typing import Annotated
 
 import typer
 from rich.console import Console
 
 from .._core import InputError, devices
-from .options import check_known
+from .options import Threads, check_known
 
 
 def bench(
     names: Annotated[
-        Optional[list[str]],  # noqa: UP045
+        list[str] | None,
         typer.Argument(
             help="lens-rays, lens-setup, pass-share, camera-models, frame, sensor; gpu-lens-rays, gpu-hits, gpu-paths, "
             "gpu-frames, gpu-objects [all]",
@@ -24,7 +24,7 @@ def bench(
             show_default=False,
         ),
     ] = None,
-    threads: Annotated[int, typer.Option(metavar="N", help="0: all", min=0, max=4096)] = 0,
+    threads: Threads = 0,
     as_json: Annotated[bool, typer.Option("--json", help="As JSON, with machine and commit")] = False,
 ) -> None:
     """Measure rays through the lens, pupil set-up, sampling efficiency, a frame and a sensor on this machine."""

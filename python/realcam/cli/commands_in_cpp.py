@@ -5,7 +5,7 @@ from __future__ import annotations
 import inspect
 from collections.abc import Callable
 from functools import cache
-from typing import Annotated, Any, Optional
+from typing import Annotated, Any
 
 import typer
 
@@ -40,7 +40,7 @@ def add_command_in_cpp(app: typer.Typer, *words: str) -> None:
 def _parameter(number: int, names: list[str], metavar: str, help: str) -> inspect.Parameter:
     declare: Callable[..., Any] = typer.Option if names else typer.Argument
     settings = {"help": help, **({"metavar": metavar, "autocompletion": completion_of(metavar)} if metavar else {})}
-    kind = Optional[str] if metavar else bool  # noqa: UP045
+    kind = str | None if metavar else bool
     return inspect.Parameter(
         f"option_{number}",
         inspect.Parameter.KEYWORD_ONLY,

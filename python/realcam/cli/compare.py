@@ -14,7 +14,6 @@ from ..progress import progress_bar
 from ..shot import Shot
 from ..variations import Variation, variations
 from . import lens_options, options
-from .completions import completion_of
 
 
 def compare(
@@ -36,15 +35,8 @@ def compare(
     ] = 60.0,
     denoise: Annotated[bool, typer.Option("--denoise", help="Remove the noise (realcam[denoise])")] = False,
     theme: lens_options.ThemeName = "light",
-    device: Annotated[
-        str,
-        typer.Option(
-            metavar="DEVICE",
-            help="auto (a GPU if there is one), cpu, cuda, or cuda:1",
-            autocompletion=completion_of("DEVICE"),
-        ),
-    ] = "auto",
-    threads: Annotated[int, typer.Option(metavar="N", help="0: all", min=0, max=4096)] = 0,
+    device: options.Device = "auto",
+    threads: options.Threads = 0,
     as_json: options.AsJson = False,
     quiet: options.Quiet = False,
 ) -> None:

@@ -3,21 +3,20 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Optional
+from typing import Annotated
 
 import typer
 
-from .._core import InputError
+from ..files import check_target
 from ..progress import progress_bar
 from ..shot import Shot
 from . import options
-from .completions import completion_of
 
 
 def cost(
     shot: Annotated[Path, typer.Argument(help="A shot file, .toml", metavar="SHOT")],
     figure: Annotated[
-        Optional[list[Path]],  # noqa: UP045
+        list[Path] | None,
         typer.Option(
             "--figure",
             "-o",
@@ -32,15 +31,8 @@ def cost(
     reference_spp: Annotated[
         int, typer.Option(metavar="N", help="Samples of what they are compared with", min=16)
     ] = 4096,
-    device: Annotated[
-        str,
-        typer.Option(
-            metavar="DEVICE",
-            help="auto (a GPU if there is one), cpu, cuda, or cuda:1",
-            autocompletion=completion_of("DEVICE"),
-        ),
-    ] = "auto",
-    threads: Annotated[int, typer.Option(metavar="N", help="0: all", min=0, max=4096)] = 0,
+    device: options.Device = "auto",
+    threads: options.Threads = 0,
     as_json: options.AsJson = False,
     quiet: options.Quiet = False,
 ) -> None:
@@ -48,8 +40,7 @@ def cost(
     from ..accuracy import accuracy_cost  # brings matplotlib, which other commands need not load
 
     for path in figure or []:
-        if path.suffix.lower() not in (".svg", ".html"):
-            raise InputError(f"{path}: unknown suffix; .svg or .html is wanted")
+        check_target(path, (".svg", ".html"))
     described = Shot.load(shot, device=device)
     with progress_bar("measuring", is_shown=not quiet) as bar:
         result = accuracy_cost(

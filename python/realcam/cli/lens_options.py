@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Optional
+from typing import Annotated, Any
 
 import typer
 
-from .._core import InputError
+from .._core import InputError, Lens
 from . import options
 from .completions import completion_of
 
@@ -19,39 +20,6 @@ LensName = Annotated[
         autocompletion=completion_of("LENS"),
     ),
 ]
-FNumber = Annotated[
-    Optional[float],  # noqa: UP045
-    typer.Option("--f-number", metavar="N", help="Close the diaphragm to this f-number"),
-]
-Focus = Annotated[
-    Optional[str],  # noqa: UP045
-    typer.Option("--focus", metavar="METRES", help="Object plane to film in metres, or inf"),
-]
-Zoom = Annotated[
-    Optional[str],  # noqa: UP045
-    typer.Option("--zoom", metavar="NAME", help="Zoom position, by its name in `realcam lens info`"),
-]
-Glasses = Annotated[
-    Optional[list[str]],  # noqa: UP045
-    typer.Option(
-        "--glass",
-        help="A glass that the lens's file names and no catalogue has, or several: NAME=n_d,V_d or NAME=schott:F4; "
-        "may be repeated",
-        metavar="NAME=N,V",
-    ),
-]
-Force = Annotated[
-    bool, typer.Option("--force", help="Leave out what the lens's file has that there is no model of, and name it")
-]
-PbrtThickness = Annotated[
-    Optional[str],  # noqa: UP045
-    typer.Option(
-        "--pbrt-thickness",
-        help="Where a thickness in a .dat file stands: after or before the surface of its row [by the first row]",
-        metavar="WHERE",
-    ),
-]
-
 Rays = Annotated[int, typer.Option(metavar="N", help="Rays of each bundle", min=0, max=101)]
 RaysFrom = Annotated[
     str,
@@ -66,23 +34,98 @@ Fields = Annotated[
     ),
 ]
 FieldsDeg = Annotated[
-    Optional[str],  # noqa: UP045
+    str | None,
     typer.Option(
         "--fields-deg", metavar="DEGREES", help="Places in the field as angles before the lens, in degrees, instead"
     ),
 ]
-Wavelengths = Annotated[
-    Optional[str],  # noqa: UP045
-    typer.Option("--wavelengths", metavar="NM", help="Of the rays, in nm: 486,588,656 [the lens's]"),
-]
-RadiusColours = Annotated[
-    bool, typer.Option("--radius-colours", help="Faces by the sign of their radius: blue positive, red negative")
-]
-Marks = Annotated[
-    bool, typer.Option("--marks", help="Mark pupils (EP, XP), principal planes (H, H') and focal points (F, F')")
-]
 ThemeName = Annotated[str, typer.Option("--theme", metavar="NAME", help="light or dark")]
-Width = Annotated[int, typer.Option("--width", metavar="PIXELS", help="Of the picture, in pixels", min=200, max=20000)]
+Zoom = Annotated[
+    str | None, typer.Option("--zoom", metavar="NAME", help="Zoom position, by its name in `realcam lens info`")
+]
+
+
+@dataclass(frozen=True)
+class File:
+    """How the file of a lens is read."""
+
+    glass: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--glass",
+            help="A glass that the lens's file names and no catalogue has, or several: NAME=n_d,V_d or NAME=schott:F4; "
+            "may be repeated",
+            metavar="NAME=N,V",
+        ),
+    ] = None
+    force: Annotated[
+        bool, typer.Option("--force", help="Leave out what the lens's file has that there is no model of, and name it")
+    ] = False
+    pbrt_thickness: Annotated[
+        str | None,
+        typer.Option(
+            "--pbrt-thickness",
+            help="Where a thickness in a .dat file stands: after or before the surface of its row [by the first row]",
+            metavar="WHERE",
+        ),
+    ] = None
+
+    def lens(self, name: str) -> Lens:
+        return Lens.load(
+            name, glass=options.glasses(self.glass or ()), force=self.force, pbrt_thickness=self.pbrt_thickness
+        )
+
+
+@dataclass(frozen=True)
+class Rings:
+    """How the rings of a lens are set."""
+
+    f_number: Annotated[
+        float | None, typer.Option("--f-number", metavar="N", help="Close the diaphragm to this f-number")
+    ] = None
+    focus: Annotated[
+        str | None, typer.Option("--focus", metavar="METRES", help="Object plane to film in metres, or inf")
+    ] = None
+    zoom: Zoom = None
+
+    def set(self, lens: Lens) -> Lens:
+        if self.zoom is not None:
+            lens = lens.zoomed(self.zoom)
+        # The stop first: f-numbers are of the lens at infinity, and a focusing group that has moved makes another lens.
+        if self.f_number is not None:
+            lens = lens.stopped_down(self.f_number)
+        if self.focus is not None:
+            lens = lens.focused(options.number(self.focus, "--focus", "a number of metres or inf"))
+        return lens
+
+
+@dataclass(frozen=True)
+class Look:
+    """How lenses are drawn."""
+
+    wavelengths: Annotated[
+        str | None, typer.Option("--wavelengths", metavar="NM", help="Of the rays, in nm: 486,588,656 [the lens's]")
+    ] = None
+    radius_colours: Annotated[
+        bool, typer.Option("--radius-colours", help="Faces by the sign of their radius: blue positive, red negative")
+    ] = False
+    marks: Annotated[
+        bool, typer.Option("--marks", help="Mark pupils (EP, XP), principal planes (H, H') and focal points (F, F')")
+    ] = False
+    theme: ThemeName = "light"
+    width: Annotated[
+        int, typer.Option("--width", metavar="PIXELS", help="Of the picture, in pixels", min=200, max=20000)
+    ] = 1600
+
+    def arguments(self) -> dict[str, Any]:
+        """As the functions of realcam.draw have them."""
+        return {
+            "wavelengths_nm": numbers(self.wavelengths, "--wavelengths"),
+            "radius_colours": self.radius_colours,
+            "marks": self.marks,
+            "theme": self.theme,
+            "width_px": self.width,
+        }
 
 
 SUFFIXES = (".toml", ".zmx", ".seq", ".len", ".dat", ".json", ".roa")  # of lens files

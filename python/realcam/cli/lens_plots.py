@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Optional
+from typing import Annotated
 
 import numpy as np
 import typer
@@ -12,9 +12,10 @@ from numpy.typing import NDArray
 from .._core import InputError
 from . import lens_options, options
 from .completions import completion_of
+from .grouped_options import grouped
 
 ObjectDistance = Annotated[
-    Optional[str],  # noqa: UP045
+    str | None,
     typer.Option(
         "--object-distance",
         metavar="METRES",
@@ -22,15 +23,13 @@ ObjectDistance = Annotated[
     ),
 ]
 Fields = Annotated[
-    Optional[str],  # noqa: UP045
+    str | None,
     typer.Option(
-        "--fields-deg",
-        metavar="DEGREES",
-        help="Field angles in degrees, with commas between [up to the film's corner]",
+        "--fields-deg", metavar="DEGREES", help="Field angles in degrees, with commas between [up to the film's corner]"
     ),
 ]
 Wavelengths = Annotated[
-    Optional[str],  # noqa: UP045
+    str | None,
     typer.Option(
         "--wavelengths", metavar="NM", help="In nm, with commas between [F line, the design wavelength, C line]"
     ),
@@ -39,36 +38,33 @@ Wavelengths = Annotated[
 
 def register(app: typer.Typer) -> None:
     """Adds the commands to those of lenses."""
-    app.command("plot")(plot)
-    app.command("report")(report)
+    app.command("plot")(grouped(plot))
+    app.command("report")(grouped(report))
 
 
 def plot(
     kind: Annotated[str, typer.Argument(help="What to plot: one of those above", metavar="KIND")],
     name: Annotated[
-        Optional[str],  # noqa: UP045
+        str | None,
         typer.Argument(
             help="A bundled lens (see `realcam lens list`) or a lens file",
             metavar="LENS",
             autocompletion=completion_of("LENS"),
         ),
     ] = None,
+    *,
     output: Annotated[
-        Optional[list[Path]],  # noqa: UP045
+        list[Path] | None,
         typer.Option(
             "--output", "-o", metavar="FILE", help=".svg, .png or .pdf; .json or .csv for the numbers. May be repeated"
         ),
     ] = None,
-    f_number: lens_options.FNumber = None,
-    focus: lens_options.Focus = None,
-    zoom: lens_options.Zoom = None,
-    glass: lens_options.Glasses = None,
-    force: lens_options.Force = False,
-    pbrt_thickness: lens_options.PbrtThickness = None,
+    rings: lens_options.Rings,
+    file: lens_options.File,
     fields: Fields = None,
     wavelengths: Wavelengths = None,
     frequencies: Annotated[
-        Optional[str],  # noqa: UP045
+        str | None,
         typer.Option(
             "--frequencies",
             metavar="PER_MM",
@@ -76,7 +72,7 @@ def plot(
         ),
     ] = None,
     method: Annotated[
-        Optional[str],  # noqa: UP045
+        str | None,
         typer.Option(
             "--method",
             metavar="NAME",
@@ -95,24 +91,18 @@ def plot(
     seidel, wavefront, zernike, psf, mtf, mtf-field, mtf-focus, relative-illumination, pupil, bokeh,
     depth-of-field; over the film spot-map, wavefront-map, mtf-x-map, mtf-y-map, illumination-map, distortion-map.
     """
-    from .. import analysis  # brings matplotlib, which other commands need not load
+    from .. import analysis, files  # brings matplotlib, which other commands need not load
     from ..analysis import kinds, numbers
-    from ..figure_files import check_figure_target, save_figure
+    from ..figure_files import FORMATS, save_figure
 
     options.check_known(kind, kinds.KINDS, "plot")
     if name is None:
         raise InputError(f"realcam lens plot {kind}: the name of a lens is missing")
     targets = output or ([] if as_json else [Path(f"{kind}.svg")])
     for target in targets:
-        suffix = target.suffix.lower()
-        if suffix not in (".svg", ".png", ".pdf", ".json", ".csv"):
-            raise InputError(f"{target}: unknown suffix; .svg, .png, .pdf, .json or .csv is wanted")
-        if suffix in (".json", ".csv"):
-            numbers.check_numbers_target(target)
-        else:
-            check_figure_target(target)
+        files.check_target(target, (*FORMATS, *numbers.FORMATS))
         lens_options.check_not_the_lens(target, name)
-    lens = options.lens(name, focus, f_number, zoom=zoom, glass=glass, force=force, pbrt_thickness=pbrt_thickness)
+    lens = rings.set(file.lens(name))
     bundles = analysis.Bundles(lens, _distance(object_distance))
     asked = kinds.Asked(
         lens,
@@ -124,7 +114,7 @@ def plot(
     )
     data = kinds.compute(kind, asked)
     for target in targets:
-        if target.suffix.lower() in (".json", ".csv"):
+        if target.suffix.lower() in numbers.FORMATS:
             numbers.save_numbers(data, target)
         else:
             figure = kinds.plot_figure(kind, data, theme=theme, size=size, title=options.title_of(lens))
@@ -136,21 +126,17 @@ def plot(
 
 def report(
     name: lens_options.LensName,
+    *,
     output: Annotated[
-        Optional[Path],  # noqa: UP045
-        typer.Option("--output", "-o", metavar="FILE", help="A .pdf or .html file [LENS.pdf, here]"),
+        Path | None, typer.Option("--output", "-o", metavar="FILE", help="A .pdf or .html file [LENS.pdf, here]")
     ] = None,
-    f_number: lens_options.FNumber = None,
-    focus: lens_options.Focus = None,
-    zoom: lens_options.Zoom = None,
-    glass: lens_options.Glasses = None,
-    force: lens_options.Force = False,
-    pbrt_thickness: lens_options.PbrtThickness = None,
+    rings: lens_options.Rings,
+    file: lens_options.File,
     fields: Fields = None,
     wavelengths: Wavelengths = None,
     object_distance: ObjectDistance = None,
     theme: Annotated[
-        Optional[str],  # noqa: UP045
+        str | None,
         typer.Option("--theme", metavar="NAME", help="light or dark [light; of .html as the browser is set]"),
     ] = None,
     quiet: options.Quiet = False,
@@ -158,7 +144,7 @@ def report(
     """Write all about a lens on four pages: the lens, rays, contrast and colour, waves and light."""
     from ..analysis import save_report
 
-    lens = options.lens(name, focus, f_number, zoom=zoom, glass=glass, force=force, pbrt_thickness=pbrt_thickness)
+    lens = rings.set(file.lens(name))
     target = output or lens_options.output_of(name, ".pdf")
     lens_options.check_not_the_lens(target, name)
     save_report(

@@ -3,25 +3,27 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Optional
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from .._core import InputError
 from ..json_values import json_text
 from ..progress import progress_bar
 from . import lens_options, options
+from .grouped_options import grouped
+
+if TYPE_CHECKING:
+    from ..tolerance import ToleranceStudy
 
 
+@grouped
 def tolerance(
     name: lens_options.LensName,
+    *,
     grade: Annotated[
         str, typer.Option("--grade", metavar="NAME", help="Of all tolerances: commercial, precision or high")
     ] = "commercial",
-    output: Annotated[
-        Optional[Path],  # noqa: UP045
-        typer.Option("--output", "-o", metavar="FILE", help="A report, .html"),
-    ] = None,
+    output: Annotated[Path | None, typer.Option("--output", "-o", metavar="FILE", help="A report, .html")] = None,
     copies: Annotated[int, typer.Option("--copies", metavar="N", help="How many lenses are made")] = 1000,
     seed: Annotated[int, typer.Option("--seed", metavar="N", help="The same one makes the same copies")] = 0,
     compensate: Annotated[
@@ -33,22 +35,17 @@ def tolerance(
         typer.Option("--distribution", metavar="NAME", help="Of errors: uniform, or normal with the limit at 2 sigma"),
     ] = "uniform",
     frequency: Annotated[
-        Optional[float],  # noqa: UP045
+        float | None,
         typer.Option("--frequency", metavar="PER_MM", help="At which MTF counts [20 on a film of 36 x 24 mm]"),
     ] = None,
     at_least: Annotated[
-        Optional[float],  # noqa: UP045
+        float | None,
         typer.Option("--at-least", metavar="MTF", help="Of the worst field, for the yield [half of that as drawn]"),
     ] = None,
-    f_number: lens_options.FNumber = None,
-    focus: lens_options.Focus = None,
-    zoom: lens_options.Zoom = None,
-    glass: lens_options.Glasses = None,
-    force: lens_options.Force = False,
-    pbrt_thickness: lens_options.PbrtThickness = None,
+    rings: lens_options.Rings,
+    file: lens_options.File,
     theme: Annotated[
-        Optional[str],  # noqa: UP045
-        typer.Option("--theme", metavar="NAME", help="light or dark [as the browser is set]"),
+        str | None, typer.Option("--theme", metavar="NAME", help="light or dark [as the browser is set]")
     ] = None,
     as_json: options.AsJson = False,
     quiet: options.Quiet = False,
@@ -64,11 +61,8 @@ def tolerance(
     tolerances = Tolerances.grade(grade, distribution=distribution)
     check_distribution(distribution)
     if output is not None:
-        if output.suffix.lower() != ".html":
-            raise InputError(f"{output}: unknown suffix; .html is wanted")
-        lens_options.check_not_the_lens(output, name)
-        files.check_target(output)
-    lens = options.lens(name, focus, f_number, zoom=zoom, glass=glass, force=force, pbrt_thickness=pbrt_thickness)
+        lens_options.check_not_the_lens(files.check_target(output, (".html",)), name)
+    lens = rings.set(file.lens(name))
     with progress_bar(f"{copies} copies", is_shown=not (quiet or as_json)) as bar:
         study = tolerance_study(
             lens,
@@ -90,10 +84,16 @@ def tolerance(
         return
     if quiet:
         return
-    from ..tolerance.plots import MEASURES, with_limit
-
     if not study.is_whole:
         typer.echo(f"ended after {len(study)} of {copies} copies")
+    _print(study, wanted, share)
+    if output is not None:
+        options.say_written(output)
+
+
+def _print(study: ToleranceStudy, wanted: float, share: float) -> None:
+    from ..tolerance.plots import MEASURES, with_limit
+
     typer.echo(f"MTF at {study.frequencies_per_mm[study.main]:.4g} periods per mm")
     typer.echo(f"{'':26}{'as drawn':>10}{'10 % below':>12}{'half below':>12}{'90 % below':>12}")
     for measure, words in MEASURES.items():
@@ -105,5 +105,3 @@ def tolerance(
     typer.echo("worst offenders, mean MTF lost at the limit:")
     for offender in study.worst_offenders(8):
         typer.echo(f"  {offender.loss:7.4f}  {with_limit(offender)}")
-    if output is not None:
-        options.say_written(output)

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from itertools import pairwise
 from pathlib import Path
-from typing import Annotated, Optional
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -12,16 +15,41 @@ from ..json_values import json_text
 from ..progress import progress_bar
 from ..variable import Variable
 from . import lens_options, options
+from .grouped_options import grouped
+
+if TYPE_CHECKING:
+    from ..glass_search import GlassSearch
+    from ..operands import Operand
+    from ..optimisation import Optimisation
 
 WAYS = ("radii", "thicknesses", "conics")
 COLOURS_NM = (486.1327, 587.5618, 656.2725)
 
 
+@dataclass(frozen=True)
+class Bounds:
+    """Of what is varied, mm."""
+
+    least_radius: Annotated[float, typer.Option(metavar="MM", help="No radius becomes smaller", min=0)] = 0.0
+    least_thickness: Annotated[float, typer.Option(metavar="MM", help="No thickness becomes smaller")] = 0.1
+    most_thickness: Annotated[
+        float | None, typer.Option(metavar="MM", help="No thickness becomes larger [three times the largest]")
+    ] = None
+    least_edge: Annotated[
+        float | None, typer.Option(metavar="MM", help="No glass becomes thinner at its edge [0.5, or as it is]")
+    ] = None
+
+    def most_thickness_of(self, lens: Lens) -> float:
+        return self.most_thickness or 3 * max(abs(s.thickness_mm) for s in lens.surfaces)
+
+
+@grouped
 def optimise(
     name: lens_options.LensName,
+    *,
     output: Annotated[Path, typer.Option("--output", "-o", metavar="FILE", help="A .toml, .zmx or .seq file")],
     vary: Annotated[
-        Optional[list[str]],  # noqa: UP045
+        list[str] | None,
         typer.Option(
             "--vary",
             metavar="WHAT",
@@ -30,25 +58,15 @@ def optimise(
         ),
     ] = None,
     field_deg: Annotated[
-        Optional[list[float]],  # noqa: UP045
+        list[float] | None,
         typer.Option("--field", metavar="DEGREES", help="An angle whose spot is to be small; may be repeated [film]"),
     ] = None,
     focal_length: Annotated[
-        Optional[float],  # noqa: UP045
-        typer.Option("--focal-length", metavar="MM", help="What it is to be [as it is]"),
+        float | None, typer.Option("--focal-length", metavar="MM", help="What it is to be [as it is]")
     ] = None,
-    least_radius: Annotated[float, typer.Option(metavar="MM", help="No radius becomes smaller", min=0)] = 0.0,
-    least_thickness: Annotated[float, typer.Option(metavar="MM", help="No thickness becomes smaller")] = 0.1,
-    most_thickness: Annotated[
-        Optional[float],  # noqa: UP045
-        typer.Option(metavar="MM", help="No thickness becomes larger [three times the largest]"),
-    ] = None,
-    least_edge: Annotated[
-        Optional[float],  # noqa: UP045
-        typer.Option(metavar="MM", help="No glass becomes thinner at its edge [0.5, or as it is]"),
-    ] = None,
+    bounds: Bounds,
     most_distortion: Annotated[
-        Optional[float],  # noqa: UP045
+        float | None,
         typer.Option("--most-distortion", metavar="PERCENT", help="At the outermost field, of either sign", min=0),
     ] = None,
     glasses: Annotated[bool, typer.Option("--glasses", help="Look for better glasses in the catalogue, too")] = False,
@@ -56,69 +74,24 @@ def optimise(
         int, typer.Option("--global", metavar="N", help="Looks all over the bounds before the search", min=0)
     ] = 0,
     steps: Annotated[int, typer.Option(metavar="N", help="Steps of the search", min=1, max=10000)] = 50,
-    focus: lens_options.Focus = None,
-    f_number: lens_options.FNumber = None,
-    zoom: lens_options.Zoom = None,
-    glass: lens_options.Glasses = None,
-    force: lens_options.Force = False,
-    pbrt_thickness: lens_options.PbrtThickness = None,
+    rings: lens_options.Rings,
+    file: lens_options.File,
     as_json: options.AsJson = False,
     quiet: options.Quiet = False,
 ) -> None:
     """Make the spots of a lens smaller, by least squares within bounds. Ctrl-C ends it with the best lens so far."""
-    from ..glass_search import GlassSearch, with_better_glasses
+    from .. import files
+    from ..glass_search import with_better_glasses
     from ..operands import Operand
-    from ..optimisation import Optimisation, Targets, optimised
+    from ..optimisation import Targets, optimised
 
-    lens_options.check_not_the_lens(output, name)
-    if output.suffix.lower() not in (".toml", ".zmx", ".seq"):
-        raise InputError(f"{output}: unknown suffix; .toml, .zmx or .seq is wanted")
+    lens_options.check_not_the_lens(files.check_target(output, (".toml", ".zmx", ".seq")), name)
     if glasses and global_looks:
         raise InputError("--glasses and --global cannot go together")
-    lens = options.lens(name, focus, f_number, zoom=zoom, glass=glass, force=force, pbrt_thickness=pbrt_thickness)
-    most = most_thickness or 3 * max(abs(s.thickness_mm) for s in lens.surfaces)
-
-    def variables_of(text: str) -> list[Variable]:
-        kind, *numbers = text.split(":")
-        if text in WAYS:
-            return _all_of(lens, text, least_radius, least_thickness, most)
-        if len(numbers) != {"radius": 1, "thickness": 1, "conic": 1, "aspheric": 2}.get(kind):
-            raise InputError(
-                f'--vary: "{text}": {", ".join(WAYS)}, radius:2, thickness:3, conic:2 or aspheric:2:4 is wanted'
-            )
-        try:
-            number, *power = [int(part) for part in numbers]
-        except ValueError:
-            raise InputError(f'--vary: "{text}": whole numbers are wanted after the colon') from None
-        if not 1 <= number <= len(lens.surfaces):
-            raise InputError(f'--vary: "{text}": there is no surface {number}; the lens has {len(lens.surfaces)}')
-        surface = number - 1
-        if kind == "radius":
-            return [Variable.radius(surface, least_radius)]
-        if kind == "thickness":
-            return [Variable.thickness(surface, least_thickness, most)]
-        if kind == "conic":
-            return [Variable.conic(surface)]
-        return [Variable.aspheric(surface, *power)]
-
-    variables = [v for text in vary or ["radii"] for v in variables_of(text)]
+    lens = rings.set(file.lens(name))
+    variables = [v for text in vary or ["radii"] for v in _variables_of(text, lens, bounds)]
     fields = tuple(field_deg) if field_deg else _fields(lens)
-    operands = []
-    for i in range(len(lens.surfaces) - 1):
-        front, back = lens.surfaces[i], lens.surfaces[i + 1]
-        if front.type != "refracting" or back.type != "refracting" or front.material.index(lens.wavelength_nm) < 1.1:
-            continue
-        edge = Operand("edge_thickness_mm", surface=i, bound="least", weight=10)
-        now = edge.value_of(lens, 1)
-        operands.append(
-            Operand(
-                "edge_thickness_mm",
-                min(0.5, now) if least_edge is None else least_edge,
-                surface=i,
-                bound="least",
-                weight=10,
-            )
-        )
+    operands = _edges(lens, bounds.least_edge)
     if most_distortion is not None:
         outermost = max(fields, key=abs)
         operands += [
@@ -140,11 +113,12 @@ def optimise(
             return bar(min(1.0, count / expected))
 
         found: Optimisation | GlassSearch
+        changed: Mapping[int, str] = {}
         if glasses:
             found = searched = with_better_glasses(
                 lens, variables, targets, most_steps=min(steps, 10), progress=report, answers_interrupt=True
             )
-            changed = dict(searched.glasses)
+            changed = searched.glasses
         else:
             found = optimised(
                 lens,
@@ -155,44 +129,61 @@ def optimise(
                 global_looks=global_looks,
                 answers_interrupt=True,
             )
-            changed = dict[int, str]()
     found.lens.save(output)
-    if as_json:
-        typer.echo(
-            json_text(
-                {
-                    "rms_spot_before_mm": found.rms_spot_before_mm,
-                    "rms_spot_mm": found.rms_spot_mm,
-                    "evaluations": found.evaluations,
-                    "glasses": {str(surface + 1): glass_name for surface, glass_name in changed.items()},
-                    "message": found.message,
-                    "file": str(output),
-                }
-            )
-        )
-    elif not quiet:
-        typer.echo(
-            f"RMS spot {1000 * found.rms_spot_before_mm:.3g} um before, {1000 * found.rms_spot_mm:.3g} um now, after "
-            f"{found.evaluations} looks: {found.message}"
-        )
-        for surface, glass_name in changed.items():
-            typer.echo(f"surface {surface + 1}: {glass_name}")
+    if as_json or not quiet:
+        _print(found, changed, output, as_json)
     options.say_written(output, quiet or as_json)
     if found.message == "interrupted":
         raise typer.Exit(130)
 
 
-def _all_of(lens: Lens, way: str, least_radius: float, least: float, most: float) -> list[Variable]:
-    chosen = []
-    for i, surface in enumerate(lens.surfaces):
-        bends = surface.type in ("refracting", "mirror") and surface.curvature_per_mm != 0
-        if way == "radii" and bends:
-            chosen.append(Variable.radius(i, least_radius))
-        elif way == "conics" and bends:
-            chosen.append(Variable.conic(i))
-        elif way == "thicknesses" and i + 1 < len(lens.surfaces) and surface.thickness_mm > least:
-            chosen.append(Variable.thickness(i, least, max(most, 1.001 * surface.thickness_mm)))
-    return chosen
+def _variables_of(text: str, lens: Lens, bounds: Bounds) -> list[Variable]:
+    kind, *numbers = text.split(":")
+    if text in WAYS:
+        return [variable for i in range(len(lens.surfaces)) for variable in _of_surface(i, text, lens, bounds)]
+    if len(numbers) != {"radius": 1, "thickness": 1, "conic": 1, "aspheric": 2}.get(kind):
+        raise InputError(
+            f'--vary: "{text}": {", ".join(WAYS)}, radius:2, thickness:3, conic:2 or aspheric:2:4 is wanted'
+        )
+    try:
+        number, *power = [int(part) for part in numbers]
+    except ValueError:
+        raise InputError(f'--vary: "{text}": whole numbers are wanted after the colon') from None
+    if not 1 <= number <= len(lens.surfaces):
+        raise InputError(f'--vary: "{text}": there is no surface {number}; the lens has {len(lens.surfaces)}')
+    surface = number - 1
+    if kind == "radius":
+        return [Variable.radius(surface, bounds.least_radius)]
+    if kind == "thickness":
+        return [Variable.thickness(surface, bounds.least_thickness, bounds.most_thickness_of(lens))]
+    if kind == "conic":
+        return [Variable.conic(surface)]
+    return [Variable.aspheric(surface, *power)]
+
+
+def _of_surface(i: int, way: str, lens: Lens, bounds: Bounds) -> Iterator[Variable]:
+    surface = lens.surfaces[i]
+    bends = surface.type in ("refracting", "mirror") and surface.curvature_per_mm != 0
+    if way == "radii" and bends:
+        yield Variable.radius(i, bounds.least_radius)
+    elif way == "conics" and bends:
+        yield Variable.conic(i)
+    elif way == "thicknesses" and i + 1 < len(lens.surfaces) and surface.thickness_mm > bounds.least_thickness:
+        most = max(bounds.most_thickness_of(lens), 1.001 * surface.thickness_mm)
+        yield Variable.thickness(i, bounds.least_thickness, most)
+
+
+def _edges(lens: Lens, least: float | None) -> list[Operand]:
+    """No glass becomes thinner at its edge; `least` in mm, None: than 0.5, or than it is."""
+    from ..operands import Operand
+
+    operands = []
+    for i, (front, back) in enumerate(pairwise(lens.surfaces)):
+        if front.type != "refracting" or back.type != "refracting" or front.material.index(lens.wavelength_nm) < 1.1:
+            continue
+        edge = Operand("edge_thickness_mm", surface=i, bound="least", weight=10)
+        operands.append(replace(edge, target=min(0.5, edge.value_of(lens, 1)) if least is None else least))
+    return operands
 
 
 def _fields(lens: Lens) -> tuple[float, ...]:
@@ -200,3 +191,23 @@ def _fields(lens: Lens) -> tuple[float, ...]:
     from ..fields import fields_at
 
     return tuple(field.angle_deg for field in fields_at(lens, (0.0, 0.7, 1.0)))
+
+
+def _print(found: Optimisation | GlassSearch, glasses: Mapping[int, str], file: Path, as_json: bool) -> None:
+    if as_json:
+        figures = {
+            "rms_spot_before_mm": found.rms_spot_before_mm,
+            "rms_spot_mm": found.rms_spot_mm,
+            "evaluations": found.evaluations,
+            "glasses": {str(surface + 1): name for surface, name in glasses.items()},
+            "message": found.message,
+            "file": str(file),
+        }
+        typer.echo(json_text(figures))
+    else:
+        typer.echo(
+            f"RMS spot {1000 * found.rms_spot_before_mm:.3g} um before, {1000 * found.rms_spot_mm:.3g} um now, after "
+            f"{found.evaluations} looks: {found.message}"
+        )
+        for surface, name in glasses.items():
+            typer.echo(f"surface {surface + 1}: {name}")

@@ -12,9 +12,19 @@ from typing import Annotated
 import typer
 
 from .._core import InputError, Lens, LensFileError, _did_you_mean
+from .completions import completion_of
 
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print warnings and errors alone")]
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON")]
+Device = Annotated[
+    str,
+    typer.Option(
+        metavar="DEVICE",
+        help="auto (a GPU if there is one), cpu, cuda, or cuda:1",
+        autocompletion=completion_of("DEVICE"),
+    ),
+]
+Threads = Annotated[int, typer.Option(metavar="N", help="0: all", min=0, max=4096)]
 
 
 def say_written(target: Path, quiet: bool = False) -> None:
@@ -75,28 +85,6 @@ def advice_on(error: LensFileError) -> str:
     if not error.glass:
         return ""
     return f"; --glass {error.glass}={error.candidate or 'n_d,V_d'} names it"
-
-
-def lens(
-    name: str,
-    focus: str | None = None,
-    f_number: float | None = None,
-    *,
-    zoom: str | None = None,
-    glass: Sequence[str] | None = None,
-    force: bool = False,
-    pbrt_thickness: str | None = None,
-) -> Lens:
-    """A lens with its rings set."""
-    result = Lens.load(name, glass=glasses(glass or ()), force=force, pbrt_thickness=pbrt_thickness)
-    if zoom is not None:
-        result = result.zoomed(zoom)
-    # The stop first: f-numbers are of the lens at infinity, and a focusing group that has moved makes another lens.
-    if f_number is not None:
-        result = result.stopped_down(f_number)
-    if focus is not None:
-        result = result.focused(number(focus, "--focus", "a number of metres or inf"))
-    return result
 
 
 def title_of(lens: Lens) -> str:

@@ -6,7 +6,7 @@ import math
 import os
 import warnings
 from pathlib import Path
-from typing import Annotated, Optional
+from typing import Annotated
 
 import numpy as np
 import typer
@@ -88,11 +88,11 @@ def expose(
             autocompletion=completion_of("SENSOR"),
         ),
     ] = "ideal",
-    iso: Annotated[Optional[float], typer.Option("--iso", metavar="ISO", help="Sensitivity [the picture's]")] = None,  # noqa: UP045
+    iso: Annotated[float | None, typer.Option("--iso", metavar="ISO", help="Sensitivity [the picture's]")] = None,
     seed: Annotated[int, typer.Option(metavar="N", help="Of the noise of this exposure", min=0, max=2**32 - 1)] = 0,
     serial: Annotated[int, typer.Option(metavar="N", help="Of what a sensor has for ever", min=0, max=2**32 - 1)] = 0,
     temperature: Annotated[
-        Optional[float],  # noqa: UP045
+        float | None,
         typer.Option("--temperature", metavar="CELSIUS", help="Degrees Celsius [that of the sensor's dark current]"),
     ] = None,
     tone: Annotated[str, typer.Option(metavar="CURVE", help="Tone curve of .png: linear (clipped) or film")] = "linear",

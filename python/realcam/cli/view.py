@@ -9,7 +9,6 @@ import typer
 
 from .._core import InputError
 from . import options
-from .completions import completion_of
 from .demo import scenes_folder
 
 
@@ -27,14 +26,7 @@ def view(
         bool, typer.Option("--allow-network", help="Serve at an address that other machines reach; makes a token")
     ] = False,
     token: Annotated[str, typer.Option(help="The token that pages have to give", show_default=False)] = "",
-    device: Annotated[
-        str,
-        typer.Option(
-            metavar="DEVICE",
-            help="auto, cpu, cuda, cuda:1 ...; see `realcam devices`",
-            autocompletion=completion_of("DEVICE"),
-        ),
-    ] = "auto",
+    device: options.Device = "auto",
     browser: Annotated[bool, typer.Option(help="Open the browser")] = True,
     quiet: options.Quiet = False,
 ) -> None:

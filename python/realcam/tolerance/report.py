@@ -6,10 +6,8 @@ import html
 import math
 import os
 from collections.abc import Iterable, Sequence
-from pathlib import Path
 
 from .. import files
-from .._core import ImageFileError
 from ..analysis import style
 from ..drawing.themes import theme_named
 from ..drawing.web_page import inline_svg, page_top
@@ -37,10 +35,7 @@ def save_tolerance_report(
 ) -> None:
     """theme: "light" or "dark"; None is as its reader has set the browser. loss: of mean MTF, for which the page says
     what each tolerance may be. Raises ImageFileError, and InputError for a theme that is none."""
-    target = Path(path)
-    if target.suffix.lower() != ".html":
-        raise ImageFileError(f"{target}: unknown suffix; .html is wanted")
-    files.check_target(target)
+    target = files.check_target(path, (".html",))
     if theme is not None:
         theme_named(theme)
     files.write_whole(target, page_of(study, theme, loss).encode())
