@@ -197,12 +197,7 @@ def convert(
 
 @app.command("blender")
 def blender(
-    names: Annotated[
-        list[str] | None,
-        typer.Argument(
-            help="Lenses, bundled or files [all that are bundled]", metavar="LENS", autocompletion=completion_of("LENS")
-        ),
-    ] = None,
+    names: lens_options.LensNames = None,
     output: Annotated[Path, typer.Option("--output", "-o", metavar="FILE", help="A .zip file")] = Path(
         "realcam-lenses.zip"
     ),
@@ -220,12 +215,7 @@ def blender(
 @app.command("gallery")
 @grouped
 def gallery(
-    names: Annotated[
-        list[str] | None,
-        typer.Argument(
-            help="Lenses, bundled or files [all that are bundled]", metavar="LENS", autocompletion=completion_of("LENS")
-        ),
-    ] = None,
+    names: lens_options.LensNames = None,
     *,
     output: Annotated[Path, typer.Option("--output", "-o", metavar="FILE", help="A .png, .svg or .pdf file")] = Path(
         "lenses.png"

@@ -20,6 +20,12 @@ LensName = Annotated[
         autocompletion=completion_of("LENS"),
     ),
 ]
+LensNames = Annotated[
+    list[str] | None,
+    typer.Argument(
+        help="Lenses, bundled or files [all that are bundled]", metavar="LENS", autocompletion=completion_of("LENS")
+    ),
+]
 Rays = Annotated[int, typer.Option(metavar="N", help="Rays of each bundle", min=0, max=101)]
 RaysFrom = Annotated[
     str,
