@@ -18,8 +18,7 @@ REALCAM_INLINE Color clamped(Color c, float limit) {
 template <SceneKind scene_kind, int N>
 REALCAM_INLINE LightReceiver receiver_of(const PathState<N>& path, int lane) {
     LightLobe lobe;
-    if constexpr (scene_kind != SceneKind::plain)
-        lobe = {path.receiver_to_eye[lane], path.receiver_alpha[lane], path.receiver_share[lane]};
+    if constexpr (scene_kind != SceneKind::plain) lobe = path.receiver_lobe(lane);
     return {path.receiver_position[lane], path.receiver_normal[lane], time_of<scene_kind>(path, lane), lobe};
 }
 

@@ -62,6 +62,9 @@ struct PathState {
         if constexpr (N > 1) return lane_[place];
         return 0;
     }
+    REALCAM_INLINE LightLobe receiver_lobe(int place) const {
+        return {receiver_to_eye[place], receiver_alpha[place], receiver_share[place]};
+    }
     REALCAM_INLINE void set_receiver_lobe(int place, LightLobe lobe) {
         receiver_to_eye.set(place, lobe.to_eye);
         receiver_alpha[place] = lobe.alpha;
@@ -84,7 +87,7 @@ struct PathState {
                 receiver_position.set(to, receiver_position[from]);
                 receiver_normal.set(to, receiver_normal[from]);
                 receiver_sky[to] = receiver_sky[from];
-                set_receiver_lobe(to, {receiver_to_eye[from], receiver_alpha[from], receiver_share[from]});
+                set_receiver_lobe(to, receiver_lobe(from));
             }
         }
     }
