@@ -1,5 +1,6 @@
 #pragma once
 #include "environment_samples.hpp"
+#include "light_choices.hpp"
 #include "met_light.hpp"
 #include "path_numbers.hpp"
 
@@ -136,6 +137,25 @@ REALCAM_INLINE bool fits_lanes(const EnvironmentView& environment) {
     return !environment.pixels || std::int64_t{environment.height} * (environment.width + 1) < (1 << 30);
 }
 
+/// Of the point and area lights, for all surfaces.
+template <int N, class SurfacesT, class Seeds>
+REALCAM_INLINE void choose_local_lights(const SceneView& scene, const LightKindsLanes<N>& kinds,
+                                        const SurfacesT& surfaces, const PathState<N>& path, const PathNumbers<N>& u,
+                                        const Seeds& seed, LightChoices<N>& chosen) {
+    const int places = whole_vectors<N>(path.count);
+    Lanes<float, N> rest;
+    Lanes<std::uint32_t, N> seeds;
+    for (int i = 0; i < places; ++i) seeds[i] = seed(i);
+    REALCAM_LANES
+    for (int i = 0; i < places; ++i) rest[i] = left_over(u[i].x, kinds[i].local_probability);
+    choose_lights<N>(
+        scene,
+        [&](int i) -> LightReceiver {
+            return {surfaces.position[i], surfaces.normal[i], 0.0f, surfaces.lobe(i, -path.rays.direction[i])};
+        },
+        rest, seeds, places, chosen);
+}
+
 /// As pick_light does for one receiver.
 template <SceneKind scene_kind, int N, class SurfacesT, class Seeds>
 REALCAM_INLINE void pick_lights(const SceneView& scene, const LightKindsLanes<N>& kinds, int number,
@@ -143,11 +163,12 @@ REALCAM_INLINE void pick_lights(const SceneView& scene, const LightKindsLanes<N>
                                 const Seeds& seed, PickedLights<N>& picked) {
     const int places = whole_vectors<N>(path.count);
     for (int i = 0; i < places; ++i) picked.source[i] = Source::none;  // also of the places that are not in use
+    LightChoices<N> local;
+    if (number == 0 && scene.light_node_count > 0) choose_local_lights(scene, kinds, surfaces, path, u, seed, local);
     for (int i = 0; i < path.count; ++i) {
         if (!surfaces.is_in_lanes(i)) continue;
-        const LightReceiver receiver = {surfaces.position[i], surfaces.normal[i], time_of<scene_kind>(path, i),
-                                        surfaces.lobe(i, -path.rays.direction[i])};
-        const LightPick pick = pick_light(scene, receiver, kinds[i], number, u[i], seed(i));
+        const LightReceiver receiver = {surfaces.position[i], surfaces.normal[i], time_of<scene_kind>(path, i)};
+        const LightPick pick = pick_light_by(scene, receiver, kinds[i], number, u[i], [&](float) { return local[i]; });
         if (!(pick.probability > 0.0f)) continue;
         picked.u.set(i, pick.u);
         picked.probability[i] = pick.probability;

@@ -243,19 +243,22 @@ struct LightPick {
     Vec2f u;  ///< random numbers for a place on it
 };
 
+/// A random number made of what a choice with this probability leaves of another, which is below it.
+REALCAM_INLINE float left_over(float u, float probability) {
+    const float fresh = u / probability;
+    return select(fresh < 0x1.fffffep-1f, fresh, 0x1.fffffep-1f);
+}
+
 /// Chooses one light. One pair of numbers does that and chooses a place on it, so that what is even over a pixel's
-/// samples is even over each light. `number`: of the sample. `seed` as in choose_light.
-REALCAM_INLINE LightPick pick_light(const SceneView& scene, LightReceiver receiver, const LightKinds& kinds, int number,
-                                    Vec2f u, std::uint32_t seed) {
+/// samples is even over each light. `number`: of the sample. `choose(u)`: one of the point and area lights, as
+/// choose_light does.
+template <class Choose>
+REALCAM_INLINE LightPick pick_light_by(const SceneView& scene, LightReceiver receiver, const LightKinds& kinds,
+                                       int number, Vec2f u, const Choose& choose) {
     if (number == 1) return {LightKind::environment, 0, kinds.environment_is_apart ? 1.0f : 0.0f, u};
     float probability = kinds.local_probability;
-    const auto rescale = [&] {
-        const float fresh = u.x / probability;
-        u.x = fresh < 0x1.fffffep-1f ? fresh : 0x1.fffffep-1f;
-    };
     if (u.x < probability) {
-        rescale();
-        const LightChoice chosen = choose_light(scene, receiver, u.x, seed);
+        const LightChoice chosen = choose(left_over(u.x, probability));
         const std::int32_t area = chosen.light - scene.point_count;
         return {area < 0 ? LightKind::point : LightKind::area,
                 area < 0 ? chosen.light : area,
@@ -264,10 +267,7 @@ REALCAM_INLINE LightPick pick_light(const SceneView& scene, LightReceiver receiv
     }
     u.x -= probability;
     probability = kinds.environment_probability;
-    if (u.x < probability) {
-        rescale();
-        return {LightKind::environment, 0, probability, u};
-    }
+    if (u.x < probability) return {LightKind::environment, 0, probability, {left_over(u.x, probability), u.y}};
     for (int i = 0; i < scene.sun_count; ++i) {
         u.x -= probability;
         probability = kinds.sun_probability(scene.suns[i], receiver.normal);
@@ -275,6 +275,13 @@ REALCAM_INLINE LightPick pick_light(const SceneView& scene, LightReceiver receiv
         if (u.x < probability || i + 1 == scene.sun_count) return {LightKind::sun, i, probability, u};
     }
     return {LightKind::environment, 0, 0.0f, u};
+}
+
+/// `seed`: as in choose_light.
+REALCAM_INLINE LightPick pick_light(const SceneView& scene, LightReceiver receiver, const LightKinds& kinds, int number,
+                                    Vec2f u, std::uint32_t seed) {
+    return pick_light_by(scene, receiver, kinds, number, u,
+                         [&](float rest) { return choose_light(scene, receiver, rest, seed); });
 }
 
 /// One over the squared distance has no bound. Lights end at 1e30; what a narrow lobe and the film's sums make of this

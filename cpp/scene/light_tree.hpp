@@ -111,10 +111,9 @@ REALCAM_INLINE float most_illuminance(const LightNode& node, LightReceiver recei
 REALCAM_INLINE float first_child_probability(const LightNode& first, const LightNode& second, LightReceiver receiver) {
     constexpr float kLeast = 0.01f;
     const float a = light_importance(first, receiver), b = light_importance(second, receiver);
-    const float share = a / (a + b);
+    const float share = a / (a + b), least = select(share > kLeast, share, kLeast);
     // The half is also returned where both are 0 or infinite.
-    if (!(share >= 0.0f)) return 0.5f;
-    return share < kLeast ? kLeast : share > 1.0f - kLeast ? 1.0f - kLeast : share;
+    return select(share >= 0.0f, select(least < 1.0f - kLeast, least, 1.0f - kLeast), 0.5f);
 }
 
 struct LightChoice {
@@ -123,30 +122,43 @@ struct LightChoice {
     float fresh;  ///< a random number made of what the choice left over
 };
 
-/// `seed`: for random bits beyond the 24 of u, which the choices at 20 turns use up.
-REALCAM_INLINE LightChoice choose_light(const SceneView& scene, LightReceiver receiver, float u, std::uint32_t seed) {
+/// A way down the tree, which begins at its root.
+struct LightTreePath {
+    float u;
+    std::uint32_t seed;  ///< for random bits beyond the 24 of u, which the choices at 20 turns use up
+    std::int32_t node = 0;
     float probability = 1.0f;
-    std::int32_t at = 0;
-    while (scene.light_nodes[at].second_child > 0) {
-        const std::int32_t second = scene.light_nodes[at].second_child;
-        const float first = first_child_probability(scene.light_nodes[at + 1], scene.light_nodes[second], receiver);
-        const bool is_first = u < first;
-        const float taken = is_first ? first : 1.0f - first;
-        u = (is_first ? u : u - first) / taken;
+
+    /// To one of the node's two children. `nodes[i]`: of the tree.
+    template <class Nodes>
+    REALCAM_INLINE void take_turn(const Nodes& nodes, std::int32_t first, std::int32_t second, LightReceiver receiver) {
+        const float share = first_child_probability(nodes[first], nodes[second], receiver);
+        const bool is_first = u < share;
+        const float taken = select(is_first, share, 1.0f - share);
         probability *= taken;
         // u stands on steps of 2^-24 / probability: anywhere in its step is as likely.
         seed = hash32(seed);
-        u += unit_float(seed) * 0x1p-24f / probability;
-        u = u < 0x1.fffffep-1f ? u : 0x1.fffffep-1f;
-        at = is_first ? at + 1 : second;
+        u = select(is_first, u, u - share) / taken + unit_float(seed) * 0x1p-24f / probability;
+        u = select(u < 0x1.fffffep-1f, u, 0x1.fffffep-1f);
+        node = select(is_first, first, second);
     }
-    const LightNode& leaf = scene.light_nodes[at];
-    const std::int32_t light = -1 - leaf.second_child;
-    if (leaf.partner < 0) return {light, probability, u};
-    const bool is_first = u < leaf.first_share;
-    const float taken = is_first ? leaf.first_share : 1.0f - leaf.first_share;
-    u = (is_first ? u : u - leaf.first_share) / taken;
-    return {is_first ? light : leaf.partner, probability * taken, u < 0x1.fffffep-1f ? u : 0x1.fffffep-1f};
+    /// One of the leaf's lights.
+    REALCAM_INLINE LightChoice choice_at(const LightNode& leaf) const {
+        const std::int32_t light = -1 - leaf.second_child;
+        if (leaf.partner < 0) return {light, probability, u};
+        const bool is_first = u < leaf.first_share;
+        const float taken = is_first ? leaf.first_share : 1.0f - leaf.first_share;
+        const float fresh = (is_first ? u : u - leaf.first_share) / taken;
+        return {is_first ? light : leaf.partner, probability * taken, fresh < 0x1.fffffep-1f ? fresh : 0x1.fffffep-1f};
+    }
+};
+
+/// `seed`: as LightTreePath's.
+REALCAM_INLINE LightChoice choose_light(const SceneView& scene, LightReceiver receiver, float u, std::uint32_t seed) {
+    LightTreePath path{u, seed};
+    for (std::int32_t second; (second = scene.light_nodes[path.node].second_child) > 0;)
+        path.take_turn(scene.light_nodes, path.node + 1, second, receiver);
+    return path.choice_at(scene.light_nodes[path.node]);
 }
 
 /// Probability with which choose_light chooses a light.

@@ -7,6 +7,7 @@
 
 #include "bare_scene.hpp"
 #include "chi_square.hpp"
+#include "render/light_choices.hpp"
 #include "scene/light.hpp"
 #include "scene/render_space_scene.hpp"
 
@@ -216,8 +217,10 @@ TEST_CASE("a lamp's importance for a glossy surface is what the surface shows of
         }
 }
 
-TEST_CASE("a light is chosen from the tree with the probability that is said of it") {
-    ChiSquareTests tests("choose_light: 400 area lights and 100 point lights, by the tree");
+namespace {
+
+/// 400 area lights and 100 point lights.
+Scene many_lights() {
     std::vector<Lamp> many;
     Uniform place(8);
     for (int i = 0; i < 400; ++i) {
@@ -231,32 +234,80 @@ TEST_CASE("a light is chosen from the tree with the probability that is said of 
     for (int i = 0; i < 100; ++i)
         scene.points.push_back(
             {{static_cast<double>(place()), 3 * static_cast<double>(place()), 2}, {1e-3f, 1e-3f, 0}});
+    return scene;
+}
+
+/// To their lights from within, from beside and from far away, some with a lobe.
+std::vector<LightReceiver> receivers_of_many_lights() {
+    std::vector<LightReceiver> receivers;
+    for (const Vec3f position : {Vec3f{0, 0, 0.5f}, Vec3f{1, -1, -3}, Vec3f{50, 20, 10}})
+        for (const LightReceiver& receiver : {LightReceiver{position, {0, 0, 0}}, LightReceiver{position, {0, 0, 1}},
+                                              LightReceiver{position, {0, 0, -1}}, LightReceiver{position, {-1, 0, 0}},
+                                              LightReceiver{position, {0, 0, 1}, 0, {{0.8f, 0, 0.6f}, 0.2f, 0.5f}},
+                                              LightReceiver{position, {-1, 0, 0}, 0, {{-0.1f, 0.995f, 0}, 0.01f, 1}}})
+            receivers.push_back(receiver);
+    return receivers;
+}
+
+}  // namespace
+
+TEST_CASE("a light is chosen from the tree with the probability that is said of it") {
+    ChiSquareTests tests("choose_light: 400 area lights and 100 point lights, by the tree");
+    const Scene scene = many_lights();
     const RenderSpaceScene placed(scene, {0, 0, 0});
     const SceneView view = placed.view();
     const int lights = view.point_count + view.area_count;
     unsigned seed = 1;
     double worst = 0;
-    for (const Vec3f position : {Vec3f{0, 0, 0.5f}, Vec3f{1, -1, -3}, Vec3f{50, 20, 10}})
-        for (const LightReceiver& receiver : {LightReceiver{position, {0, 0, 0}}, LightReceiver{position, {0, 0, 1}},
-                                              LightReceiver{position, {0, 0, -1}}, LightReceiver{position, {-1, 0, 0}},
-                                              LightReceiver{position, {0, 0, 1}, 0, {{0.8f, 0, 0.6f}, 0.2f, 0.5f}},
-                                              LightReceiver{position, {-1, 0, 0}, 0, {{-0.1f, 0.995f, 0}, 0.01f, 1}}}) {
-            std::vector<double> expected, counts(static_cast<std::size_t>(lights));
-            for (int i = 0; i < lights; ++i)
-                expected.push_back(kSamples * static_cast<double>(light_probability(view, receiver, i)));
-            Uniform uniform(seed++);
-            for (int i = 0; i < kSamples; ++i) {
-                const LightChoice choice = choose_light(view, receiver, uniform(), static_cast<std::uint32_t>(i));
-                REQUIRE((choice.light >= 0 && choice.light < lights && choice.fresh >= 0 && choice.fresh < 1));
-                const auto light = static_cast<std::size_t>(choice.light);
-                worst = std::max(worst,
-                                 std::fabs(kSamples * static_cast<double>(choice.probability) / expected[light] - 1));
-                ++counts[light];
-            }
-            tests.add(expected, counts);
+    for (const LightReceiver& receiver : receivers_of_many_lights()) {
+        std::vector<double> expected, counts(static_cast<std::size_t>(lights));
+        for (int i = 0; i < lights; ++i)
+            expected.push_back(kSamples * static_cast<double>(light_probability(view, receiver, i)));
+        Uniform uniform(seed++);
+        for (int i = 0; i < kSamples; ++i) {
+            const LightChoice choice = choose_light(view, receiver, uniform(), static_cast<std::uint32_t>(i));
+            REQUIRE((choice.light >= 0 && choice.light < lights && choice.fresh >= 0 && choice.fresh < 1));
+            const auto light = static_cast<std::size_t>(choice.light);
+            worst =
+                std::max(worst, std::fabs(kSamples * static_cast<double>(choice.probability) / expected[light] - 1));
+            ++counts[light];
         }
+        tests.add(expected, counts);
+    }
     tests.hold();
     CHECK(worst < 1e-5);
+}
+
+TEST_CASE("many receivers at once choose the lights that each of them chooses") {
+    constexpr int kLanes = 32;
+    const Scene scene = many_lights();
+    const RenderSpaceScene placed(scene, {0, 0, 0});
+    const SceneView view = placed.view();
+    const std::vector<LightReceiver> receivers = receivers_of_many_lights();
+    const auto receiver = [&](int i) { return receivers[static_cast<std::size_t>(i) % receivers.size()]; };
+    Uniform uniform(3);
+    int others = 0;
+    for (int turn = 0; turn < 1000; ++turn) {
+        float u[kLanes];
+        std::uint32_t seed[kLanes];
+        for (int i = 0; i < kLanes; ++i) {
+            u[i] = uniform();
+            seed[i] = static_cast<std::uint32_t>(kLanes * turn + i);
+        }
+        LightChoices<kLanes> chosen;
+        choose_lights<kLanes>(view, receiver, u, seed, kLanes, chosen);
+        for (int i = 0; i < kLanes; ++i) {
+            const LightChoice alone = choose_light(view, receiver(i), u[i], seed[i]);
+            if (chosen.light[i] != alone.light) {
+                ++others;
+                continue;
+            }
+            REQUIRE(chosen.probability[i] == doctest::Approx(alone.probability).epsilon(1e-5));
+            REQUIRE((chosen.fresh[i] >= 0 && chosen.fresh[i] < 1));
+        }
+    }
+    // Where the compiler rounds otherwise, a number that lies between two lights may fall to either of them.
+    CHECK(others < 5);
 }
 
 namespace {
