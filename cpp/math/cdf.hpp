@@ -1,7 +1,7 @@
 #pragma once
 #include <cstdint>
 
-#include "lanes.hpp"
+#include "random.hpp"
 
 namespace REALCAM_NAMESPACE {
 
@@ -41,8 +41,7 @@ struct CdfChoices {
 REALCAM_INLINE CdfChoice cdf_choice(int index, float below, float above, float u) {
     const float probability = above - below;
     // Starts from the middle of the random number's step, because an entry of one step would always give 0.
-    const float fresh = (u - below + 0x1p-25f) / probability;
-    return {index, probability, select(fresh < 1.0f, fresh, 0x1.fffffep-1f)};
+    return {index, probability, left_over(u - below + 0x1p-25f, probability)};
 }
 
 REALCAM_INLINE CdfChoice choose_from_cdf(const float* cdf, int count, float u) {

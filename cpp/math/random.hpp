@@ -2,7 +2,7 @@
 #include <cstdint>
 #include <utility>
 
-#include "vec3.hpp"
+#include "lanes.hpp"
 
 namespace REALCAM_NAMESPACE {
 
@@ -38,6 +38,16 @@ REALCAM_INLINE std::uint32_t scramble_reversed(std::uint32_t v, std::uint32_t se
 /// 24 bits of a 32-bit fraction as a float in [0, 1). Through a signed integer: AVX2 cannot convert unsigned ones.
 REALCAM_INLINE float unit_float(std::uint32_t bits) {
     return static_cast<float>(static_cast<std::int32_t>(bits >> 8)) * 0x1p-24f;
+}
+
+/// A random number that rounding may have brought up to 1.
+REALCAM_INLINE float below_one(float u) {
+    return select(u < 0x1.fffffep-1f, u, 0x1.fffffep-1f);
+}
+
+/// A random number made of what a choice with this probability leaves of another, which is below it.
+REALCAM_INLINE float left_over(float u, float probability) {
+    return below_one(u / probability);
 }
 
 /// Second Sobol' dimension of an index, its bits in reverse order: the generator matrix is Pascal's triangle modulo 2,

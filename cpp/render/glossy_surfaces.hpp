@@ -12,6 +12,7 @@ struct GlossySurfaces {
     ColorLanes<N> base, f0;
     Lanes<float, N> self_offset, f90, metallic, alpha;
     Lanes<std::int32_t, N> is_glossy;
+    Lanes<float, N> lobe_share;  ///< LightLobe's, since find_lobes
     Surfaces<N> others;
 
     REALCAM_INLINE void set(int place, const SurfacePoint& point) {
@@ -38,9 +39,14 @@ struct GlossySurfaces {
     REALCAM_INLINE GlossySurface glossy(int place) const {
         return {base[place], f0[place], f90[place], metallic[place], alpha[place]};
     }
-    REALCAM_INLINE LightLobe lobe(int place, Vec3f to_eye) const {
-        return light_lobe(glossy(place), normal[place], to_eye);
+    /// Once for all that asks for them, which is each turn in the tree of lights.
+    REALCAM_INLINE void find_lobes(const PathState<N>& path) {
+        const int places = whole_vectors<N>(path.count);
+        REALCAM_LANES
+        for (int i = 0; i < places; ++i)
+            lobe_share[i] = light_lobe(glossy(i), normal[i], -path.rays.direction[i]).share;
     }
+    REALCAM_INLINE LightLobe lobe(int place, Vec3f to_eye) const { return {to_eye, alpha[place], lobe_share[place]}; }
     REALCAM_INLINE bool is_in_lanes(int place) const { return is_glossy[place] != 0; }
 
 private:

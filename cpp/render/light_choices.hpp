@@ -1,6 +1,4 @@
 #pragma once
-#include <cstddef>
-
 #include "../scene/light_tree.hpp"
 
 namespace REALCAM_NAMESPACE {
@@ -16,36 +14,31 @@ struct LightChoices {
 
 namespace light_choices_detail {
 
-/// The nodes of a tree as two arrays of numbers: gcc has vector code for numbers at many places of an array, and none
-/// for members of structures there.
-class LightNodeNumbers {
+/// Nodes side by side. In rows of four numbers, of which gcc makes vectors by shuffling whole rows: to read single
+/// numbers of nodes that lie anywhere takes it an instruction for each.
+template <int N>
+class LightNodeLanes {
 public:
-    REALCAM_INLINE explicit LightNodeNumbers(const LightNode* nodes)
-        : floats_(&nodes->low.x), integers_(&nodes->second_child) {}
-
-    REALCAM_INLINE std::int32_t second_child(std::int32_t node) const { return integers_[node * kStride]; }
-
-    REALCAM_INLINE LightNode operator[](std::int32_t node) const {
-        const std::int32_t at = node * kStride;
-        LightNode all = {};
-        all.low = {floats_[at], floats_[at + 1], floats_[at + 2]};
-        all.high = {floats_[at + 3], floats_[at + 4], floats_[at + 5]};
-        all.axis = {floats_[at + 6], floats_[at + 7], floats_[at + 8]};
-        all.cos_spread = floats_[at + 9];
-        all.intensity = floats_[at + 10];
-        all.is_isotropic = integers_[at + 1];
-        return all;
+    REALCAM_INLINE void set(int lane, const LightNode& node) {
+        const float ball[] = {node.middle.x, node.middle.y, node.middle.z, node.squared_radius},
+                    cone[] = {node.axis.x, node.axis.y, node.axis.z, node.cos_spread};
+        for (int k = 0; k < 4; ++k) {
+            ball_[4 * lane + k] = ball[k];
+            cone_[4 * lane + k] = cone[k];
+        }
+        intensity_[lane] = node.intensity;
+        second_child[lane] = node.second_child;
+    }
+    REALCAM_INLINE LightNode operator[](int lane) const {
+        const float *const ball = &ball_[4 * lane], *const cone = &cone_[4 * lane];
+        return {{ball[0], ball[1], ball[2]}, ball[3], {cone[0], cone[1], cone[2]}, cone[3], intensity_[lane], 0, 0};
     }
 
-private:
-    static constexpr std::int32_t kStride = sizeof(LightNode) / sizeof(float);
-    static_assert(offsetof(LightNode, high) == 3 * sizeof(float) && offsetof(LightNode, axis) == 6 * sizeof(float) &&
-                  offsetof(LightNode, cos_spread) == 9 * sizeof(float) &&
-                  offsetof(LightNode, intensity) == 10 * sizeof(float) &&
-                  offsetof(LightNode, is_isotropic) == offsetof(LightNode, second_child) + sizeof(float));
+    Lanes<std::int32_t, N> second_child;
 
-    const float* floats_;
-    const std::int32_t* integers_;
+private:
+    Lanes<float, 4 * N> ball_, cone_;
+    Lanes<float, N> intensity_;
 };
 
 }  // namespace light_choices_detail
@@ -55,48 +48,51 @@ private:
 template <int N, class Receivers>
 REALCAM_INLINE void choose_lights(const SceneView& scene, const Receivers& receiver, const float (&u)[N],
                                   const std::uint32_t (&seed)[N], int places, LightChoices<N>& chosen) {
-    const light_choices_detail::LightNodeNumbers nodes(scene.light_nodes);
-    Lanes<std::int32_t, N> node, first, second;
-    Lanes<std::uint32_t, N> bits;
-    Lanes<float, N> rest, probability;
-    REALCAM_LANES
-    for (int i = 0; i < places; ++i) {
-        node[i] = 0;
-        bits[i] = seed[i];
-        rest[i] = u[i];
-        probability[i] = 1.0f;
-    }
     // By vectors, because each takes as many turns as its deepest light.
     constexpr int kWidth = whole_vectors<N>(1);
+    const LightNode* const nodes = scene.light_nodes;
     for (int begin = 0; begin < places; begin += kWidth) {
-        for (std::int32_t goes_on = nodes.second_child(0) > 0; goes_on != 0;) {
-            goes_on = 0;
-            // In a loop of its own, without which gcc makes 64-bit addresses of the nodes' numbers, and no vector code.
-            REALCAM_LANES
-            for (int i = begin; i < begin + kWidth; ++i) {
-                const std::int32_t child = nodes.second_child(node[i]);
-                second[i] = select(child > 0, child, 0);
-                first[i] = select(child > 0, node[i] + 1, 0);
-                goes_on |= second[i];
+        Lanes<std::int32_t, kWidth> node, second;
+        Lanes<std::uint32_t, kWidth> bits;
+        Lanes<float, kWidth> rest, probability;
+        REALCAM_LANES
+        for (int i = 0; i < kWidth; ++i) {
+            node[i] = 0;
+            second[i] = nodes[0].second_child;
+            bits[i] = seed[begin + i];
+            rest[i] = u[begin + i];
+            probability[i] = 1.0f;
+        }
+        for (bool goes_on = nodes[0].second_child > 0; goes_on;) {
+            light_choices_detail::LightNodeLanes<kWidth> first_child, second_child;
+            for (int i = 0; i < kWidth; ++i) {
+                // Those that are at their leaf look at the root's children, and stay.
+                const bool is_inner = second[i] > 0;
+                first_child.set(i, nodes[is_inner ? node[i] + 1 : 1]);
+                second_child.set(i, nodes[is_inner ? second[i] : 1]);
             }
+            std::int32_t deepest = 0;
             REALCAM_LANES
-            for (int i = begin; i < begin + kWidth; ++i) {
+            for (int i = 0; i < kWidth; ++i) {
                 const bool is_inner = second[i] > 0;
                 LightTreePath path = {rest[i], bits[i], node[i], probability[i]};
-                path.take_turn(nodes, first[i], second[i], receiver(i));
+                const bool is_first = path.take_turn(first_child[i], second_child[i], second[i], receiver(begin + i));
                 rest[i] = select(is_inner, path.u, rest[i]);
                 bits[i] = path.seed;
                 node[i] = select(is_inner, path.node, node[i]);
                 probability[i] = select(is_inner, path.probability, probability[i]);
+                const std::int32_t next = select(is_first, first_child.second_child[i], second_child.second_child[i]);
+                second[i] = select(is_inner, next, second[i]);
+                deepest |= select(second[i] > 0, 1, 0);
             }
+            goes_on = deepest != 0;
         }
-    }
-    for (int i = 0; i < places; ++i) {
-        const LightTreePath path = {rest[i], bits[i], node[i], probability[i]};
-        const LightChoice choice = path.choice_at(scene.light_nodes[node[i]]);
-        chosen.light[i] = choice.light;
-        chosen.probability[i] = choice.probability;
-        chosen.fresh[i] = choice.fresh;
+        for (int i = 0; i < kWidth; ++i) {
+            const LightChoice choice = LightTreePath{rest[i], bits[i], node[i], probability[i]}.choice(scene);
+            chosen.light[begin + i] = choice.light;
+            chosen.probability[begin + i] = choice.probability;
+            chosen.fresh[begin + i] = choice.fresh;
+        }
     }
 }
 

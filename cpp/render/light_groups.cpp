@@ -51,8 +51,8 @@ private:
             for_lights(node.second_child, f);
             return;
         }
-        for (const std::int32_t light : {-1 - node.second_child, node.partner})
-            if (light >= 0) f(light);
+        const LeafLight* const lights = &scene_.leaf_lights[-1 - node.second_child];
+        for (std::int32_t k = 0; k < node.light_count; ++k) f(lights[k].light);
     }
 
     std::uint32_t instance_of(std::int32_t light) const {
@@ -62,10 +62,11 @@ private:
     /// Of all lights of a node together. The node's own bounds also hold the way of lights that move; what moves with
     /// one instance stays as large as it is.
     double size_m(std::int32_t at) const {
-        const double swept = static_cast<double>(length(scene_.light_nodes[at].high - scene_.light_nodes[at].low));
+        const double swept = 2 * std::sqrt(static_cast<double>(scene_.light_nodes[at].squared_radius));
         std::int32_t leaf = at;
         while (scene_.light_nodes[leaf].second_child > 0) ++leaf;
-        const std::uint32_t instance = instance_of(-1 - scene_.light_nodes[leaf].second_child);
+        const std::uint32_t instance =
+            instance_of(scene_.leaf_lights[-1 - scene_.light_nodes[leaf].second_child].light);
         if (instance == kNoInstance || scene_.instances[instance].key_count == 0) return swept;
         BoundingBox box;
         bool is_one = true;
@@ -81,7 +82,7 @@ private:
 
     void look_at(std::int32_t at) {
         const LightNode& node = scene_.light_nodes[at];
-        const double blur = blur_m(0.5f * (node.low + node.high));
+        const double blur = blur_m(node.middle);
         const bool is_small = size_m(at) < 2 * kLargestSize * blur;
         if (!is_small && node.second_child > 0) {
             look_at(at + 1);

@@ -69,8 +69,8 @@ REALCAM_INLINE void scatter_glossy(const PathSettings& settings, int bounce, Sky
         const bool is_used = surfaces.is_glossy[i] != 0;
         Vec2f number = u[i];
         const bool is_diffuse = number.x < shares.diffuse;
-        number.x = select(is_diffuse, number.x / shares.diffuse, (number.x - shares.diffuse) / shares.specular);
-        number.x = select(number.x < 0x1.fffffep-1f, number.x, 0x1.fffffep-1f);
+        number.x = left_over(select(is_diffuse, number.x, number.x - shares.diffuse),
+                             select(is_diffuse, shares.diffuse, shares.specular));
         const Vec3f direction = bsdf.sample(is_diffuse, number);
         const GlossyBsdf::Value value = bsdf.eval(direction);
         const float pdf = shares.pdf_of(value);
@@ -82,10 +82,7 @@ REALCAM_INLINE void scatter_glossy(const PathSettings& settings, int bounce, Sky
         path.rays.origin.set(i, ray_start(place, direction));
         path.rays.direction.set(i, select(is_used, direction, arriving));
         path.pdf[i] = select(is_used, pdf, path.pdf[i]);
-        const LightLobe lobe = surfaces.lobe(i, -arriving);
-        path.receiver_to_eye.set(i, select(is_used, lobe.to_eye, path.receiver_to_eye[i]));
-        path.receiver_alpha[i] = select(is_used, lobe.alpha, path.receiver_alpha[i]);
-        path.receiver_share[i] = select(is_used, lobe.share, path.receiver_share[i]);
+        path.set_receiver_lobe(i, select(is_used, surfaces.lobe(i, -arriving), path.receiver_lobe(i)));
         if constexpr (scene_kind == SceneKind::any) path.receiver_sky[i] = select(is_used, sky, path.receiver_sky[i]);
         path.receiver_position.set(i, select(is_used, place.position, path.receiver_position[i]));
         path.receiver_normal.set(i, select(is_used, normal, path.receiver_normal[i]));
@@ -109,6 +106,7 @@ REALCAM_INLINE void scatter_glossy_paths(const SceneView& view, const PathSettin
         surfaces.copy(0, i);
         path.rays.direction.set(i, path.rays.direction[0]);
     }
+    surfaces.find_lobes(path);
     const SkySampling sky = sky_sampling(view, goes_on(settings, bounce), bounce == 0);
     const LightKindsLanes<N> kinds(view, sky, surfaces, path.count);
     for (int k = 0; k < kLightSampleCount; ++k) {

@@ -1,4 +1,5 @@
 #pragma once
+#include "../math/random.hpp"
 #include "coat_loss.hpp"
 #include "dielectric_border.hpp"
 #include "microfacet_reflection.hpp"
@@ -101,8 +102,7 @@ public:
         while (lobe < 5 && u.x >= share_[lobe]) u.x -= share_[lobe++];
         const float share = share_[lobe];
         if (!(share > 0.0f)) return result;
-        u.x /= share;
-        u.x = u.x < 0x1.fffffep-1f ? u.x : 0x1.fffffep-1f;
+        u.x = left_over(u.x, share);
         Vec3f light{0, 0, 1};
         switch (lobe) {
             case 0: light = sample_cosine({0, 0, 1}, u); break;

@@ -1,88 +1,110 @@
 #include "build_light_tree.hpp"
-#include "instance_names.hpp"
 
 #include <cmath>
+
+#include "../math/append_cdf.hpp"
 
 namespace realcam {
 
 LightLeaf LightTree::leaf(const PointLight& p) {
     const bool is_spot = p.cos_scale > 0;
     // Where a spot ends.
-    const float cos_spread = is_spot ? std::clamp(-p.cos_offset / p.cos_scale, 0.0f, 1.0f) : -1.0f;
-    return {{p.position, p.position, p.axis, cos_spread, luminance(p.intensity), 0, !is_spot, -1, 1.0f}, p.position};
+    const float cos_spread = is_spot ? std::clamp(-p.cos_offset / p.cos_scale, 0.0f, 1.0f) : kIsotropic;
+    return {{p.position, p.position, p.axis, cos_spread, luminance(p.intensity)}, 0.0f, p.position};
 }
 
 LightLeaf LightTree::leaf(const AreaLight& a, float mean) {
     const Vec3f b = a.corner + a.edge_u, c = a.corner + a.edge_v;
-    return {{least(a.corner, least(b, c)), most(a.corner, most(b, c)), a.normal, 1.0f,
-             mean * a.area * luminance(a.radiance), 0, a.is_two_sided, -1, 1.0f},
+    return {{least(a.corner, least(b, c)), most(a.corner, most(b, c)), a.normal, a.is_two_sided ? kIsotropic : 1.0f,
+             mean * a.area * luminance(a.radiance)},
+            a.area,
             (1.0f / 3.0f) * (a.corner + b + c)};
 }
 
 void LightTree::widen(LightLeaf& leaf, const LightLeaf& elsewhere) {
-    const float intensity = std::max(leaf.node.intensity, elsewhere.node.intensity);
-    leaf.node = around(leaf.node, elsewhere.node);
-    leaf.node.intensity = intensity;
-    leaf.middle = 0.5f * (leaf.node.low + leaf.node.high);
+    const float intensity = std::max(leaf.bounds.intensity, elsewhere.bounds.intensity);
+    leaf.bounds = around(leaf.bounds, elsewhere.bounds);
+    leaf.bounds.intensity = intensity;
+    leaf.middle = 0.5f * (leaf.bounds.low + leaf.bounds.high);
 }
 
 LightTree::LightTree(std::vector<LightLeaf> leaves, Checkpoint& checkpoint) {
-    for (std::size_t i = 0; i < leaves.size(); ++i) {
-        leaves[i].light = static_cast<std::int32_t>(i);
-        leaves[i].node.second_child = -1 - leaves[i].light;
-    }
+    for (std::size_t i = 0; i < leaves.size(); ++i) leaves[i].light = static_cast<std::int32_t>(i);
     trails_.resize(leaves.size());
-    nodes_.reserve(2 * leaves.size());
+    leaf_lights_.reserve(leaves.size());
     if (!leaves.empty()) add(leaves.begin(), leaves.end(), 0, 0, checkpoint);
 }
 
-void LightTree::widen(LightNode& node, const LightNode& other) {
-    if (other.is_isotropic) node.is_isotropic = 1;
-    const double a = std::acos(std::clamp(static_cast<double>(node.cos_spread), -1.0, 1.0)),
+void LightTree::widen(LightBounds& bounds, const LightBounds& other) {
+    if (bounds.cos_spread == kIsotropic) return;
+    if (other.cos_spread == kIsotropic) {
+        bounds.cos_spread = kIsotropic;
+        return;
+    }
+    const double a = std::acos(std::clamp(static_cast<double>(bounds.cos_spread), -1.0, 1.0)),
                  b = std::acos(std::clamp(static_cast<double>(other.cos_spread), -1.0, 1.0));
-    const Vec3d u = static_cast<Vec3d>(node.axis), v = static_cast<Vec3d>(other.axis);
+    const Vec3d u = static_cast<Vec3d>(bounds.axis), v = static_cast<Vec3d>(other.axis);
     const double between = std::atan2(length(cross(u, v)), dot(u, v));
     if (between + b <= a) return;
     if (between + a <= b) {
-        node.axis = other.axis;
-        node.cos_spread = other.cos_spread;
+        bounds.axis = other.axis;
+        bounds.cos_spread = other.cos_spread;
         return;
     }
     const double spread = 0.5 * (a + b + between) + 1e-6;
     const Vec3d turned = cross(cross(u, v), u);
     if (spread >= 3.14159 || !(length(turned) > 0)) {
-        node.cos_spread = -1.0f;
+        bounds.cos_spread = -1.0f;
         return;
     }
     const double turn = spread - a;
-    node.axis = static_cast<Vec3f>(normalized(std::cos(turn) * u + std::sin(turn) * normalized(turned)));
-    node.cos_spread = static_cast<float>(std::cos(spread));
+    bounds.axis = static_cast<Vec3f>(normalized(std::cos(turn) * u + std::sin(turn) * normalized(turned)));
+    bounds.cos_spread = static_cast<float>(std::cos(spread));
 }
 
-LightNode LightTree::around(const LightNode& a, const LightNode& b) {
-    LightNode node = a;
-    node.low = least(a.low, b.low);
-    node.high = most(a.high, b.high);
-    node.intensity = a.intensity + b.intensity;
-    node.partner = -1;
-    widen(node, b);
-    return node;
+LightBounds LightTree::around(const LightBounds& a, const LightBounds& b) {
+    LightBounds all = a;
+    all.low = least(a.low, b.low);
+    all.high = most(a.high, b.high);
+    all.intensity = a.intensity + b.intensity;
+    widen(all, b);
+    return all;
 }
 
-bool LightTree::are_alike(const LightNode& a, const LightNode& b) {
-    const float ratio = a.intensity / b.intensity;
-    return !a.is_isotropic && !b.is_isotropic && dot(a.axis, b.axis) > 0.9999f && ratio > 0.1f && ratio < 10.0f;
+LightBounds LightTree::around(Leaves first, Leaves last) {
+    LightBounds all = first->bounds;
+    for (Leaves i = first + 1; i != last; ++i) all = around(all, i->bounds);
+    return all;
 }
 
-double LightTree::cost(const LightNode& n) {
-    const Vec3d d = static_cast<Vec3d>(n.high - n.low);
+bool LightTree::is_one_lamp(Leaves first, Leaves last, const LightBounds& all) {
+    constexpr float kMostRatio = 10;  // of radiances
+    // Of the square of the box's diagonal. A disc fills 0.39 of it, a square 0.5, a rectangle of 4 : 1 0.24.
+    constexpr float kLeastFilled = 0.2f;
+    const auto squared_size = [](const LightBounds& b) { return dot(b.high - b.low, b.high - b.low); };
+    float area = 0, largest = 0;
+    for (Leaves i = first; i != last; ++i) {
+        const LightBounds& one = i->bounds;
+        const float ratio = (one.intensity * first->area) / (i->area * first->bounds.intensity);
+        if (one.cos_spread == kIsotropic || !(dot(one.axis, first->bounds.axis) > 0.9999f) ||
+            !(ratio * kMostRatio > 1.0f && ratio < kMostRatio))
+            return false;
+        area += i->area;
+        largest = std::max(largest, squared_size(one));
+    }
+    // The two halves of a rectangle, however long, have its box.
+    return area > kLeastFilled * squared_size(all) || squared_size(all) < 1.5f * largest;
+}
+
+double LightTree::cost(const LightBounds& b) {
+    const Vec3d d = static_cast<Vec3d>(b.high - b.low);
     const double area = d.x * d.y + d.y * d.z + d.z * d.x, size2 = dot(d, d);
-    const double spread = n.is_isotropic ? 3.141592653589793 : std::acos(static_cast<double>(n.cos_spread));
+    const double spread = b.cos_spread == kIsotropic ? 3.141592653589793 : std::acos(static_cast<double>(b.cos_spread));
     const double end = std::min(spread + 1.5707963267948966, 3.141592653589793), cosine = std::cos(spread);
     const double directions = 6.283185307179586 * (1 - cosine) +
                               1.5707963267948966 * (2 * end * std::sin(spread) - std::cos(spread - 2 * end) -
                                                     2 * spread * std::sin(spread) + cosine);
-    return static_cast<double>(n.intensity) * std::max(directions, 1e-3) * (area + 1e-6 * size2);
+    return static_cast<double>(b.intensity) * std::max(directions, 1e-3) * (area + 1e-6 * size2);
 }
 
 LightTree::Leaves LightTree::split(Leaves first, Leaves last, int depth, Checkpoint& checkpoint) const {
@@ -94,16 +116,16 @@ LightTree::Leaves LightTree::split(Leaves first, Leaves last, int depth, Checkpo
     for (int axis = 0; axis < 3 && depth < kDeepest; ++axis) {
         const float from = coordinate(low, axis), size = coordinate(high, axis) - from;
         if (!(size > 0)) continue;
-        LightNode bins[kBins];
+        LightBounds bins[kBins];
         bool filled[kBins] = {};
         for (Leaves i = first; i != last; ++i) {
             checkpoint.pass();
             const int bin = bin_of(*i, axis, from, size, kBins);
-            bins[bin] = filled[bin] ? around(bins[bin], i->node) : i->node;
+            bins[bin] = filled[bin] ? around(bins[bin], i->bounds) : i->bounds;
             filled[bin] = true;
         }
         double after[kBins] = {};
-        LightNode sum{};
+        LightBounds sum{};
         bool any = false;
         for (int k = kBins - 1; k > 0; --k) {
             if (filled[k]) sum = any ? around(sum, bins[k]) : bins[k], any = true;
@@ -130,27 +152,44 @@ int LightTree::bin_of(const LightLeaf& leaf, int axis, float from, float size, i
     return std::clamp(static_cast<int>(share * static_cast<float>(bins)), 0, bins - 1);
 }
 
-LightNode LightTree::add(Leaves first, Leaves last, std::uint64_t turns, int depth, Checkpoint& checkpoint) {
+LightNode LightTree::node_of(const LightBounds& bounds) {
+    const Vec3f half = 0.5f * (bounds.high - bounds.low);
+    return {0.5f * (bounds.low + bounds.high), dot(half, half), bounds.axis, bounds.cos_spread, bounds.intensity, 0, 0};
+}
+
+LightBounds LightTree::add(Leaves first, Leaves last, std::uint64_t turns, int depth, Checkpoint& checkpoint) {
     const std::size_t place = nodes_.size();
-    nodes_.push_back(first->node);
-    if (last - first == 1) {
-        trails_[static_cast<std::size_t>(first->light)] = turns;
-        return first->node;
-    }
-    if (last - first == 2 && are_alike(first->node, first[1].node)) {
-        trails_[static_cast<std::size_t>(first->light)] = trails_[static_cast<std::size_t>(first[1].light)] = turns;
-        LightNode pair = around(first->node, first[1].node);
-        pair.partner = first[1].light;
-        pair.first_share = pair.intensity > 0 ? first->node.intensity / pair.intensity : 0.5f;
-        return nodes_[place] = pair;
+    nodes_.emplace_back();
+    if (last - first <= kMostInLeaf) {
+        const LightBounds all = around(first, last);
+        if (last - first == 1 || is_one_lamp(first, last, all)) {
+            nodes_[place] = node_of(all);
+            fill_leaf(nodes_[place], first, last, turns);
+            return all;
+        }
     }
     const Leaves middle = split(first, last, depth, checkpoint);
-    const LightNode one = add(first, middle, turns, depth + 1, checkpoint);
+    const LightBounds one = add(first, middle, turns, depth + 1, checkpoint);
     const auto second = static_cast<std::int32_t>(nodes_.size());
-    const LightNode other = add(middle, last, turns | std::uint64_t{1} << depth, depth + 1, checkpoint);
-    LightNode& node = nodes_[place] = around(one, other);
-    node.second_child = second;
-    return node;
+    const LightBounds other = add(middle, last, turns | std::uint64_t{1} << depth, depth + 1, checkpoint);
+    const LightBounds all = around(one, other);
+    nodes_[place] = node_of(all);
+    nodes_[place].second_child = second;
+    return all;
+}
+
+void LightTree::fill_leaf(LightNode& leaf, Leaves first, Leaves last, std::uint64_t turns) {
+    std::vector<double> intensities;
+    for (Leaves i = first; i != last; ++i) intensities.push_back(static_cast<double>(i->bounds.intensity));
+    std::vector<float> cdf;
+    append_cdf(intensities, cdf);
+    leaf.second_child = -1 - static_cast<std::int32_t>(leaf_lights_.size());
+    leaf.light_count = static_cast<std::int32_t>(last - first);
+    for (std::size_t k = 0; k < intensities.size(); ++k) {
+        const std::int32_t light = first[static_cast<std::ptrdiff_t>(k)].light;
+        leaf_lights_.push_back({light, cdf[k]});
+        trails_[static_cast<std::size_t>(light)] = {turns, cdf[k + 1] - cdf[k]};
+    }
 }
 
 }  // namespace realcam

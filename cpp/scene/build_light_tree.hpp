@@ -8,10 +8,18 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// A light, as a leaf of the tree.
+/// Where lights are, and how they shine: what a LightNode is made of.
+struct LightBounds {
+    Vec3f low, high;  ///< a box about them
+    Vec3f axis;
+    float cos_spread, intensity;  ///< as LightNode's
+};
+
+/// A light of the tree.
 struct LightLeaf {
-    LightNode node;
-    Vec3f middle;
+    LightBounds bounds;
+    float area;    ///< square metres; 0: of a point light
+    Vec3f middle;  ///< of its place
     std::int32_t light = 0;  ///< its number
 };
 
@@ -29,7 +37,8 @@ public:
     LightTree(std::vector<LightLeaf> leaves, Checkpoint& checkpoint);
 
     const std::vector<LightNode>& nodes() const { return nodes_; }
-    const std::vector<std::uint64_t>& trails() const { return trails_; }
+    const std::vector<LeafLight>& leaf_lights() const { return leaf_lights_; }
+    const std::vector<LightTrail>& trails() const { return trails_; }
 
 private:
     using Leaves = std::vector<LightLeaf>::iterator;
@@ -39,16 +48,20 @@ private:
     static float coordinate(Vec3f v, int axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
 
     /// The narrowest cone that is easily found about two.
-    static void widen(LightNode& node, const LightNode& other);
+    static void widen(LightBounds& bounds, const LightBounds& other);
 
-    static LightNode around(const LightNode& a, const LightNode& b);
+    static LightBounds around(const LightBounds& a, const LightBounds& b);
+    static LightBounds around(Leaves first, Leaves last);
 
-    /// In one plane, and about as bright: a choice between them by their light alone is as good as any.
-    static bool are_alike(const LightNode& a, const LightNode& b);
+    static constexpr std::ptrdiff_t kMostInLeaf = 16;
+
+    /// Whether they are triangles of one flat lamp: in one plane, about as bright, and side by side. A choice
+    /// between them by their light alone is as good as any.
+    static bool is_one_lamp(Leaves first, Leaves last, const LightBounds& all);
 
     /// What a split costs: intensity times the spread in space and in direction (the paper's surface area orientation
     /// heuristic).
-    static double cost(const LightNode& n);
+    static double cost(const LightBounds& b);
 
     /// Where to split, after sorting along the best axis; the middle where all places are alike, and from a depth on at
     /// which 64 turns would not do.
@@ -56,10 +69,15 @@ private:
 
     static int bin_of(const LightLeaf& leaf, int axis, float from, float size, int bins);
 
-    LightNode add(Leaves first, Leaves last, std::uint64_t turns, int depth, Checkpoint& checkpoint);
+    static LightNode node_of(const LightBounds& bounds);
+
+    /// Adds the node of these lights, and all below it. Returns the bounds that it was made of.
+    LightBounds add(Leaves first, Leaves last, std::uint64_t turns, int depth, Checkpoint& checkpoint);
+    void fill_leaf(LightNode& leaf, Leaves first, Leaves last, std::uint64_t turns);
 
     std::vector<LightNode> nodes_;
-    std::vector<std::uint64_t> trails_;
+    std::vector<LeafLight> leaf_lights_;
+    std::vector<LightTrail> trails_;
 };
 
 }  // namespace REALCAM_NAMESPACE

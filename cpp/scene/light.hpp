@@ -243,12 +243,6 @@ struct LightPick {
     Vec2f u;  ///< random numbers for a place on it
 };
 
-/// A random number made of what a choice with this probability leaves of another, which is below it.
-REALCAM_INLINE float left_over(float u, float probability) {
-    const float fresh = u / probability;
-    return select(fresh < 0x1.fffffep-1f, fresh, 0x1.fffffep-1f);
-}
-
 /// Chooses one light. One pair of numbers does that and chooses a place on it, so that what is even over a pixel's
 /// samples is even over each light. `number`: of the sample. `choose(u)`: one of the point and area lights, as
 /// choose_light does.

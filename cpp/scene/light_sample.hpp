@@ -14,6 +14,11 @@ struct LightLobe {
     float share = 0;           ///< of what the surface scatters, about; the rest is Lambert's
 };
 
+REALCAM_INLINE LightLobe select(bool condition, const LightLobe& a, const LightLobe& b) {
+    return {select(condition, a.to_eye, b.to_eye), select(condition, a.alpha, b.alpha),
+            select(condition, a.share, b.share)};
+}
+
 /// Where and when light is wanted.
 struct LightReceiver {
     Vec3f position;

@@ -32,21 +32,22 @@ REALCAM_INLINE float mean_cosine(float cos_axis, float cos_spread) {
     return 0.5f * (mean + sqrt_or_zero(mean * mean + 0.25f * width * across));
 }
 
+REALCAM_INLINE bool is_isotropic(const LightNode& node) {
+    return node.cos_spread > 1.0f;
+}
+
 /// How a node's lights lie to a receiver.
 struct NodeView {
     float squared_distance;  ///< of the bounds' middle
-    float squared_radius;
     float cos_bounds;  ///< of the angle in which the bounds appear; from inside, lights are in all directions
     float cos_axis, cos_normal;  ///< of the way with the axis of what the lights emit, and with the receiver's normal
     Vec3f to_middle;  ///< unit, from the receiver
 
     REALCAM_INLINE NodeView(const LightNode& node, LightReceiver receiver) {
-        const Vec3f middle = 0.5f * (node.low + node.high), half = node.high - middle;
-        const Vec3f way = receiver.position - middle;
+        const Vec3f way = receiver.position - node.middle;
         squared_distance = dot(way, way);
-        squared_radius = dot(half, half);
-        const bool is_outside = squared_distance > squared_radius;
-        cos_bounds = select(is_outside, sqrt_or_zero(1.0f - squared_radius / squared_distance), -1.0f);
+        const bool is_outside = squared_distance > node.squared_radius;
+        cos_bounds = select(is_outside, sqrt_or_zero(1.0f - node.squared_radius / squared_distance), -1.0f);
         const float inverse = 1.0f / std::sqrt(select(squared_distance > 1e-30f, squared_distance, 1e-30f));
         cos_axis = inverse * dot(node.axis, way);
         cos_normal = -inverse * dot(receiver.normal, way);
@@ -91,8 +92,8 @@ REALCAM_INLINE float light_importance(const LightNode& node, LightReceiver recei
         scattered += kTrust * receiver.lobe.share * (lobe_importance(seen, receiver) - received);
     }
     // Over a ball, one over the squared distance from its middle has the mean 3 / radius^2.
-    const float inside = (1.0f / 3.0f) * seen.squared_radius;
-    return node.intensity * select(node.is_isotropic != 0, 1.0f, emitted) * scattered /
+    const float inside = (1.0f / 3.0f) * node.squared_radius;
+    return node.intensity * select(is_isotropic(node), 1.0f, emitted) * scattered /
            select(seen.squared_distance > inside, seen.squared_distance, inside);
 }
 
@@ -102,9 +103,9 @@ REALCAM_INLINE float most_illuminance(const LightNode& node, LightReceiver recei
     const auto positive = [](float v) { return select(v > 0.0f, v, 0.0f); };
     const float emitted = cosine_of_rest(cosine_of_rest(seen.cos_axis, node.cos_spread), seen.cos_bounds),
                 received = cosine_of_rest(seen.cos_normal, seen.cos_bounds);
-    return node.intensity * select(node.is_isotropic != 0, 1.0f, positive(emitted)) *
+    return node.intensity * select(is_isotropic(node), 1.0f, positive(emitted)) *
            select(has_normal(receiver), positive(received), 1.0f) /
-           select(seen.squared_distance > seen.squared_radius, seen.squared_distance, seen.squared_radius);
+           select(seen.squared_distance > node.squared_radius, seen.squared_distance, node.squared_radius);
 }
 
 /// Probability of the first of two children. Neither is ever left out: bounds and receiver are rounded.
@@ -129,42 +130,45 @@ struct LightTreePath {
     std::int32_t node = 0;
     float probability = 1.0f;
 
-    /// To one of the node's two children. `nodes[i]`: of the tree.
-    template <class Nodes>
-    REALCAM_INLINE void take_turn(const Nodes& nodes, std::int32_t first, std::int32_t second, LightReceiver receiver) {
-        const float share = first_child_probability(nodes[first], nodes[second], receiver);
+    /// To one of the node's two children, whose places are `node + 1` and `second`. Returns whether it is the first.
+    REALCAM_INLINE bool take_turn(const LightNode& first_child, const LightNode& second_child, std::int32_t second,
+                                  LightReceiver receiver) {
+        const float share = first_child_probability(first_child, second_child, receiver);
         const bool is_first = u < share;
         const float taken = select(is_first, share, 1.0f - share);
         probability *= taken;
         // u stands on steps of 2^-24 / probability: anywhere in its step is as likely.
         seed = hash32(seed);
-        u = select(is_first, u, u - share) / taken + unit_float(seed) * 0x1p-24f / probability;
-        u = select(u < 0x1.fffffep-1f, u, 0x1.fffffep-1f);
-        node = select(is_first, first, second);
+        u = below_one(select(is_first, u, u - share) / taken + unit_float(seed) * 0x1p-24f / probability);
+        node = select(is_first, node + 1, second);
+        return is_first;
     }
-    /// One of the leaf's lights.
-    REALCAM_INLINE LightChoice choice_at(const LightNode& leaf) const {
-        const std::int32_t light = -1 - leaf.second_child;
-        if (leaf.partner < 0) return {light, probability, u};
-        const bool is_first = u < leaf.first_share;
-        const float taken = is_first ? leaf.first_share : 1.0f - leaf.first_share;
-        const float fresh = (is_first ? u : u - leaf.first_share) / taken;
-        return {is_first ? light : leaf.partner, probability * taken, fresh < 0x1.fffffep-1f ? fresh : 0x1.fffffep-1f};
+    /// One of the lights of the leaf.
+    REALCAM_INLINE LightChoice choice(const SceneView& scene) const {
+        const LightNode& leaf = scene.light_nodes[node];
+        const LeafLight* at = &scene.leaf_lights[-1 - leaf.second_child];
+        if (leaf.light_count == 1) return {at->light, probability, u};
+        const LeafLight* const last = at + leaf.light_count - 1;
+        while (at < last && at[1].below <= u) ++at;
+        const float taken = (at < last ? at[1].below : 1.0f) - at->below;
+        return {at->light, probability * taken, left_over(u - at->below, taken)};
     }
 };
 
 /// `seed`: as LightTreePath's.
 REALCAM_INLINE LightChoice choose_light(const SceneView& scene, LightReceiver receiver, float u, std::uint32_t seed) {
     LightTreePath path{u, seed};
-    for (std::int32_t second; (second = scene.light_nodes[path.node].second_child) > 0;)
-        path.take_turn(scene.light_nodes, path.node + 1, second, receiver);
-    return path.choice_at(scene.light_nodes[path.node]);
+    const LightNode* const nodes = scene.light_nodes;
+    for (std::int32_t second; (second = nodes[path.node].second_child) > 0;)
+        path.take_turn(nodes[path.node + 1], nodes[second], second, receiver);
+    return path.choice(scene);
 }
 
 /// Probability with which choose_light chooses a light.
 REALCAM_INLINE float light_probability(const SceneView& scene, LightReceiver receiver, std::int32_t light) {
-    float probability = 1.0f;
-    std::uint64_t turns = scene.light_trails[light];
+    const LightTrail& trail = scene.light_trails[light];
+    float probability = trail.share;
+    std::uint64_t turns = trail.turns;
     std::int32_t at = 0;
     while (scene.light_nodes[at].second_child > 0) {
         const std::int32_t second = scene.light_nodes[at].second_child;
@@ -174,9 +178,7 @@ REALCAM_INLINE float light_probability(const SceneView& scene, LightReceiver rec
         at = is_second ? second : at + 1;
         turns >>= 1;
     }
-    const LightNode& leaf = scene.light_nodes[at];
-    if (leaf.partner < 0) return probability;
-    return probability * (light == leaf.partner ? 1.0f - leaf.first_share : leaf.first_share);
+    return probability;
 }
 
 }  // namespace REALCAM_NAMESPACE

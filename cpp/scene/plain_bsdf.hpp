@@ -1,4 +1,5 @@
 #pragma once
+#include "../math/random.hpp"
 #include "phong_lobe.hpp"
 #include "scattering.hpp"
 
@@ -39,8 +40,7 @@ public:
         if (is_black(diffuse) && is_black(phong)) return result;
         const float share = diffuse_share();
         const bool is_diffuse = u.x < share;
-        u.x = is_diffuse ? u.x / share : (u.x - share) / (1.0f - share);
-        u.x = u.x < 0x1.fffffep-1f ? u.x : 0x1.fffffep-1f;
+        u.x = is_diffuse ? left_over(u.x, share) : left_over(u.x - share, 1.0f - share);
         result.direction = is_diffuse ? sample_cosine(normal, u) : sample_phong(mirrored_at(normal, eye), shininess, u);
         result.pdf = pdf(result.direction);
         if (result.pdf > 0.0f) result.weight = (1.0f / result.pdf) * eval(result.direction);

@@ -92,6 +92,7 @@ InstancesView RenderSpaceScene::instances_view() const {
     view.areas = areas_.data();
     const bool has_lights = !light_tree_.nodes().empty();
     view.light_nodes = has_lights ? light_tree_.nodes().data() : nullptr;
+    view.leaf_lights = has_lights ? light_tree_.leaf_lights().data() : nullptr;
     view.light_trails = has_lights ? light_tree_.trails().data() : nullptr;
     view.light_node_count = static_cast<std::int32_t>(light_tree_.nodes().size());
     view.instance_count = static_cast<std::int32_t>(instances_.size());

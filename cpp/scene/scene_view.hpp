@@ -82,17 +82,32 @@ struct EnvironmentView {
     float mean_luminance;  ///< over all directions
 };
 
+/// LightNode::cos_spread of lights that shine in all directions alike.
+inline constexpr float kIsotropic = 2;
+
 /// Part of a tree over all point and area lights, from which one is chosen by what it may contribute to a point
-/// (Conty Estevez and Kulla 2018). The first child of a node follows it.
+/// (Conty Estevez and Kulla 2018). The first child of a node follows it. A leaf has one light, or the triangles of one
+/// flat lamp.
 struct alignas(16) LightNode {
-    Vec3f low, high;  ///< bounds of the lights
+    Vec3f middle;  ///< of the box about the lights
+    float squared_radius;  ///< of the ball about that box
     Vec3f axis;  ///< middle of the normals of area lights
-    float cos_spread;  ///< of the angle about it in which all normals lie; -1: all directions
+    float cos_spread;  ///< of the angle about it in which all normals lie; -1: all directions; or kIsotropic
     float intensity;  ///< luminous, along the normal, of all of them, cd
-    std::int32_t second_child;  ///< below 0: a leaf, of the light -1 - second_child
-    std::int32_t is_isotropic;  ///< not 0: light leaves in all directions alike
-    std::int32_t partner;  ///< of a leaf: a second light in the same plane, such as a rectangle's other half; or -1
-    float first_share;  ///< probability of the first of the two
+    std::int32_t second_child;  ///< below 0: a leaf, whose first light is at the place -1 - second_child of leaf_lights
+    std::int32_t light_count;  ///< of a leaf
+};
+
+/// One of the lights of a leaf, which follow each other.
+struct LeafLight {
+    std::int32_t light;  ///< a point light, or an area light after all point lights
+    float below;  ///< probability of those before it in its leaf
+};
+
+/// Where a light is in the tree.
+struct LightTrail {
+    std::uint64_t turns;  ///< from the root to its leaf, 1 for a second child, the first turn in the lowest bit
+    float share;  ///< its probability in the leaf
 };
 
 /// What the diffuse colour of a surface, and where its material says so emission and opacity, are multiplied by at a
@@ -139,8 +154,8 @@ struct InstancesView {
     const PointLight* points;
     const AreaLight* areas;  ///< those of static geometry first, in the order of its emitters
     const LightNode* light_nodes;  ///< null: no point and no area light
-    const std::uint64_t* light_trails;  ///< of the point lights, then of the area lights: the turns from the root to
-                                        ///< it, 1 for a second child, the first turn in the lowest bit
+    const LeafLight* leaf_lights;  ///< all, leaf by leaf
+    const LightTrail* light_trails;  ///< of the point lights, then of the area lights
     std::int32_t instance_count, key_count, point_count, area_count, light_node_count;
 };
 

@@ -219,7 +219,17 @@ TEST_CASE("a lamp's importance for a glossy surface is what the surface shows of
 
 namespace {
 
-/// 400 area lights and 100 point lights.
+/// A flat lamp in the plane z = at.z.
+void add_disc(std::vector<Lamp>& lamps, Vec3d at, double radius, float radiance) {
+    constexpr int kCorners = 16;
+    const auto corner = [&](int k) {
+        const double angle = 2 * std::numbers::pi * k / kCorners;
+        return at + Vec3d{radius * std::cos(angle), radius * std::sin(angle), 0};
+    };
+    for (int k = 1; k + 1 < kCorners; ++k) lamps.push_back({corner(0), corner(k), corner(k + 1), radiance});
+}
+
+/// 400 area lights, 10 discs of triangles, and 100 point lights.
 Scene many_lights() {
     std::vector<Lamp> many;
     Uniform place(8);
@@ -230,6 +240,8 @@ Scene many_lights() {
         const Vec3d v = i % 3 ? Vec3d{0, size, 0} : Vec3d{0, 0, size};
         many.push_back({at, at + Vec3d{size, 0, 0}, at + v, i % 2 ? 1.0f : 100.0f});
     }
+    for (int i = 0; i < 10; ++i)
+        add_disc(many, {0.4 * i - 2, 0.1 * i, static_cast<double>(place())}, 0.02 + 0.02 * i, 50.0f);
     Scene scene = with_lamps(many);
     for (int i = 0; i < 100; ++i)
         scene.points.push_back(
@@ -251,8 +263,32 @@ std::vector<LightReceiver> receivers_of_many_lights() {
 
 }  // namespace
 
+TEST_CASE("the triangles of a flat lamp are one leaf of the tree") {
+    const auto leaves = [](const std::vector<Lamp>& lamps) {
+        const Scene scene = with_lamps(lamps);
+        return (RenderSpaceScene(scene, {0, 0, 0}).view().light_node_count + 1) / 2;
+    };
+    std::vector<Lamp> discs;
+    add_disc(discs, {0, 0, 2}, 0.03, 1);
+    CHECK(leaves(discs) == 1);
+    add_disc(discs, {0.2, 0, 2}, 0.03, 1);
+    CHECK(leaves(discs) == 2);
+    const Vec3d along{0.02, 2, 0}, across{0.05, -0.0005, 0};  // a tube of 40 : 1, turned
+    CHECK(leaves({{{0, 0, 2}, along, across, 1}, {along, along + across, across, 1}}) == 2);
+    CHECK(leaves({{{0, 0, 0}, along, across, 1}, {along, along + across, across, 1}}) == 1);
+    CHECK(leaves({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1}, {{5, 0, 0}, {6, 0, 0}, {5, 1, 0}, 1}}) == 2);
+    CHECK(leaves({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1}, {{1, 0, 0}, {1, 1, 0}, {0, 1, 0}, 100}}) == 2);
+    std::vector<Lamp> sheet;
+    for (int k = 0; k < 5; ++k)
+        for (const Lamp& half : {Lamp{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1}, Lamp{{1, 0, 0}, {1, 1, 0}, {0, 1, 0}, 1}}) {
+            const Vec3d at{1.0 * k, 0, 0};
+            sheet.push_back({half.a + at, half.b + at, half.c + at, 1});
+        }
+    CHECK(leaves(sheet) > 1);  // of 5 : 1, whose ends bring more to what is near them
+}
+
 TEST_CASE("a light is chosen from the tree with the probability that is said of it") {
-    ChiSquareTests tests("choose_light: 400 area lights and 100 point lights, by the tree");
+    ChiSquareTests tests("choose_light: 540 area lights and 100 point lights, by the tree");
     const Scene scene = many_lights();
     const RenderSpaceScene placed(scene, {0, 0, 0});
     const SceneView view = placed.view();
