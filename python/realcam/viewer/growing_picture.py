@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -74,13 +75,14 @@ class GrowingPicture:
         self.noise_codes = self.noise.codes(*developed)
         self.noise_tiles = self.noise.tiles(*developed)
 
+    def expected_samples(self) -> float:
+        """With which it has the noise that is asked for, by the last measurement."""
+        goal = self.request.noise_codes
+        return self.noise.samples * (self.noise_codes / goal) ** 2 if self.noise_codes and goal > 0 else math.inf
+
     def wants_measurement(self) -> bool:
-        """Whether its samples have doubled, or are as many as the noise that is asked for takes by the last one."""
-        if self.noise.is_doubled(self.samples):
-            return True
-        if self.noise_codes is None:
-            return False
-        return self.noise_codes**2 * self.noise.samples <= self.request.noise_codes**2 * self.samples
+        """Whether its samples have doubled, or are as many as are expected to be enough."""
+        return self.noise.is_doubled(self.samples) or self.samples >= self.expected_samples()
 
     def is_good_enough(self) -> bool:
         is_quiet = self.noise_codes is not None and self.noise_codes <= self.request.noise_codes

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import math
 import threading
 import time
 from collections import deque
@@ -225,6 +226,9 @@ class PictureLoop:
             picture.size = pace.next_size(picture.size, picture.whole)
         samples = 0 if is_new_size else picture.samples
         spp = min(pace.refining_spp(picture.size, samples), max(1, request.max_spp - samples))
+        lacking = picture.expected_samples() - samples
+        if lacking < spp:
+            spp = min(spp, max(1, samples // 32, math.ceil(lacking)))
         if picture.kept is None and pace.is_slow(spp, picture.size):
             self._taker.keep(picture)
         with self._wake:
