@@ -31,7 +31,8 @@ public:
     }
     REALCAM_INLINE LightNode operator[](int lane) const {
         const float *const ball = &ball_[4 * lane], *const cone = &cone_[4 * lane];
-        return {{ball[0], ball[1], ball[2]}, ball[3], {cone[0], cone[1], cone[2]}, cone[3], intensity_[lane], 0, 0};
+        return {
+            {ball[0], ball[1], ball[2]}, ball[3], {cone[0], cone[1], cone[2]}, cone[3], intensity_[lane], 0, -1, 1.0f};
     }
 
     Lanes<std::int32_t, N> second_child;

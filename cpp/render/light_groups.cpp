@@ -51,8 +51,12 @@ private:
             for_lights(node.second_child, f);
             return;
         }
-        const LeafLight* const lights = &scene_.leaf_lights[-1 - node.second_child];
-        for (std::int32_t k = 0; k < node.light_count; ++k) f(lights[k].light);
+        if (node.partner >= -1) {
+            f(-1 - node.second_child);
+            if (node.partner >= 0) f(node.partner);
+            return;
+        }
+        for (const LeafLight* one = &scene_.leaf_lights[-2 - node.partner]; one->light >= 0; ++one) f(one->light);
     }
 
     std::uint32_t instance_of(std::int32_t light) const {
@@ -65,8 +69,7 @@ private:
         const double swept = 2 * std::sqrt(static_cast<double>(scene_.light_nodes[at].squared_radius));
         std::int32_t leaf = at;
         while (scene_.light_nodes[leaf].second_child > 0) ++leaf;
-        const std::uint32_t instance =
-            instance_of(scene_.leaf_lights[-1 - scene_.light_nodes[leaf].second_child].light);
+        const std::uint32_t instance = instance_of(-1 - scene_.light_nodes[leaf].second_child);
         if (instance == kNoInstance || scene_.instances[instance].key_count == 0) return swept;
         BoundingBox box;
         bool is_one = true;

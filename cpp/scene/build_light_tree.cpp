@@ -31,7 +31,7 @@ void LightTree::widen(LightLeaf& leaf, const LightLeaf& elsewhere) {
 LightTree::LightTree(std::vector<LightLeaf> leaves, Checkpoint& checkpoint) {
     for (std::size_t i = 0; i < leaves.size(); ++i) leaves[i].light = static_cast<std::int32_t>(i);
     trails_.resize(leaves.size());
-    leaf_lights_.reserve(leaves.size());
+    shares_.resize(leaves.size());
     if (!leaves.empty()) add(leaves.begin(), leaves.end(), 0, 0, checkpoint);
 }
 
@@ -154,7 +154,14 @@ int LightTree::bin_of(const LightLeaf& leaf, int axis, float from, float size, i
 
 LightNode LightTree::node_of(const LightBounds& bounds) {
     const Vec3f half = 0.5f * (bounds.high - bounds.low);
-    return {0.5f * (bounds.low + bounds.high), dot(half, half), bounds.axis, bounds.cos_spread, bounds.intensity, 0, 0};
+    return {0.5f * (bounds.low + bounds.high),
+            dot(half, half),
+            bounds.axis,
+            bounds.cos_spread,
+            bounds.intensity,
+            0,
+            -1,
+            1.0f};
 }
 
 LightBounds LightTree::add(Leaves first, Leaves last, std::uint64_t turns, int depth, Checkpoint& checkpoint) {
@@ -183,13 +190,21 @@ void LightTree::fill_leaf(LightNode& leaf, Leaves first, Leaves last, std::uint6
     for (Leaves i = first; i != last; ++i) intensities.push_back(static_cast<double>(i->bounds.intensity));
     std::vector<float> cdf;
     append_cdf(intensities, cdf);
-    leaf.second_child = -1 - static_cast<std::int32_t>(leaf_lights_.size());
-    leaf.light_count = static_cast<std::int32_t>(last - first);
     for (std::size_t k = 0; k < intensities.size(); ++k) {
-        const std::int32_t light = first[static_cast<std::ptrdiff_t>(k)].light;
-        leaf_lights_.push_back({light, cdf[k]});
-        trails_[static_cast<std::size_t>(light)] = {turns, cdf[k + 1] - cdf[k]};
+        const auto light = static_cast<std::size_t>(first[static_cast<std::ptrdiff_t>(k)].light);
+        trails_[light] = turns;
+        shares_[light] = cdf[k + 1] - cdf[k];
     }
+    leaf.second_child = -1 - first->light;
+    leaf.first_share = cdf[1];
+    if (last - first <= 2) {
+        leaf.partner = last - first == 2 ? first[1].light : -1;
+        return;
+    }
+    leaf.partner = -2 - static_cast<std::int32_t>(leaf_lights_.size());
+    for (std::size_t k = 0; k < intensities.size(); ++k)
+        leaf_lights_.push_back({first[static_cast<std::ptrdiff_t>(k)].light, cdf[k]});
+    leaf_lights_.push_back({-1, 1.0f});
 }
 
 }  // namespace realcam

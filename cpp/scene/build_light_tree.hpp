@@ -38,7 +38,8 @@ public:
 
     const std::vector<LightNode>& nodes() const { return nodes_; }
     const std::vector<LeafLight>& leaf_lights() const { return leaf_lights_; }
-    const std::vector<LightTrail>& trails() const { return trails_; }
+    const std::vector<std::uint64_t>& trails() const { return trails_; }
+    const std::vector<float>& shares() const { return shares_; }
 
 private:
     using Leaves = std::vector<LightLeaf>::iterator;
@@ -77,7 +78,8 @@ private:
 
     std::vector<LightNode> nodes_;
     std::vector<LeafLight> leaf_lights_;
-    std::vector<LightTrail> trails_;
+    std::vector<std::uint64_t> trails_;
+    std::vector<float> shares_;
 };
 
 }  // namespace REALCAM_NAMESPACE

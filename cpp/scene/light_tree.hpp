@@ -146,11 +146,17 @@ struct LightTreePath {
     /// One of the lights of the leaf.
     REALCAM_INLINE LightChoice choice(const SceneView& scene) const {
         const LightNode& leaf = scene.light_nodes[node];
-        const LeafLight* at = &scene.leaf_lights[-1 - leaf.second_child];
-        if (leaf.light_count == 1) return {at->light, probability, u};
-        const LeafLight* const last = at + leaf.light_count - 1;
-        while (at < last && at[1].below <= u) ++at;
-        const float taken = (at < last ? at[1].below : 1.0f) - at->below;
+        const std::int32_t first = -1 - leaf.second_child;
+        if (leaf.partner == -1) return {first, probability, u};
+        if (leaf.partner >= 0) {
+            const bool is_first = u < leaf.first_share;
+            const float taken = is_first ? leaf.first_share : 1.0f - leaf.first_share;
+            return {is_first ? first : leaf.partner, probability * taken,
+                    left_over(is_first ? u : u - leaf.first_share, taken)};
+        }
+        const LeafLight* at = &scene.leaf_lights[-2 - leaf.partner];
+        while (at[1].below <= u) ++at;
+        const float taken = at[1].below - at->below;
         return {at->light, probability * taken, left_over(u - at->below, taken)};
     }
 };
@@ -166,9 +172,8 @@ REALCAM_INLINE LightChoice choose_light(const SceneView& scene, LightReceiver re
 
 /// Probability with which choose_light chooses a light.
 REALCAM_INLINE float light_probability(const SceneView& scene, LightReceiver receiver, std::int32_t light) {
-    const LightTrail& trail = scene.light_trails[light];
-    float probability = trail.share;
-    std::uint64_t turns = trail.turns;
+    float probability = 1.0f;
+    std::uint64_t turns = scene.light_trails[light];
     std::int32_t at = 0;
     while (scene.light_nodes[at].second_child > 0) {
         const std::int32_t second = scene.light_nodes[at].second_child;
@@ -178,7 +183,10 @@ REALCAM_INLINE float light_probability(const SceneView& scene, LightReceiver rec
         at = is_second ? second : at + 1;
         turns >>= 1;
     }
-    return probability;
+    const LightNode& leaf = scene.light_nodes[at];
+    if (leaf.partner == -1) return probability;
+    if (leaf.partner < -1) return probability * scene.light_shares[light];
+    return probability * (light == leaf.partner ? 1.0f - leaf.first_share : leaf.first_share);
 }
 
 }  // namespace REALCAM_NAMESPACE

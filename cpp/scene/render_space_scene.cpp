@@ -94,7 +94,9 @@ InstancesView RenderSpaceScene::instances_view() const {
     view.light_nodes = has_lights ? light_tree_.nodes().data() : nullptr;
     view.leaf_lights = has_lights ? light_tree_.leaf_lights().data() : nullptr;
     view.light_trails = has_lights ? light_tree_.trails().data() : nullptr;
+    view.light_shares = has_lights ? light_tree_.shares().data() : nullptr;
     view.light_node_count = static_cast<std::int32_t>(light_tree_.nodes().size());
+    view.leaf_light_count = static_cast<std::int32_t>(light_tree_.leaf_lights().size());
     view.instance_count = static_cast<std::int32_t>(instances_.size());
     view.key_count = static_cast<std::int32_t>(keys_.size());
     view.point_count = static_cast<std::int32_t>(points_.size());

@@ -72,8 +72,9 @@ InstancesView with_copied_arrays(InstancesView view, Copy&& copy) {
     replace(view.points, view.point_count, copy);
     replace(view.areas, view.area_count, copy);
     replace(view.light_nodes, view.light_node_count, copy);
-    replace(view.leaf_lights, view.point_count + view.area_count, copy);
+    replace(view.leaf_lights, view.leaf_light_count, copy);
     replace(view.light_trails, view.point_count + view.area_count, copy);
+    replace(view.light_shares, view.point_count + view.area_count, copy);
     return view;
 }
 

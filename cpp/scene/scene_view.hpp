@@ -94,20 +94,16 @@ struct alignas(16) LightNode {
     Vec3f axis;  ///< middle of the normals of area lights
     float cos_spread;  ///< of the angle about it in which all normals lie; -1: all directions; or kIsotropic
     float intensity;  ///< luminous, along the normal, of all of them, cd
-    std::int32_t second_child;  ///< below 0: a leaf, whose first light is at the place -1 - second_child of leaf_lights
-    std::int32_t light_count;  ///< of a leaf
+    std::int32_t second_child;  ///< below 0: a leaf, whose first light is -1 - second_child
+    std::int32_t partner;  ///< of a leaf: its second light; -1: it has one; less: all are from -2 - partner on in
+                           ///< leaf_lights, which takes a GPU longer than these two
+    float first_share;  ///< probability of the first of two
 };
 
-/// One of the lights of a leaf, which follow each other.
+/// One of more than two lights of a leaf, which follow each other.
 struct LeafLight {
-    std::int32_t light;  ///< a point light, or an area light after all point lights
+    std::int32_t light;  ///< a point light, or an area light after all point lights; -1: the last one was before
     float below;  ///< probability of those before it in its leaf
-};
-
-/// Where a light is in the tree.
-struct LightTrail {
-    std::uint64_t turns;  ///< from the root to its leaf, 1 for a second child, the first turn in the lowest bit
-    float share;  ///< its probability in the leaf
 };
 
 /// What the diffuse colour of a surface, and where its material says so emission and opacity, are multiplied by at a
@@ -154,9 +150,11 @@ struct InstancesView {
     const PointLight* points;
     const AreaLight* areas;  ///< those of static geometry first, in the order of its emitters
     const LightNode* light_nodes;  ///< null: no point and no area light
-    const LeafLight* leaf_lights;  ///< all, leaf by leaf
-    const LightTrail* light_trails;  ///< of the point lights, then of the area lights
-    std::int32_t instance_count, key_count, point_count, area_count, light_node_count;
+    const LeafLight* leaf_lights;  ///< leaf by leaf
+    const std::uint64_t* light_trails;  ///< of the point lights, then of the area lights: the turns from the root to
+                                        ///< its leaf, 1 for a second child, the first turn in the lowest bit
+    const float* light_shares;  ///< of the same lights: probability in its leaf
+    std::int32_t instance_count, key_count, point_count, area_count, light_node_count, leaf_light_count;
 };
 
 /// Static geometry's triangles, objects in frames of their own, and lights.
