@@ -5,12 +5,11 @@
 
 #include "../prescription/crossing.hpp"
 #include "../prescription/surface_frames.hpp"
-#include "asphere_start.hpp"
 #include "lens_trace.hpp"
 #include "make_aperture.hpp"
-#include "make_freeform.hpp"
 #include "open_iris.hpp"
 #include "path_frames.hpp"
+#include "traced_shape.hpp"
 
 namespace REALCAM_NAMESPACE {
 
@@ -45,7 +44,7 @@ public:
             const bool turns = way[m].is_reflected || surface.type == SurfaceType::mirror;
             const double sign_behind = turns ? -direction_sign : direction_sign;
             const double before = way[m].index_before(n), behind = way[m].index_behind(n);
-            SurfaceView<T> view = shape_of(surface);
+            SurfaceView<T> view = traced_shape<T>(surface).view;
             view.surface_index = way[m].surface;
             if (to_film) {
                 set_media(view, before, behind, direction_sign, sign_behind);
@@ -128,52 +127,7 @@ private:
                 apertures_.push_back(aperture_view<T>(surface(view).aperture_shape));
         if (std::any_of(views_.begin(), views_.end(), is_freeform))
             for (const SurfaceView<T>& view : views_)
-                freeforms_.push_back(is_freeform(view) ? freeform_view<T>(surface(view)) : FreeformView<T>{});
-    }
-
-    static SurfaceView<T> shape_of(const Surface& surface) {
-        SurfaceView<T> view{};
-        view.kind = !surface.form.is_none() ? SurfaceShape::freeform
-                    : surface.is_asphere()  ? SurfaceShape::asphere
-                    : surface.conic != 0    ? SurfaceShape::conic
-                                            : SurfaceShape::sphere;
-        view.curvature = static_cast<T>(surface.curvature);
-        view.conic_factor = static_cast<T>(1 + surface.conic);
-        const double rim = surface.clear_semi_diameter, hole = surface.inner_semi_diameter;
-        view.rim_squared = static_cast<T>(rim * rim);
-        view.hole_squared = static_cast<T>(hole > 0 ? hole * hole : -1.0);
-        if (view.kind == SurfaceShape::asphere) set_search_region(view, surface);
-        // The sphere from which the search on a freeform starts.
-        if (view.kind == SurfaceShape::freeform && surface.form.base != BaseForm::conic)
-            view.curvature = static_cast<T>(0.5 * (surface.curvature + surface.form.curvature_x));
-        return view;
-    }
-
-    /// The search goes 2% past the rim, so a ray that just misses it is seen to miss it. The sag's bounds there are
-    /// sampled. They are widened by more than the sag can change between two samples of a surface that can be made.
-    static void set_search_region(SurfaceView<T>& view, const Surface& surface) {
-        double reach = 1.02 * surface.clear_semi_diameter;
-        if (!std::isfinite(surface.sag(reach))) reach = surface.clear_semi_diameter;
-        constexpr int kSamples = 256;
-        double low = 0, high = 0;
-        for (int i = 1; i <= kSamples; ++i) {
-            const double sag = surface.sag(reach * i / kSamples);
-            low = std::min(low, sag);
-            high = std::max(high, sag);
-        }
-        const double margin = 0.02 * (high - low) + 1e-3 * reach;
-        view.sag_edge = static_cast<T>(surface.sag(reach));
-        view.search_squared = static_cast<T>(reach * reach);
-        view.inverse_search_squared = static_cast<T>(1 / (reach * reach));
-        // Not by std::pow, which would round the powers of a reach and of twice the reach differently.
-        std::vector<long double> terms;
-        long double power = static_cast<long double>(reach) * reach;
-        for (const double coefficient : surface.aspheric)
-            terms.push_back(coefficient * (power *= static_cast<long double>(reach) * reach));
-        set_terms(view, terms);
-        view.sag_min = static_cast<T>(low - margin);
-        view.sag_max = static_cast<T>(high + margin);
-        set_start(view, surface, terms);
+                freeforms_.push_back(is_freeform(view) ? traced_shape<T>(surface(view)).freeform : FreeformView<T>{});
     }
 
     static void set_media(SurfaceView<T>& view, double before, double after, double direction_sign_in,

@@ -1,0 +1,100 @@
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <list>
+#include <vector>
+
+#include "asphere_start.hpp"
+#include "make_freeform.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// The shape of a surface, made ready for the trace.
+template <class T>
+struct TracedShape {
+    SurfaceView<T> view;       ///< without media and place
+    FreeformView<T> freeform;  ///< of a SurfaceShape::freeform
+};
+
+namespace traced_shape_detail {
+
+/// The search goes 2% past the rim, so a ray that just misses it is seen to miss it. The sag's bounds there are
+/// sampled. They are widened by more than the sag can change between two samples of a surface that can be made.
+template <class T>
+void set_search_region(SurfaceView<T>& view, const Surface& surface) {
+    double reach = 1.02 * surface.clear_semi_diameter;
+    if (!std::isfinite(surface.sag(reach))) reach = surface.clear_semi_diameter;
+    constexpr int kSamples = 256;
+    double low = 0, high = 0;
+    for (int i = 1; i <= kSamples; ++i) {
+        const double sag = surface.sag(reach * i / kSamples);
+        low = std::min(low, sag);
+        high = std::max(high, sag);
+    }
+    const double margin = 0.02 * (high - low) + 1e-3 * reach;
+    view.sag_edge = static_cast<T>(surface.sag(reach));
+    view.search_squared = static_cast<T>(reach * reach);
+    view.inverse_search_squared = static_cast<T>(1 / (reach * reach));
+    // Not by std::pow, which would round the powers of a reach and of twice the reach differently.
+    std::vector<long double> terms;
+    long double power = static_cast<long double>(reach) * reach;
+    for (const double coefficient : surface.aspheric)
+        terms.push_back(coefficient * (power *= static_cast<long double>(reach) * reach));
+    set_terms(view, terms);
+    view.sag_min = static_cast<T>(low - margin);
+    view.sag_max = static_cast<T>(high + margin);
+    set_start(view, surface, terms);
+}
+
+template <class T>
+SurfaceView<T> view_of(const Surface& surface) {
+    SurfaceView<T> view{};
+    view.kind = !surface.form.is_none() ? SurfaceShape::freeform
+                : surface.is_asphere()  ? SurfaceShape::asphere
+                : surface.conic != 0    ? SurfaceShape::conic
+                                        : SurfaceShape::sphere;
+    view.curvature = static_cast<T>(surface.curvature);
+    view.conic_factor = static_cast<T>(1 + surface.conic);
+    const double rim = surface.clear_semi_diameter, hole = surface.inner_semi_diameter;
+    view.rim_squared = static_cast<T>(rim * rim);
+    view.hole_squared = static_cast<T>(hole > 0 ? hole * hole : -1.0);
+    if (view.kind == SurfaceShape::asphere) set_search_region(view, surface);
+    // The sphere from which the search on a freeform starts.
+    if (view.kind == SurfaceShape::freeform && surface.form.base != BaseForm::conic)
+        view.curvature = static_cast<T>(0.5 * (surface.curvature + surface.form.curvature_x));
+    return view;
+}
+
+inline bool have_same_shape(const Surface& a, const Surface& b) {
+    return a.curvature == b.curvature && a.conic == b.conic && a.clear_semi_diameter == b.clear_semi_diameter &&
+           a.inner_semi_diameter == b.inner_semi_diameter && a.aspheric == b.aspheric && a.form == b.form &&
+           a.aperture_shape == b.aperture_shape;
+}
+
+}  // namespace traced_shape_detail
+
+/// Each thread keeps the aspheres and freeforms that it asked for last: to find their bounds takes as long as hundreds
+/// of rays, and while a lens is focused or edited nearly all of its surfaces stay as they are.
+template <class T>
+TracedShape<T> traced_shape(const Surface& surface) {
+    using namespace traced_shape_detail;
+    if (!surface.is_asphere() && surface.form.is_none()) return {view_of<T>(surface), {}};
+    constexpr std::size_t kKept = 64;
+    struct Kept {
+        Surface surface;
+        TracedShape<T> shape;
+    };
+    thread_local std::list<Kept> latest;  // the last one first
+    const auto found = std::find_if(latest.begin(), latest.end(),
+                                    [&](const Kept& kept) { return have_same_shape(kept.surface, surface); });
+    if (found != latest.end()) {
+        latest.splice(latest.begin(), latest, found);
+    } else {
+        const FreeformView<T> freeform = surface.form.is_none() ? FreeformView<T>{} : freeform_view<T>(surface);
+        latest.push_front({surface, {view_of<T>(surface), freeform}});
+        if (latest.size() > kKept) latest.pop_back();
+    }
+    return latest.front().shape;
+}
+
+}  // namespace REALCAM_NAMESPACE
