@@ -150,14 +150,16 @@ def image_point_errors(lens: rc.Lens, rays: Rays) -> ImagePointErrors:
 
 
 def _boxes(lens: rc.Lens, radii: np.ndarray) -> PupilBoxes:
-    """Boxes of those film points that light reaches: first of all that the rear rim lets in, then closer."""
+    """Boxes of those film points that light reaches: first in all that the rear rim lets in, then closer."""
     rim = lens.surfaces[-1].clear_semi_diameter_mm
     distance = lens.film_distance_mm - max(0.0, lens.surfaces[-1].sag_mm(rim))
     away = np.stack([np.stack([side * rim - radii, np.full_like(radii, side * rim)], axis=1) for side in (-1, 1)])
     low, high = away / np.hypot(away, distance)
-    for _ in range(2):
-        radii, low, high = _closer(lens, radii, low, high, 120)
-    return PupilBoxes(radii, low, high)
+    # Most pupils fill a tenth of that width or more. Some of wide lenses lie between the rays of the coarse grid.
+    lit = _closer(lens, radii, low, high, 40)
+    if len(lit[0]) < len(radii):
+        lit = _closer(lens, radii, low, high, 120)
+    return PupilBoxes(*_closer(lens, *lit, 60))
 
 
 def _closer(
