@@ -106,20 +106,21 @@ def test_real_lenses_agree_with_prysm(name: str, f_number: float) -> None:
 
 
 def test_both_sums_agree() -> None:
-    cases: list[tuple[str, float, float | None]] = [
-        ("tessar-50mm", 18, None),  # of which two rims let 0.6 pass
-        ("double-gauss-50mm", 15, 8),
-        ("mirror-telephoto-500mm", 1.5, None),  # obstructed
-        ("phone-4mm", 20, None),  # aspheres, open up to their rims
-        ("fisheye-6mm-220deg", 80, None),
-        ("wide-22mm", 30, 5.6),
+    cases: list[tuple[str, float, float | None, float | None]] = [
+        # Two rims let 0.6 of it pass. Its spot is wide: in infrared light a quarter of the rays follow its waves.
+        ("tessar-50mm", 18, None, 1500),
+        ("double-gauss-50mm", 15, 8, None),
+        ("mirror-telephoto-500mm", 1.5, None, None),  # obstructed
+        ("phone-4mm", 20, None, None),  # aspheres, open up to their rims
+        ("fisheye-6mm-220deg", 80, None, None),
+        ("wide-22mm", 30, 5.6, None),
     ]
     worst = 0.0
-    for name, field, f_number in cases:
+    for name, field, f_number, nm in cases:
         lens = rc.Lens.load(name)
         lens = lens if f_number is None else lens.stopped_down(f_number)
-        direct = lens.psf(field, object_distance_m=FAR, size=64)
-        fft = lens.psf(field, object_distance_m=FAR, method="fft", pitch_um=direct.pitch_um, size=64)
+        direct = lens.psf(field, nm, object_distance_m=FAR, size=64)
+        fft = lens.psf(field, nm, object_distance_m=FAR, method="fft", pitch_um=direct.pitch_um, size=64)
         worst = max(worst, float(np.abs(direct.values - fft.values).max() / direct.values.max()))
         assert fft.energy == pytest.approx(direct.energy, abs=1e-3)
         assert fft.centre_mm == direct.centre_mm
@@ -130,7 +131,7 @@ def test_both_sums_agree() -> None:
 def test_blades_make_spikes(blades: int) -> None:
     """Each straight edge sends light to both sides, and opposite edges to the same."""
     lens = perfect(4).with_iris(blades, rotation_deg=10).stopped_down(8)
-    psf = lens.psf(object_distance_m=FAR, size=256, pitch_um=8 * 0.5876 / 2)
+    psf = lens.psf(object_distance_m=FAR, size=128, pitch_um=8 * 0.5876)
     x, y = np.meshgrid(psf.x_um, psf.y_um)
     radius, angle = np.hypot(x, y) / (8 * 0.5876), np.arctan2(y, x)
     ring = (radius > 15) & (radius < 60)
