@@ -8,10 +8,14 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .._core import InputError, _CopyJudge
 from .figures import CopyFigures, Doubles
 from .tolerances import MOST, TILTS_MOST_ARCMIN, Tolerance, errors_of
+
+CLOSE = 1e-3  # of a loss: limits are shown with three digits
+STEPS = 20
 
 
 @dataclass(frozen=True)
@@ -61,43 +65,52 @@ def sensitivities(judge: _CopyJudge, items: list[Tolerance], nominal: CopyFigure
 def inverse_sensitivities(
     judge: _CopyJudge, items: list[Tolerance], nominal: CopyFigures, frequency: int, loss: float
 ) -> list[Tolerance]:
-    """In an interval that ends at a limit that costs more, for all tolerances at once."""
+    """By the Illinois method (Dowell and Jarratt 1971), for those tolerances together whose loss is not met yet."""
     before = float(nominal.mean_mtf(frequency)[0])
     if not 0 < loss < before:
         raise InputError(
             f"loss is {loss!r:.40}; more than 0 and less than the mean MTF as drawn, {before:.3g}, is wanted"
         )
 
-    def losses(limits: Doubles) -> Doubles:
-        mtf = CopyFigures.joined([judge.judge(errors_of(items), _rows(items, limits))]).mean_mtf(frequency)
+    def excess(which: NDArray[np.intp], limits: Doubles) -> Doubles:
+        """What these tolerances cost beyond the loss."""
+        some = [items[k] for k in which]
+        mtf = CopyFigures.joined([judge.judge(errors_of(some), _rows(some, limits))]).mean_mtf(frequency)
         worst, row = [], 0
-        for item in items:
-            worst.append(before - mtf[row : row + 2 * len(item.errors)].min())
+        for item in some:
+            worst.append(before - mtf[row : row + 2 * len(item.errors)].min() - loss)
             row += 2 * len(item.errors)
         return np.array(worst)
 
     most = np.array([_most(item) for item in items])
     low, high = np.zeros(len(items)), np.minimum([item.limit for item in items], most)
-    below, above = np.zeros(len(items)), losses(high)
-    for _ in range(12):
-        short = (above < loss) & (high < most)
-        if not short.any():
+    below, above = np.full(len(items), -loss), np.zeros(len(items))
+    which = np.arange(len(items))
+    for _ in range(13):
+        above[which] = excess(which, high[which])
+        which = which[(above[which] < 0) & (high[which] < most[which])]
+        if not len(which):
             break
-        low, below = np.where(short, high, low), np.where(short, above, below)
-        high = np.minimum(np.where(short, 4 * high, high), most)
-        above = losses(high)
-    endless = above < loss
-    for step in range(8):
-        # Where a straight line reaches the loss, but by turns the middle: one end must not stay for ever.
-        share = np.clip((loss - below) / np.maximum(above - below, 1e-300), 0.02, 0.98) if step % 2 else 0.5
-        middle = low + share * (high - low)
-        found = losses(middle)
-        enough = found >= loss
-        low, below = np.where(enough, low, middle), np.where(enough, below, found)
-        high, above = np.where(enough, middle, high), np.where(enough, found, above)
-    limits = np.where(
-        endless, math.inf, low + (high - low) * np.clip((loss - below) / np.maximum(above - below, 1e-300), 0, 1)
-    )
+        low[which], below[which] = high[which], above[which]
+        high[which] = np.minimum(4 * high[which], most[which])
+    limits = np.where(above < 0, math.inf, high)
+    which = np.flatnonzero(above > CLOSE * loss)
+    last = np.zeros(len(items))
+    for _ in range(STEPS):
+        if not len(which):
+            break
+        share = below[which] / (below[which] - above[which])
+        limits[which] = low[which] + share * (high[which] - low[which])
+        found = excess(which, limits[which])
+        side = np.where(found < 0, -1, 1)
+        # An end that stays a second time counts half, so that it does not stay for ever.
+        stays = side == last[which]
+        last[which] = side
+        for of, there, other, end in ((side < 0, below, above, low), (side > 0, above, below, high)):
+            moved = which[of]
+            there[moved], end[moved] = found[of], limits[moved]
+            other[which[of & stays]] /= 2
+        which = which[np.abs(found) > CLOSE * loss]
     return [dataclasses.replace(item, limit=float(limit)) for item, limit in zip(items, limits, strict=True)]
 
 

@@ -6,6 +6,7 @@ import math
 import random
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -118,6 +119,10 @@ class ToleranceStudy:
 
     def sensitivities(self) -> list[Sensitivity]:
         """What each tolerance does alone at its limits, with the compensators set: those that cost most first."""
+        return list(self._sensitivities)
+
+    @cached_property
+    def _sensitivities(self) -> list[Sensitivity]:
         return sensitivities(self._judge, self.items, self.nominal, self.main)
 
     def worst_offenders(self, count: int = 10) -> list[Sensitivity]:
