@@ -144,7 +144,7 @@ ThickLens thick_lens_of(const LensSystem& lens, const FirstOrder& data) {
     const bool far = !(std::fabs(distance) < kFar);
     const double tangent = data.exit_pupil_diameter / (2 * std::fabs(distance));
     // With a pupil at infinity the quotient has no value. The slope of light from the stop's rim takes its place.
-    const double rim = std::min(lens.stop_semi_diameter, lens.stop().clear_semi_diameter);
+    const double rim = lens.open_stop_radius();
     const double marginal =
         std::fabs(trace_paraxial(lens, lens.wavelength_nm, {rim, 0}, lens.stop_index(), count).slope);
     thick.exit_pupil_distance = static_cast<float>(far ? kFar : distance);

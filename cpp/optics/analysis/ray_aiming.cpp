@@ -17,7 +17,7 @@ RayAimer::RayAimer(const LensSystem& lens, double wavelength_nm, const FieldPoin
       open_(AimingPath::open(path_)),
       real_(AimingPath::real(path_)),
       reach_(stop_reach(lens)),
-      stop_radius_(std::min(lens.stop_semi_diameter, lens.stop().clear_semi_diameter)) {
+      stop_radius_(lens.open_stop_radius()) {
     const FirstOrder data = first_order(lens, wavelength_nm);
     step_ = 1e-6 * data.entrance_pupil_diameter;
     if (const PathEnds ends = film_path_ends(lens, LightDirection::to_film); ends.entry) frame_ = ends.entry->origin;

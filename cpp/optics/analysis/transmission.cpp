@@ -1,6 +1,5 @@
 #include "transmission.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -52,7 +51,7 @@ double unobstructed_share(LensSystem lens, double wavelength_nm) {
     if (!std::isfinite(first_order(lens, wavelength_nm).entrance_pupil_diameter)) return 1;
     lens.iris.blades = 0;  // a round opening of the same area
     const RayAimer aim(lens, wavelength_nm, FieldPoint{0, kInfinity});
-    const double radius = std::min(lens.stop_semi_diameter, lens.stop().clear_semi_diameter);
+    const double radius = lens.open_stop_radius();
     const auto passes = [&](double area) { return aim({radius * std::sqrt(area), 0}).status == RayStatus::ok; };
     constexpr int kSteps = 128;
     double open = 0;

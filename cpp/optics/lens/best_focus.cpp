@@ -126,7 +126,7 @@ double best_focus_distance(LensSystem lens, double wavelength_nm, double object_
     lens.iris.blades = 0;
     const AxialRays axial(lens, wavelength_nm, object_distance);
     // Past the paraxial rim: real pupils are larger at times.
-    const double reach = 1.5 * std::min(lens.stop_semi_diameter, lens.stop().clear_semi_diameter);
+    const double reach = 1.5 * lens.open_stop_radius();
     double cross = 0, square = 0;
     for (const auto& [from, to] : passing_intervals(axial, reach)) {
         double height[kRays];

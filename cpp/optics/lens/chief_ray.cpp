@@ -22,7 +22,7 @@ RaysFromFilm::RaysFromFilm(const LensSystem& lens, double wavelength_nm)
       film_distance_(lens.film_distance),
       film_curvature_(1 / lens.film_radius_of_curvature),
       scene_index_(lens.indices(wavelength_nm).front()),
-      stop_radius_(std::min(lens.stop_semi_diameter, lens.stop().clear_semi_diameter)),
+      stop_radius_(lens.open_stop_radius()),
       to_stop_(static_cast<int>(lens.surfaces.size()) - lens.stop_index()) {
     if (ends_.entry) frame_of_last_ = inverse_motion(*ends_.entry) * surface_frames(lens).surfaces.back();
 }

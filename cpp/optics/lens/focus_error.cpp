@@ -29,7 +29,7 @@ public:
           across_(normalized(cross(Vec3d{0, 1, 0}, chief_.scene_direction))),
           upwards_(cross(chief_.scene_direction, across_)),
           inverse_distance_(inverse_distance) {
-        const double n = path_.entry_index, radius = std::min(lens.stop_semi_diameter, lens.stop().clear_semi_diameter);
+        const double n = path_.entry_index, radius = lens.open_stop_radius();
         const Matrix2 entry = (rays.stop_by_place + n * inverse_distance * rays.stop_by_direction).inverse();
         reach = {radius * hypotenuse(entry.first.x, entry.first.y),
                  radius * hypotenuse(entry.second.x, entry.second.y)};

@@ -149,7 +149,7 @@ ParabasalData parabasal_data(const LensSystem& lens, double wavelength_nm) {
     const ParabasalRays rays = parabasal_rays(lens, wavelength_nm);
     const std::vector<double> index = lens.indices(wavelength_nm);
     const double before = index.front(), behind = index.back();
-    const double radius = std::min(lens.stop_semi_diameter, lens.stop().clear_semi_diameter);
+    const double radius = lens.open_stop_radius();
     const SingularValues power = singular_values(rays.direction_by_place);
     // Of quotients of differences rounding leaves about so much, 1/mm: a smaller power is none.
     const double none = std::max(1e-10 * power.larger, 1e-12);

@@ -1,6 +1,5 @@
 #include "paraxial.hpp"
 
-#include <algorithm>
 #include <limits>
 
 #include "../prescription/lens_axis.hpp"
@@ -50,7 +49,7 @@ FirstOrder first_order(const LensSystem& lens, double wavelength_nm) {
     // crosses the axis in the middle of the entrance pupil.
     const ParaxialRay height_at_stop = trace_paraxial(lens, wavelength_nm, {1, 0}, 0, stop + 1);
     const ParaxialRay slope_at_stop = trace_paraxial(lens, wavelength_nm, {0, 1}, 0, stop + 1);
-    const double radius = std::min(lens.stop_semi_diameter, lens.stop().clear_semi_diameter);
+    const double radius = lens.open_stop_radius();
     data.entrance_pupil_position = slope_at_stop.height / height_at_stop.height;
     data.entrance_pupil_diameter = radius > 0 ? 2 * radius / std::fabs(height_at_stop.height) : 0.0;
     data.f_number = afocal ? kInfinity : std::fabs(data.effective_focal_length) / data.entrance_pupil_diameter;

@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <cstddef>
 #include <limits>
 #include <string>
@@ -57,6 +58,8 @@ struct LensSystem {
     int stop_index() const;
     const Surface& stop() const { return surfaces[static_cast<std::size_t>(stop_index())]; }
     bool is_wide_open() const { return stop_semi_diameter >= stop().clear_semi_diameter; }
+    /// The radius of the stop's opening, which its rim limits, mm.
+    double open_stop_radius() const { return std::min(stop_semi_diameter, stop().clear_semi_diameter); }
 
     /// Why this is no centred lens of revolution, by the first surface that makes it another: "surface 3 is tilted".
     /// Empty: it is one.

@@ -50,8 +50,8 @@ std::vector<PupilPoint> gauss_rings(int n, const RayLoop& loop) {
 }
 
 double stop_reach(const LensSystem& lens) {
+    if (lens.iris.blades == 0 || lens.is_wide_open()) return lens.open_stop_radius();
     const double rim = lens.stop().clear_semi_diameter;
-    if (lens.iris.blades == 0 || lens.is_wide_open()) return std::min(lens.stop_semi_diameter, rim);
     const Iris<double> iris = open_iris(lens.iris, lens.stop_semi_diameter, rim);
     return std::min(rim, opening_radius(iris.apothem, iris.curvature, std::cos(std::numbers::pi / iris.blades)));
 }

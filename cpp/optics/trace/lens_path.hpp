@@ -141,7 +141,7 @@ private:
     static void set_stop(SurfaceView<T>& view, const LensSystem& lens) {
         view.has_blades = lens.iris.blades > 0 && !lens.is_wide_open();
         if (!view.has_blades) {
-            const double radius = std::min(lens.stop_semi_diameter, lens.stop().clear_semi_diameter);
+            const double radius = lens.open_stop_radius();
             view.rim_squared = static_cast<T>(radius * radius);
         }
     }
