@@ -11,6 +11,9 @@ The docs say which properties there are (docs/mitsuba.md). Needs the package mit
 
 from __future__ import annotations
 
+import importlib
+import sys
+
 try:
     import mitsuba
 except ImportError:
@@ -18,11 +21,11 @@ except ImportError:
 
 
 def _register(variant: str | None) -> None:
-    """Classes belong to a variant, so that each needs one of its own."""
+    """A class belongs to a variant, so the module of the sensor is loaded again for each, as Mitsuba's own are."""
     if variant:
-        from .sensor import make_sensor_class
-
-        mitsuba.register_sensor("realcam", make_sensor_class())
+        name = f"{__name__}.sensor"
+        sensor = importlib.reload(sys.modules[name]) if name in sys.modules else importlib.import_module(name)
+        mitsuba.register_sensor("realcam", sensor.RealcamSensor)
 
 
 _register(mitsuba.variant())

@@ -1,4 +1,4 @@
-"""The sensor `realcam`, as a class of the Mitsuba variant that is set when it is made."""
+"""The sensor `realcam`, as a class of the Mitsuba variant that is set when this module is loaded."""
 
 from __future__ import annotations
 
@@ -18,205 +18,200 @@ NUMBERS = ("focus_distance_m", "f_number", "film_width_mm", "film_height_mm", "e
 FARTHEST = float(np.finfo(np.float32).max)
 
 
-def make_sensor_class() -> type:
-    class RealcamSensor(mi.Sensor):  # type: ignore[misc]
-        """See docs/mitsuba.md. Frames: of the lens, in mm; of the camera, Mitsuba's, with x to the left and z forwards
-        from the middle of the film; and of the scene."""
+class RealcamSensor(mi.Sensor):  # type: ignore[misc]
+    """See docs/mitsuba.md. Frames: of the lens, in mm; of the camera, Mitsuba's, with x to the left and z forwards
+    from the middle of the film; and of the scene."""
 
-        def __init__(self, properties: Any) -> None:
-            lens = lens_of(properties)
-            set_shutter(properties)
-            super().__init__(properties)
-            self.m_needs_sample_2 = True
-            self.m_needs_sample_3 = True
-            self.mm_per_unit = 1000 * properties.get("scene_unit_m", 1.0)
-            if not 0 < self.mm_per_unit < np.inf:
-                raise InputError(f"scene_unit_m must be a positive number; it is {self.mm_per_unit / 1000:g}")
-            self.to_world = mi.Transform4f(self.world_transform())
-            if not np.allclose(np.linalg.svd(matrix_of(self.to_world)[:3, :3], compute_uv=False), 1, atol=1e-4):
-                raise InputError(
-                    "to_world of the sensor realcam has a scale; scene_unit_m says how long a unit of the scene is"
-                )
-            width, height = film_sides(lens, properties, self.film().size())
-            if "focus_distance_m" in properties:
-                lens = lens.focused(properties["focus_distance_m"])
-            if "f_number" in properties:
-                lens = lens.stopped_down(properties["f_number"])
-            self.focus_distance_m = mi.Float(lens.focus_distance_m)
-            self.f_number = mi.Float(lens.first_order().f_number)
-            self.film_width_mm, self.film_height_mm = mi.Float(width), mi.Float(height)
-            self.exposure_time_s = mi.Float(self.shutter_open_time())
-            self.is_dispersive = mi.is_spectral
-            self.set_lens(lens)
-
-        def set_lens(self, lens: Lens) -> None:
-            self.lens = lens
-            columns, rows = self.film().size()
-            film = Film(number(self.film_width_mm), number(self.film_height_mm), (int(columns), int(rows)))
-            design = lens.wavelength_nm
-            wavelengths = [design, *WAVELENGTHS_NM] if self.is_dispersive else [design]
-            # The table first: it refuses lenses that are not of revolution in words of its own.
-            self.pupil = Pupil(lens, float(np.hypot(film.width_mm, film.height_mm)) / 2, wavelengths)
-            to_film = crossings_to_film(lens, self.is_dispersive)
-            self.to_film = LensTrace(to_film)
-            self.to_scene = LensTrace(crossings_to_scene(to_film))
-            self.entries = Entries(lens, film, WAVELENGTHS_NM if self.is_dispersive else None)
-            self.film_position_mm = opaque(lens.film_position_mm)
-            self.film_distance_mm = opaque(lens.film_position_mm - lens.vertices_mm[-1])
-
-        def traverse(self, callback: Any) -> None:
-            super().traverse(callback)
-            for name in NUMBERS:
-                callback.put(name, getattr(self, name), mi.ParamFlags.NonDifferentiable)
-            callback.put("to_world", self.to_world, mi.ParamFlags.Differentiable | mi.ParamFlags.Discontinuous)
-
-        def parameters_changed(self, keys: Any = ()) -> None:
-            super().parameters_changed(keys)
-            lens = self.lens
-            if "focus_distance_m" in keys:
-                lens = lens.focused(number(self.focus_distance_m))
-            if "f_number" in keys:
-                lens = lens.stopped_down(number(self.f_number))
-            if set(keys) & {"focus_distance_m", "f_number", "film_width_mm", "film_height_mm"}:
-                self.set_lens(lens)
-            if "to_world" in keys:
-                self.m_to_world = self.to_world
-
-        def sample_ray(
-            self, time: Any, wavelength_sample: Any, position_sample: Any, aperture_sample: Any, active: Any = True
-        ) -> tuple[Any, Any]:
-            wavelengths, share, variable = self.drawn_wavelengths(wavelength_sample, active)
-            o, d, weight, passed, _ = self.leave_lens(position_sample, aperture_sample, variable)
-            ray = mi.Ray3f()
-            self.set_ray(ray, o, d, passed, time, wavelengths)
-            return ray, share * dr.select(passed & active, weight * self.exposure_time_s, 0.0)
-
-        def sample_ray_differential(
-            self, time: Any, wavelength_sample: Any, position_sample: Any, aperture_sample: Any, active: Any = True
-        ) -> tuple[Any, Any]:
-            """Of the same place in the pupil, one pixel to the right and one down. Rims stop none of these."""
-            wavelengths, share, variable = self.drawn_wavelengths(wavelength_sample, active)
-            o, d, weight, passed, _ = self.leave_lens(position_sample, aperture_sample, variable)
-            ray = mi.RayDifferential3f()
-            self.set_ray(ray, o, d, passed, time, wavelengths)
-            columns, rows = self.film().crop_size()
-            beside = []
-            for step in (mi.Vector2f(1 / columns, 0), mi.Vector2f(0, 1 / rows)):
-                o_beside, d_beside, _, _, exists = self.leave_lens(position_sample + step, aperture_sample, variable)
-                beside.append(dr.select(passed & exists, self.point_in_scene(o_beside), ray.o))
-                beside.append(dr.select(passed & exists, self.way_in_scene(d_beside), ray.d))
-            ray.o_x, ray.d_x, ray.o_y, ray.d_y = beside
-            ray.has_differentials = True
-            return ray, share * dr.select(passed & active, weight * self.exposure_time_s, 0.0)
-
-        def sample_direction(self, it: Any, sample: Any, active: Any = True) -> tuple[Any, Any]:
-            """A way from a point of the scene through the lens to the film: where it enters the lens, and the pixel.
-
-            In spectral variants light goes one way for each wavelength; the first one's is taken, and counts for all.
-            Mitsuba asks for light that lamps send straight to the sensor before it draws a wavelength: that light takes
-            the design wavelength's way.
-            """
-            x = self.point_in_lens(it.p)
-            vertex = mi.Vector3f(0, 0, self.lens.vertices_mm[0])
-            entry, solid_angle = self.entries.sample(x - vertex, sample)
-            d = dr.normalize(entry - (x - vertex))
-            share, variable = self.wavelength_of(it)
-            o, p, first, passed, _ = self.to_film(entry, d, variable)
-            landing = dr.fma(p, (self.film_distance_mm - o.z) / p.z, o)
-            uv, is_inside = self.pixel_of(landing)
-            active = passed & is_inside & (solid_angle > 0) & active
-
-            sample_of = mi.DirectionSample3f()
-            sample_of.p = self.point_in_scene(mi.Point3f(first + vertex))
-            way = sample_of.p - it.p
-            sample_of.dist = dr.norm(way)
-            sample_of.d = way / sample_of.dist
-            sample_of.n = self.way_in_scene(mi.Vector3f(0, 0, -1))
-            sample_of.uv = uv
-            sample_of.time = it.time
-            sample_of.pdf = dr.select(active, 1.0, 0.0)
-            sample_of.delta = mi.Bool(False)
-            # The etendue of this way in the scene's units, over the area of the film that is seen.
-            weight = solid_angle * self.exposure_time_s * self.mm_per_unit**2 / self.crop_area_mm2()
-            return sample_of, share * dr.select(active, weight, 0.0)
-
-        def leave_lens(
-            self, position_sample: Any, aperture_sample: Any, variable: Any
-        ) -> tuple[Any, Any, Any, Any, Any]:
-            """A ray from the film, in front of the lens: point (mm) and direction in the lens frame, irradiance on the
-            film for a radiance of 1, whether it passes, and whether it does without rims."""
-            x, y = self.film_point(position_sample)
-            p, weight = self.pupil.sample(x, y, aperture_sample)
-            o, p, _, passed, exists = self.to_scene(mi.Point3f(x, y, self.film_distance_mm), p, variable)
-            o.z += self.lens.vertices_mm[0]
-            return o, dr.normalize(p), weight, passed & (weight > 0), exists & (weight > 0)
-
-        def set_ray(self, ray: Any, o: Any, d: Any, passed: Any, time: Any, wavelengths: Any) -> None:
-            """A ray that the lens stops goes nowhere: its numbers need not be any."""
-            ray.o = self.point_in_scene(dr.select(passed, o, mi.Point3f(0)))
-            ray.d = self.way_in_scene(dr.select(passed, d, mi.Vector3f(0, 0, -1)))
-            ray.maxt = dr.select(passed, FARTHEST, 0.0)
-            ray.time = time
-            ray.wavelengths = wavelengths
-
-        def drawn_wavelengths(self, sample: Any, active: Any) -> tuple[Any, Any, Any]:
-            """Wavelengths of a ray, the weight of each, and the number that refraction goes by. A ray goes one way, so
-            that all of its wavelengths are the first that is drawn."""
-            if not self.is_dispersive:
-                return type(mi.Ray3f().wavelengths)(), mi.Spectrum(1), None
-            drawn, weights = self.sample_wavelengths(dr.zeros(mi.SurfaceInteraction3f), sample, active)
-            return type(drawn)(drawn[0]), mi.Spectrum(weights[0]), wavelength_variable(drawn[0])
-
-        def wavelength_of(self, it: Any) -> tuple[Any, Any]:
-            """The weight of each wavelength that light brings to the sensor, and the number that refraction goes by."""
-            if not self.is_dispersive:
-                return mi.Spectrum(1), None
-            first = it.wavelengths[0]
-            is_known = first > 0
-            share = mi.Spectrum(dr.select(is_known, 0.0, 1.0))
-            share[0] = dr.select(is_known, float(len(it.wavelengths)), 1.0)
-            return share, wavelength_variable(dr.select(is_known, first, self.lens.wavelength_nm))
-
-        def film_point(self, sample: Any) -> tuple[Any, Any]:
-            """mm, in the lens frame, of a place in the picture's crop window: the image is upside down."""
-            size, crop, offset = self.film().size(), self.film().crop_size(), self.film().crop_offset()
-            x = 0.5 - (offset[0] + sample.x * crop[0]) / size[0]
-            y = (offset[1] + sample.y * crop[1]) / size[1] - 0.5
-            return x * self.film_width_mm, y * self.film_height_mm
-
-        def pixel_of(self, place: Any) -> tuple[Any, Any]:
-            """Pixels from the corner of the crop window, and whether they lie in it."""
-            size, crop, offset = self.film().size(), self.film().crop_size(), self.film().crop_offset()
-            u = (0.5 - place.x / self.film_width_mm) * size[0] - offset[0]
-            v = (0.5 + place.y / self.film_height_mm) * size[1] - offset[1]
-            return mi.Point2f(u, v), (u >= 0) & (u < crop[0]) & (v >= 0) & (v < crop[1])
-
-        def crop_area_mm2(self) -> Any:
-            share = dr.prod(self.film().crop_size()) / dr.prod(self.film().size())
-            return self.film_width_mm * self.film_height_mm * share
-
-        def point_in_scene(self, p: Any) -> Any:
-            local = mi.Point3f(-p.x, p.y, self.film_position_mm - p.z) / self.mm_per_unit
-            return self.to_world @ local
-
-        def way_in_scene(self, d: Any) -> Any:
-            return self.to_world @ mi.Vector3f(-d.x, d.y, -d.z)
-
-        def point_in_lens(self, p: Any) -> Any:
-            local = self.mm_per_unit * (self.to_world.inverse() @ p)
-            return mi.Point3f(-local.x, local.y, self.film_position_mm - local.z)
-
-        def bbox(self) -> Any:
-            position = matrix_of(self.to_world)[:3, 3].tolist()
-            return mi.ScalarBoundingBox3f(position, position)
-
-        def to_string(self) -> str:
-            return (
-                f"RealcamSensor[\n  lens = {self.lens!r},\n  film = {number(self.film_width_mm):g} x "
-                f"{number(self.film_height_mm):g} mm,\n  exposure_time_s = {number(self.exposure_time_s):g}\n]"
+    def __init__(self, properties: Any) -> None:
+        lens = lens_of(properties)
+        set_shutter(properties)
+        super().__init__(properties)
+        self.m_needs_sample_2 = True
+        self.m_needs_sample_3 = True
+        self.mm_per_unit = 1000 * properties.get("scene_unit_m", 1.0)
+        if not 0 < self.mm_per_unit < np.inf:
+            raise InputError(f"scene_unit_m must be a positive number; it is {self.mm_per_unit / 1000:g}")
+        self.to_world = mi.Transform4f(self.world_transform())
+        if not np.allclose(np.linalg.svd(matrix_of(self.to_world)[:3, :3], compute_uv=False), 1, atol=1e-4):
+            raise InputError(
+                "to_world of the sensor realcam has a scale; scene_unit_m says how long a unit of the scene is"
             )
+        width, height = film_sides(lens, properties, self.film().size())
+        if "focus_distance_m" in properties:
+            lens = lens.focused(properties["focus_distance_m"])
+        if "f_number" in properties:
+            lens = lens.stopped_down(properties["f_number"])
+        self.focus_distance_m = mi.Float(lens.focus_distance_m)
+        self.f_number = mi.Float(lens.first_order().f_number)
+        self.film_width_mm, self.film_height_mm = mi.Float(width), mi.Float(height)
+        self.exposure_time_s = mi.Float(self.shutter_open_time())
+        self.is_dispersive = mi.is_spectral
+        self.set_lens(lens)
 
-    return RealcamSensor
+    def set_lens(self, lens: Lens) -> None:
+        self.lens = lens
+        columns, rows = self.film().size()
+        film = Film(number(self.film_width_mm), number(self.film_height_mm), (int(columns), int(rows)))
+        design = lens.wavelength_nm
+        wavelengths = [design, *WAVELENGTHS_NM] if self.is_dispersive else [design]
+        # The table first: it refuses lenses that are not of revolution in words of its own.
+        self.pupil = Pupil(lens, float(np.hypot(film.width_mm, film.height_mm)) / 2, wavelengths)
+        to_film = crossings_to_film(lens, self.is_dispersive)
+        self.to_film = LensTrace(to_film)
+        self.to_scene = LensTrace(crossings_to_scene(to_film))
+        self.entries = Entries(lens, film, WAVELENGTHS_NM if self.is_dispersive else None)
+        self.film_position_mm = opaque(lens.film_position_mm)
+        self.film_distance_mm = opaque(lens.film_position_mm - lens.vertices_mm[-1])
+
+    def traverse(self, callback: Any) -> None:
+        super().traverse(callback)
+        for name in NUMBERS:
+            callback.put(name, getattr(self, name), mi.ParamFlags.NonDifferentiable)
+        callback.put("to_world", self.to_world, mi.ParamFlags.Differentiable | mi.ParamFlags.Discontinuous)
+
+    def parameters_changed(self, keys: Any = ()) -> None:
+        super().parameters_changed(keys)
+        lens = self.lens
+        if "focus_distance_m" in keys:
+            lens = lens.focused(number(self.focus_distance_m))
+        if "f_number" in keys:
+            lens = lens.stopped_down(number(self.f_number))
+        if set(keys) & {"focus_distance_m", "f_number", "film_width_mm", "film_height_mm"}:
+            self.set_lens(lens)
+        if "to_world" in keys:
+            self.m_to_world = self.to_world
+
+    def sample_ray(
+        self, time: Any, wavelength_sample: Any, position_sample: Any, aperture_sample: Any, active: Any = True
+    ) -> tuple[Any, Any]:
+        wavelengths, share, variable = self.drawn_wavelengths(wavelength_sample, active)
+        o, d, weight, passed, _ = self.leave_lens(position_sample, aperture_sample, variable)
+        ray = mi.Ray3f()
+        self.set_ray(ray, o, d, passed, time, wavelengths)
+        return ray, share * dr.select(passed & active, weight * self.exposure_time_s, 0.0)
+
+    def sample_ray_differential(
+        self, time: Any, wavelength_sample: Any, position_sample: Any, aperture_sample: Any, active: Any = True
+    ) -> tuple[Any, Any]:
+        """Of the same place in the pupil, one pixel to the right and one down. Rims stop none of these."""
+        wavelengths, share, variable = self.drawn_wavelengths(wavelength_sample, active)
+        o, d, weight, passed, _ = self.leave_lens(position_sample, aperture_sample, variable)
+        ray = mi.RayDifferential3f()
+        self.set_ray(ray, o, d, passed, time, wavelengths)
+        columns, rows = self.film().crop_size()
+        beside = []
+        for step in (mi.Vector2f(1 / columns, 0), mi.Vector2f(0, 1 / rows)):
+            o_beside, d_beside, _, _, exists = self.leave_lens(position_sample + step, aperture_sample, variable)
+            beside.append(dr.select(passed & exists, self.point_in_scene(o_beside), ray.o))
+            beside.append(dr.select(passed & exists, self.way_in_scene(d_beside), ray.d))
+        ray.o_x, ray.d_x, ray.o_y, ray.d_y = beside
+        ray.has_differentials = True
+        return ray, share * dr.select(passed & active, weight * self.exposure_time_s, 0.0)
+
+    def sample_direction(self, it: Any, sample: Any, active: Any = True) -> tuple[Any, Any]:
+        """A way from a point of the scene through the lens to the film: where it enters the lens, and the pixel.
+
+        In spectral variants light goes one way for each wavelength; the first one's is taken, and counts for all.
+        Mitsuba asks for light that lamps send straight to the sensor before it draws a wavelength: that light takes
+        the design wavelength's way.
+        """
+        x = self.point_in_lens(it.p)
+        vertex = mi.Vector3f(0, 0, self.lens.vertices_mm[0])
+        entry, solid_angle = self.entries.sample(x - vertex, sample)
+        d = dr.normalize(entry - (x - vertex))
+        share, variable = self.wavelength_of(it)
+        o, p, first, passed, _ = self.to_film(entry, d, variable)
+        landing = dr.fma(p, (self.film_distance_mm - o.z) / p.z, o)
+        uv, is_inside = self.pixel_of(landing)
+        active = passed & is_inside & (solid_angle > 0) & active
+
+        sample_of = mi.DirectionSample3f()
+        sample_of.p = self.point_in_scene(mi.Point3f(first + vertex))
+        way = sample_of.p - it.p
+        sample_of.dist = dr.norm(way)
+        sample_of.d = way / sample_of.dist
+        sample_of.n = self.way_in_scene(mi.Vector3f(0, 0, -1))
+        sample_of.uv = uv
+        sample_of.time = it.time
+        sample_of.pdf = dr.select(active, 1.0, 0.0)
+        sample_of.delta = mi.Bool(False)
+        # The etendue of this way in the scene's units, over the area of the film that is seen.
+        weight = solid_angle * self.exposure_time_s * self.mm_per_unit**2 / self.crop_area_mm2()
+        return sample_of, share * dr.select(active, weight, 0.0)
+
+    def leave_lens(self, position_sample: Any, aperture_sample: Any, variable: Any) -> tuple[Any, Any, Any, Any, Any]:
+        """A ray from the film, in front of the lens: point (mm) and direction in the lens frame, irradiance on the
+        film for a radiance of 1, whether it passes, and whether it does without rims."""
+        x, y = self.film_point(position_sample)
+        p, weight = self.pupil.sample(x, y, aperture_sample)
+        o, p, _, passed, exists = self.to_scene(mi.Point3f(x, y, self.film_distance_mm), p, variable)
+        o.z += self.lens.vertices_mm[0]
+        return o, dr.normalize(p), weight, passed & (weight > 0), exists & (weight > 0)
+
+    def set_ray(self, ray: Any, o: Any, d: Any, passed: Any, time: Any, wavelengths: Any) -> None:
+        """A ray that the lens stops goes nowhere: its numbers need not be any."""
+        ray.o = self.point_in_scene(dr.select(passed, o, mi.Point3f(0)))
+        ray.d = self.way_in_scene(dr.select(passed, d, mi.Vector3f(0, 0, -1)))
+        ray.maxt = dr.select(passed, FARTHEST, 0.0)
+        ray.time = time
+        ray.wavelengths = wavelengths
+
+    def drawn_wavelengths(self, sample: Any, active: Any) -> tuple[Any, Any, Any]:
+        """Wavelengths of a ray, the weight of each, and the number that refraction goes by. A ray goes one way, so
+        that all of its wavelengths are the first that is drawn."""
+        if not self.is_dispersive:
+            return type(mi.Ray3f().wavelengths)(), mi.Spectrum(1), None
+        drawn, weights = self.sample_wavelengths(dr.zeros(mi.SurfaceInteraction3f), sample, active)
+        return type(drawn)(drawn[0]), mi.Spectrum(weights[0]), wavelength_variable(drawn[0])
+
+    def wavelength_of(self, it: Any) -> tuple[Any, Any]:
+        """The weight of each wavelength that light brings to the sensor, and the number that refraction goes by."""
+        if not self.is_dispersive:
+            return mi.Spectrum(1), None
+        first = it.wavelengths[0]
+        is_known = first > 0
+        share = mi.Spectrum(dr.select(is_known, 0.0, 1.0))
+        share[0] = dr.select(is_known, float(len(it.wavelengths)), 1.0)
+        return share, wavelength_variable(dr.select(is_known, first, self.lens.wavelength_nm))
+
+    def film_point(self, sample: Any) -> tuple[Any, Any]:
+        """mm, in the lens frame, of a place in the picture's crop window: the image is upside down."""
+        size, crop, offset = self.film().size(), self.film().crop_size(), self.film().crop_offset()
+        x = 0.5 - (offset[0] + sample.x * crop[0]) / size[0]
+        y = (offset[1] + sample.y * crop[1]) / size[1] - 0.5
+        return x * self.film_width_mm, y * self.film_height_mm
+
+    def pixel_of(self, place: Any) -> tuple[Any, Any]:
+        """Pixels from the corner of the crop window, and whether they lie in it."""
+        size, crop, offset = self.film().size(), self.film().crop_size(), self.film().crop_offset()
+        u = (0.5 - place.x / self.film_width_mm) * size[0] - offset[0]
+        v = (0.5 + place.y / self.film_height_mm) * size[1] - offset[1]
+        return mi.Point2f(u, v), (u >= 0) & (u < crop[0]) & (v >= 0) & (v < crop[1])
+
+    def crop_area_mm2(self) -> Any:
+        share = dr.prod(self.film().crop_size()) / dr.prod(self.film().size())
+        return self.film_width_mm * self.film_height_mm * share
+
+    def point_in_scene(self, p: Any) -> Any:
+        local = mi.Point3f(-p.x, p.y, self.film_position_mm - p.z) / self.mm_per_unit
+        return self.to_world @ local
+
+    def way_in_scene(self, d: Any) -> Any:
+        return self.to_world @ mi.Vector3f(-d.x, d.y, -d.z)
+
+    def point_in_lens(self, p: Any) -> Any:
+        local = self.mm_per_unit * (self.to_world.inverse() @ p)
+        return mi.Point3f(-local.x, local.y, self.film_position_mm - local.z)
+
+    def bbox(self) -> Any:
+        position = matrix_of(self.to_world)[:3, 3].tolist()
+        return mi.ScalarBoundingBox3f(position, position)
+
+    def to_string(self) -> str:
+        return (
+            f"RealcamSensor[\n  lens = {self.lens!r},\n  film = {number(self.film_width_mm):g} x "
+            f"{number(self.film_height_mm):g} mm,\n  exposure_time_s = {number(self.exposure_time_s):g}\n]"
+        )
 
 
 def lens_of(properties: Any) -> Lens:
