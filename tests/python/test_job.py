@@ -145,7 +145,13 @@ def test_what_was_deleted_or_damaged_is_done_again(tmp_path: Path) -> None:
     done = sorted((folder / "units").rglob("*.npz"))
     done[3].unlink()
     done[5].write_bytes(done[5].read_bytes()[:1000])
-    with pytest.raises(rc.InputError, match=r"1 of .* units are missing; realcam job work does them"):
+    status = job.status()
+    assert (status.units_known - status.units_done, status.is_done) == (2, False)
+    assert status.damaged == (f"00000/{done[5].name}",)
+    code, output, _ = run("status", folder)
+    assert code == 0
+    assert f", 1 damaged (00000/{done[5].name}), which realcam job work does again" in output
+    with pytest.raises(rc.InputError, match=r"2 of .* units are missing; realcam job work does them"):
         job.image()
     (folder / "rounds" / "00000" / "002.npz").write_bytes(b"nothing")
     job.work()

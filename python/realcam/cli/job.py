@@ -167,6 +167,8 @@ def status(folder: Folder, as_json: options.AsJson = False) -> None:
         f"{found.shots_done} of {_count(found.shots, 'picture')}",
         f"{found.in_hand} in hand",
     ]
+    if found.damaged:
+        lines.append(f"{len(found.damaged)} damaged ({found.damaged[0]}), which realcam job work does again")
     if found.is_done:
         lines.append("done")
     elif found.seconds_left < float("inf"):

@@ -97,6 +97,8 @@ class Job:
         goes on from there.
         """
         remove_leftovers(self.path)
+        for name in self.status().damaged:
+            (self.path / "units" / name).unlink(missing_ok=True)
         report = _Report(self, progress)
         if executor is None:
             self._work_here(Worker(self._folder, threads, device), report)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import os
+import zipfile
 from dataclasses import dataclass
 
 from .folder import JobFolder
@@ -19,7 +20,8 @@ class JobStatus:
     shots, shots_done: numbers of pictures. units_done, units_known: where the noise decides, units become known round
     by round. in_hand: units that processes have claimed.
     is_adaptive: whether the noise decides for some shot. share: of all work, 0 to 1, about. seconds_left: at the pace
-    of the last units, about; inf: not known.
+    of the last units, about; inf: not known. damaged: the names of units whose files are cut short, which work() does
+    again; they do not count as done.
     """
 
     shots: int
@@ -30,6 +32,7 @@ class JobStatus:
     is_adaptive: bool
     share: float
     seconds_left: float
+    damaged: tuple[str, ...] = ()
 
     @property
     def is_done(self) -> bool:
@@ -41,6 +44,7 @@ def status_of(folder: JobFolder) -> JobStatus:
     known = done = shots_done = in_hand = 0
     share = 0.0
     times: list[float] = []
+    damaged: list[str] = []
     for shot in range(len(folder.shots)):
         here = folder.path / "units" / f"{shot:05d}"
         files: dict[str, float] = {}  # when they were written
@@ -51,17 +55,23 @@ def status_of(folder: JobFolder) -> JobStatus:
                     if entry.name.endswith(".claim"):
                         claims.add(entry.name.removesuffix(".claim"))
                     elif entry.name.endswith(".npz") and not entry.name.startswith("."):
-                        files[entry.name] = entry.stat().st_mtime
+                        if zipfile.is_zipfile(entry.path):  # which looks at the end alone
+                            files[entry.name] = entry.stat().st_mtime
+                        else:
+                            damaged.append(f"{here.name}/{entry.name}")
         # A process that is killed after it has written its unit leaves the claim behind.
         in_hand += len(claims - {name.removesuffix(".npz") for name in files})
         times += files.values()
         rounds, is_all = folder.rounds(shot)
         of_round: list[bool] = []
+        known_here = done_here = 0
         for round_ in rounds:
             of_round = [unit.file_name in files for unit in folder.shots[shot].units(shot, round_)]
-            known += len(of_round)
-            done += sum(of_round)
-        is_done = is_all and all(of_round)
+            known_here += len(of_round)
+            done_here += sum(of_round)
+        known += known_here
+        done += done_here
+        is_done = is_all and done_here == known_here
         shots_done += is_done
         if is_done:
             share += 1
@@ -79,6 +89,7 @@ def status_of(folder: JobFolder) -> JobStatus:
         is_adaptive=any(shot.spp is None for shot in folder.shots),
         share=share,
         seconds_left=_seconds_left(times, done, share),
+        damaged=tuple(sorted(damaged)),
     )
 
 
