@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ._core import Camera, InputError, Scene
-from .files import write_whole
+from .files import check_target, write_whole
 from .image import Image
 from .pickling import set_checked_state
 from .render import render
@@ -63,8 +62,7 @@ class OpticalFlow:
         """Writes .flo, the format of Middlebury's and Sintel's data: with the flow of what is hidden, too, and 1e10
         where none is known. Raises InputError, ImageFileError.
         """
-        if Path(path).suffix.lower() != ".flo":
-            raise InputError(f"{os.fspath(path)}: a flow is written as .flo")
+        check_target(path, (".flo",))
         height, width = self.visible.shape
         head = np.array([202021.25], "<f4").tobytes() + np.array([width, height], "<i4").tobytes()
         write_whole(path, head + np.nan_to_num(self.pixels, nan=_FLO_UNKNOWN).astype("<f4").tobytes())

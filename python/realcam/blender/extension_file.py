@@ -33,9 +33,7 @@ def write_extension(
     lenses: None: all bundled ones. Of a lens that zooms, each position is a lens. Those that OSL cannot express are
     left out, and left_out is told why. Raises InputError where none is left, and ImageFileError.
     """
-    if Path(path).suffix.lower() != ".zip":
-        raise InputError(f"{os.fspath(path)}: the suffix .zip is wanted")
-    check_target(path)
+    check_target(path, (".zip",))
     expressible = []
     for lens in lenses if lenses is not None else [Lens.load(name) for name in lens_names()]:
         try:
