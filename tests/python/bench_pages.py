@@ -20,7 +20,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from .bench_shots import write_panels_shot
+from .bench_shots import WIDTH, write_panels_shot
 
 T = TypeVar("T")
 
@@ -376,9 +376,9 @@ class BenchPage:
         self.page.evaluate("m => [...window.realcamStreams.values()][0].send(m)", message)
 
 
-def served_panels(folder: Path) -> Iterator[Server]:
+def served_panels(folder: Path, *, width: int = WIDTH) -> Iterator[Server]:
     """A server of the shot of three panels, as long as a fixture lasts; nothing may have gone wrong in it."""
-    started = Server(write_panels_shot(folder))
+    started = Server(write_panels_shot(folder, width=width))
     yield started
     started.stop()
     assert started.complaints() == [], started.complaints()

@@ -8,6 +8,7 @@ import threading
 import time
 import urllib.error
 import urllib.request
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -20,9 +21,15 @@ websockets = pytest.importorskip("websockets.sync.client")
 from websockets.exceptions import ConnectionClosed, InvalidStatus  # noqa: E402
 
 from . import bench_shots  # noqa: E402
-from .bench_pages import CHROMIUM, BenchPage, Server, fetch, until  # noqa: E402
+from .bench_pages import CHROMIUM, BenchPage, Server, fetch, served_panels, until  # noqa: E402
 
 pytestmark = [pytest.mark.picture_files, pytest.mark.skipif(CHROMIUM is None, reason="no chromium")]
+
+
+@pytest.fixture
+def own(tmp_path: Path) -> Iterator[Server]:
+    """A server for one test, which is stopped also where closing a page of it finds something wrong."""
+    yield from served_panels(tmp_path, width=240)
 
 
 def stream_path(bench: BenchPage) -> str:
@@ -248,16 +255,15 @@ def test_rest_costs_nothing(server: Server, bench: BenchPage) -> None:
     assert min(used) < 0.02, used
 
 
-def test_a_server_that_dies_and_comes_again(browser: playwright.Browser, tmp_path: Path) -> None:
-    server = Server(bench_shots.write_panels_shot(tmp_path))
-    bench = BenchPage(browser, server.url)
+def test_a_server_that_dies_and_comes_again(browser: playwright.Browser, own: Server) -> None:
+    bench = BenchPage(browser, own.url)
     try:
         before = bench.picture().astype(int)
-        server.kill()
+        own.kill()
         bench.page.get_by_text("Connection lost").first.wait_for()
         assert (bench.shown() == before).all()  # the last picture stays
         bench.page.evaluate("window.isOfTheDeadServer = true")
-        server.start()
+        own.start()
         # The server knows neither window nor page. Both the stream and NiceGUI then load the page again, and one of
         # them may break off what the other has begun.
         bench.page.wait_for_function("!window.isOfTheDeadServer")
@@ -267,8 +273,6 @@ def test_a_server_that_dies_and_comes_again(browser: playwright.Browser, tmp_pat
         bench.complaints.clear()  # the browser says of each try that nobody answered
     finally:
         bench.close()
-        server.stop()
-    assert server.complaints() == []
 
 
 class SlowLink:
@@ -312,9 +316,8 @@ class SlowLink:
                 line.close()
 
 
-def test_a_slow_link_shows_the_newest_frame_and_recovers(browser: playwright.Browser, tmp_path: Path) -> None:
-    server = Server(bench_shots.write_panels_shot(tmp_path, width=240))
-    link = SlowLink(server.port)
+def test_a_slow_link_shows_the_newest_frame_and_recovers(browser: playwright.Browser, own: Server) -> None:
+    link = SlowLink(own.port)
     bench = BenchPage(browser, f"http://127.0.0.1:{link.port}/")
 
     def seen() -> list[dict]:
@@ -333,7 +336,7 @@ def test_a_slow_link_shows_the_newest_frame_and_recovers(browser: playwright.Bro
         for _ in range(60):
             bench.send({"type": "orbit", "x": 0.004, "y": 0})
             time.sleep(0.02)
-        fetch(f"{server.url}tests/asked/{stream_path(bench).split('/')[-1]}")  # until all are done
+        fetch(f"{own.url}tests/asked/{stream_path(bench).split('/')[-1]}")  # until all are done
         link.is_open.set()
         frames = until(
             seen,
@@ -353,10 +356,8 @@ def test_a_slow_link_shows_the_newest_frame_and_recovers(browser: playwright.Bro
             "the best",
         )
     finally:
-        bench.close()
         link.close()
-        server.stop()
-    assert server.complaints() == []
+        bench.close()
 
 
 def random_message(chance: random.Random) -> dict:
@@ -396,9 +397,8 @@ def random_message(chance: random.Random) -> dict:
 
 
 @pytest.mark.slow
-def test_hundreds_of_random_edits_and_moves(browser: playwright.Browser, tmp_path: Path) -> None:
-    server = Server(bench_shots.write_panels_shot(tmp_path))
-    bench = BenchPage(browser, server.url)
+def test_hundreds_of_random_edits_and_moves(browser: playwright.Browser, own: Server) -> None:
+    bench = BenchPage(browser, own.url)
     chance = random.Random(15)
     memory = []
     try:
@@ -409,7 +409,7 @@ def test_hundreds_of_random_edits_and_moves(browser: playwright.Browser, tmp_pat
                 bench.page.wait_for_timeout(60)
             if k % 20 == 19:
                 bench.page.wait_for_timeout(250)
-                memory.append(server.memory_mb())
+                memory.append(own.memory_mb())
         # Messages are done in their order: when the last two are, nothing waits that would edit the next lens.
         for steps, engraved in ((100, "ISO 25600"), (-100, "ISO 50")):
             bench.send({"type": "turn", "ring": "iso", "steps": steps})
@@ -423,7 +423,5 @@ def test_hundreds_of_random_edits_and_moves(browser: playwright.Browser, tmp_pat
         until(seen, lambda now: abs(now[0] - 49.94) < 0.01, "another lens")
     finally:
         bench.close()
-        server.stop()
-    assert server.complaints() == []
     # Python's and the device's pools fill at first; what is lost at each step would go on growing.
     assert memory[-1] - memory[3] < 0.15 * memory[3] + 20, memory
