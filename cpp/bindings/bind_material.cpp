@@ -18,130 +18,96 @@ namespace {
 
 using Which = std::variant<py::ssize_t, py::str>;
 
-auto color_property(Color Material::* member) {
-    return [member](const PythonMaterial& m) {
-        const Color c = m.values.*member;
-        return py::make_tuple(c.r, c.g, c.b);
-    };
-}
-auto number_property(float Material::* member) {
-    return [member](const PythonMaterial& m) { return m.values.*member; };
-}
-
 std::size_t place_of(TextureReference Material::* wanted) {
     std::size_t i = 0;
     while (kMaterialTextures[i] != wanted) ++i;
     return i;
 }
 
+// What Python has for each kind of a material's members.
+
+Colour value(const PythonMaterial& m, Color Material::* member) {
+    const Color c = m.values.*member;
+    return {c.r, c.g, c.b};
+}
+float value(const PythonMaterial& m, float Material::* member) {
+    return m.values.*member;
+}
+bool value(const PythonMaterial& m, std::int32_t Material::* member) {
+    return m.values.*member != 0;
+}
+bool value(const PythonMaterial& m, FresnelTerm Material::* member) {
+    return m.values.*member != FresnelTerm::none;
+}
+std::string value(const PythonMaterial& m, std::string PythonMaterial::* member) {
+    return m.*member;
+}
+/// Without a copy, and not to be written to.
+py::object value(const PythonMaterial& m, TextureReference Material::* member) {
+    const std::shared_ptr<const Texture>& texture = m.textures[place_of(member)];
+    if (!texture) return py::none();
+    using Owner = std::shared_ptr<const Texture>;
+    const py::capsule owner(new Owner(texture), [](void* p) { delete static_cast<Owner*>(p); });
+    const std::vector<py::ssize_t> shape = {texture->height, texture->width, 4};
+    py::array array = texture->rgba.empty() ? py::array(py::array_t<float>(shape, texture->linear_rgba.data(), owner))
+                                            : py::array(py::array_t<std::uint8_t>(shape, texture->rgba.data(), owner));
+    array.attr("flags").attr("writeable") = false;
+    return array;
+}
+
+void set(PythonMaterial& m, Color Material::* member, const Colour& value) {
+    m.values.*member = rgb(value);
+}
+void set(PythonMaterial& m, float Material::* member, float value) {
+    m.values.*member = value;
+}
+void set(PythonMaterial& m, std::int32_t Material::* member, bool value) {
+    m.values.*member = value;
+}
+void set(PythonMaterial& m, FresnelTerm Material::* member, bool value) {
+    m.values.*member = value ? FresnelTerm::physical : FresnelTerm::none;
+}
+void set(PythonMaterial& m, std::string PythonMaterial::* member, const std::string& value) {
+    m.*member = value;
+}
 /// None: no texture.
-void set_texture(PythonMaterial& m, TextureReference Material::* member, const py::object& pixels) {
+void set(PythonMaterial& m, TextureReference Material::* member, const py::object& pixels) {
     m.textures[place_of(member)] = pixels.is_none() ? nullptr : texture_from(pixels, io::use_of(member));
     m.values.*member = {};
 }
 
-/// Without a copy, and not to be written to.
-auto texture_property(TextureReference Material::* member) {
-    return [member](const PythonMaterial& material) -> py::object {
-        const std::shared_ptr<const Texture>& texture = material.textures[place_of(member)];
-        if (!texture) return py::none();
-        using Owner = std::shared_ptr<const Texture>;
-        const py::capsule owner(new Owner(texture), [](void* p) { delete static_cast<Owner*>(p); });
-        const std::vector<py::ssize_t> shape = {texture->height, texture->width, 4};
-        py::array array = texture->rgba.empty()
-                              ? py::array(py::array_t<float>(shape, texture->linear_rgba.data(), owner))
-                              : py::array(py::array_t<std::uint8_t>(shape, texture->rgba.data(), owner));
-        array.attr("flags").attr("writeable") = false;
-        return array;
+/// A member under the name that users know. `text`: of the property.
+template <class Member>
+struct Field {
+    const char* name;
+    Member member;
+    const char* text;
+
+    using Value = decltype(value(std::declval<PythonMaterial>(), std::declval<Member>()));
+    Field(const char* name, Member member, const char* text = "") : name(name), member(member), text(text) {}
+};
+
+/// A function of the values of fields. All others are as in `initial`.
+template <class... Members>
+auto maker(const PythonMaterial& initial, const Field<Members>&... fields) {
+    return [initial, ... members = fields.member](const typename Field<Members>::Value&... values) {
+        PythonMaterial made = initial;
+        (set(made, members, values), ...);
+        return made;
     };
 }
 
-/// What both models have.
-struct Common {
-    Colour emission;
-    py::object normal_map, emission_texture;
-    float normal_scale, ior, transmission;
-    Colour absorption;
-    bool thin;
-    float opacity, opacity_cutoff;
-    py::object opacity_texture;
-    bool double_sided;
-    py::object transmission_texture, specular_texture;
-};
-
-PythonMaterial common(const std::string& name, const Common& from) {
-    PythonMaterial m;
-    m.name = name;
-    m.values.emission = rgb(from.emission);
-    set_texture(m, &Material::normal_texture, from.normal_map);
-    set_texture(m, &Material::emission_texture, from.emission_texture);
-    m.values.normal_scale = from.normal_scale;
-    m.values.ior = from.ior;
-    m.values.transmission = from.transmission;
-    m.values.absorption = rgb(from.absorption);
-    m.values.is_thin = from.thin;
-    m.values.opacity = from.opacity;
-    m.values.opacity_cutoff = from.opacity_cutoff;
-    set_texture(m, &Material::opacity_texture, from.opacity_texture);
-    m.values.emits_on_both_sides = from.double_sided;
-    set_texture(m, &Material::transmission_texture, from.transmission_texture);
-    set_texture(m, &Material::specular_texture, from.specular_texture);
-    return m;
-}
-
-PythonMaterial make_material(const Colour& diffuse, const Colour& specular, float shininess, const Colour& emission,
-                             const py::object& texture, const std::string& name, const Colour& mirror, bool fresnel,
-                             float transmission, float ior, const Colour& filter, const Colour& absorption, bool thin,
-                             const py::object& specular_texture, const py::object& emission_texture,
-                             const py::object& normal_map, float normal_scale, float opacity, float opacity_cutoff,
-                             const py::object& opacity_texture, bool double_sided, bool shadow_catcher,
-                             const py::object& shininess_texture, const py::object& transmission_texture) {
-    PythonMaterial m =
-        common(name, {emission, normal_map, emission_texture, normal_scale, ior, transmission, absorption, thin,
-                      opacity, opacity_cutoff, opacity_texture, double_sided, transmission_texture, specular_texture});
-    m.values.only_shadows = shadow_catcher;
-    m.values.diffuse = rgb(diffuse);
-    m.values.specular = rgb(specular);
-    m.values.shininess = shininess;
-    m.values.mirror = rgb(mirror);
-    m.values.fresnel = fresnel ? FresnelTerm::physical : FresnelTerm::none;
-    m.values.filter = rgb(filter);
-    set_texture(m, &Material::diffuse_texture, texture);
-    set_texture(m, &Material::metallic_roughness_texture, shininess_texture);
-    return m;
-}
-
-PythonMaterial make_metallic_roughness(const Colour& base_color, float metallic, float roughness,
-                                       const py::object& texture, const py::object& metallic_roughness_texture,
-                                       float ior, const Colour& specular_color, float specular_weight,
-                                       float transmission, const Colour& absorption, bool thin, float clearcoat,
-                                       float clearcoat_roughness, const Colour& emission,
-                                       const py::object& emission_texture, const py::object& normal_map,
-                                       float normal_scale, const std::string& name, float opacity, float opacity_cutoff,
-                                       const py::object& opacity_texture, bool double_sided,
-                                       const py::object& specular_texture, const py::object& specular_weight_texture,
-                                       const py::object& transmission_texture, const py::object& clearcoat_texture,
-                                       const py::object& clearcoat_roughness_texture,
-                                       const py::object& clearcoat_normal_map, float clearcoat_normal_scale) {
-    PythonMaterial m =
-        common(name, {emission, normal_map, emission_texture, normal_scale, ior, transmission, absorption, thin,
-                      opacity, opacity_cutoff, opacity_texture, double_sided, transmission_texture, specular_texture});
-    m.values.model = MaterialModel::metallic_roughness;
-    m.values.diffuse = rgb(base_color);
-    m.values.metallic = metallic;
-    m.values.roughness = roughness;
-    m.values.specular = rgb(specular_color);
-    m.values.specular_weight = specular_weight;
-    m.values.clearcoat = clearcoat;
-    m.values.clearcoat_roughness = clearcoat_roughness;
-    set_texture(m, &Material::diffuse_texture, texture);
-    set_texture(m, &Material::metallic_roughness_texture, metallic_roughness_texture);
-    set_texture(m, &Material::specular_weight_texture, specular_weight_texture);
-    set_texture(m, &Material::clearcoat_texture, clearcoat_texture);
-    set_texture(m, &Material::clearcoat_roughness_texture, clearcoat_roughness_texture);
-    set_texture(m, &Material::clearcoat_normal_texture, clearcoat_normal_map);
-    m.values.clearcoat_normal_scale = clearcoat_normal_scale;
-    return m;
+template <class Member>
+void def_property(py::class_<PythonMaterial>& material, const Field<Member>& field) {
+    const auto get = [member = field.member](const PythonMaterial& m) {
+        if constexpr (std::is_same_v<typename Field<Member>::Value, Colour>)
+            return py::tuple(py::cast(value(m, member)));
+        else if constexpr (std::is_same_v<typename Field<Member>::Value, std::string>)
+            return text_from(value(m, member));
+        else
+            return value(m, member);
+    };
+    material.def_property_readonly(field.name, get, field.text);
 }
 
 PythonMaterial with_numbers(PythonMaterial m, const std::optional<Colour>& diffuse,
@@ -160,7 +126,7 @@ PythonMaterial with_numbers(PythonMaterial m, const std::optional<Colour>& diffu
     m.values.ior = ior.value_or(m.values.ior);
     m.values.opacity = opacity.value_or(m.values.opacity);
     m.name = name.value_or(m.name);
-    if (!texture.is(py::ellipsis())) set_texture(m, &Material::diffuse_texture, texture);
+    if (!texture.is(py::ellipsis())) set(m, &Material::diffuse_texture, texture);
     return m;
 }
 
@@ -233,109 +199,103 @@ void bind_material(py::module_& m) {
     py::class_<PythonMaterial> material(m, "Material",
                                         "How a surface reflects and emits light. Colours are linear Rec. 709.");
     def_hashable_value(material);
-    const Colour black{0, 0, 0}, white{1, 1, 1};
+    using M = Material;
+    const std::tuple both{Field{"name", &PythonMaterial::name},
+                          Field{"emission", &M::emission},
+                          Field{"transmission", &M::transmission},
+                          Field{"ior", &M::ior},
+                          Field{"absorption", &M::absorption, "Per metre."},
+                          Field{"thin", &M::is_thin},
+                          Field{"normal_scale", &M::normal_scale},
+                          Field{"opacity", &M::opacity},
+                          Field{"opacity_cutoff", &M::opacity_cutoff},
+                          Field{"double_sided", &M::emits_on_both_sides},
+                          Field{"texture", &M::diffuse_texture,
+                                "(H, W, 4), read-only: uint8 codes, or float32 of linear light; None: none."},
+                          Field{"specular_texture", &M::specular_texture},
+                          Field{"emission_texture", &M::emission_texture},
+                          Field{"transmission_texture", &M::transmission_texture},
+                          Field{"opacity_texture", &M::opacity_texture},
+                          Field{"normal_map", &M::normal_texture}};
+    const std::tuple phong{
+        Field{"diffuse", &M::diffuse, "Reflectance; of metallic_roughness the base colour."},
+        Field{"specular", &M::specular, "Reflectance of Phong's lobe; of metallic_roughness the specular_color."},
+        Field{"shininess", &M::shininess},
+        Field{"mirror", &M::mirror},
+        Field{"fresnel", &M::fresnel},
+        Field{"filter", &M::filter},
+        Field{"shadow_catcher", &M::only_shadows}};
+    const std::tuple metallic_roughness{Field{"metallic", &M::metallic},
+                                        Field{"roughness", &M::roughness},
+                                        Field{"specular_weight", &M::specular_weight},
+                                        Field{"clearcoat", &M::clearcoat},
+                                        Field{"clearcoat_roughness", &M::clearcoat_roughness},
+                                        Field{"clearcoat_normal_scale", &M::clearcoat_normal_scale},
+                                        Field{"metallic_roughness_texture", &M::metallic_roughness_texture,
+                                              "Of Wavefront's material: the shininess_texture."},
+                                        Field{"specular_weight_texture", &M::specular_weight_texture},
+                                        Field{"clearcoat_texture", &M::clearcoat_texture},
+                                        Field{"clearcoat_roughness_texture", &M::clearcoat_roughness_texture},
+                                        Field{"clearcoat_normal_map", &M::clearcoat_normal_texture}};
+    // Names of constructors alone.
+    const std::tuple also_phong{Field{"shininess_texture", &M::metallic_roughness_texture}};
+    const std::tuple also_metallic_roughness{Field{"base_color", &M::diffuse}, Field{"specular_color", &M::specular}};
+    std::apply([&](const auto&... fields) { (def_property(material, fields), ...); },
+               std::tuple_cat(both, phong, metallic_roughness));
+    PythonMaterial initial;
+    std::apply(
+        [&](const auto&... fields) {
+            material.def(py::init(maker(initial, fields...)), py::kw_only(),
+                         (py::arg(fields.name) = value(initial, fields.member))...,
+                         R"(Wavefront's material (MTL). diffuse, specular: reflectance of Lambert's and of Phong's lobe;
+shininess: Phong exponent; emission: radiance in cd/m^2, on the side from which the corners run counter-clockwise;
+mirror: reflectance as a mirror, at normal incidence; fresnel: whether it grows towards grazing incidence (Schlick),
+and a smooth border reflects as its index says; transmission: share of the surface that is a smooth border between
+outside and a medium of index ior, which multiplies what passes by filter and absorbs on the way, per metre; thin: a
+film, behind which light goes on as it came. texture, specular_texture, emission_texture: what diffuse, specular and
+emission are multiplied by, (H, W) grey, (H, W, 3) or (H, W, 4), sRGB codes, row 0 at v = 1: whole numbers from 0 to
+255, or fractions from 0 to 1, which are kept as floats. Colours are taken as they are, whatever the fourth channel
+(alpha) says. normal_map: directions in tangent space, in the same way but linear; normal_scale: of their x and y.
+shininess_texture (its green channel) and transmission_texture (red): what those are multiplied by, linear. name: to
+find it by in Scene.materials. opacity, times opacity_texture (its fourth channel, or the mean of fewer, linear):
+share of the surface that is there; through the rest light goes as if there were nothing, shadows included. With an
+opacity_cutoff above 0 there is all of it where that product reaches the cutoff, and nothing elsewhere.
+double_sided: emission leaves on both sides. shadow_catcher: invisible, but what is seen through it is as much
+darker as the lights are hidden from it (MTL's illumination model 10); light and shadows go through; it counts as a
+bounce. Raises InputError.)");
+        },
+        std::tuple_cat(phong, also_phong, both));
+    initial.values.model = MaterialModel::metallic_roughness;
+    initial.values.diffuse = initial.values.specular = {1, 1, 1};
+    std::apply(
+        [&](const auto&... fields) {
+            material.def_static(
+                "metallic_roughness", maker(initial, fields...), py::kw_only(),
+                (py::arg(fields.name) = value(initial, fields.member))...,
+                R"(glTF's material: GGX microfacets of alpha = roughness^2 on a metal, on a dielectric over a diffuse
+base, or, for the share transmission of it, on a border that lets light through; all between 0 and 1. base_color,
+times texture: the metal's reflectance, the diffuse one, or the tint of what passes. ior: of the dielectric;
+specular_color, specular_weight: what its reflection is multiplied by. metallic_roughness_texture: roughness in
+green and metallic in blue, linear, times the numbers. clearcoat: share of a second, colourless layer of index 1.5
+above all, which has the mesh's normals, or those of clearcoat_normal_map. specular_texture: colours that
+specular_color is multiplied by; linear, and of one channel: specular_weight_texture (the fourth, or the mean of
+fewer), clearcoat_texture and transmission_texture (red), clearcoat_roughness_texture (green). absorption, thin,
+emission, opacity and the other textures as in Material(). Raises InputError.)");
+        },
+        std::tuple_cat(also_metallic_roughness, metallic_roughness, both));
     material
-        .def(py::init(&make_material), py::kw_only(), "diffuse"_a = Colour{0.5f, 0.5f, 0.5f}, "specular"_a = black,
-             "shininess"_a = 0.0f, "emission"_a = black, "texture"_a = py::none(), "name"_a = "", "mirror"_a = black,
-             "fresnel"_a = true, "transmission"_a = 0.0f, "ior"_a = 1.5f, "filter"_a = white, "absorption"_a = black,
-             "thin"_a = false, "specular_texture"_a = py::none(), "emission_texture"_a = py::none(),
-             "normal_map"_a = py::none(), "normal_scale"_a = 1.0f, "opacity"_a = 1.0f, "opacity_cutoff"_a = 0.0f,
-             "opacity_texture"_a = py::none(), "double_sided"_a = false, "shadow_catcher"_a = false,
-             "shininess_texture"_a = py::none(), "transmission_texture"_a = py::none(),
-             "Wavefront's material (MTL). diffuse, specular: reflectance of Lambert's and of Phong's lobe; shininess:\n"
-             "Phong exponent; emission: radiance in cd/m^2, on the side from which the corners run counter-clockwise;\n"
-             "mirror: reflectance as a mirror, at normal incidence; fresnel: whether it grows towards grazing\n"
-             "incidence (Schlick), and a smooth border reflects as its index says; transmission: share of the surface\n"
-             "that is a smooth border between outside and a medium of index ior, which multiplies what passes by "
-             "filter\n"
-             "and absorbs on the way, per metre; thin: a film, behind which light goes on as it came.\n"
-             "texture, specular_texture, emission_texture: what diffuse, specular and emission are multiplied by,\n"
-             "(H, W) grey, (H, W, 3) or (H, W, 4), sRGB codes, row 0 at v = 1: whole numbers from 0 to 255, or "
-             "fractions\n"
-             "from 0 to 1, which are kept as floats. Colours are taken as they are, whatever the fourth channel\n"
-             "(alpha) says. normal_map: directions in tangent space, in the same way but linear; normal_scale: of\n"
-             "their x and y. shininess_texture (its green channel) and transmission_texture (red): what those are\n"
-             "multiplied by, linear. name: to find it by in Scene.materials.\n"
-             "opacity, times opacity_texture (its fourth channel, or the mean of fewer, linear): share of the surface\n"
-             "that is there; through the rest light goes as if there were nothing, shadows included. With an\n"
-             "opacity_cutoff above 0 there is all of it where that product reaches the cutoff, and nothing elsewhere.\n"
-             "double_sided: emission leaves on both sides. shadow_catcher: invisible, but what is seen through it is "
-             "as\n"
-             "much darker as the lights are hidden from it (MTL's illumination model 10); light and shadows go "
-             "through;\n"
-             "it counts as a bounce. Raises InputError.")
-        .def_static(
-            "metallic_roughness", &make_metallic_roughness, py::kw_only(), "base_color"_a = white, "metallic"_a = 0.0f,
-            "roughness"_a = 1.0f, "texture"_a = py::none(), "metallic_roughness_texture"_a = py::none(), "ior"_a = 1.5f,
-            "specular_color"_a = white, "specular_weight"_a = 1.0f, "transmission"_a = 0.0f, "absorption"_a = black,
-            "thin"_a = false, "clearcoat"_a = 0.0f, "clearcoat_roughness"_a = 0.0f, "emission"_a = black,
-            "emission_texture"_a = py::none(), "normal_map"_a = py::none(), "normal_scale"_a = 1.0f, "name"_a = "",
-            "opacity"_a = 1.0f, "opacity_cutoff"_a = 0.0f, "opacity_texture"_a = py::none(), "double_sided"_a = false,
-            "specular_texture"_a = py::none(), "specular_weight_texture"_a = py::none(),
-            "transmission_texture"_a = py::none(), "clearcoat_texture"_a = py::none(),
-            "clearcoat_roughness_texture"_a = py::none(), "clearcoat_normal_map"_a = py::none(),
-            "clearcoat_normal_scale"_a = 1.0f,
-            "glTF's material: GGX microfacets of alpha = roughness^2 on a metal, on a dielectric over a diffuse base,\n"
-            "or, for the share transmission of it, on a border that lets light through; all between 0 and 1.\n"
-            "base_color, times texture: the metal's reflectance, the diffuse one, or the tint of what passes. ior: of\n"
-            "the dielectric; specular_color, specular_weight: what its reflection is multiplied by.\n"
-            "metallic_roughness_texture: roughness in green and metallic in blue, linear, times the numbers.\n"
-            "clearcoat: share of a second, colourless layer of index 1.5 above all, which has the mesh's normals, or\n"
-            "those of clearcoat_normal_map. specular_texture: colours that specular_color is multiplied by; linear,\n"
-            "and of one channel: specular_weight_texture (the fourth, or the mean of fewer), clearcoat_texture and\n"
-            "transmission_texture (red), clearcoat_roughness_texture (green). absorption, thin, emission, opacity and\n"
-            "the other textures as in Material(). Raises InputError.")
         .def("replace", &with_numbers, py::kw_only(), "diffuse"_a = py::none(), "specular"_a = py::none(),
              "shininess"_a = py::none(), "emission"_a = py::none(), "texture"_a = py::ellipsis(), "name"_a = py::none(),
              "metallic"_a = py::none(), "roughness"_a = py::none(), "transmission"_a = py::none(), "ior"_a = py::none(),
              "opacity"_a = py::none(),
-             "The material with some numbers changed. What is not given stays; texture=None takes the texture away;\n"
-             "diffuse is the base colour of a metallic_roughness material, specular its specular_color.")
+             R"(The material with some numbers changed. What is not given stays; texture=None takes the texture away;
+diffuse is the base colour of a metallic_roughness material, specular its specular_color.)")
         .def_property_readonly(
             "model",
             [](const PythonMaterial& p) {
                 return p.values.model == MaterialModel::phong ? "phong" : "metallic_roughness";
             },
             "\"phong\" or \"metallic_roughness\".")
-        .def_property_readonly("diffuse", color_property(&Material::diffuse),
-                               "Reflectance; of metallic_roughness the base colour.")
-        .def_property_readonly("specular", color_property(&Material::specular),
-                               "Reflectance of Phong's lobe; of metallic_roughness the specular_color.")
-        .def_property_readonly("shininess", number_property(&Material::shininess))
-        .def_property_readonly("emission", color_property(&Material::emission))
-        .def_property_readonly("mirror", color_property(&Material::mirror))
-        .def_property_readonly("transmission", number_property(&Material::transmission))
-        .def_property_readonly("filter", color_property(&Material::filter))
-        .def_property_readonly("absorption", color_property(&Material::absorption), "Per metre.")
-        .def_property_readonly("ior", number_property(&Material::ior))
-        .def_property_readonly("thin", [](const PythonMaterial& p) { return p.values.is_thin != 0; })
-        .def_property_readonly("fresnel", [](const PythonMaterial& p) { return p.values.fresnel != FresnelTerm::none; })
-        .def_property_readonly("metallic", number_property(&Material::metallic))
-        .def_property_readonly("roughness", number_property(&Material::roughness))
-        .def_property_readonly("specular_weight", number_property(&Material::specular_weight))
-        .def_property_readonly("clearcoat", number_property(&Material::clearcoat))
-        .def_property_readonly("clearcoat_roughness", number_property(&Material::clearcoat_roughness))
-        .def_property_readonly("normal_scale", number_property(&Material::normal_scale))
-        .def_property_readonly("clearcoat_normal_scale", number_property(&Material::clearcoat_normal_scale))
-        .def_property_readonly("opacity", number_property(&Material::opacity))
-        .def_property_readonly("opacity_cutoff", number_property(&Material::opacity_cutoff))
-        .def_property_readonly("shadow_catcher", [](const PythonMaterial& p) { return p.values.only_shadows != 0; })
-        .def_property_readonly("double_sided",
-                               [](const PythonMaterial& p) { return p.values.emits_on_both_sides != 0; })
-        .def_property_readonly("texture", texture_property(&Material::diffuse_texture),
-                               "(H, W, 4), read-only: uint8 codes, or float32 of linear light; None: none.")
-        .def_property_readonly("specular_texture", texture_property(&Material::specular_texture))
-        .def_property_readonly("emission_texture", texture_property(&Material::emission_texture))
-        .def_property_readonly("metallic_roughness_texture", texture_property(&Material::metallic_roughness_texture),
-                               "Of Wavefront's material: the shininess_texture.")
-        .def_property_readonly("transmission_texture", texture_property(&Material::transmission_texture))
-        .def_property_readonly("specular_weight_texture", texture_property(&Material::specular_weight_texture))
-        .def_property_readonly("clearcoat_texture", texture_property(&Material::clearcoat_texture))
-        .def_property_readonly("clearcoat_roughness_texture", texture_property(&Material::clearcoat_roughness_texture))
-        .def_property_readonly("clearcoat_normal_map", texture_property(&Material::clearcoat_normal_texture))
-        .def_property_readonly("opacity_texture", texture_property(&Material::opacity_texture))
-        .def_property_readonly("normal_map", texture_property(&Material::normal_texture))
-        .def_property_readonly("name", [](const PythonMaterial& p) { return text_from(p.name); })
         .def("__repr__", [](const PythonMaterial& p) { return text_from(text_of(p)); });
 }
 
@@ -343,14 +303,14 @@ void bind_scene_materials(py::class_<Assembly>& scene) {
     scene
         .def_property_readonly(
             "materials", &materials_of,
-            "A dict of static geometry's materials by their names, in their order: the file's names, \"material 3\"\n"
-            "for one without a name, \"wood.2\" for the second \"wood\".")
+            R"(A dict of static geometry's materials by their names, in their order: the file's names, "material 3"
+for one without a name, "wood.2" for the second "wood".)")
         .def("with_material", &with_material, "which"_a, "material"_a,
-             "With another material in place of one, by its name in materials or its number from 0; texture included.\n"
-             "The place keeps its name. Raises InputError.")
+             R"(With another material in place of one, by its name in materials or its number from 0; texture included.
+The place keeps its name. Raises InputError.)")
         .def("with_texture", &with_texture, "material"_a, "pixels"_a,
-             "With a texture on a material, by its name or number; pixels as in Material(texture=...).\n"
-             "Raises InputError, also where the vertices have no texture coordinates.");
+             R"(With a texture on a material, by its name or number; pixels as in Material(texture=...).
+Raises InputError, also where the vertices have no texture coordinates.)");
 }
 
 }  // namespace realcam::bindings
