@@ -177,41 +177,61 @@ struct RestoredCheck<AimedRays> {
     }
 };
 
-void bind_analysis(py::module_& m) {
+namespace {
+
+using PythonLens = py::class_<LensSystem>;
+
+/// What results have of the rays that they are made of.
+template <class T, class RaysOf>
+void def_rays(py::class_<T>& type, const RaysOf& rays_of) {
+    type.def_property_readonly(
+            "pupil", [=](const T& t) { return pupil_of(rays_of(t)); }, kPupilText)
+        .def_property_readonly(
+            "weights", [=](const T& t) { return weights_of(rays_of(t)); }, kWeightsText)
+        .def_property_readonly("status", [=](const T& t) { return status_of(rays_of(t)); }, kStatusText);
+}
+
+void bind_aim(py::module_& m, PythonLens& lens) {
     py::class_<AimedRays> aimed_rays(m, "AimedRays", "Rays of one object point, in front of the lens. Lens frame.");
     def_result(aimed_rays);
     aimed_rays
         .def_readonly(
             "origins_mm", &AimedRays::origins_mm,
-            "(N, 3): in the plane through the middle of the paraxial entrance pupil across the light, which "
-            "may lie\nbehind the front surface: the ray is that straight line, also in front of it. Where film_mm "
-            "names "
-            "the field,\nor the lens is not of revolution: through where the chief ray meets the front surface. nan "
-            "where status is not OK.")
+            R"((N, 3): in the plane through the middle of the paraxial entrance pupil across the light, which may lie
+behind the front surface: the ray is that straight line, also in front of it. Where film_mm names the field,
+or the lens is not of revolution: through where the chief ray meets the front surface. nan where status is not OK.)")
         .def_readonly("directions", &AimedRays::directions, "(N, 3), unit; nan where status is not OK.")
         .def_readonly("status", &AimedRays::status, kStatusText)
         .def("__repr__",
              [](const AimedRays& rays) { return "<realcam.AimedRays " + counted(py::len(rays.status), "ray") + '>'; });
+    static const std::string aim_text =
+        std::string(R"(Rays of one object point that meet given places on the real stop, for Lens.trace(start="scene").
+pupil: (N, 2), places on the stop as shares of its radius.
+)") + kFieldText +
+        R"(Returns AimedRays; the status is that of the ray behind the lens, and a ray that is not OK is nan. Origins may
+lie behind the front surface: Lens.trace takes a ray for the whole straight line. Places on the very edge of the stop
+are aimed at 5e-11 of its radius further in, so that rounding does not block the ray when it is traced.
+Raises InputError where no ray of the object point reaches the middle of the stop.)";
+    lens.def("aim", &aim, "pupil"_a, "field_deg"_a = 0.0, py::kw_only(), "object_distance_m"_a = py::none(),
+             "film_mm"_a = py::none(), "wavelength_nm"_a = py::none(), aim_text.c_str());
+}
+
+void bind_wavefront(py::module_& m, PythonLens& lens) {
     using W = const PythonWavefront&;
     py::class_<PythonWavefront> wavefront(
         m, "Wavefront",
-        "Optical path differences of one object point over the stop, in waves: positive where "
-        "the wavefront is ahead of\nthe reference sphere. Means are over the area of the open stop.");
+        R"(Optical path differences of one object point over the stop, in waves: positive where the wavefront is ahead
+of the reference sphere. Means are over the area of the open stop.)");
     def_value(wavefront);
+    def_rays(wavefront, [](W w) -> const FieldRays& { return w.wavefront.rays; });
     wavefront
         .def_property_readonly(
             "opd_waves",
             [](W w) { return array_of(w.wavefront.opd.size(), [&](auto i) { return w.wavefront.opd[i]; }); },
             "(N,): less that of the chief ray, if nothing is removed; nan where no ray passes.")
-        .def_property_readonly(
-            "pupil", [](W w) { return pupil_of(w.wavefront.rays); }, kPupilText)
-        .def_property_readonly(
-            "weights", [](W w) { return weights_of(w.wavefront.rays); }, kWeightsText)
-        .def_property_readonly(
-            "status", [](W w) { return status_of(w.wavefront.rays); }, kStatusText)
         .def("map_waves", &map_of,
-             "(samples, samples): opd_waves of the pattern \"grid\" as a picture, rows from the lowest y, columns from "
-             "the lowest x;\nnan outside. Raises InputError for other patterns.")
+             R"((samples, samples): opd_waves of the pattern "grid" as a picture, rows from the lowest y, columns from
+the lowest x; nan outside. Raises InputError for other patterns.)")
         .def_property_readonly(
             "rms_waves", [](W w) { return w.wavefront.rms; }, "About the mean.")
         .def_property_readonly("peak_to_valley_waves", [](W w) { return w.wavefront.peak_to_valley; })
@@ -237,8 +257,27 @@ void bind_analysis(py::module_& m) {
             return "<realcam.Wavefront " + counted(w.wavefront.opd.size(), "ray") + ", RMS " + digits(w.wavefront.rms) +
                    " waves, Strehl " + digits(w.wavefront.strehl) + '>';
         });
+    static const std::string wavefront_text =
+        std::string(R"(The wavefront of one object point against a sphere, by real rays, in double precision.
+)") + kFieldText +
+        R"(film_distance_mm: last vertex to the plane of the image point; None: the film.
+reference: the sphere's centre: "chief", where the chief ray (through the middle of the real stop) meets that plane, or
+  "centroid", of the spot there. Its radius is the distance from the chief ray's point to the exit pupil on that ray.
+exit_pupil: "real", where the chief ray crosses the axis (on the axis, the paraxial exit pupil), as in CODE V's
+  listings; or "paraxial", where it crosses the plane of the paraxial exit pupil, as in OpticStudio.
+remove: None; "tilt" or "focus" (tilt and focus) are fitted in x, y, x^2 + y^2 of the stop and taken away.
+)" + kPatternText +
+        "Returns a Wavefront. Raises InputError where no ray passes, or no reference sphere can be laid.";
+    lens.def("wavefront", &make_wavefront, "field_deg"_a = 0.0, py::kw_only(), "object_distance_m"_a = py::none(),
+             "film_mm"_a = py::none(), "wavelength_nm"_a = py::none(), "film_distance_mm"_a = py::none(),
+             "reference"_a = "chief", "exit_pupil"_a = "real", "remove"_a = py::none(), "pattern"_a = "grid",
+             "samples"_a = 64, "pupil"_a = py::none(), wavefront_text.c_str());
+}
+
+void bind_spot(py::module_& m, PythonLens& lens) {
     py::class_<Spot> spot(m, "Spot", "Where rays of one object point meet a plane behind the lens. mm from the axis.");
     def_value(spot);
+    def_rays(spot, [](const Spot& s) -> const FieldRays& { return s.rays; });
     spot.def_property_readonly(
             "points_mm",
             [](const Spot& s) {
@@ -256,12 +295,6 @@ void bind_analysis(py::module_& m) {
                 });
             },
             "(N, 3), unit, of the rays where they meet the plane; nan where no ray passes.")
-        .def_property_readonly(
-            "pupil", [](const Spot& s) { return pupil_of(s.rays); }, kPupilText)
-        .def_property_readonly(
-            "weights", [](const Spot& s) { return weights_of(s.rays); }, kWeightsText)
-        .def_property_readonly(
-            "status", [](const Spot& s) { return status_of(s.rays); }, kStatusText)
         .def_property_readonly("centroid_mm", [](const Spot& s) { return std::pair(s.centroid.x, s.centroid.y); })
         .def_property_readonly(
             "chief_ray_mm", [](const Spot& s) { return std::pair(s.chief.x, s.chief.y); },
@@ -277,40 +310,23 @@ void bind_analysis(py::module_& m) {
                    digits(s.about_centroid.rms_radius) + " mm>";
         });
 
-    static const std::string aim_text =
-        std::string(R"(Rays of one object point that meet given places on the real stop, for Lens.trace(start="scene").
-pupil: (N, 2), places on the stop as shares of its radius.
-)") + kFieldText +
-        R"(Returns AimedRays; the status is that of the ray behind the lens, and a ray that is not OK is nan. Origins may
-lie behind the front surface: Lens.trace takes a ray for the whole straight line. Places on the very edge of the stop
-are aimed at 5e-11 of its radius further in, so that rounding does not block the ray when it is traced.
-Raises InputError where no ray of the object point reaches the middle of the stop.)";
-    static const std::string wavefront_text =
-        std::string(R"(The wavefront of one object point against a sphere, by real rays, in double precision.
-)") + kFieldText +
-        R"(film_distance_mm: last vertex to the plane of the image point; None: the film.
-reference: the sphere's centre: "chief", where the chief ray (through the middle of the real stop) meets that plane, or
-  "centroid", of the spot there. Its radius is the distance from the chief ray's point to the exit pupil on that ray.
-exit_pupil: "real", where the chief ray crosses the axis (on the axis, the paraxial exit pupil), as in CODE V's
-  listings; or "paraxial", where it crosses the plane of the paraxial exit pupil, as in OpticStudio.
-remove: None; "tilt" or "focus" (tilt and focus) are fitted in x, y, x^2 + y^2 of the stop and taken away.
-)" + kPatternText +
-        "Returns a Wavefront. Raises InputError where no ray passes, or no reference sphere can be laid.";
     static const std::string spot_text =
         std::string(
             R"(The spot of one object point on the film, or on a plane at film_distance_mm behind the last vertex.
 )") + kFieldText +
         kPatternText + "Returns a Spot. Raises InputError where no ray passes.";
-    py::reinterpret_borrow<py::class_<LensSystem>>(m.attr("Lens"))
-        .def("aim", &aim, "pupil"_a, "field_deg"_a = 0.0, py::kw_only(), "object_distance_m"_a = py::none(),
-             "film_mm"_a = py::none(), "wavelength_nm"_a = py::none(), aim_text.c_str())
-        .def("wavefront", &make_wavefront, "field_deg"_a = 0.0, py::kw_only(), "object_distance_m"_a = py::none(),
-             "film_mm"_a = py::none(), "wavelength_nm"_a = py::none(), "film_distance_mm"_a = py::none(),
-             "reference"_a = "chief", "exit_pupil"_a = "real", "remove"_a = py::none(), "pattern"_a = "grid",
-             "samples"_a = 64, "pupil"_a = py::none(), wavefront_text.c_str())
-        .def("spot", &make_spot, "field_deg"_a = 0.0, py::kw_only(), "object_distance_m"_a = py::none(),
+    lens.def("spot", &make_spot, "field_deg"_a = 0.0, py::kw_only(), "object_distance_m"_a = py::none(),
              "film_mm"_a = py::none(), "wavelength_nm"_a = py::none(), "film_distance_mm"_a = py::none(),
              "pattern"_a = "hexapolar", "samples"_a = 6, "pupil"_a = py::none(), spot_text.c_str());
+}
+
+}  // namespace
+
+void bind_analysis(py::module_& m) {
+    auto lens = py::reinterpret_borrow<PythonLens>(m.attr("Lens"));
+    bind_aim(m, lens);
+    bind_wavefront(m, lens);
+    bind_spot(m, lens);
 }
 
 }  // namespace realcam::bindings

@@ -69,6 +69,35 @@ Environment environment_from(const py::object& radiance, std::vector<std::string
     return environment;
 }
 
+Assembly with_environment(const Assembly& scene, const py::object& radiance, double scale, double rotation_deg) {
+    return with_valid_static_geometry(scene, [&](Scene& changed) {
+        changed.environment = realcam::changed(environment_from(radiance, changed.warnings), {scale, rotation_deg});
+    });
+}
+
+Assembly with_sun(const Assembly& scene, const Triple& direction, const Colour& illuminance) {
+    const Vec3d d = unit_vector("the sun's direction", direction);
+    return with_valid_static_geometry(
+        scene, [&](Scene& changed) { changed.suns.push_back({static_cast<Vec3f>(d), rgb(illuminance)}); });
+}
+
+Assembly with_point_light(const Assembly& scene, const Triple& position, const Colour& intensity) {
+    return with_valid_static_geometry(
+        scene, [&](Scene& changed) { changed.points.push_back({vector_of(position), rgb(intensity)}); });
+}
+
+Assembly with_spot_light(const Assembly& scene, const Triple& position, const Triple& direction,
+                         const Colour& intensity, double inner_cone_deg, double outer_cone_deg) {
+    constexpr double kDegree = 0.017453292519943295;
+    const Vec3d axis = unit_vector("the spot's direction", direction);
+    if (!(inner_cone_deg >= 0 && inner_cone_deg <= outer_cone_deg && outer_cone_deg <= 90))
+        throw InputError("0 <= inner_cone_deg <= outer_cone_deg <= 90 is wanted");
+    return with_valid_static_geometry(scene, [&](Scene& changed) {
+        changed.points.push_back(
+            {vector_of(position), rgb(intensity), axis, kDegree * inner_cone_deg, kDegree * outer_cone_deg});
+    });
+}
+
 using Corner = std::tuple<double, double, double>;
 
 std::pair<Corner, Corner> bounds(const Assembly& scene) {
@@ -88,77 +117,40 @@ std::string text_of(const Assembly& scene) {
 void bind_scene(py::module_& m) {
     py::class_<Assembly> scene_class(
         m, "Scene",
-        "Triangles, materials and lights, and instances of other scenes, any number of each;\n"
-        "metres, right-handed, y up. A value: what changes it returns a new one. Materials and warnings are\n"
-        "those of static geometry; objects bring their own along.");
+        R"(Triangles, materials and lights, and instances of other scenes, any number of each;
+metres, right-handed, y up. A value: what changes it returns a new one. Materials and warnings are
+those of static geometry; objects bring their own along.)");
     def_value(scene_class);
     scene_class
         .def_static(
             "load", &load, "path"_a, py::kw_only(), "scale"_a = 1.0, "objects"_a = std::vector<std::string>{},
-            "Reads .obj (with its .mtl), .gltf, .glb or .ply. scale: metres per unit of the file; objects: names\n"
-            "of nodes (of an OBJ: what follows \"o\" or \"g\") that become instances, each with all below it, to be "
-            "moved\n"
-            "by their names; of several nodes \"car\" the second is \"car.2\". Only regular files are read.\n"
-            "Raises SceneFileError, and KeyboardInterrupt on Ctrl-C. What could be put up with is in warnings.")
+            R"(Reads .obj (with its .mtl), .gltf, .glb or .ply. scale: metres per unit of the file; objects: names
+of nodes (of an OBJ: what follows "o" or "g") that become instances, each with all below it, to be moved
+by their names; of several nodes "car" the second is "car.2". Only regular files are read.
+Raises SceneFileError, and KeyboardInterrupt on Ctrl-C. What could be put up with is in warnings.)")
         .def_static(
             "from_arrays", &scene_from_arrays, "vertices_m"_a, "triangles"_a, py::kw_only(), "normals"_a = py::none(),
             "uvs"_a = py::none(), "triangle_materials"_a = py::none(), "materials"_a = std::vector<PythonMaterial>{},
             "colors"_a = py::none(),
-            "vertices_m: (V, 3) float; triangles: (T, 3) int; normals: (V, 3) unit, zero for flat; uvs: (V, 2);\n"
-            "triangle_materials: (T,) indices into materials; colors: (V, 3) or (V, 4), linear Rec. 709, by which the\n"
-            "materials' diffuse or base colours, and a fourth number by which their opacity is multiplied.\n"
-            "Raises InputError or SceneFileError.")
-        .def(
-            "with_environment",
-            [](const Assembly& scene, const py::object& radiance, double scale, double rotation_deg) {
-                return with_valid_static_geometry(scene, [&](Scene& changed) {
-                    changed.environment =
-                        realcam::changed(environment_from(radiance, changed.warnings), {scale, rotation_deg});
-                });
-            },
-            "radiance"_a, py::kw_only(), "scale"_a = 1.0, "rotation_deg"_a = 0.0,
-            "The scene in light from all around: a number or (r, g, b) in cd/m^2, or an (H, W, 3) latitude-longitude "
-            "image\n"
-            "(row 0 up, its middle column towards -z), or the path of one (see realcam.read_environment). Its light "
-            "is\n"
-            "multiplied by scale, and an image turned about the vertical by rotation_deg, counterclockwise as seen "
-            "from\n"
-            "above: at 90 its middle column lies towards -x. Raises InputError and ImageFileError.")
-        .def(
-            "with_sun",
-            [](const Assembly& scene, const Triple& direction, const Colour& illuminance) {
-                const Vec3d d = unit_vector("the sun's direction", direction);
-                return with_valid_static_geometry(
-                    scene, [&](Scene& changed) { changed.suns.push_back({static_cast<Vec3f>(d), rgb(illuminance)}); });
-            },
-            "direction"_a, "illuminance"_a,
-            "With parallel light that travels along direction; illuminance (r, g, b) in lux.")
-        .def(
-            "with_point_light",
-            [](const Assembly& scene, const Triple& position, const Colour& intensity) {
-                return with_valid_static_geometry(
-                    scene, [&](Scene& changed) { changed.points.push_back({vector_of(position), rgb(intensity)}); });
-            },
-            "position_m"_a, "intensity"_a, "With a point light; intensity (r, g, b) in cd.")
-        .def(
-            "with_spot_light",
-            [](const Assembly& scene, const Triple& position, const Triple& direction, const Colour& intensity,
-               double inner_cone_deg, double outer_cone_deg) {
-                constexpr double kDegree = 0.017453292519943295;
-                const Vec3d axis = unit_vector("the spot's direction", direction);
-                if (!(inner_cone_deg >= 0 && inner_cone_deg <= outer_cone_deg && outer_cone_deg <= 90))
-                    throw InputError("0 <= inner_cone_deg <= outer_cone_deg <= 90 is wanted");
-                return with_valid_static_geometry(scene, [&](Scene& changed) {
-                    changed.points.push_back({vector_of(position), rgb(intensity), axis, kDegree * inner_cone_deg,
-                                              kDegree * outer_cone_deg});
-                });
-            },
-            "position_m"_a, "direction"_a, "intensity"_a, py::kw_only(), "inner_cone_deg"_a = 0.0,
-            "outer_cone_deg"_a = 45.0,
-            "With a spot: a point light of that intensity (r, g, b), in cd, along direction, which fades from the "
-            "inner\n"
-            "cone to nothing at the outer one (KHR_lights_punctual); the cones' angles are from the axis. Raises "
-            "InputError.")
+            R"(vertices_m: (V, 3) float; triangles: (T, 3) int; normals: (V, 3) unit, zero for flat; uvs: (V, 2);
+triangle_materials: (T,) indices into materials; colors: (V, 3) or (V, 4), linear Rec. 709, by which the
+materials' diffuse or base colours, and a fourth number by which their opacity is multiplied.
+Raises InputError or SceneFileError.)")
+        .def("with_environment", &with_environment, "radiance"_a, py::kw_only(), "scale"_a = 1.0,
+             "rotation_deg"_a = 0.0,
+             R"(The scene in light from all around: a number or (r, g, b) in cd/m^2, or an (H, W, 3) latitude-longitude
+image (row 0 up, its middle column towards -z), or the path of one (see realcam.read_environment). Its light is
+multiplied by scale, and an image turned about the vertical by rotation_deg, counterclockwise as seen from above: at
+90 its middle column lies towards -x. Raises InputError and ImageFileError.)")
+        .def("with_sun", &with_sun, "direction"_a, "illuminance"_a,
+             "With parallel light that travels along direction; illuminance (r, g, b) in lux.")
+        .def("with_point_light", &with_point_light, "position_m"_a, "intensity"_a,
+             "With a point light; intensity (r, g, b) in cd.")
+        .def("with_spot_light", &with_spot_light, "position_m"_a, "direction"_a, "intensity"_a, py::kw_only(),
+             "inner_cone_deg"_a = 0.0, "outer_cone_deg"_a = 45.0,
+             R"(With a spot: a point light of that intensity (r, g, b), in cd, along direction, which fades from the
+inner cone to nothing at the outer one (KHR_lights_punctual); the cones' angles are from the axis. Raises
+InputError.)")
         .def_property_readonly("triangle_count", &Assembly::triangle_count, "Of static geometry and all instances.")
         .def_property_readonly("material_count", [](const Assembly& s) { return s.static_geometry->materials.size(); })
         .def_property_readonly("has_light", &Assembly::has_light)
