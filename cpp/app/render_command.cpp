@@ -337,8 +337,7 @@ private:
         std::string written;
         for (const std::string& path : files) {
             try {
-                image_io::write_image(image_io::view_of(image), path, metadata, request.tone,
-                                      [] { return Interrupt::signal() == 0; });
+                image_io::write_image(image_io::view_of(image), path, metadata, request.tone, is_wanted);
             } catch (const Cancelled&) {
                 throw Interrupted{Interrupt::signal(), written.empty() ? "" : "; written before: " + written};
             }

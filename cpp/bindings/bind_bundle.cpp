@@ -163,22 +163,22 @@ struct RestoredCheck<RayBundle> {
 
 void bind_bundle(py::module_& m) {
     py::class_<RayBundle> bundle(m, "RayBundle",
-                                 "The light of one object point at one wavelength that passes the lens, as rays at "
-                                 "Gauss's nodes between its edges.\nLens frame; x and y from the axis.");
+                                 R"(The light of one object point at one wavelength that passes the lens, as rays at
+Gauss's nodes between its edges. Lens frame; x and y from the axis.)");
     def_result(bundle);
     bundle
         .def_readonly("entry_mm", &RayBundle::entry_mm,
-                      "(N, 2): where the rays cross the plane before the lens over which the light is even: through "
-                      "the middle of the\nparaxial entrance pupil, across the light.")
+                      R"((N, 2): where the rays cross the plane before the lens over which the light is even: through
+the middle of the paraxial entrance pupil, across the light.)")
         .def_readonly("energy", &RayBundle::energy, "(N,): shares of the light; their sum is 1.")
         .def_readonly("points_mm", &RayBundle::points_mm, "(N, 2): on the film, from the axis.")
         .def_readonly("directions", &RayBundle::directions, "(N, 3), unit: behind the lens.")
         .def_readonly("slopes", &RayBundle::slopes,
-                      "(N, 2): direction cosines x and y, less those of the sphere that runs from the exit pupil to "
-                      "the chief ray's\nfilm point: the pupil's coordinates in all sums of waves.")
+                      R"((N, 2): direction cosines x and y, less those of the sphere that runs from the exit pupil to
+the chief ray's film point: the pupil's coordinates in all sums of waves.)")
         .def_readonly("path_mm", &RayBundle::path_mm,
-                      "(N,): of each ray as a plane wave at the chief ray's film point, less that of the chief ray: "
-                      "amplitude\nexp(2 pi i index / wavelength (path + slope . q)) at q from there.")
+                      R"((N,): of each ray as a plane wave at the chief ray's film point, less that of the chief ray:
+amplitude exp(2 pi i index / wavelength (path + slope . q)) at q from there.)")
         .def_readonly("amplitude", &RayBundle::amplitude,
                       "(N,): root of the light for each area of slopes, times a common factor.")
         .def_readonly("edge_entry_mm", &RayBundle::edge_entry_mm,
@@ -189,8 +189,8 @@ void bind_bundle(py::module_& m) {
             "(x, y) on the film, of the ray through the middle of the stop, even where the lens blocks it.")
         .def_property_readonly(
             "tangential_focus_mm", [](const RayBundle& b) { return b.chief_ray.tangential_focus_mm; },
-            "Along the axis from the film to where rays close to the chief ray cross that differ from it in "
-            "the plane of\nthe axis; positive: behind the film. nan where the lens has none.")
+            R"(Along the axis from the film to where rays close to the chief ray cross that differ from it in the plane
+of the axis; positive: behind the film. nan where the lens has none.)")
         .def_property_readonly(
             "sagittal_focus_mm", [](const RayBundle& b) { return b.chief_ray.sagittal_focus_mm; },
             "The same, of rays beside that plane.")
@@ -211,9 +211,10 @@ spokes, nodes: lines from the middle of the light to its edge, which real rays f
 Returns a RayBundle. Raises InputError where no light passes, or a glass is not known at the wavelength.)";
     static const std::string points_text =
         std::string(
-            "Where very many rays of one object point land, for spots, histograms and bokeh: 50 million a "
-            "second and more.\nThey fill a rectangle in front of the lens that holds all light that passes, "
-            "evenly, and are not aimed at the stop.\n") +
+            R"(Where very many rays of one object point land, for spots, histograms and bokeh: 50 million a second and
+more. They fill a rectangle in front of the lens that holds all light that passes, evenly, and are not aimed at the
+stop.
+)") +
         kFieldText +
         R"(count: rays to trace; up to a third of them are blocked.
 film_distance_mm: last vertex to the plane of the points; None: the film.
@@ -224,13 +225,13 @@ Returns (M, 2) float32, x and y in mm from the axis, of the rays that pass. All 
 Raises InputError where no light passes.)";
     py::class_<PythonFilmPupil> film_pupil_class(
         m, "FilmPupil",
-        "The pupil as a film point sees it, in direction cosines across the film's normal of light on its way to the "
-        "film,\ntimes the index in front of the film.");
+        R"(The pupil as a film point sees it, in direction cosines across the film's normal of light on its way to the
+film, times the index in front of the film.)");
     def_result(film_pupil_class);
     film_pupil_class
         .def_readonly("irradiance", &PythonFilmPupil::irradiance,
-                      "Of the film point, for unit radiance of all that the lens sees: the pupil's area, in the middle "
-                      "of a lens\nof revolution pi sin^2 of the largest angle. 0 where no light arrives.")
+                      R"(Of the film point, for unit radiance of all that the lens sees: the pupil's area, in the middle
+of a lens of revolution pi sin^2 of the largest angle. 0 where no light arrives.)")
         .def_readonly("outline", &PythonFilmPupil::outline,
                       "(M, 2, 2): pieces of the edge of what passes, each from (x, y) to (x, y).")
         .def("__repr__",

@@ -143,9 +143,9 @@ void bind_film(py::module_& m) {
     def_hashable_value(film);
     film.def(py::init(&make_film), "width_mm"_a = 36.0, "height_mm"_a = 24.0, "resolution"_a = std::pair(960, 640),
              "shift_mm"_a = std::pair(0.0, 0.0),
-             "resolution: (columns, rows). shift_mm: of the film's middle from the lens's axis, right and up as the\n"
-             "picture shows it: a shift lens's, or the principal point of a sensor, whose pixel is principal_point.\n"
-             "Raises InputError.")
+             R"(resolution: (columns, rows). shift_mm: of the film's middle from the lens's axis, right and up as the
+picture shows it: a shift lens's, or the principal point of a sensor, whose pixel is principal_point.
+Raises InputError.)")
         .def_readonly("width_mm", &Film::width_mm)
         .def_readonly("height_mm", &Film::height_mm)
         .def_property_readonly("resolution", [](const Film& f) { return std::pair(f.width, f.height); })
@@ -172,38 +172,36 @@ void bind_camera(py::module_& m) {
                                                     "module"_a = "realcam");
     py::class_<Camera> camera_class(
         m, "Camera",
-        "Lens, film, pose and exposure. position is the middle of the film (the sensor), in front of which the whole\n"
-        "lens is: entrance_pupil_position_m says from where the scene is seen.");
+        R"(Lens, film, pose and exposure. position is the middle of the film (the sensor), in front of which the whole
+lens is: entrance_pupil_position_m says from where the scene is seen.)");
     def_hashable_value(camera_class);
     camera_class
-        .def(
-            py::init(&make_camera), "lens"_a, py::kw_only(), "film"_a = py::none(), "position"_a = Triple{0, 0, 0},
-            "look_at"_a = Triple{0, 0, -1}, "up"_a = Triple{0, 1, 0}, "exposure_time_s"_a = 1.0 / 125, "iso"_a = 100.0,
-            "model"_a = "full", "shutter_opens_s"_a = 0.0, "readout_time_s"_a = 0.0, "motion"_a = std::vector<Key>(),
-            "film: None for the lens's own. position, look_at: metres, scene. iso: sensitivity (ISO 12232).\n"
-            "model: \"full\" (every surface), \"thick\" (paraxial matrix), \"mapped\" (an ideal lens with\nthe real "
-            "one's distortion and vignetting), \"thin\" (ideal lens), \"pinhole\".\n"
-            "shutter_opens_s: time in the scene at which the exposure begins. readout_time_s: of a rolling shutter,\n"
-            "the time from the top row of pixels to the bottom one; each is exposed for exposure_time_s.\n"
-            "motion: keys (time_s, position, look_at) or (time_s, position, look_at, up) in rising order of time, in\n"
-            "place of position, look_at and up, which are then those at time 0. Between keys the camera moves evenly.\n"
-            "Raises InputError.")
+        .def(py::init(&make_camera), "lens"_a, py::kw_only(), "film"_a = py::none(), "position"_a = Triple{0, 0, 0},
+             "look_at"_a = Triple{0, 0, -1}, "up"_a = Triple{0, 1, 0}, "exposure_time_s"_a = 1.0 / 125, "iso"_a = 100.0,
+             "model"_a = "full", "shutter_opens_s"_a = 0.0, "readout_time_s"_a = 0.0, "motion"_a = std::vector<Key>(),
+             R"(film: None for the lens's own. position, look_at: metres, scene. iso: sensitivity (ISO 12232).
+model: "full" (every surface), "thick" (paraxial matrix), "mapped" (an ideal lens with
+the real one's distortion and vignetting), "thin" (ideal lens), "pinhole".
+shutter_opens_s: time in the scene at which the exposure begins. readout_time_s: of a rolling shutter,
+the time from the top row of pixels to the bottom one; each is exposed for exposure_time_s.
+motion: keys (time_s, position, look_at) or (time_s, position, look_at, up) in rising order of time, in
+place of position, look_at and up, which are then those at time 0. Between keys the camera moves evenly.
+Raises InputError.)")
         .def("replace", &changed_camera, py::kw_only(), "lens"_a = py::none(), "film"_a = py::none(),
              "position"_a = py::none(), "look_at"_a = py::none(), "up"_a = py::none(), "exposure_time_s"_a = py::none(),
              "iso"_a = py::none(), "model"_a = py::none(), "shutter_opens_s"_a = py::none(),
              "readout_time_s"_a = py::none(), "motion"_a = py::none(),
-             "The camera with some of what Camera() takes changed. None stays; so does the film with another lens\n"
-             "(see Film.for_lens). A new position, look_at or up ends its motion. Raises InputError.")
+             R"(The camera with some of what Camera() takes changed. None stays; so does the film with another lens
+(see Film.for_lens). A new position, look_at or up ends its motion. Raises InputError.)")
         .def_property_readonly(
             "field_of_view_deg", &field_of_view_deg,
-            "FieldOfView(horizontal, vertical, diagonal): angles in front of the lens, in degrees, between what lands\n"
-            "on opposite edges and corners of the film, by real rays at the lens's focus. Where the film is larger\n"
-            "than the lens's image, between the edges of the image. Raises InputError where the camera's model has no\n"
-            "place for its lens.")
+            R"(FieldOfView(horizontal, vertical, diagonal): angles in front of the lens, in degrees, between what lands
+on opposite edges and corners of the film, by real rays at the lens's focus. Where the film is larger
+than the lens's image, between the edges of the image. Raises InputError where the camera's model has no
+place for its lens.)")
         .def_property_readonly("entrance_pupil_position_m", &pupil_position,
-                               "(x, y, z), scene: the middle of the paraxial entrance pupil, from where the camera "
-                               "sees the scene; turning\n"
-                               "about it shows no parallax. None where it lies at infinity.")
+                               R"((x, y, z), scene: the middle of the paraxial entrance pupil, from where the camera
+sees the scene; turning about it shows no parallax. None where it lies at infinity.)")
         .def_readonly("lens", &Camera::lens)
         .def_readonly("film", &Camera::film)
         .def_property_readonly("position", [](const Camera& c) { return triple_of(c.pose.position_m); })
@@ -232,9 +230,8 @@ void bind_camera(py::module_& m) {
             return Pupil(lens, film_radius_mm, std::move(tracer)).image_radius();
         },
         "lens"_a, "film_radius_mm"_a, "on_one_core"_a = false,
-        "Finds the lens's pupil for every film radius up to this one (what render does after any change of focus or "
-        "stop).\n"
-        "Returns the radius beyond which no light arrives, mm.");
+        R"(Finds the lens's pupil for every film radius up to this one (what render does after any change of focus or
+stop). Returns the radius beyond which no light arrives, mm.)");
 }
 
 }  // namespace realcam::bindings

@@ -155,15 +155,15 @@ struct RestoredCheck<CameraRaysResult> {
 void bind_camera_rays(py::module_& m) {
     py::class_<CameraRaysResult> rays(
         m, "CameraRays",
-        "The rays of a camera, spp for each pixel, row by row from the top left. Arrays of numpy, or\n"
-        "DeviceArrays.");
+        R"(The rays of a camera, spp for each pixel, row by row from the top left. Arrays of numpy, or
+DeviceArrays.)");
     def_result(rays);
     rays.def_readonly("origins_m", &CameraRaysResult::origins_m, "(N, 3) float64, scene.")
         .def_readonly("directions", &CameraRaysResult::directions, "(N, 3) float32, unit, scene.")
         .def_readonly(
             "weights", &CameraRaysResult::weights,
-            "(N,) float32: irradiance on the film for unit radiance; the mean over a pixel's rays of weight times\n"
-            "radiance is its irradiance. 0: the lens blocks the ray.")
+            R"((N,) float32: irradiance on the film for unit radiance; the mean over a pixel's rays of weight times
+radiance is its irradiance. 0: the lens blocks the ray.)")
         .def_readonly("pixels", &CameraRaysResult::pixels, "(N,) int32: row * columns + column.")
         .def_readonly("wavelengths_nm", &CameraRaysResult::wavelengths_nm,
                       "(N,) float32: for which the lens was traced.")
@@ -184,16 +184,16 @@ void bind_camera_rays(py::module_& m) {
                 return rays_of(order, order.all());
             },
             py::kw_only(), "spp"_a = 1, "seed"_a = 0, "device"_a = "cpu", "wavelengths_nm"_a = py::none(),
-            "The rays that render would trace, for any other renderer, 56 bytes each. Returns CameraRays.\n"
-            "wavelengths_nm: a pair (shortest, longest). Each ray has one of its own, drawn evenly between them, for\n"
-            "which every glass has its own index: weight times spectral radiance times (longest - shortest) is the\n"
-            "irradiance of that band. None: all have the lens's design wavelength.\n"
-            "device: \"cpu\": arrays of numpy. \"cuda\", \"cuda:1\": DeviceArrays, made in that GPU's memory and left\n"
-            "there. \"auto\": a GPU if there is one. Raises InputError, DeviceError.")
+            R"(The rays that render would trace, for any other renderer, 56 bytes each. Returns CameraRays.
+wavelengths_nm: a pair (shortest, longest). Each ray has one of its own, drawn evenly between them, for
+which every glass has its own index: weight times spectral radiance times (longest - shortest) is the
+irradiance of that band. None: all have the lens's design wavelength.
+device: "cpu": arrays of numpy. "cuda", "cuda:1": DeviceArrays, made in that GPU's memory and left
+there. "auto": a GPU if there is one. Raises InputError, DeviceError.)")
         .def("ray_chunks", &chunks_of, py::kw_only(), "spp"_a = 1, "seed"_a = 0, "device"_a = "cpu",
              "wavelengths_nm"_a = py::none(), "max_rays"_a = std::int64_t{1} << 22,
-             "The same rays in pieces of at most max_rays, for pictures whose rays memory does not hold: an iterator\n"
-             "over CameraRays. A piece may end between two rays of a pixel. Raises InputError, DeviceError.");
+             R"(The same rays in pieces of at most max_rays, for pictures whose rays memory does not hold: an iterator
+over CameraRays. A piece may end between two rays of a pixel. Raises InputError, DeviceError.)");
     m.def("_film_of_white", &film_of_white, "illuminant"_a);
 }
 

@@ -170,9 +170,8 @@ namespace {
 
 void bind_response(py::module_& m) {
     py::class_<CoatingResponse> type(m, "CoatingResponse",
-                                     "What a coated surface does to light, as arrays of the shape of angles and "
-                                     "wavelengths together. Shares of power;\n"
-                                     "reflectance, transmittance and absorptance sum to 1.");
+                                     R"(What a coated surface does to light, as arrays of the shape of angles and
+wavelengths together. Shares of power; reflectance, transmittance and absorptance sum to 1.)");
     def_result(type);
     type.def_readonly("reflectance_s", &CoatingResponse::reflectance_s)
         .def_readonly("reflectance_p", &CoatingResponse::reflectance_p)
@@ -238,13 +237,12 @@ void bind_coating(py::module_& m) {
             "kind", [](const Coating& c) { return kKindNames[static_cast<int>(c.kind)]; },
             "unknown (not said), bare, layers, metal or reflectance.")
         .def_readonly("layers", &Coating::layers)
-        .def(
-            "response", &response, "angle_deg"_a, "wavelength_nm"_a, py::kw_only(), "outside"_a = py::none(),
-            "inside"_a = py::none(), "from_inside"_a = false,
-            "Reflection and transmission by the characteristic matrix, for both polarisations.\n"
-            "angle_deg: of incidence, 0 to 90, in the medium that the light comes from. Arrays are broadcast.\n"
-            "outside, inside: materials on either side; None is air outside. from_inside: the light comes from there.\n"
-            "Returns a CoatingResponse. Raises InputError, also at a wavelength at which a material is not known.")
+        .def("response", &response, "angle_deg"_a, "wavelength_nm"_a, py::kw_only(), "outside"_a = py::none(),
+             "inside"_a = py::none(), "from_inside"_a = false,
+             R"(Reflection and transmission by the characteristic matrix, for both polarisations.
+angle_deg: of incidence, 0 to 90, in the medium that the light comes from. Arrays are broadcast.
+outside, inside: materials on either side; None is air outside. from_inside: the light comes from there.
+Returns a CoatingResponse. Raises InputError, also at a wavelength at which a material is not known.)")
         .def("__repr__", [](const Coating& coating) { return text_of(coating); });
 }
 

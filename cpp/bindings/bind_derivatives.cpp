@@ -187,13 +187,10 @@ void bind_derivatives(py::module_& m) {
         .def("_ray_derivatives", &ray_derivatives, "origins_mm"_a, "directions"_a, "variables"_a, py::kw_only(),
              "wavelength_nm"_a = py::none(), "start"_a = "film", "frame"_a = "lens", "surface_count"_a = py::none(),
              "rims"_a = true,
-             "For realcam.derivatives, which says more. variables: tuples of a quantity, a surface from 0, and two "
-             "numbers.\n"
-             "frame: \"lens\", \"axis\" for that of the axis behind the last surface, or \"film\". With surface_count "
-             "the frame\n"
-             "of the last surface crossed. Returns status (N,); origin, optical direction and optical path (N, 7); "
-             "their\n"
-             "derivatives by the variables (N, 7, V), and by the given origin and direction (N, 7, 6).")
+             R"(For realcam.derivatives, which says more. variables: tuples of a quantity, a surface from 0, and two
+numbers. frame: "lens", "axis" for that of the axis behind the last surface, or "film". With surface_count the frame
+of the last surface crossed. Returns status (N,); origin, optical direction and optical path (N, 7); their
+derivatives by the variables (N, 7, V), and by the given origin and direction (N, 7, 6).)")
         .def("_backpropagate_rays", &backpropagate_rays, "origins_mm"_a, "directions"_a, "variables"_a, "of_origins"_a,
              "of_directions"_a, "of_optical_paths"_a, py::kw_only(), "wavelength_nm"_a = py::none(), "start"_a = "film",
              "For realcam.backpropagate_rays, which says more. Returns (V,), (N, 3), (N, 3).");

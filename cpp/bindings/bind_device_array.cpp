@@ -61,9 +61,9 @@ std::string repr_of(const SharedDeviceArray& array) {
 void bind_device_array(py::module_& m) {
     py::class_<SharedDeviceArray>(
         m, "DeviceArray",
-        "Numbers in a GPU's memory, in C order. torch.from_dlpack, cupy.from_dlpack, torch.as_tensor and cupy.asarray\n"
-        "share that memory without a copy, on any stream; numpy.asarray copies it to the host. It is freed with the\n"
-        "last of those who share it.")
+        R"(Numbers in a GPU's memory, in C order. torch.from_dlpack, cupy.from_dlpack, torch.as_tensor and cupy.asarray
+share that memory without a copy, on any stream; numpy.asarray copies it to the host. It is freed with the
+last of those who share it.)")
         .def_property_readonly("shape", &shape_of)
         .def_property_readonly("dtype", &dtype_of, "numpy.dtype: float64, float32, int32 or uint8.")
         .def_property_readonly("device", &device_of, "As in `device` of Lens.trace: \"cuda:0\".")
@@ -85,8 +85,8 @@ void bind_device_array(py::module_& m) {
                const py::object& copy) { return dlpack_capsule(array, max_version, dl_device, copy); },
             py::kw_only(), "stream"_a = py::none(), "max_version"_a = py::none(), "dl_device"_a = py::none(),
             "copy"_a = py::none(),
-            "As the Python array API standard has it; the numbers are complete, so that any stream may read them.\n"
-            "Raises BufferError for a device other than its own and the host, and for the host with copy=False.")
+            R"(As the Python array API standard has it; the numbers are complete, so that any stream may read them.
+Raises BufferError for a device other than its own and the host, and for the host with copy=False.)")
         .def("__dlpack_device__", [](const SharedDeviceArray& array) {
             return py::make_tuple(static_cast<int>(dlpack::kCuda), array.ordinal());
         });

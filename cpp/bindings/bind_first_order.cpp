@@ -10,8 +10,8 @@ using namespace py::literals;
 void bind_first_order(py::module_& m) {
     py::class_<FirstOrder> data(
         m, "FirstOrder",
-        "First-order data at one wavelength. mm; positions from the front vertex. Of an afocal lens the focal length,\n"
-        "the focal distances and the f-number are infinite.");
+        R"(First-order data at one wavelength. mm; positions from the front vertex. Of an afocal lens the focal length,
+the focal distances and the f-number are infinite.)");
     def_hashable_value(data);
     data.def_readonly("effective_focal_length_mm", &FirstOrder::effective_focal_length)
         .def_readonly("back_focal_distance_mm", &FirstOrder::back_focal_distance)
@@ -27,8 +27,8 @@ void bind_first_order(py::module_& m) {
         });
     py::class_<Meridian> meridian(
         m, "Meridian",
-        "A lens in one of its two principal meridians: planes through the chief ray of the film's middle in which\n"
-        "light stays. mm; without power the focal length and the f-number are infinite.");
+        R"(A lens in one of its two principal meridians: planes through the chief ray of the film's middle in which
+light stays. mm; without power the focal length and the f-number are infinite.)");
     def_hashable_value(meridian);
     meridian
         .def_readonly("azimuth_deg", &Meridian::azimuth_deg,

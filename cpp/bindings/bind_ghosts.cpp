@@ -52,10 +52,9 @@ struct RestoredCheck<Ghost> {
 
 void bind_ghosts(py::module_& m) {
     py::class_<Ghost> ghost(m, "Ghost",
-                            "Light that two surfaces reflect on its way to the film: first `first`, back towards the "
-                            "scene, then `second`,\nin front of it. Surfaces are numbered from 0, as in Lens.surfaces; "
-                            "the film has the number behind the "
-                            "last one's.");
+                            R"(Light that two surfaces reflect on its way to the film: first `first`, back towards the
+scene, then `second`, in front of it. Surfaces are numbered from 0, as in Lens.surfaces; the film has the number
+behind the last one's.)");
     def_hashable_value(ghost);
     ghost.def_readonly("first", &Ghost::first)
         .def_readonly("second", &Ghost::second)
@@ -63,9 +62,9 @@ void bind_ghosts(py::module_& m) {
         .def_readonly("back_focal_distance_mm", &Ghost::back_focal_distance,
                       "Last vertex to where the ghost of a point at infinity is sharp; negative in front of it.")
         .def_readonly("share", &Ghost::share,
-                      "What it brings to the film of the light that the lens itself brings there, of light that comes "
-                      "from all sides\nalike: its brightness in veiling glare, and about that of a lamp's ghost over "
-                      "the film. None where Lens.ghost made it.")
+                      R"(What it brings to the film of the light that the lens itself brings there, of light that comes
+from all sides alike: its brightness in veiling glare, and about that of a lamp's ghost over the film. None where
+Lens.ghost made it.)")
         .def("__repr__", [](const Ghost& g) {
             return "<realcam.Ghost of surfaces " + std::to_string(g.first) + " and " + std::to_string(g.second) +
                    ", focal length " + digits(g.effective_focal_length) + " mm, back focal distance " +
@@ -78,16 +77,15 @@ void bind_ghosts(py::module_& m) {
                 return ghost_of(lens, {first, second}, wavelength_or_design(lens, nm));
             },
             "first"_a, "second"_a, py::kw_only(), "wavelength_nm"_a = py::none(),
-            "The ghost of light that surface `first` reflects back, and surface `second`, in front of it, forward "
-            "again.\nSurfaces are numbered from 0, as in Lens.surfaces; `first` may be the film, with the number "
-            "behind the "
-            "last one's.\nParaxial (R. H. Abd El-Maksoud and J. M. Sasian, Proc. SPIE 7428, 742807, 2009). Raises "
-            "InputError where the two\nare not refracting surfaces, or the film and one, in that order.")
+            R"(The ghost of light that surface `first` reflects back, and surface `second`, in front of it, forward
+again. Surfaces are numbered from 0, as in Lens.surfaces; `first` may be the film, with the number behind the last
+one's. Paraxial (R. H. Abd El-Maksoud and J. M. Sasian, Proc. SPIE 7428, 742807, 2009). Raises InputError where the
+two are not refracting surfaces, or the film and one, in that order.)")
         .def("ghosts", &ghosts_of, py::kw_only(), "film_reflectance"_a = 0,
-             "All ghosts that reach the lens's film at the design wavelength, the brightest first, with their shares:\n"
-             "by rays through both reflections, with the reflectances of light along the axis. Surfaces of unknown\n"
-             "coating count as bare. With a film that reflects some share of the light as a mirror does, also those of "
-             "film and\nsurface. Raises InputError where an index is not known.");
+             R"(All ghosts that reach the lens's film at the design wavelength, the brightest first, with their shares:
+by rays through both reflections, with the reflectances of light along the axis. Surfaces of unknown
+coating count as bare. With a film that reflects some share of the light as a mirror does, also those of film and
+surface. Raises InputError where an index is not known.)");
 }
 
 }  // namespace realcam::bindings

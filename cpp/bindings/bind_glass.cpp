@@ -55,8 +55,8 @@ void bind_glass(py::module_& m) {
             "index"_a, "The same index at every wavelength.")
         .def_static(
             "from_abbe_number", &Glass::from_abbe_number, "n_d"_a, "abbe_number"_a,
-            "Two-term Cauchy glass with this index at the d line and this Abbe number V_d = (n_d - 1)/(n_F - n_C).\n"
-            "Raises InputError for an index below 1 or a number that is not positive.")
+            R"(Two-term Cauchy glass with this index at the d line and this Abbe number V_d = (n_d - 1)/(n_F - n_C).
+Raises InputError for an index below 1 or a number that is not positive.)")
         .def_static("cauchy", &Glass::cauchy, "coefficients"_a,
                     "n = A + B/l^2 + C/l^4 + ..., l in um. Raises InputError where there is no coefficient.")
         .def_static(

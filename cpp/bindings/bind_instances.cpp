@@ -137,25 +137,21 @@ py::tuple cameras_of(const Assembly& scene) {
 
 void bind_instances(py::class_<Assembly>& scene) {
     scene
-        .def(
-            "with_instance", &with_instance, "object"_a, "scene_from_object"_a = py::none(), py::kw_only(),
-            "name"_a = "",
-            "With another scene in it as an object: its triangles and point lights, but not its suns and environment.\n"
-            "scene_from_object: matrix of shape (4, 4) or (3, 4) for columns (x, y, z, 1), metres; none: as it is.\n"
-            "(K, 4, 4) or (K, 3, 4): K of them, with names \"name 0\", \"name 1\", ... The object's triangles are\n"
-            "shared by all of them; its own instances become its parts, which move with it, by the "
-            "name\n"
-            "\"name/part\". A name that the scene has already gets a number: \"car\", \"car.2\", \"car.3\".\n"
-            "Raises InputError for a matrix that is flat.")
-        .def(
-            "moved", &moved, "instance"_a, "scene_from_object"_a, "times_s"_a = py::none(),
-            "With another transform of one of the instances, by its name or number, and of its parts.\n"
-            "times_s: of K keys, in rising order, seconds of the scene; scene_from_object then has shape (K, 4, 4) or\n"
-            "(K, 3, 4). Between two keys it moves evenly and turns by the shorter way (Shoemake and Duff 1992), "
-            "before\n"
-            "the first and after the last it stands; what the shutter sees of it is blurred (Camera.shutter_opens_s).\n"
-            "Made for every frame: the next picture takes over all that was built for the last.\n"
-            "Raises InputError where there is no such instance, or several, and for what is no transform or motion.")
+        .def("with_instance", &with_instance, "object"_a, "scene_from_object"_a = py::none(), py::kw_only(),
+             "name"_a = "",
+             R"(With another scene in it as an object: its triangles and point lights, but not its suns and environment.
+scene_from_object: matrix of shape (4, 4) or (3, 4) for columns (x, y, z, 1), metres; none: as it is.
+(K, 4, 4) or (K, 3, 4): K of them, with names "name 0", "name 1", ... The object's triangles are
+shared by all of them; its own instances become its parts, which move with it, by the name
+"name/part". A name that the scene has already gets a number: "car", "car.2", "car.3".
+Raises InputError for a matrix that is flat.)")
+        .def("moved", &moved, "instance"_a, "scene_from_object"_a, "times_s"_a = py::none(),
+             R"(With another transform of one of the instances, by its name or number, and of its parts.
+times_s: of K keys, in rising order, seconds of the scene; scene_from_object then has shape (K, 4, 4) or
+(K, 3, 4). Between two keys it moves evenly and turns by the shorter way (Shoemake and Duff 1992), before
+the first and after the last it stands; what the shutter sees of it is blurred (Camera.shutter_opens_s).
+Made for every frame: the next picture takes over all that was built for the last.
+Raises InputError where there is no such instance, or several, and for what is no transform or motion.)")
         .def("at_time", &standing_at, "time_s"_a,
              "The scene as it stands at a time: with the transforms of then, and "
              "without motion.")
@@ -163,10 +159,8 @@ void bind_instances(py::class_<Assembly>& scene) {
                                "For each its name and (4, 4) scene_from_object; of one that moves, at time 0.")
         .def_property_readonly(
             "cameras", &cameras_of,
-            "Cameras of a glTF, for each (name, (4, 4) scene_from_camera at time 0, vertical field of "
-            "view in\n"
-            "degrees): they look along -z, y upwards. Of an orthographic one the field is 0. See "
-            "Camera.framing.")
+            R"(Cameras of a glTF, for each (name, (4, 4) scene_from_camera at time 0, vertical field of view in
+degrees): they look along -z, y upwards. Of an orthographic one the field is 0. See Camera.framing.)")
         .def_property_readonly("motions", &motions_of,
                                "For each instance None, or (times_s, (K, 4, 4) scene_from_object) of one that moves.");
 }

@@ -129,14 +129,14 @@ void bind_lens(py::module_& m) {
              "film_mm"_a = std::pair<double, double>{36, 24}, "wavelength_nm"_a = kLineD_nm, "iris_blades"_a = 0,
              "iris_rounding"_a = 0.0, "iris_rotation_deg"_a = 0.0, "focus_group"_a = py::none(),
              "nearest_focus_m"_a = 0.0, "allow_crossing"_a = false, "film_radius_of_curvature_mm"_a = kInfinity,
-             "surfaces: from the scene to the film, exactly one of them a Stop.\n"
-             "film_distance_mm: last vertex to film; None: best focus at infinity by real rays.\n"
-             "film_mm: (width, height) used where a Camera names no film.\n"
-             "iris_blades: 0 for a round diaphragm, else 3 to 24; iris_rounding: 0 straight to 1 a circle.\n"
-             "focus_group: (first, last) index of the surfaces that move to focus; None: the whole lens moves.\n"
-             "allow_crossing: for experiments, faces may cross inside their rims, and the film the last face.\n"
-             "film_radius_of_curvature_mm: below 0 the film is hollow towards the lens; inf: flat.\n"
-             "Raises LensFileError, naming the surface (from 1), where the lens cannot be built.")
+             R"(surfaces: from the scene to the film, exactly one of them a Stop.
+film_distance_mm: last vertex to film; None: best focus at infinity by real rays.
+film_mm: (width, height) used where a Camera names no film.
+iris_blades: 0 for a round diaphragm, else 3 to 24; iris_rounding: 0 straight to 1 a circle.
+focus_group: (first, last) index of the surfaces that move to focus; None: the whole lens moves.
+allow_crossing: for experiments, faces may cross inside their rims, and the film the last face.
+film_radius_of_curvature_mm: below 0 the film is hollow towards the lens; inf: flat.
+Raises LensFileError, naming the surface (from 1), where the lens cannot be built.)")
         .def_property_readonly("zoom_positions", &zoom_position_names,
                                "Names of the zoom positions; empty: the focal length is fixed.")
         .def_property_readonly("zoom_position", &zoom_position_of,
@@ -144,22 +144,20 @@ void bind_lens(py::module_& m) {
         .def_property_readonly("zoom_focal_lengths_mm", &zoom_focal_lengths,
                                "Of the lens at rest in each of its zoom positions.")
         .def("zoomed", &zoomed_to, "position"_a,
-             "The lens in another zoom position: its name, its index, or, as a float, a focal length in mm between\n"
-             "those of the positions. The plane in focus stays, an open diaphragm stays open, and a closed one keeps\n"
-             "its f-number as far as it opens. Between positions, spacings lie on monotone cubics over the logarithm\n"
-             "of the focal length, which is that of the lens at rest. Raises InputError.")
+             R"(The lens in another zoom position: its name, its index, or, as a float, a focal length in mm between
+those of the positions. The plane in focus stays, an open diaphragm stays open, and a closed one keeps
+its f-number as far as it opens. Between positions, spacings lie on monotone cubics over the logarithm
+of the focal length, which is that of the lens at rest. Raises InputError.)")
         .def(
             "first_order",
             [](const LensSystem& lens, std::optional<double> nm) {
                 return first_order(lens, wavelength_or_design(lens, nm));
             },
             "wavelength_nm"_a = py::none(),
-            "At the design wavelength where none is given. Of a lens that is no centred one of revolution: about the\n"
-            "chief ray of the film's middle, the means of both meridians, so that the f-number is that of the "
-            "exposure.\n"
-            "How the whole lens is tilted or shifted before the film changes nothing. Raises InputError where the "
-            "film's\n"
-            "middle gets no light.")
+            R"(At the design wavelength where none is given. Of a lens that is no centred one of revolution: about the
+chief ray of the film's middle, the means of both meridians, so that the f-number is that of the exposure.
+How the whole lens is tilted or shifted before the film changes nothing. Raises InputError where the film's
+middle gets no light.)")
         .def(
             "meridians",
             [](const LensSystem& lens, std::optional<double> nm) {
@@ -167,19 +165,16 @@ void bind_lens(py::module_& m) {
                 return std::pair(data.meridians[0], data.meridians[1]);
             },
             "wavelength_nm"_a = py::none(),
-            "First-order data in the two principal meridians, about the chief ray of the film's middle; that nearer "
-            "to\n"
-            "the x axis first. Raises InputError where there is no such ray.")
+            R"(First-order data in the two principal meridians, about the chief ray of the film's middle; that nearer to
+the x axis first. Raises InputError where there is no such ray.)")
         .def(
             "focused", [](const LensSystem& lens, double metres) { return focused(lens, 1000 * metres); },
             "focus_distance_m"_a,
-            "The lens focused on a plane at this distance from the film, inf allowed: the real rays of the full "
-            "aperture\n"
-            "make their smallest spot. Raises InputError where the lens cannot.")
+            R"(The lens focused on a plane at this distance from the film, inf allowed: the real rays of the full
+aperture make their smallest spot. Raises InputError where the lens cannot.)")
         .def("stopped_down", &stopped_down, "f_number"_a,
-             "The lens with its diaphragm closed to an f-number: that of the lens focused at infinity, as it is "
-             "engraved,\n"
-             "whatever the lens is focused on. Raises InputError where it does not open that far.")
+             R"(The lens with its diaphragm closed to an f-number: that of the lens focused at infinity, as it is
+engraved, whatever the lens is focused on. Raises InputError where it does not open that far.)")
         .def(
             "best_focus_mm",
             [](const LensSystem& lens, std::optional<double> object_m, std::optional<double> nm) {
@@ -210,10 +205,8 @@ void bind_lens(py::module_& m) {
                     list.emplace_back(c.first, c.second, c.depth, c.radius);
                 return list;
             },
-            "Pairs of faces that cross inside their rims, as (first, second, depth_mm, radius_mm): the indices of the "
-            "two,\n"
-            "how far they reach into each other at most, and how far from the axis that is. Empty but with "
-            "allow_crossing.")
+            R"(Pairs of faces that cross inside their rims, as (first, second, depth_mm, radius_mm): the indices of the
+two, how far they reach into each other at most, and how far from the axis that is. Empty but with allow_crossing.)")
         .def_readonly("film_distance_mm", &LensSystem::film_distance)
         .def_readonly("film_radius_of_curvature_mm", &LensSystem::film_radius_of_curvature)
         .def_property_readonly("film_position_mm", &LensSystem::film_position, "Front vertex to film.")

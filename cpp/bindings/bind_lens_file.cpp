@@ -68,21 +68,18 @@ void bind_lens_file(py::module_& m) {
         .def_static(
             "load", &load_lens, "name_or_path"_a, py::kw_only(), "glass"_a = py::none(), "force"_a = false,
             "pbrt_thickness"_a = py::none(),
-            "A bundled lens by name, or a lens file by path. The suffix says of which program: .zmx (Zemax), "
-            ".seq\n"
-            "(CODE V), .len (OSLO), .dat (pbrt), .json (Optiland), .roa (ray-optics); else it is realcam's own, TOML.\n"
-            "glass: {name in the file: (n_d, V_d), \"schott:F4\", or what else Surface() takes}, for glasses that "
-            "no\n"
-            "catalogue has, or several. force: leaves out what realcam has no model of, with a UserWarning.\n"
-            "pbrt_thickness: \"after\" or \"before\" the surface of its row; None: the first row tells.\n"
-            "Raises LensFileError with file, line and surface, and InputError where glass names one that the\n"
-            "file does not have. What a file leaves out and is computed or assumed is a UserWarning.")
+            R"(A bundled lens by name, or a lens file by path. The suffix says of which program: .zmx (Zemax), .seq
+(CODE V), .len (OSLO), .dat (pbrt), .json (Optiland), .roa (ray-optics); else it is realcam's own, TOML.
+glass: {name in the file: (n_d, V_d), "schott:F4", or what else Surface() takes}, for glasses that no
+catalogue has, or several. force: leaves out what realcam has no model of, with a UserWarning.
+pbrt_thickness: "after" or "before" the surface of its row; None: the first row tells.
+Raises LensFileError with file, line and surface, and InputError where glass names one that the
+file does not have. What a file leaves out and is computed or assumed is a UserWarning.)")
         .def("save", &save_lens, "path"_a,
-             "Writes a lens file by its suffix: .toml, from which Lens.load makes an equal lens; .zmx, .seq, .json\n"
-             "(Optiland) or .roa (ray-optics), with a UserWarning for all that these cannot say; .osl, a camera of "
-             "Blender\n"
-             "5. Raises InputError, also for a lens that OSL cannot express, and ImageFileError where no file can be\n"
-             "made.")
+             R"(Writes a lens file by its suffix: .toml, from which Lens.load makes an equal lens; .zmx, .seq, .json
+(Optiland) or .roa (ray-optics), with a UserWarning for all that these cannot say; .osl, a camera of Blender
+5. Raises InputError, also for a lens that OSL cannot express, and ImageFileError where no file can be
+made.)")
         .def_static("_load_with_notes", &read_lens_with_notes, "path"_a)
         .def("_file_content", &file_content, "path"_a);
 }

@@ -123,8 +123,8 @@ void bind_live(py::module_& m) {
                                                       "A picture of a LiveView, on its way from the device.")
         .def_property_readonly(
             "codes", [](const std::shared_ptr<LiveFrame>& frame) { return codes_of(frame); },
-            "(H, W, 3) uint8, sRGB, read-only; waits for the picture. Raises DeviceError; Cancelled after cancel();\n"
-            "KeyboardInterrupt on Ctrl-C.")
+            R"((H, W, 3) uint8, sRGB, read-only; waits for the picture. Raises DeviceError; Cancelled after cancel();
+KeyboardInterrupt on Ctrl-C.)")
         .def_property_readonly(
             "ready", [](const LiveFrame& frame) { return frame.wait_for(std::chrono::microseconds(0)); },
             "Whether codes would return at once.")

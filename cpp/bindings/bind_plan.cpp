@@ -79,8 +79,8 @@ void bind_plan(py::module_& m) {
         .def_readonly("is_kept", &Decision::is_kept)
         .def_readonly("by", &Decision::by, "\"planner\", or \"user\" where the effect was named.")
         .def_readonly("time_share", &Decision::time_share,
-                      "What the effect by itself adds to the picture's time, as a share of that without effects, "
-                      "measured on the device;\nNone: not measured.")
+                      R"(What the effect by itself adds to the picture's time, as a share of that without effects,
+measured on the device; None: not measured.)")
         .def_readonly("reason", &Decision::reason)
         .def("__repr__", [](const Decision& d) {
             return "<realcam.PlanDecision " + d.effect + ' ' + (d.is_kept ? "kept" : "left out") + ": " +

@@ -168,34 +168,32 @@ void bind_projection(py::module_& m) {
         py::module_::import("enum").attr("IntEnum")("ProjectionStatus", values, "module"_a = "realcam");
     py::reinterpret_borrow<py::class_<Camera>>(m.attr("Camera"))
         .def("project", &project, "points_m"_a, py::kw_only(), "through"_a = "light", "return_status"_a = false,
-             "Where points of the scene, (N, 3) in metres, are in the picture: (N, 2) float64, column and row in\n"
-             "pixels, counted right and down from the picture's upper left corner, so that the middle of the first\n"
-             "pixel is (0.5, 0.5). By real rays at the lens's design wavelength, through lens, focus and stop as they\n"
-             "are, or by the camera's model. Whether something in the scene hides a point is not asked.\n"
-             "through: \"light\": the middle of the light of a point, as pictures show it, by the mean ray of each\n"
-             "film point; \"chief\": where the ray through the middle of the stop lands.\n"
-             "NaN where the lens images no such point. return_status: return (pixels, status), with a\n"
-             "ProjectionStatus for each point. Raises InputError.")
+             R"(Where points of the scene, (N, 3) in metres, are in the picture: (N, 2) float64, column and row in
+pixels, counted right and down from the picture's upper left corner, so that the middle of the first
+pixel is (0.5, 0.5). By real rays at the lens's design wavelength, through lens, focus and stop as they
+are, or by the camera's model. Whether something in the scene hides a point is not asked.
+through: "light": the middle of the light of a point, as pictures show it, by the mean ray of each
+film point; "chief": where the ray through the middle of the stop lands.
+NaN where the lens images no such point. return_status: return (pixels, status), with a
+ProjectionStatus for each point. Raises InputError.)")
         .def("ray", &rays_through, "pixels"_a, py::kw_only(), "through"_a = "light", "return_light"_a = false,
-             "The lines along which places of the picture, (N, 2) column and row as from project, look into the\n"
-             "scene: (origins_m, directions), (N, 3) float64, the first where the line leaves the lens, the second\n"
-             "unit. project takes each of their points back to the pixel.\n"
-             "through: \"light\": the mean of the rays that a film point gets; \"chief\": that through the middle of\n"
-             "the stop, even where a rim blocks it. NaN for a pixel without light, and at the edge of the image where\n"
-             "the lines turn back inwards. return_light: return (origins_m, directions, light), with the irradiance\n"
-             "of each pixel in an even field, over that in the middle of the film. Raises InputError.")
+             R"(The lines along which places of the picture, (N, 2) column and row as from project, look into the
+scene: (origins_m, directions), (N, 3) float64, the first where the line leaves the lens, the second
+unit. project takes each of their points back to the pixel.
+through: "light": the mean of the rays that a film point gets; "chief": that through the middle of
+the stop, even where a rim blocks it. NaN for a pixel without light, and at the edge of the image where
+the lines turn back inwards. return_light: return (origins_m, directions, light), with the irradiance
+of each pixel in an even field, over that in the middle of the film. Raises InputError.)")
         .def_property_readonly(
             "camera_matrix", &camera_matrix,
-            "(3, 3): K of the pinhole that the lens is to first order, in pixels as project counts them. OpenCV, "
-            "whose\n"
-            "first pixel has its middle at (0, 0), wants 0.5 less in the last column. Raises InputError where the\n"
-            "entrance pupil lies at infinity.")
+            R"((3, 3): K of the pinhole that the lens is to first order, in pixels as project counts them. OpenCV, whose
+first pixel has its middle at (0, 0), wants 0.5 less in the last column. Raises InputError where the
+entrance pupil lies at infinity.)")
         .def_property_readonly(
             "world_to_camera", &world_to_camera,
-            "(R, t), (3, 3) and (3,) in metres: R @ point + t is the point from the middle of the entrance pupil, "
-            "with\n"
-            "x right, y down and z forward, as OpenCV and COLMAP have it. Of a camera that moves: in the middle of\n"
-            "the exposure. Raises InputError where the entrance pupil lies at infinity.");
+            R"((R, t), (3, 3) and (3,) in metres: R @ point + t is the point from the middle of the entrance pupil, with
+x right, y down and z forward, as OpenCV and COLMAP have it. Of a camera that moves: in the middle of
+the exposure. Raises InputError where the entrance pupil lies at infinity.)");
 }
 
 }  // namespace realcam::bindings

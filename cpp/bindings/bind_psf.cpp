@@ -142,8 +142,8 @@ void bind_psf(py::module_& m) {
     def_value(psf);
     psf.def_property_readonly(
            "values", [](const Psf& p) { return array_from(p.values, {p.size, p.size}); },
-           "(size, size): share of the light that passes the lens, per um^2; their sum times pitch_um^2 is 1 over the "
-           "whole\nfilm. Rows from the lowest y, columns from the lowest x.")
+           R"((size, size): share of the light that passes the lens, per um^2; their sum times pitch_um^2 is 1 over the
+whole film. Rows from the lowest y, columns from the lowest x.)")
         .def_readonly("pitch_um", &Psf::pitch_um, "From point to point.")
         .def_property_readonly("x_um", &places_of, "(size,): of the columns, from the array's middle.")
         .def_property_readonly("y_um", &places_of, "(size,): of the rows; a positive field lies in the y-z plane.")
@@ -175,8 +175,8 @@ void bind_psf(py::module_& m) {
             "radius_um"_a, "about_um"_a = std::pair(0.0, 0.0),
             "Share of the light within a circle about a place (x, y), as far as the array reaches.")
         .def("mtf", &mtf, "frequencies_per_mm"_a = py::none(),
-             "Modulation transfer: (frequencies per mm, tangential, sagittal), three arrays of shape (N,). Tangential "
-             "is the\ncontrast of lines across y, sagittal of lines across x. None: 0 to half of one over pitch_um.")
+             R"(Modulation transfer: (frequencies per mm, tangential, sagittal), three arrays of shape (N,). Tangential
+is the contrast of lines across y, sagittal of lines across x. None: 0 to half of one over pitch_um.)")
         .def("__repr__", [](const Psf& p) {
             return "<realcam.PSF " + std::to_string(p.size) + " x " + std::to_string(p.size) + ", pitch " +
                    digits(p.pitch_um) + " um, Strehl " + digits(p.strehl) + '>';

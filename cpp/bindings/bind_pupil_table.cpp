@@ -57,11 +57,9 @@ void bind_pupil_table(py::module_& m) {
                                   found.image_radius_mm);
         },
         "lens"_a, "film_radius_mm"_a, "wavelengths_nm"_a,
-        "Where points of the film get light from, as samples are drawn from it (PupilView): nodes (rows + 1, 3), "
-        "sectors\n"
-        "(rows, sectors, 5), and the radius beyond which there is none, mm. wavelengths_nm: it holds what passes at "
-        "any\n"
-        "of these. Raises InputError for lenses that are not of revolution, and glasses not known there.");
+        R"(Where points of the film get light from, as samples are drawn from it (PupilView): nodes (rows + 1, 3),
+sectors (rows, sectors, 5), and the radius beyond which there is none, mm. wavelengths_nm: it holds what passes at
+any of these. Raises InputError for lenses that are not of revolution, and glasses not known there.)");
     m.def(
         "_iris_apothem_mm",
         [](const LensSystem& lens) -> std::optional<double> {

@@ -185,8 +185,8 @@ void bind_render(py::module_& m) {
         .def("__repr__", [](const EffectInfo& e) { return std::string("<realcam.EffectInfo ") + e.name + '>'; });
     m.def("effects", [effect_rows] { return py::list(effect_rows); }, "All effects that can be named.");
     m.def("develop", &develop, "exposure"_a, "iso"_a, "tone"_a = "film",
-          "Film exposure in lux seconds (any shape) as 8-bit sRGB codes at a sensitivity; 10 / iso lux seconds become\n"
-          "middle grey, 118. tone: \"film\" (soft highlights) or \"linear\" (clipped).");
+          R"(Film exposure in lux seconds (any shape) as 8-bit sRGB codes at a sensitivity; 10 / iso lux seconds become
+middle grey, 118. tone: "film" (soft highlights) or "linear" (clipped).)");
     m.def(
         "_metered_exposure",
         [](const py::array_t<float, py::array::c_style | py::array::forcecast>& exposure) {

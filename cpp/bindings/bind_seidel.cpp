@@ -36,9 +36,9 @@ void bind_seidel_table(py::module_& m) {
     using Table = const SeidelTable&;
     py::class_<SeidelTable> table(
         m, "Seidel",
-        "Third-order aberrations surface by surface: arrays of shape (S,), one entry for each of the "
-        "lens's surfaces.\nThe sum over the surfaces is the lens's. Transverse aberrations are those "
-        "of a ray at the edge of the stop and of the field, along y; names and signs as CODE V's.");
+        R"(Third-order aberrations surface by surface: arrays of shape (S,), one entry for each of the lens's surfaces.
+The sum over the surfaces is the lens's. Transverse aberrations are those of a ray at the edge of the stop and of
+the field, along y; names and signs as CODE V's.)");
     def_value(table);
     table.def_readonly("wavelength_nm", &SeidelTable::wavelength_nm)
         .def_readonly("lagrange_invariant_mm", &SeidelTable::lagrange_invariant)
@@ -86,10 +86,9 @@ void bind_seidel_table(py::module_& m) {
                     return std::array{w.w040, w.w131, w.w222, w.w220, w.w311, w.w020_colour, w.w111_colour}[k];
                 });
             },
-            "(S, 7): W040, W131, W222, W220, W311, and of colour W020, W111, in\n"
-            "W = W040 r^4 + W131 h r^3 cos + W222 h^2 r^2 cos^2 + W220 h^2 r^2 + W311 h^3 r cos, with r and h as "
-            "shares "
-            "of the\npupil's radius and of the field.")
+            R"((S, 7): W040, W131, W222, W220, W311, and of colour W020, W111, in
+W = W040 r^4 + W131 h r^3 cos + W222 h^2 r^2 cos^2 + W220 h^2 r^2 + W311 h^3 r cos, with r and h as shares of the
+pupil's radius and of the field.)")
         .def("__repr__", [](Table t) {
             return "<realcam.Seidel " + counted(t.surfaces.size(), "surface") + " at " + digits(t.wavelength_nm) +
                    " nm>";
@@ -110,12 +109,12 @@ void bind_seidel(py::module_& m) {
     py::reinterpret_borrow<py::class_<LensSystem>>(m.attr("Lens"))
         .def("seidel", &make_seidel, "field_deg"_a, py::kw_only(), "object_distance_m"_a = py::none(),
              "wavelength_nm"_a = py::none(), "colours_nm"_a = std::pair(kLineF_nm, kLineC_nm),
-             "Third-order and primary chromatic aberrations, surface by surface, with conics, aspheres and mirrors\n"
-             "(W. T. Welford, Aberrations of Optical Systems, chapters 8 and 10).\n"
-             "field_deg: angle of the paraxial chief ray to the axis; positive: it rises towards +y and the film.\n"
-             "object_distance_m: object plane to front vertex, inf allowed; None is the plane in focus.\n"
-             "colours_nm: the short and the long wavelength.\n"
-             "Returns a Seidel. Raises InputError for angles of 90 deg and more, and for an afocal lens.");
+             R"(Third-order and primary chromatic aberrations, surface by surface, with conics, aspheres and mirrors
+(W. T. Welford, Aberrations of Optical Systems, chapters 8 and 10).
+field_deg: angle of the paraxial chief ray to the axis; positive: it rises towards +y and the film.
+object_distance_m: object plane to front vertex, inf allowed; None is the plane in focus.
+colours_nm: the short and the long wavelength.
+Returns a Seidel. Raises InputError for angles of 90 deg and more, and for an afocal lens.)");
 }
 
 }  // namespace realcam::bindings

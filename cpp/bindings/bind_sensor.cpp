@@ -309,8 +309,8 @@ void bind_sensor(py::module_& m) {
              "dark_current_temperature_c"_a = py::none(), "dark_current_doubling_k"_a = py::none(),
              "dsnu_e"_a = py::none(), "prnu_percent"_a = py::none(), "hot_pixel_share"_a = py::none(),
              "hot_pixel_current_e_per_s"_a = py::none(),
-             "The sensor with some of its values changed, as sensors/README.md describes them. None stays. Raises\n"
-             "InputError.")
+             R"(The sensor with some of its values changed, as sensors/README.md describes them. None stays. Raises
+InputError.)")
         .def("film", &film_of,
              "A Film of the sensor's size with its pixels. Raises InputError where the sensor has none of its own.")
         .def(
@@ -319,9 +319,8 @@ void bind_sensor(py::module_& m) {
                 return matrix_array(electrons_per_um2(sensor, illuminant_from(illuminant)));
             },
             "illuminant"_a = "D65",
-            "(3, 3): electrons in a square micrometre under each filter (rows: red, green, blue) for one lux second "
-            "of\n"
-            "each channel of the film (columns), cover glass included. Raises InputError.")
+            R"((3, 3): electrons in a square micrometre under each filter (rows: red, green, blue) for one lux second of
+each channel of the film (columns), cover glass included. Raises InputError.)")
         .def(
             "iso_range",
             [](const Sensor& sensor, std::optional<double> pitch_um) {
@@ -331,8 +330,8 @@ void bind_sensor(py::module_& m) {
                 return std::pair(speed.lowest_iso(), speed.highest_iso());
             },
             "pixel_pitch_um"_a = py::none(),
-            "(lowest, highest) ISO number by saturation (ISO 12232: 78 over the lux seconds of D65 that saturate);\n"
-            "(0, inf) where the gain is whatever the ISO asks for. The highest is the lowest with the largest gain.")
+            R"((lowest, highest) ISO number by saturation (ISO 12232: 78 over the lux seconds of D65 that saturate);
+(0, inf) where the gain is whatever the ISO asks for. The highest is the lowest with the largest gain.)")
         .def(
             "expose",
             [](const py::object& self, const py::object& image, std::optional<double> iso, std::int64_t seed,
@@ -342,11 +341,11 @@ void bind_sensor(py::module_& m) {
             },
             "image"_a, py::kw_only(), "iso"_a = py::none(), "seed"_a = 0, "serial"_a = 0,
             "temperature_c"_a = py::none(), "threads"_a = 0,
-            "The RawImage that the sensor makes of an Image, on whose film it lies; the image stays as it is.\n"
-            "iso: None is the camera's. seed: of the noise of this exposure; serial: of what a sensor has for ever\n"
-            "(PRNU, DSNU, hot pixels). temperature_c: None is dark_current_temperature_c. threads: 0 is all.\n"
-            "The noise is the same for any number of threads. Each pixel of the picture is one of the sensor's;\n"
-            "a warning tells where the film's pixels have another size. Raises InputError.")
+            R"(The RawImage that the sensor makes of an Image, on whose film it lies; the image stays as it is.
+iso: None is the camera's. seed: of the noise of this exposure; serial: of what a sensor has for ever
+(PRNU, DSNU, hot pixels). temperature_c: None is dark_current_temperature_c. threads: 0 is all.
+The noise is the same for any number of threads. Each pixel of the picture is one of the sensor's;
+a warning tells where the film's pixels have another size. Raises InputError.)")
         .def("__repr__", [](const Sensor& s) { return text_of(s); });
     bind_data(type);
     bind_conversion(type);

@@ -265,35 +265,32 @@ std::string repr_of(const RenderSettings& settings) {
 }
 
 constexpr const char* kDoc =
-    "How a picture is taken; a value, as rc.render, rc.Session, rc.LiveView, rc.plan and rc.Shot take it.\n\n"
-    "spp: samples per pixel, or \"auto\": as many as the noise needs, more where it is noisier, by tiles of 16 pixels\n"
-    "(docs/sampling.md). noise: what is wanted then, as a share of a tile's light (of a hundredth of white where that\n"
-    "is more), or noise_codes: in 8-bit codes of the developed picture; 1 code unless said. seconds, max_spp (4096):\n"
-    "no more samples are taken after so long, and of a pixel no more than so many; warns where the noise is still\n"
-    "larger then.\n"
-    "max_bounces: 0 for direct light only, 1 for one reflection more, ...\n"
-    "transport: \"paths\" for all ways of light, \"whitted\" for direct light and what mirrors and smooth glass show.\n"
-    "clamp_cd_m2: radiance above which what comes by a bounce is cut off, for fewer bright dots and a picture that is\n"
-    "too dark; 0: never. threads: 0 for all.\n"
-    "layers: names of what else Image.layers is to hold, or \"all\" (docs/layers.md), which leaves dual_pixel out.\n"
-    "effects: \"auto\": what the shot calls for, and the cheapest camera model that shows it, by thresholds: those of\n"
-    "quality, \"draft\" (2 pixels, 4 codes), \"photo\" (0.5, 1) or \"reference\" (0.1, 0.25), or threshold_px and\n"
-    "threshold_codes; or names of what is simulated besides (rc.effects() lists them; docs/dispersion.md), () for\n"
-    "none. Warns of what the lens cannot give of them.\n"
-    "illuminant: of dispersion and diffraction, the spectrum of all light: \"D65\", \"D50\", \"A\", \"FL2\", a "
-    "wavelength in "
-    "nm,\n"
-    "or (wavelength_nm, power) pairs; None: D65. As an attribute it is a text.\n"
-    "pupil_sampling: where a full lens's rays are sent: \"outline\", where real rays were found to pass; to compare\n"
-    "with it (docs/accuracy.md), \"rear_element\", \"exit_pupil\", or \"pixel\", where the pixel's earlier samples "
-    "have\n"
-    "passed.\n"
-    "light_tracing: how a full lens's images of lights are found that are small or out of focus: \"weighted\", by "
-    "samples\n"
-    "of pixels and by samples from the lights; to compare with it, \"alone\", from the lights, or \"off\", by samples "
-    "of\n"
-    "pixels, which never meet point lights and suns.\n\n"
-    "Raises InputError.";
+    R"(How a picture is taken; a value, as rc.render, rc.Session, rc.LiveView, rc.plan and rc.Shot take it.
+
+spp: samples per pixel, or "auto": as many as the noise needs, more where it is noisier, by tiles of 16 pixels
+(docs/sampling.md). noise: what is wanted then, as a share of a tile's light (of a hundredth of white where that
+is more), or noise_codes: in 8-bit codes of the developed picture; 1 code unless said. seconds, max_spp (4096):
+no more samples are taken after so long, and of a pixel no more than so many; warns where the noise is still
+larger then.
+max_bounces: 0 for direct light only, 1 for one reflection more, ...
+transport: "paths" for all ways of light, "whitted" for direct light and what mirrors and smooth glass show.
+clamp_cd_m2: radiance above which what comes by a bounce is cut off, for fewer bright dots and a picture that is
+too dark; 0: never. threads: 0 for all.
+layers: names of what else Image.layers is to hold, or "all" (docs/layers.md), which leaves dual_pixel out.
+effects: "auto": what the shot calls for, and the cheapest camera model that shows it, by thresholds: those of
+quality, "draft" (2 pixels, 4 codes), "photo" (0.5, 1) or "reference" (0.1, 0.25), or threshold_px and
+threshold_codes; or names of what is simulated besides (rc.effects() lists them; docs/dispersion.md), () for
+none. Warns of what the lens cannot give of them.
+illuminant: of dispersion and diffraction, the spectrum of all light: "D65", "D50", "A", "FL2", a wavelength in nm,
+or (wavelength_nm, power) pairs; None: D65. As an attribute it is a text.
+pupil_sampling: where a full lens's rays are sent: "outline", where real rays were found to pass; to compare
+with it (docs/accuracy.md), "rear_element", "exit_pupil", or "pixel", where the pixel's earlier samples have
+passed.
+light_tracing: how a full lens's images of lights are found that are small or out of focus: "weighted", by samples
+of pixels and by samples from the lights; to compare with it, "alone", from the lights, or "off", by samples of
+pixels, which never meet point lights and suns.
+
+Raises InputError.)";
 
 }  // namespace
 

@@ -153,14 +153,14 @@ void bind_key(py::module_& m) {
             "focal_length_mm"_a = py::none(), "f_number"_a = py::none(), "blades"_a = py::none(),
             "blade_rounding"_a = py::none(), "blade_rotation_deg"_a = py::none(), "exposure_time_s"_a = py::none(),
             "iso"_a = py::none(), "film_shift_mm"_a = py::none(), "interpolation"_a = "linear",
-            "lens: a cut to another Lens, which is on the camera from here on; until the first of them, the camera's\n"
-            "own is. The rings of a lens, focus_m to blade_rotation_deg, go between its own keys alone. One without\n"
-            "keys for focus and f-number takes over those of the lens before, whatever it has itself.\n"
-            "focus_m: object plane to film, or inf. focal_length_mm: of a zoom lens at rest. What is None is that of\n"
-            "the keys beside. film_shift_mm: (right, up). Between keys it, 1 / focus_m, and rounding and angle of the\n"
-            "blades change evenly, and the others by even ratios; lens and blades jump. interpolation: of the way\n"
-            "from here on; \"smooth\" goes from rest to rest, and through the smooth keys between without a stop;\n"
-            "\"step\" stays, and jumps at the next key. Raises InputError.")
+            R"(lens: a cut to another Lens, which is on the camera from here on; until the first of them, the camera's
+own is. The rings of a lens, focus_m to blade_rotation_deg, go between its own keys alone. One without
+keys for focus and f-number takes over those of the lens before, whatever it has itself.
+focus_m: object plane to film, or inf. focal_length_mm: of a zoom lens at rest. What is None is that of
+the keys beside. film_shift_mm: (right, up). Between keys it, 1 / focus_m, and rounding and angle of the
+blades change evenly, and the others by even ratios; lens and blades jump. interpolation: of the way
+from here on; "smooth" goes from rest to rest, and through the smooth keys between without a stop;
+"step" stays, and jumps at the next key. Raises InputError.)")
         .def_readonly("time_s", &CameraKey::time_s)
         .def_readonly("lens", &CameraKey::lens)
         .def_readonly("focus_m", &CameraKey::focus_m)
@@ -187,14 +187,13 @@ void bind_shake(py::module_& m) {
         "The shake of a camera in the hand: a curve that was measured, one that is drawn, or both, which are added.");
     def_hashable_value(shake);
     shake
-        .def(
-            py::init(&make_shake), py::kw_only(), "rms_deg"_a = 0.0, "rms_mm"_a = 0.0, "corner_hz"_a = 1.0,
-            "seed"_a = 0, "curve"_a = std::vector<CurvePoint>(),
-            "rms_deg, rms_mm: of each angle and of each shift, about and along the camera's axes to the right, up and\n"
-            "back. Each is a Gaussian process of its own, drawn with the seed, with the one-sided spectrum\n"
-            "4 rms^2 / (pi corner_hz) / (1 + (f / corner_hz)^2)^2 over the frequency f, up to ten corners.\n"
-            "curve: (time_s, (x, y, z) in degrees, (x, y, z) in metres) in rising order of time; about x, then y,\n"
-            "then z. Raises InputError.")
+        .def(py::init(&make_shake), py::kw_only(), "rms_deg"_a = 0.0, "rms_mm"_a = 0.0, "corner_hz"_a = 1.0,
+             "seed"_a = 0, "curve"_a = std::vector<CurvePoint>(),
+             R"(rms_deg, rms_mm: of each angle and of each shift, about and along the camera's axes to the right, up and
+back. Each is a Gaussian process of its own, drawn with the seed, with the one-sided spectrum
+4 rms^2 / (pi corner_hz) / (1 + (f / corner_hz)^2)^2 over the frequency f, up to ten corners.
+curve: (time_s, (x, y, z) in degrees, (x, y, z) in metres) in rising order of time; about x, then y,
+then z. Raises InputError.)")
         .def_static(
             "load",
             [](const py::object& path) {
@@ -202,9 +201,8 @@ void bind_shake(py::module_& m) {
                 return Shake{.curve = shot::read_shake_curve(name)};
             },
             "path"_a,
-            "Reads a curve from a .csv, whose first line names its columns: time_s, x_deg, y_deg, z_deg, x_m, y_m, "
-            "z_m;\n"
-            "but for the time any may be missing. Raises InputError naming file and line.")
+            R"(Reads a curve from a .csv, whose first line names its columns: time_s, x_deg, y_deg, z_deg, x_m, y_m,
+z_m; but for the time any may be missing. Raises InputError naming file and line.)")
         .def("at", &shake_positions, "times_s"_a,
              "Where it has the camera at (N,) times: angles (N, 3) in degrees, and shifts (N, 3) in metres.")
         .def_readonly("rms_deg", &Shake::rms_deg)

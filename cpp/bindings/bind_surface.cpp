@@ -118,30 +118,25 @@ void bind_surface(py::module_& m) {
              "radius_of_curvature_x_mm"_a = py::none(), "conic_x"_a = py::none(), "radial_terms"_a = py::none(),
              "xy_terms"_a = py::none(), "zernike"_a = py::none(), "forbes"_a = py::none(), "aperture"_a = py::none(),
              "obscurations"_a = py::none(),
-             "radius_of_curvature_mm: positive where the centre lies on the film side; inf: plane.\n"
-             "thickness_mm: to the next surface; that of the last surface is not used.\n"
-             "material: behind the surface: index, (n_d, V_d), glass name, Glass, or None for air.\n"
-             "conic: k = -e^2. aspheric_coefficients: {even power of r: mm^(1 - power)}, powers 4 to 18.\n"
-             "inner_semi_diameter_mm: light closer to the axis is blocked.\n"
-             "type: refracting, mirror, stop or aperture (a plane that only blocks).\n"
-             "coating: \"bare\", \"quarter_wave\", of a mirror \"aluminium\" or \"silver\", a Coating, or \"unknown\": "
-             "light\n"
-             "is then taken to meet bare glass, or a perfect mirror.\n"
-             "decentre_mm: (x, y) or (x, y, z) of the vertex, from its place on the axis. tilt_deg: angles by which "
-             "it\n"
-             "is then turned about x, its new y and its new z, counterclockwise as seen from the axis's tip. returns:\n"
-             "this moves the surface alone; else the axis goes on from there, with all that follows and the film.\n"
-             "form: \"biconic\" or \"toroid\", of which radius and conic are the section in the yz plane, and\n"
-             "radius_of_curvature_x_mm and conic_x that in the xz plane. A toroid's even terms are of y.\n"
-             "radial_terms: {power of r: mm^(1 - power)}, powers 1 to 20. xy_terms: {(i, j): coefficient of x^i y^j}.\n"
-             "zernike: {\"order\": \"noll\" or \"fringe\", \"radius_mm\", \"coefficients_mm\"}. forbes: the same "
-             "with\n"
-             "\"kind\": \"bfs\" or \"con\". These parts are added to the conic.\n"
-             "aperture: {\"ellipse_mm\" or \"rectangle_mm\": (half_x, half_y)}, {\"circle_mm\": radius} or\n"
-             "{\"polygon_mm\": corners}, each with \"offset_mm\". obscurations: a list of {\"circle_mm\", "
-             "\"ellipse_mm\" or\n"
-             "\"rectangle_mm\", \"offset_mm\", \"angle_deg\"} and {\"spider_arms\": count, \"width_mm\", "
-             "\"angle_deg\"}.")
+             R"(radius_of_curvature_mm: positive where the centre lies on the film side; inf: plane.
+thickness_mm: to the next surface; that of the last surface is not used.
+material: behind the surface: index, (n_d, V_d), glass name, Glass, or None for air.
+conic: k = -e^2. aspheric_coefficients: {even power of r: mm^(1 - power)}, powers 4 to 18.
+inner_semi_diameter_mm: light closer to the axis is blocked.
+type: refracting, mirror, stop or aperture (a plane that only blocks).
+coating: "bare", "quarter_wave", of a mirror "aluminium" or "silver", a Coating, or "unknown": light
+is then taken to meet bare glass, or a perfect mirror.
+decentre_mm: (x, y) or (x, y, z) of the vertex, from its place on the axis. tilt_deg: angles by which it
+is then turned about x, its new y and its new z, counterclockwise as seen from the axis's tip. returns:
+this moves the surface alone; else the axis goes on from there, with all that follows and the film.
+form: "biconic" or "toroid", of which radius and conic are the section in the yz plane, and
+radius_of_curvature_x_mm and conic_x that in the xz plane. A toroid's even terms are of y.
+radial_terms: {power of r: mm^(1 - power)}, powers 1 to 20. xy_terms: {(i, j): coefficient of x^i y^j}.
+zernike: {"order": "noll" or "fringe", "radius_mm", "coefficients_mm"}. forbes: the same with
+"kind": "bfs" or "con". These parts are added to the conic.
+aperture: {"ellipse_mm" or "rectangle_mm": (half_x, half_y)}, {"circle_mm": radius} or
+{"polygon_mm": corners}, each with "offset_mm". obscurations: a list of {"circle_mm", "ellipse_mm" or
+"rectangle_mm", "offset_mm", "angle_deg"} and {"spider_arms": count, "width_mm", "angle_deg"}.)")
         .def_property_readonly("radius_of_curvature_mm",
                                [](const Surface& s) { return s.curvature == 0 ? kInfinity : 1 / s.curvature; })
         .def_readonly("curvature_per_mm", &Surface::curvature)

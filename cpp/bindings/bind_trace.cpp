@@ -184,30 +184,25 @@ void bind_trace(py::module_& m) {
                       "(N,): surface at which the ray ended, from 0; -1: bad input.")
         .def_readonly(
             "transmission", &TraceResult::transmission,
-            "(N,): share of the power of unpolarised light that is left, 0 where the status is not OK; None where "
-            "it\nwas not asked for.")
+            R"((N,): share of the power of unpolarised light that is left, 0 where the status is not OK; None where it
+was not asked for.)")
         .def("__repr__",
              [](const TraceResult& r) { return "<realcam.TraceResult " + counted(py::len(r.status), "ray") + '>'; });
     py::reinterpret_borrow<py::class_<LensSystem>>(m.attr("Lens"))
         .def("trace", &trace, "origins_mm"_a, "directions"_a, py::kw_only(), "wavelength_nm"_a = py::none(),
              "start"_a = "film", "dtype"_a = "float64", "surface_count"_a = py::none(), "device"_a = py::none(),
              "transmission"_a = false,
-             "Traces rays surface by surface. origins_mm, directions: (N, 3), lens frame.\n"
-             "start: \"film\" (towards the scene) or \"scene\" (towards the film).\n"
-             "dtype: number type of the computation, float64 or float32; results are float64 arrays.\n"
-             "surface_count: cross only the first so many surfaces that the light meets; None: all.\n"
-             "device: for arrays of the host the CPU (None, \"cpu\"), a GPU (\"cuda\", \"cuda:1\"), or a GPU if there "
-             "is\n"
-             "one (\"auto\"); results are arrays of numpy. Arrays with __cuda_array_interface__ or __dlpack__ in a "
-             "GPU's\n"
-             "memory (torch, cupy, DeviceArray: float64 or float32, contiguous) are traced where they lie, and the\n"
-             "results are DeviceArrays.\n"
-             "transmission: work out transmission too, by polarisation ray tracing in float64, as Lens.transmission "
-             "does; "
-             "for\n"
-             "arrays of the host.\n"
-             "Returns a TraceResult. Raises InputError for wrong shapes, DeviceError; single bad rays end as "
-             "BAD_INPUT.");
+             R"(Traces rays surface by surface. origins_mm, directions: (N, 3), lens frame.
+start: "film" (towards the scene) or "scene" (towards the film).
+dtype: number type of the computation, float64 or float32; results are float64 arrays.
+surface_count: cross only the first so many surfaces that the light meets; None: all.
+device: for arrays of the host the CPU (None, "cpu"), a GPU ("cuda", "cuda:1"), or a GPU if there is
+one ("auto"); results are arrays of numpy. Arrays with __cuda_array_interface__ or __dlpack__ in a GPU's
+memory (torch, cupy, DeviceArray: float64 or float32, contiguous) are traced where they lie, and the
+results are DeviceArrays.
+transmission: work out transmission too, by polarisation ray tracing in float64, as Lens.transmission does; for
+arrays of the host.
+Returns a TraceResult. Raises InputError for wrong shapes, DeviceError; single bad rays end as BAD_INPUT.)");
 }
 
 }  // namespace realcam::bindings

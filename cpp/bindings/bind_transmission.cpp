@@ -45,18 +45,13 @@ for bare glass, mirrors for perfect ones.
              "pupil"_a = py::none(), text.c_str())
         .def_property_readonly(
             "t_stop", [](const LensSystem& lens) { return t_stop(lens, lens.wavelength_nm); },
-            "f-number / sqrt(transmittance) at the design wavelength, the transmittance being that of the ray along "
-            "the "
-            "axis\n"
-            "times the share of the pupil that no central obstruction takes: the f-number of a lens without losses "
-            "that "
-            "gives as\n"
-            "bright a picture there. inf where the lens has no f-number.")
+            R"(f-number / sqrt(transmittance) at the design wavelength, the transmittance being that of the ray along
+the axis times the share of the pupil that no central obstruction takes: the f-number of a lens without losses that
+gives as bright a picture there. inf where the lens has no f-number.)")
         .def_property_readonly(
             "unknown_coatings", &surfaces_with_unknown_coating,
-            "Indices of the surfaces of which the lens does not say how they are coated: glass in air, "
-            "taken for bare, and\n"
-            "mirrors, taken for perfect. Cemented faces are bare without being said so.");
+            R"(Indices of the surfaces of which the lens does not say how they are coated: glass in air, taken for bare,
+and mirrors, taken for perfect. Cemented faces are bare without being said so.)");
 }
 
 }  // namespace realcam::bindings

@@ -57,28 +57,27 @@ Assembly with_daylight(const Assembly& scene, const Camera& camera) {
 void bind_view(py::module_& m) {
     py::reinterpret_borrow<py::class_<Film>>(m.attr("Film"))
         .def_static("for_lens", &film_for_lens, "lens"_a, "size_mm"_a = py::none(), "resolution"_a = py::none(),
-                    "A film for a lens. size_mm: (width, height); resolution: (columns, rows). None is chosen: the\n"
-                    "size that the lens was made for, 960 square pixels along the longer side; of a resolution alone\n"
-                    "the largest part of the lens's film that has its shape. Raises InputError.");
+                    R"(A film for a lens. size_mm: (width, height); resolution: (columns, rows). None is chosen: the
+size that the lens was made for, 960 square pixels along the longer side; of a resolution alone
+the largest part of the lens's film that has its shape. Raises InputError.)");
     py::reinterpret_borrow<py::class_<Camera>>(m.attr("Camera"))
         .def("framing", &framed, "scene"_a, py::kw_only(), "position"_a = py::none(), "look_at"_a = py::none(),
              "up"_a = Triple{0, 1, 0}, "focus_distance_m"_a = py::none(), "scene_camera"_a = "",
-             "The camera where it has the scene in its picture, in focus: position, look_at and focus_distance_m as\n"
-             "given, and what is None chosen. scene_camera: the name of one of scene.cameras, whose place, direction\n"
-             "and motion to take, or \"none\"; where nothing is said of the view it is the first of them. Without one, "
-             "it\n"
-             "looks at the middle of the scene, in front of it along +z\n"
-             "(-y where up is z) where the scene fills nine tenths of the film, and focuses on the first surface on\n"
-             "its axis. Of the camera itself lens, film, model and exposure stay. Raises InputError.")
+             R"(The camera where it has the scene in its picture, in focus: position, look_at and focus_distance_m as
+given, and what is None chosen. scene_camera: the name of one of scene.cameras, whose place, direction
+and motion to take, or "none"; where nothing is said of the view it is the first of them. Without one, it
+looks at the middle of the scene, in front of it along +z
+(-y where up is z) where the scene fills nine tenths of the film, and focuses on the first surface on
+its axis. Of the camera itself lens, film, model and exposure stay. Raises InputError.)")
         .def("metered", &metered, "scene"_a, py::kw_only(), "device"_a = "auto", "max_bounces"_a = 1,
              "progress"_a = py::none(),
-             "The camera with the exposure time that brings the average of its picture of the scene to middle grey at\n"
-             "its ISO, from a small picture with so many reflections (see render, as for device and progress).\n"
-             "Raises InputError where no light reaches the film; DeviceError.");
+             R"(The camera with the exposure time that brings the average of its picture of the scene to middle grey at
+its ISO, from a small picture with so many reflections (see render, as for device and progress).
+Raises InputError where no light reaches the film; DeviceError.)");
     py::reinterpret_borrow<py::class_<Assembly>>(m.attr("Scene"))
         .def("with_daylight", &with_daylight, "camera"_a,
-             "The scene under a sun of 80 klux, from the upper left behind the camera, and a sky of 5000 cd/m^2 in\n"
-             "place of its environment: f/16, 1/125 s and ISO 100 expose it.");
+             R"(The scene under a sun of 80 klux, from the upper left behind the camera, and a sky of 5000 cd/m^2 in
+place of its environment: f/16, 1/125 s and ISO 100 expose it.)");
 }
 
 }  // namespace realcam::bindings
