@@ -4,9 +4,9 @@
 
 #include "../../math/vec3.hpp"
 
-// Written before the functions that most of the time goes into. They are built for several machines, of which the
-// loader picks one.
-#if defined(__x86_64__) && defined(__linux__)
+// Written before the functions that most of the time goes into. gcc builds them for several machines, of which the
+// loader picks one. clang would want it in their declarations, too, and cannot have it beside `flatten`.
+#if defined(__x86_64__) && defined(__linux__) && !defined(__clang__)
 #define REALCAM_CLONES __attribute__((target_clones("avx512f", "avx2", "default")))
 #else
 #define REALCAM_CLONES

@@ -178,13 +178,13 @@ DualSurface::DualSurface(const SurfaceView<double>& from, const Surface& surface
                          const std::vector<LensVariable>& shape)
     : DualSurface() {
     SurfaceView<double> wide = from;
-    std::vector<int> powers;
+    std::vector<int> aspheric;
     for (const LensVariable& v : shape)
-        if (v.quantity == LensQuantity::aspheric) powers.push_back(v.number);
+        if (v.quantity == LensQuantity::aspheric) aspheric.push_back(v.number);
     if (wide.kind == SurfaceShape::sphere || wide.kind == SurfaceShape::conic) {
         const auto is_conic = [](const LensVariable& v) { return v.quantity == LensQuantity::conic; };
         if (std::any_of(shape.begin(), shape.end(), is_conic)) wide.kind = SurfaceShape::conic;
-        if (!powers.empty()) {
+        if (!aspheric.empty()) {
             const double reach = 1.02 * surface.clear_semi_diameter;
             wide.kind = SurfaceShape::asphere;
             wide.search_squared = reach * reach;
@@ -204,7 +204,7 @@ DualSurface::DualSurface(const SurfaceView<double>& from, const Surface& surface
     terms.is_toroid = freeform.is_toroid;
     terms.section_terms = freeform.section_terms, terms.radial_terms = freeform.radial_terms;
     terms.forbes_terms = freeform.forbes_terms, terms.xy_degree = freeform.xy_degree;
-    for (const int power : powers) {
+    for (const int power : aspheric) {
         if (terms.is_toroid)
             terms.section_terms = std::max(terms.section_terms, power / 2 - 1);
         else
