@@ -12,7 +12,7 @@ function(realcam_widest_instruction_set variable)
         return __builtin_cpu_supports("x86-64-v4") ? 4 : __builtin_cpu_supports("x86-64-v3") ? 3 : 2;
     }]])
   if(NOT compiles)
-    message(FATAL_ERROR "The compiler cannot tell what this processor has: give REALCAM_INSTRUCTION_SETS (v2, v3, v4).")
+    message(FATAL_ERROR "The compiler cannot ask for a processor's instruction set: gcc 12 or clang 18 is wanted.")
   endif()
   set(${variable} v${REALCAM_MACHINE_LEVEL} PARENT_SCOPE)
 endfunction()
