@@ -97,7 +97,7 @@ struct OptionAdder {
 
     /// `read(request, name, word)`: what the option changes.
     template <class Read>
-    void operator()(const char* name, const std::string& help, const char* type, const Read& read) const {
+    void operator()(const char* name, const std::string& help, const char* type, Read read) const {
         const auto keep = [&words = words, name, read](const std::string& word) {
             words.changes.emplace_back([=](Request& request) { read(request, name, word); });
         };
