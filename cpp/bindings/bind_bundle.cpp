@@ -214,8 +214,7 @@ Returns a RayBundle. Raises InputError where no light passes, or a glass is not 
             R"(Where very many rays of one object point land, for spots, histograms and bokeh: 50 million a second and
 more. They fill a rectangle in front of the lens that holds all light that passes, evenly, and are not aimed at the
 stop.
-)") +
-        kFieldText +
+)") + kFieldText +
         R"(count: rays to trace; up to a third of them are blocked.
 film_distance_mm: last vertex to the plane of the points; None: the film.
 pattern: "even", a sequence that is spread evenly for any count, or "grid".
