@@ -15,6 +15,10 @@ struct Cell : LocalWave {
     bool passes;
 };
 
+/// How near to a cell's slope its ray is looked for, as a share of the cell. Its path to the slope itself is then
+/// right to the square of that, in units of what a cell's wavefront bends: a few millionths of a radian.
+constexpr double kClose = 1e-3;
+
 /// Newton's method from a cell nearby.
 std::optional<Cell> cell_with(const PointBundle& bundle, Vec2<double> slope, LocalWave near, double tolerance) {
     for (int i = 0; i < 8; ++i) {
@@ -117,7 +121,7 @@ PsfPupil psf_pupil(const psf_detail::Part& part, const Psf& psf, const RayLoop& 
                 for (int column = columns / 2 - (way < 0); column >= 0 && column < columns; column += way) {
                     const Vec2<double> slope = {(left + column) * step, (bottom + row) * step};
                     std::optional<Cell>& cell = at(column, row);
-                    cell = cell_with(bundle, slope, before ? *before : *middle, 1e-6 * step);
+                    cell = cell_with(bundle, slope, before ? *before : *middle, kClose * step);
                     if (cell && cell->passes) before = cell;
                 }
             }
