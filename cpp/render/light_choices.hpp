@@ -65,24 +65,24 @@ REALCAM_INLINE void choose_lights(const SceneView& scene, const Receivers& recei
             probability[i] = 1.0f;
         }
         for (bool goes_on = nodes[0].second_child > 0; goes_on;) {
-            light_choices_detail::LightNodeLanes<kWidth> first_child, second_child;
+            light_choices_detail::LightNodeLanes<kWidth> firsts, seconds;  // children
             for (int i = 0; i < kWidth; ++i) {
                 // Those that are at their leaf look at the root's children, and stay.
                 const bool is_inner = second[i] > 0;
-                first_child.set(i, nodes[is_inner ? node[i] + 1 : 1]);
-                second_child.set(i, nodes[is_inner ? second[i] : 1]);
+                firsts.set(i, nodes[is_inner ? node[i] + 1 : 1]);
+                seconds.set(i, nodes[is_inner ? second[i] : 1]);
             }
             std::int32_t deepest = 0;
             REALCAM_LANES
             for (int i = 0; i < kWidth; ++i) {
                 const bool is_inner = second[i] > 0;
                 LightTreePath path = {rest[i], bits[i], node[i], probability[i]};
-                const bool is_first = path.take_turn(first_child[i], second_child[i], second[i], receiver(begin + i));
+                const bool is_first = path.take_turn(firsts[i], seconds[i], second[i], receiver(begin + i));
                 rest[i] = select(is_inner, path.u, rest[i]);
                 bits[i] = path.seed;
                 node[i] = select(is_inner, path.node, node[i]);
                 probability[i] = select(is_inner, path.probability, probability[i]);
-                const std::int32_t next = select(is_first, first_child.second_child[i], second_child.second_child[i]);
+                const std::int32_t next = select(is_first, firsts.second_child[i], seconds.second_child[i]);
                 second[i] = select(is_inner, next, second[i]);
                 deepest |= select(second[i] > 0, 1, 0);
             }

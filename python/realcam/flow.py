@@ -60,7 +60,7 @@ class OpticalFlow:
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Writes .flo, the format of Middlebury's and Sintel's data: with the flow of what is hidden, too, and 1e10
-        where none is known. Raises InputError, ImageFileError.
+        where none is known. Raises ImageFileError.
         """
         check_target(path, (".flo",))
         height, width = self.visible.shape

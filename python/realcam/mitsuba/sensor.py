@@ -84,20 +84,16 @@ class RealcamSensor(mi.Sensor):  # type: ignore[misc]
     def sample_ray(
         self, time: Any, wavelength_sample: Any, position_sample: Any, aperture_sample: Any, active: Any = True
     ) -> tuple[Any, Any]:
-        wavelengths, share, variable = self.drawn_wavelengths(wavelength_sample, active)
-        o, d, weight, passed, _ = self.leave_lens(position_sample, aperture_sample, variable)
         ray = mi.Ray3f()
-        self.set_ray(ray, o, d, passed, time, wavelengths)
-        return ray, share * dr.select(passed & active, weight * self.exposure_time_s, 0.0)
+        weight, _, _ = self.set_ray(ray, time, wavelength_sample, position_sample, aperture_sample, active)
+        return ray, weight
 
     def sample_ray_differential(
         self, time: Any, wavelength_sample: Any, position_sample: Any, aperture_sample: Any, active: Any = True
     ) -> tuple[Any, Any]:
         """Of the same place in the pupil, one pixel to the right and one down. Rims stop none of these."""
-        wavelengths, share, variable = self.drawn_wavelengths(wavelength_sample, active)
-        o, d, weight, passed, _ = self.leave_lens(position_sample, aperture_sample, variable)
         ray = mi.RayDifferential3f()
-        self.set_ray(ray, o, d, passed, time, wavelengths)
+        weight, passed, variable = self.set_ray(ray, time, wavelength_sample, position_sample, aperture_sample, active)
         columns, rows = self.film().crop_size()
         beside = []
         for step in (mi.Vector2f(1 / columns, 0), mi.Vector2f(0, 1 / rows)):
@@ -106,7 +102,7 @@ class RealcamSensor(mi.Sensor):  # type: ignore[misc]
             beside.append(dr.select(passed & exists, self.way_in_scene(d_beside), ray.d))
         ray.o_x, ray.d_x, ray.o_y, ray.d_y = beside
         ray.has_differentials = True
-        return ray, share * dr.select(passed & active, weight * self.exposure_time_s, 0.0)
+        return ray, weight
 
     def sample_direction(self, it: Any, sample: Any, active: Any = True) -> tuple[Any, Any]:
         """A way from a point of the scene through the lens to the film: where it enters the lens, and the pixel.
@@ -148,13 +144,18 @@ class RealcamSensor(mi.Sensor):  # type: ignore[misc]
         o.z += self.lens.vertices_mm[0]
         return o, dr.normalize(p), weight, passed & (weight > 0), exists & (weight > 0)
 
-    def set_ray(self, ray: Any, o: Any, d: Any, passed: Any, time: Any, wavelengths: Any) -> None:
-        """A ray that the lens stops goes nowhere: its numbers need not be any."""
+    def set_ray(
+        self, ray: Any, time: Any, wavelength_sample: Any, position_sample: Any, aperture_sample: Any, active: Any
+    ) -> tuple[Any, Any, Any]:
+        """Returns its weight, whether it passes, and the number that refraction goes by. A ray that the lens stops goes
+        nowhere: its numbers need not be any."""
+        ray.wavelengths, share, variable = self.drawn_wavelengths(wavelength_sample, active)
+        o, d, weight, passed, _ = self.leave_lens(position_sample, aperture_sample, variable)
         ray.o = self.point_in_scene(dr.select(passed, o, mi.Point3f(0)))
         ray.d = self.way_in_scene(dr.select(passed, d, mi.Vector3f(0, 0, -1)))
         ray.maxt = dr.select(passed, FARTHEST, 0.0)
         ray.time = time
-        ray.wavelengths = wavelengths
+        return share * dr.select(passed & active, weight * self.exposure_time_s, 0.0), passed, variable
 
     def drawn_wavelengths(self, sample: Any, active: Any) -> tuple[Any, Any, Any]:
         """Wavelengths of a ray, the weight of each, and the number that refraction goes by. A ray goes one way, so
