@@ -15,6 +15,7 @@ import time
 import urllib.error
 import urllib.request
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -64,6 +65,12 @@ def launched(driver: Any) -> Iterator[Any]:
 _PROGRAM = f"import sys; sys.path.append({str(Path(__file__).parent)!r}); import bench_server; bench_server.run()"
 # A picture takes a sixteenth of the samples that it takes for users, and windows that pages have left are soon closed.
 _SETTINGS = {"noise_codes": 4.0, "most_windows": 4}
+
+
+def _cpu_s(stat: Path) -> float:
+    """Of a process or a thread, by its file in /proc. Raises FileNotFoundError where it has ended."""
+    fields = stat.read_text().rpartition(")")[2].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
 
 class Server:
@@ -130,12 +137,18 @@ class Server:
         for line in subprocess.check_output(["ps", "-e", "-o", "pid=,ppid="], text=True).splitlines():
             pid, parent = map(int, line.split())
             if self.process.pid in (pid, parent):
-                try:
-                    fields = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
-                except FileNotFoundError:
-                    continue
-                total += (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+                with suppress(FileNotFoundError):
+                    total += _cpu_s(Path(f"/proc/{pid}/stat"))
         return total
+
+    def thread_cpu_s(self) -> dict[str, float]:
+        """Processor time of its own threads, by number and name; those of libraries have no name."""
+        names = json.loads(fetch(f"{self.url}tests/threads"))
+        seconds = {}
+        for task in Path(f"/proc/{self.process.pid}/task").iterdir():
+            with suppress(FileNotFoundError):
+                seconds[f"{task.name} {names.get(task.name, '')}"] = _cpu_s(task / "stat")
+        return seconds
 
     def memory_mb(self) -> float:
         status = Path(f"/proc/{self.process.pid}/status").read_text()

@@ -9,6 +9,7 @@ from __future__ import annotations
 import asyncio
 import json
 import sys
+import threading
 from functools import partial
 
 from nicegui import app
@@ -55,6 +56,12 @@ async def left(key: str) -> None:
     window = _opened[0].get(key)
     if window is not None:
         _opened[0]._close(window)
+
+
+@app.get("/tests/threads")
+async def threads() -> dict[str, str]:
+    """The names of Python's threads, by the numbers that the system gives them."""
+    return {str(thread.native_id): thread.name for thread in threading.enumerate()}
 
 
 def run() -> None:
