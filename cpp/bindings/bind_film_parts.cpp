@@ -132,6 +132,7 @@ void bind_film_parts(py::module_& m) {
     m.attr("_PIXEL_SUM") = py::dtype::of<PixelSum>();
     m.attr("_LAYER_SUM") = py::dtype::of<LayerSum>();
     m.attr("_SAMPLES_PER_SUM") = kSamplesPerSum;
+    m.attr("_SHARING_TILE_SIDE") = SampleSharing::kTileSide;
     py::set sampled_layers;
     for (std::size_t i = 0; i < kLayers.size(); ++i)
         if (kSampledLayers.has(static_cast<Layer>(i))) sampled_layers.add(kLayers[i].name);

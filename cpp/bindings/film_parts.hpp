@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "../camera/film_region.hpp"
 #include "../render/collected_film.hpp"
-#include "../render/film_region.hpp"
 #include "arrays.hpp"
 #include "bindings.hpp"
 

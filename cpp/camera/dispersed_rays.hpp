@@ -4,20 +4,31 @@
 namespace REALCAM_NAMESPACE {
 
 // One wavelength a sample would be noisy: a film has three channels, and each would see a third of the samples. But the
-// same ray outside the lens, at another wavelength, often belongs to another point of the same pixel. So it is traced
-// back to the film at two more wavelengths, one third and two thirds of the list of cells further on. Where it ends in
-// its pixel, that wavelength could have drawn it with the same density, because film and scene measure rays alike (the
-// optical invariant). The sample counts for all that could, in equal parts (the balance heuristic of Veach and Guibas
-// 1995). The three are the same whichever of them comes first, so that nothing is counted twice or left out.
+// same ray outside the lens belongs to a point of the film at another wavelength, too. So it is traced back to the film
+// at two more wavelengths, one third and two thirds of the list of cells further on. The pixel in which it ends could
+// have drawn it at that wavelength with the same density, because film and scene measure rays alike (the optical
+// invariant). The sample counts in the pixels of all that could, in equal parts (the balance heuristic of Veach and
+// Guibas 1995), if they lie in the tile of its own pixel (SampleSharing). The three are the same whichever of them
+// comes first, so that nothing is counted twice or left out.
 
-/// Whether a film point lies in the pixel of a sample.
+/// Lets a sample count at a step in the pixel of a film point, if that is its own or one that shares with it.
 template <int N>
-REALCAM_INLINE bool lies_in_pixel(const CameraView& camera, const SampleBlock<N>& block, int lane, Vec2f film) {
+REALCAM_INLINE void share(const CameraView& camera, const SampleBlock<N>& block, int lane, int step, bool arrives,
+                          Vec2f film, SampleWavelengths<N>& wavelengths) {
+    const SampleSharing& sharing = camera.dispersion.sharing;
     const float columns_per_mm = -0.5f * static_cast<float>(camera.width) / camera.film_half_width;
     const float rows_per_mm = 0.5f * static_cast<float>(camera.height) / camera.film_half_height;
     const Vec2f corner = film_point(camera, block.column[lane], block.row[lane], {0.0f, 0.0f});
     const float column = columns_per_mm * (film.x - corner.x), row = rows_per_mm * (film.y - corner.y);
-    return (column >= 0.0f) & (column < 1.0f) & (row >= 0.0f) & (row < 1.0f);
+    constexpr float kFar = SampleSharing::kTileSide;  // beyond it numbers need not fit into integers
+    const bool is_near = arrives & (std::abs(column) < kFar) & (std::abs(row) < kFar);
+    const int right = static_cast<int>(std::floor(select(is_near, column, 0.0f))),
+              down = static_cast<int>(std::floor(select(is_near, row, 0.0f)));
+    const bool is_own = (right == 0) & (down == 0);
+    const bool counts = is_near & (is_own | sharing.has_both(block.column[lane], block.row[lane],
+                                                             block.column[lane] + right, block.row[lane] + down));
+    wavelengths.shares[lane] |= select(counts, 1 << step, 0);
+    wavelengths.away[step][lane] = down * sharing.stride + right;
 }
 
 /// A wavelength for each sample, stratified over those of its pixel, for which alone it counts so far.
@@ -29,13 +40,14 @@ REALCAM_INLINE void draw_wavelengths(const DispersionView& view, const SampleBlo
     for (int i = 0; i < N; ++i) {
         wavelengths.place[i] = u[i].y * static_cast<float>(view.cell_count);
         wavelengths.shares[i] = 1;
+        wavelengths.away[0][i] = 0;
     }
     REALCAM_LANES
     for (int i = 0; i < N; ++i) wavelengths.nm[i] = wavelength_at(view, wavelengths.place[i]);
 }
 
-/// Sets shares to the steps at which rays that have left the lens end in the pixels from which they came, and what the
-/// lens passes on at their wavelengths, if it is `coated`.
+/// Finds in which pixels rays that have left the lens count at further steps, and what the lens passes on at their
+/// wavelengths, if it is `coated`.
 template <LensKind lens_kind, bool coated, int N, class Points>
 REALCAM_HD inline void find_shares(const CameraView& camera, const SampleBlock<N>& block,
                                    const LensRays<float, N>& left, const Points& film,
@@ -60,9 +72,7 @@ REALCAM_HD inline void find_shares(const CameraView& camera, const SampleBlock<N
         REALCAM_LANES
         for (int i = 0; i < N; ++i) {
             const Vec2f on_film = landing_on_film<lens_kind>(camera, back.origin[i], back.direction[i]);
-            const Vec2f place = film.landing(i, on_film, nm[i]);
-            const bool is_shared = (back.status[i] == 0) & lies_in_pixel(camera, block, i, place);
-            wavelengths.shares[i] |= select(is_shared, 1 << step, 0);
+            share(camera, block, i, step, back.status[i] == 0, film.landing(i, on_film, nm[i]), wavelengths);
         }
     }
 }
@@ -76,8 +86,7 @@ REALCAM_INLINE void find_shares_of_landings(const CameraView& camera, const Samp
         REALCAM_LANES
         for (int i = 0; i < N; ++i) {
             const float nm = wavelength_at(view, shared_place(view, wavelengths.place[i], step));
-            const bool is_shared = lies_in_pixel(camera, block, i, film.landing(i, film[i], nm));
-            wavelengths.shares[i] |= select(is_shared, 1 << step, 0);
+            share(camera, block, i, step, true, film.landing(i, film[i], nm), wavelengths);
         }
     }
 }

@@ -5,6 +5,7 @@
 #include "../math/lanes.hpp"
 #include "../optics/trace/index_cubic.hpp"
 #include "../optics/trace/lens_view.hpp"
+#include "sample_sharing.hpp"
 
 namespace REALCAM_NAMESPACE {
 
@@ -25,14 +26,16 @@ struct DispersionView {
     const IndexCubic *to_scene, *to_film;  ///< of the lens's surfaces, in the order in which light meets them
     const SurfaceView<float>* film_surfaces;  ///< of the lens, on the light's way to the film
     FreeParts<float> film_free;               ///< and what belongs to them
+    SampleSharing sharing;
 };
 
-/// Wavelengths for which samples count: one that was drawn, and others at steps from its place, see film_color.
+/// Wavelengths for which samples count: one that was drawn, and others at steps from its place.
 template <int N>
 struct SampleWavelengths {
     Lanes<float, N> nm, place;
-    Lanes<std::int32_t, N> shares;
-    Lanes<float, N> passed[kSharedWavelengths];  ///< by a coated lens, at each step
+    Lanes<std::int32_t, N> shares;                     ///< a bit for each step that counts, and the first of them
+    Lanes<std::int32_t, N> away[kSharedWavelengths];   ///< from its own pixel to that in which each counts
+    Lanes<float, N> passed[kSharedWavelengths];        ///< by a coated lens, at each step
 };
 
 /// Wavelengths are drawn evenly over the cells: this one is the same share of its cell as the place's.
@@ -50,29 +53,11 @@ REALCAM_INLINE float shared_place(const DispersionView& view, float place, int s
     return at < cells ? at : at - cells;
 }
 
-/// The film's colour for light of a scene's colour. The light has the wavelengths of the place's cell and, in equal
-/// parts, of the further steps whose bit `shares` has. `passed`: the share that the lens transmits at each step.
-REALCAM_INLINE Color film_color(const DispersionView& view, float place, std::int32_t shares,
-                                const float (&passed)[kSharedWavelengths], Color scene) {
-    Color sum = {0, 0, 0};
-    float count = 0.0f;
-    for (int step = 0; step < kSharedWavelengths; ++step) {
-        if (!(shares >> step & 1)) continue;
-        const float (&m)[9] = view.cells[static_cast<std::int32_t>(shared_place(view, place, step))].film;
-        sum += passed[step] * Color{m[0] * scene.r + m[1] * scene.g + m[2] * scene.b,
-                                    m[3] * scene.r + m[4] * scene.g + m[5] * scene.b,
-                                    m[6] * scene.r + m[7] * scene.g + m[8] * scene.b};
-        count += 1.0f;
-    }
-    return (1.0f / count) * sum;
-}
-
-/// The same of a sample. `coated`: with what the lens passes on.
-template <bool coated, int N>
-REALCAM_INLINE Color film_color(const DispersionView& view, const SampleWavelengths<N>& of, int lane, Color scene) {
-    float passed[kSharedWavelengths];
-    for (int step = 0; step < kSharedWavelengths; ++step) passed[step] = coated ? of.passed[step][lane] : 1.0f;
-    return film_color(view, of.place[lane], of.shares[lane], passed, scene);
+/// The film's colour for light of a scene's colour that has the wavelengths of a place's cell.
+REALCAM_INLINE Color film_color(const DispersionView& view, float place, Color scene) {
+    const float (&m)[9] = view.cells[static_cast<std::int32_t>(place)].film;
+    return {m[0] * scene.r + m[1] * scene.g + m[2] * scene.b, m[3] * scene.r + m[4] * scene.g + m[5] * scene.b,
+            m[6] * scene.r + m[7] * scene.g + m[8] * scene.b};
 }
 
 }  // namespace REALCAM_NAMESPACE

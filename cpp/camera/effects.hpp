@@ -20,6 +20,9 @@ struct Effects {
     constexpr bool operator==(const Effects&) const = default;
     /// Whether samples have a wavelength each.
     constexpr bool have_wavelengths() const;
+    /// Whether samples may count in other pixels than their own (SampleSharing). Diffraction alone also has wavelengths
+    /// that end in others, but so seldom that it pays less than it takes.
+    constexpr bool share_pixels() const { return dispersion; }
     constexpr bool hold(const Effects& other) const;
 };
 

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+
+#include "../render/shares_samples.hpp"
 
 namespace realcam {
 namespace {
@@ -33,7 +36,9 @@ public:
             sample_ += piece.sample_count;
             return piece;
         }
-        piece.row_count = static_cast<int>(std::clamp(samples / row, 1.0, static_cast<double>(rows_left)));
+        // Whole tiles, whose pixels may share samples.
+        const double tiles = std::max(1.0, std::floor(samples / (row * SampleSharing::kTileSide)));
+        piece.row_count = static_cast<int>(std::min(tiles * SampleSharing::kTileSide, static_cast<double>(rows_left)));
         row_ += piece.row_count;
         if (row_ == part_.row_count) {
             row_ = 0;
@@ -140,7 +145,9 @@ FilmSums DeviceRenderer::expose_region(const FilmRegion& region, const SampleRan
     sample_counts_.upload(of_pixels.data(), pixels, stream_);
     region_sums_.resize(pixels);
     region_sums_.clear(stream_);
-    launch(part, settings, region_sums_.data(), {sample_counts_.data(), 0}, film_pixels());
+    const bool shares = shares_samples(camera_, settings, counts);
+    launch(part, settings, region_sums_.data(), {sample_counts_.data(), 0}, film_pixels(),
+           shares ? region : FilmRegion{}, stop_.data());
     FilmSums rows(pixels), sums;
     region_sums_.download(rows.data(), stream_);
     stream_.wait("rendering");
@@ -169,16 +176,19 @@ void DeviceRenderer::reserve_film(std::int64_t pixels, bool merges) {
 }
 
 void DeviceRenderer::rehearse() {
-    launch({0, 0, 0, 0}, {}, sums_.data(), {}, 0);
+    launch({0, 0, 0, 0}, {}, sums_.data(), {}, 0, {}, stop_.data());
     launch_develop(sums_.data(), {}, 0, 1, exposure_.data(), depth_.data(), stream_);
     launch_merge(sums_.data(), others_.data(), 0, stream_);
 }
 
 void DeviceRenderer::launch(const FilmPart& part, const RenderSettings& settings, PixelSum* sums,
-                            const PixelCounts& counts, std::int64_t pixels) {
-    launch_render({scene_.view(), scene_.bvh(), camera_, sums, counts_.data(), stop_.data(), settings.path(),
-                   settings.seed, part.first_sample, part.sample_count, counts.counts, counts.taken, part.first_row,
-                   part.row_count, settings.layers.has(Layer::variance), settings.layers.has_any(kHalfLayers)},
+                            const PixelCounts& counts, std::int64_t pixels, const FilmRegion& sharing,
+                            const volatile int* stop) {
+    CameraView camera = camera_;
+    camera.dispersion.sharing = {sharing, camera.width};
+    launch_render({scene_.view(), scene_.bvh(), camera, sums, counts_.data(), stop, settings.path(), settings.seed,
+                   part.first_sample, part.sample_count, counts.counts, counts.taken, part.first_row, part.row_count,
+                   settings.layers.has(Layer::variance), settings.layers.has_any(kHalfLayers)},
                   pixels, stream_);
 }
 
@@ -195,6 +205,9 @@ void DeviceRenderer::expose(const FilmPart& part, const RenderSettings& settings
         const std::size_t pixels = static_cast<std::size_t>(part.row_count) * static_cast<std::size_t>(camera_.width);
         sample_counts_.upload(counts.counts, pixels, stream_);
     }
+    // Where pixels share samples, a launch that has begun ends: as many samples of one pixel as of its neighbours.
+    const bool shares = shares_samples(camera_, settings, counts);
+    const volatile int* const stop = shares ? stop_.never() : stop_.data();
     // Two launches are under way at any time, so that the GPU never waits for the host.
     std::array<CudaEvent, 3> ends;
     std::array<std::int64_t, 3> sizes{};
@@ -215,7 +228,8 @@ void DeviceRenderer::expose(const FilmPart& part, const RenderSettings& settings
         const std::int64_t first = static_cast<std::int64_t>(piece.first_row - part.first_row) * camera_.width;
         const PixelCounts here{counts.counts ? sample_counts_.data() + first : nullptr,
                                counts.taken + (piece.first_sample - part.first_sample)};
-        launch(piece, settings, sums_.data() + first, here, pixels_of(piece));
+        launch(piece, settings, sums_.data() + first, here, pixels_of(piece), shares ? rows_of(piece) : FilmRegion{},
+               stop);
         const std::size_t i = started++ % 3;
         ends[i].record(stream_);
         sizes[i] = static_cast<std::int64_t>(piece.sample_count) * piece.row_count * camera_.width;
@@ -225,7 +239,8 @@ void DeviceRenderer::expose(const FilmPart& part, const RenderSettings& settings
 
 void DeviceRenderer::add(const FilmPart& part, const RenderSettings& settings) {
     const CurrentDevice current(ordinal_);
-    launch(part, settings, sums_.data(), {}, pixels_of(part));
+    const bool shares = shares_samples(camera_, settings, {});
+    launch(part, settings, sums_.data(), {}, pixels_of(part), shares ? rows_of(part) : FilmRegion{}, stop_.data());
 }
 
 void DeviceRenderer::develop_codes(double exposure_time_s, double iso, ToneCurve curve, std::uint8_t* codes) {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "../camera/film_region.hpp"
 #include "../render/collected_film.hpp"
-#include "../render/film_region.hpp"
 #include "../render/render_settings.hpp"
 #include "../render/sample_range.hpp"
 #include "device_ghosts.hpp"
@@ -110,10 +110,12 @@ private:
     /// Starts everything on no pixels: the GPU loads the code and makes room for what threads keep in memory.
     void rehearse();
     /// Starts to add samples to `sums`, those of the part's first row. `counts`: in this GPU's memory.
-    /// `pixels`: by which the threads of a pixel are chosen.
+    /// `pixels`: by which the threads of a pixel are chosen. `sharing`: the part of the film whose pixels share
+    /// samples.
     void launch(const FilmPart& part, const RenderSettings& settings, PixelSum* sums, const PixelCounts& counts,
-                std::int64_t pixels);
+                std::int64_t pixels, const FilmRegion& sharing, const volatile int* stop);
 
+    FilmRegion rows_of(const FilmPart& part) const { return {0, part.first_row, camera_.width, part.row_count}; }
     std::int64_t film_pixels() const { return static_cast<std::int64_t>(camera_.width) * camera_.height; }
     std::int64_t pixels_of(const FilmPart& part) const {
         return static_cast<std::int64_t>(part.row_count) * camera_.width;

@@ -82,6 +82,31 @@ struct ThreadSums {
     }
 };
 
+/// What neighbours bring to a pixel comes in any order. Whole numbers of this unit have the same sum in each, up to
+/// 2^53 of them. `dither`: a random number from 0 to 1, so that what is less than a unit is not lost in the mean.
+__device__ inline double in_sharing_units(double lux, float dither) {
+    return 0x1p-24 * floor(0x1p24 * lux + static_cast<double>(dither));
+}
+
+__device__ inline void add_shared(PixelSum& sum, int channel, double lux, float dither) {
+    atomicAdd(&sum.irradiance[channel], in_sharing_units(lux, dither));
+}
+
+/// What a sample brings to other pixels than its own.
+template <Effects effects>
+__device__ inline void add_shared(const SampleBlock<1>& block, const PathResultsWith<1, effects>& results,
+                                  PixelSum* own) {
+    for (int step = 0; step < kSharedWavelengths - 1; ++step) {
+        const std::int32_t away = results.shared.away[step][0];
+        if (away == 0) continue;
+        const Color c = results.shared.irradiance[step][0];
+        const float dither = unit_float(block.bits(0, static_cast<std::uint32_t>(step)));
+        add_shared(own[away], 0, static_cast<double>(c.r), dither);
+        add_shared(own[away], 1, static_cast<double>(c.g), dither);
+        add_shared(own[away], 2, static_cast<double>(c.b), dither);
+    }
+}
+
 /// How many samples a pixel of the job's band takes.
 __device__ inline std::uint32_t samples_of(const RenderJob& job, std::int64_t pixel) {
     if (!job.of_pixels) return job.sample_count;
@@ -97,6 +122,8 @@ __global__ void __launch_bounds__(kBlockSize, kBlocksPerMultiprocessor)
     const int lane = threadIdx.x % kWarpSize;
     const auto [column, row] = tiles.pixel_of(thread_index(), job.camera.width);
     const bool inside = column < job.camera.width && row < job.row_count;
+    const std::int64_t pixel = static_cast<std::int64_t>(row) * job.camera.width + column;
+    const bool shares = effects.share_pixels() && !halves && job.camera.dispersion.sharing.part.width > 0;
 
     __shared__ ThreadSums sums;
     __shared__ StageClock::Count clocks;
@@ -106,12 +133,12 @@ __global__ void __launch_bounds__(kBlockSize, kBlocksPerMultiprocessor)
     StageClock clock(clocks);
     if (inside) {
         SampleBlock<1> block;
-        PathResults<1> results;
+        PathResultsWith<1, effects> results;
         block.column[0] = column;
         block.row[0] = job.first_row + row;
         block.used[0] = 1;
         block.stream[0] = pixel_stream(block.row[0] * job.camera.width + column, job.seed);
-        const std::uint32_t count = samples_of(job, static_cast<std::int64_t>(row) * job.camera.width + column);
+        const std::uint32_t count = samples_of(job, pixel);
         std::uint32_t s = static_cast<std::uint32_t>(lane % tiles.lanes);
         for (; s < count; s += static_cast<std::uint32_t>(tiles.lanes)) {
             if (*job.stop) break;
@@ -129,6 +156,8 @@ __global__ void __launch_bounds__(kBlockSize, kBlocksPerMultiprocessor)
                 sample.add_squares(results, 0);
                 sums.add(sample, job.adds_squares);
             }
+            if constexpr (effects.share_pixels())
+                if (shares) add_shared(block, results, job.sums + pixel);
             sampled += static_cast<std::uint32_t>(results.sampled[0]);
             passed += static_cast<std::uint32_t>(results.passed[0]);
         }
@@ -136,7 +165,16 @@ __global__ void __launch_bounds__(kBlockSize, kBlocksPerMultiprocessor)
     }
     PixelSum sum = sums.of_pixel(tiles.lanes);
     sum.samples = sum_of_neighbours(samples, tiles.lanes);
-    if (inside && lane % tiles.lanes == 0) job.sums[static_cast<std::int64_t>(row) * job.camera.width + column] += sum;
+    if (inside && lane % tiles.lanes == 0) {
+        if (shares) {
+            const std::uint32_t bits =
+                hash32(pixel_stream(static_cast<std::int32_t>(pixel), job.seed), job.first_sample);
+            for (int c = 0; c < 3; ++c) add_shared(job.sums[pixel], c, sum.irradiance[c], unit_float(bits));
+            job.sums[pixel].add_all_but_irradiance(sum);
+        } else {
+            job.sums[pixel] += sum;
+        }
+    }
 
     sampled = sum_of_neighbours(sampled, kWarpSize);
     passed = sum_of_neighbours(passed, kWarpSize);

@@ -13,10 +13,12 @@ namespace realcam {
 /// reading the host's takes longer than a sample. Made and destroyed while that GPU is current.
 class StopFlag {
 public:
-    explicit StopFlag(int ordinal) : ordinal_(ordinal), values_(2), flag_(1) {
+    explicit StopFlag(int ordinal) : ordinal_(ordinal), values_(2), flag_(1), never_(1) {
         values_.data()[0] = 0;
         values_.data()[1] = 1;
         write(false);
+        never_.clear(stream_);
+        stream_.wait("stopping it");
     }
 
     /// May be called from any thread. The flag stands until it was lowered as often as it was raised. A GPU that cannot
@@ -40,6 +42,8 @@ public:
     bool is_raised() const { return raised_ > 0; }
 
     const volatile int* data() const { return flag_.data(); }
+    /// A flag that is never raised.
+    const volatile int* never() const { return never_.data(); }
     /// Starts to copy it to the host's memory. Not 0 there, if any kernel before it in the stream has read a raised
     /// flag and it has not been lowered since.
     void download(int* to, cudaStream_t stream) const { flag_.download(to, stream); }
@@ -54,7 +58,7 @@ private:
     int ordinal_;
     CudaStream stream_;  // of its own, beside the work that it stops
     PinnedArray<int> values_;
-    DeviceArray<int> flag_;
+    DeviceArray<int> flag_, never_;
     std::mutex mutex_;
     std::atomic<int> raised_{0};
 };

@@ -16,6 +16,7 @@
 #include "../render/learning_passes.hpp"
 #include "../render/run_with_progress.hpp"
 #include "../render/scene_change.hpp"
+#include "../render/shares_samples.hpp"
 #include "../render/traced_lights.hpp"
 #include "embree_scene.hpp"
 #include "fast_pupil_tracer.hpp"
@@ -26,7 +27,7 @@
 namespace realcam {
 namespace {
 
-constexpr int kTileSide = 32;
+constexpr int kTileSide = SampleSharing::kTileSide;
 
 DeviceError rtc_error(RTCError code) {
     const std::string text = "Embree could not be started: ";
@@ -204,8 +205,10 @@ private:
     void expose(const FilmRegion& region, const SampleRange& range, const PixelCounts& counts,
                 const RenderSettings& settings, std::atomic<std::int64_t>& done, FilmSums& film, RenderStats& stats) {
         const PathSettings path = settings.path();
+        const bool shares = shares_samples(camera_view_, settings, counts);
         for_tiles(region, range, settings, [&](const realcam_tile& place) {
             realcam_tile tile = place;
+            tile.shares = shares;
             const std::vector<std::uint32_t> wanted = counts_of(tile, region, counts, range);
             if (!wanted.empty() && *std::max_element(wanted.begin(), wanted.end()) == 0) return;
             tile.counts = wanted.empty() ? nullptr : wanted.data();
@@ -215,6 +218,7 @@ private:
             FilmSums sums(pixels_of(tile));
             tile.sums = sums.data();
             kernels().render_tile(&tile);
+            if (shares && is_stopped()) return;
             for_pixels(tile, region, [&](std::size_t here, std::size_t there) { film[there] += sums[here]; });
             done += samples_of_tile(tile);
             count(tile, stats);

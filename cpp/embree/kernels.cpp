@@ -122,12 +122,22 @@ template <Effects effects>
     for (int k = 0; k < lanes; ++k) sums[place[k]].add_half(results, k, is_right[k] != 0);
 }
 
+/// What samples bring to other pixels than their own.
+template <Effects effects>
+void add_shared(const PathResultsWith<kLanes, effects>& results, int lanes, const int* place, PixelSum* sums) {
+    for (int step = 0; step < kSharedWavelengths - 1; ++step)
+        for (int k = 0; k < lanes; ++k)
+            if (const int away = results.shared.away[step][k]; away != 0)
+                sums[place[k] + away].add(results.shared.irradiance[step][k]);
+}
+
 template <LensKind lens_kind, SceneKind scene_kind, Effects effects>
 void render_tile_of(realcam_tile* tile) {
     const SceneView view = *static_cast<const SceneView*>(tile->scene_view);
     const PathSettings settings = *static_cast<const PathSettings*>(tile->path_settings);
-    const CameraView camera = *static_cast<const CameraView*>(tile->camera_view);
-    PathResults<kLanes> results;
+    CameraView camera = *static_cast<const CameraView*>(tile->camera_view);
+    if (tile->shares) camera.dispersion.sharing = {{tile->x, tile->y, tile->width, tile->height}, tile->width};
+    PathResultsWith<kLanes, effects> results;
     auto* const sums = static_cast<PixelSum*>(tile->sums);
     StageClock clock;
     PacketScene<scene_kind> scene = packet_scene_of<scene_kind>(*tile, view);
@@ -140,6 +150,8 @@ void render_tile_of(realcam_tile* tile) {
             for (; k < lanes && place[k] == pixel; ++k) sum.add(results, k);
             sums[pixel] = sum;
         }
+        if constexpr (effects.share_pixels())
+            if (tile->shares) add_shared(results, lanes, place, sums);
         std::int32_t sampled = 0, passed = 0;
         for (int k = 0; k < lanes; ++k) {
             sampled += results.sampled[k];

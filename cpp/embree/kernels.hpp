@@ -19,6 +19,7 @@ struct realcam_tile {
     const void* stop;
     void* sums;  // PixelSum, LayerSum or MiddleSurface of the tile, row by row; sums are added to
     int adds_squares, adds_half;  // PixelSum::besides, too
+    int shares;  // its pixels share samples (SampleSharing); none of them is right where it is stopped
     double lens_seconds, scene_seconds, other_seconds;
     std::uint64_t sampled_rays, passed_rays, scene_rays;
 };

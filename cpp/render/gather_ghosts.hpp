@@ -135,10 +135,7 @@ REALCAM_HD inline void gather_ghosts(const SceneView& view, const CameraView& ca
     for (int i = 0; i < N; ++i) {
         Color c = results.irradiance[i];
         if (is_black(c)) continue;
-        if constexpr (has_wavelengths) {
-            constexpr float kAll[kSharedWavelengths] = {1, 1, 1};
-            c = film_color(camera.dispersion, place[i], 1, kAll, c);
-        }
+        if constexpr (has_wavelengths) c = film_color(camera.dispersion, place[i], c);
         const std::int32_t pixel = film.block.row[i] * camera.width + film.block.column[i];
         splat(pixel, c, unit_float(film.block.bits(i, 0)));
     }

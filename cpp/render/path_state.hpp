@@ -35,6 +35,18 @@ struct PathResults {
     Lanes<std::int32_t, N> sampled, passed;
 };
 
+/// And what they bring to other pixels, at the further steps of their wavelengths.
+template <int N>
+struct SharedResults {
+    ColorLanes<N> irradiance[kSharedWavelengths - 1];
+    Lanes<std::int32_t, N> away[kSharedWavelengths - 1];  ///< from the sample's own pixel in the sums; 0: nothing
+};
+struct NothingShared {};
+template <int N, Effects effects>
+struct PathResultsWith : PathResults<N> {
+    [[no_unique_address]] std::conditional_t<effects.share_pixels(), SharedResults<N>, NothingShared> shared;
+};
+
 /// Paths on their way from the film into the scene: the next ray of each, and what is known of the way up to it. At
 /// each surface those that have ended give their places to others, so that the first ones are in use.
 template <int N>

@@ -19,18 +19,25 @@ struct PixelSum {
 
     REALCAM_HD PixelSum& operator+=(const PixelSum& other) {
         for (int c = 0; c < 3; ++c) irradiance[c] += other.irradiance[c];
+        add_all_but_irradiance(other);
+        return *this;
+    }
+    REALCAM_HD void add_all_but_irradiance(const PixelSum& other) {
         for (int c = 0; c < 3; ++c) besides[c] += other.besides[c];
         depth += other.depth;
         met += other.met;
         samples += other.samples;
-        return *this;
+    }
+
+    REALCAM_INLINE void add(Color c) {
+        irradiance[0] += static_cast<double>(c.r);
+        irradiance[1] += static_cast<double>(c.g);
+        irradiance[2] += static_cast<double>(c.b);
     }
 
     template <int N>
     REALCAM_INLINE void add(const PathResults<N>& results, int lane) {
-        irradiance[0] += static_cast<double>(results.irradiance.r[lane]);
-        irradiance[1] += static_cast<double>(results.irradiance.g[lane]);
-        irradiance[2] += static_cast<double>(results.irradiance.b[lane]);
+        add(results.irradiance[lane]);
         if (results.depth[lane] < kFarAway) {
             const double weight = static_cast<double>(results.weight[lane]);
             depth += weight * static_cast<double>(results.depth[lane]);

@@ -3,6 +3,34 @@
 
 namespace REALCAM_NAMESPACE {
 
+/// Turns the light of a sample into the film's colours, in equal parts at the wavelengths for which it counts.
+/// `coated`: with what the lens passes on of each.
+template <bool coated, int N, Effects effects>
+REALCAM_INLINE void count_wavelengths(const DispersionView& view, const SampleWavelengths<N>& of, int lane,
+                                      PathResultsWith<N, effects>& results) {
+    const Color scene = results.irradiance[lane];
+    const std::int32_t shares = of.shares[lane];
+    const float part = 1.0f / static_cast<float>(count_bits(static_cast<unsigned>(shares)));
+    Color own = {0, 0, 0};
+    REALCAM_UNROLL
+    for (int step = 0; step < kSharedWavelengths; ++step) {
+        Color color = {0, 0, 0};
+        std::int32_t away = 0;
+        if (shares >> step & 1) {
+            const float weight = coated ? part * of.passed[step][lane] : part;
+            color = weight * film_color(view, shared_place(view, of.place[lane], step), scene);
+            away = of.away[step][lane];
+        }
+        own += select(away == 0, 1.0f, 0.0f) * color;
+        if constexpr (effects.share_pixels()) {
+            if (step == 0) continue;
+            results.shared.irradiance[step - 1].set(lane, color);
+            results.shared.away[step - 1][lane] = away;
+        }
+    }
+    results.irradiance.set(lane, own);
+}
+
 /// Takes one block of samples from the film, through the lens, to the scene and its lights: the whole path.
 ///
 /// `lens_kind`: any, or the lens's own; `scene_kind`: any, or the scene's own. SceneT and Probe as in advance_paths. A
@@ -10,7 +38,7 @@ namespace REALCAM_NAMESPACE {
 template <LensKind lens_kind, SceneKind scene_kind, Effects effects = kNoEffects, int N, class SceneT, class Probe>
 REALCAM_HD inline void render_samples(const SceneView& view, const CameraView& camera, const PathSettings& settings,
                                       const SampleBlock<N>& block, SceneT&& scene, Probe&& probe,
-                                      PathResults<N>& results) {
+                                      PathResultsWith<N, effects>& results) {
     PathStateWith<N, effects> path;
     probe.enter(RenderStage::lens);
     begin_paths<lens_kind, scene_kind, effects>(camera, block, path, results);
@@ -18,8 +46,7 @@ REALCAM_HD inline void render_samples(const SceneView& view, const CameraView& c
         ++bounce;
     if constexpr (effects.have_wavelengths())
         for (int i = 0; i < N; ++i)
-            results.irradiance.set(
-                i, film_color<effects.coatings>(camera.dispersion, path.wavelengths, i, results.irradiance[i]));
+            count_wavelengths<effects.coatings>(camera.dispersion, path.wavelengths, i, results);
 }
 
 }  // namespace REALCAM_NAMESPACE

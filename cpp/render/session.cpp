@@ -366,7 +366,10 @@ ReachedNoise Session::take_until(const NoiseGoal& goal, std::atomic<double>& sha
     const bool is_new = is_blank_;
     if (is_new) {
         mean_samples_ = AdaptiveSampling::first_samples(goal);
-        take_round(mean_samples_, nullptr);
+        // A count for each pixel, though it is the same: what the two halves of a tile find must be independent, so
+        // that no pixel may share its samples.
+        const std::vector<std::uint32_t> first(pixel_count(), static_cast<std::uint32_t>(mean_samples_));
+        take_round(mean_samples_, first.data());
     }
     AdaptiveSampling tiles(camera_.film.width, camera_.film.height, goal, camera_.iso, develop().exposure,
                            count_samples());

@@ -9,9 +9,9 @@
 
 #include "../camera/camera.hpp"
 #include "../camera/develop.hpp"
+#include "../camera/film_region.hpp"
 #include "../scene/scene_checks.hpp"
 #include "collected_film.hpp"
-#include "film_region.hpp"
 #include "image.hpp"
 #include "layer_film.hpp"
 #include "live_frame.hpp"

@@ -237,10 +237,7 @@ REALCAM_INLINE void reach_film(const CameraView& camera, const GhostView& ghosts
         pixel[i] = pixel_at(camera, film.x, film.y);
         if (pixel[i] < 0) continue;
         Color c = passed.of_unpolarised(i) * samples.color[i];
-        if constexpr (has_wavelengths) {
-            constexpr float kAll[kSharedWavelengths] = {1, 1, 1};
-            c = film_color(camera.dispersion, samples.place[i], 1, kAll, c);
-        }
+        if constexpr (has_wavelengths) c = film_color(camera.dispersion, samples.place[i], c);
         if constexpr (scene_kind == SceneKind::any) {
             c = exposure_weight(camera, pixel[i] / camera.width, samples.time[i]) * c;
             samples.shadow.number[i] = shadow_ray_number(samples.number[i]);

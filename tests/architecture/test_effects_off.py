@@ -40,8 +40,19 @@ CUTS = {
         (r"    if constexpr \(effects\.have_wavelengths\(\)\) draw_wavelengths.*?\n", ""),
         (r"    // The edges of the aperture spread.*?\n    \}\n", ""),
     ],
+    "render/path_state.hpp": [
+        (r"template <int N>\nstruct SharedResults.*?(?=template <int N, Effects effects>)", ""),
+        (r"    \[\[no_unique_address\]\] .* shared;\n", ""),
+    ],
     "render/render_samples.hpp": [
-        (r"    if constexpr \(effects\.have_wavelengths\(\)\)\n.*?(?=\}\n\n\}  // namespace)", "")
+        (r"/// Turns the light of a sample.*?(?=/// Takes one block)", ""),
+        (r"    if constexpr \(effects\.have_wavelengths\(\)\)\n.*?(?=\}\n\n\}  // namespace)", ""),
+    ],
+    "cuda/render_kernel_template.hpp": [
+        (r"/// What neighbours bring to a pixel.*?(?=/// How many samples)", ""),
+        (r"    const bool shares = .*?;\n", ""),
+        (r"            if constexpr \(effects\.share_pixels\(\)\)\n.*\n", ""),
+        (r"        if \(shares\) \{.*?\} else \{\n(.*?)        \}\n", r"\1"),
     ],
     "render/splat_ghosts.hpp": [
         (r"/// Where light that geometrical optics brings to .*?(?=\}  // namespace splat_ghosts_detail)", ""),

@@ -213,10 +213,11 @@ def test_layers_of_any_number_of_pixels_and_samples(resolution: tuple[int, int],
 
 
 @needs_gpu
-def test_the_same_picture_twice() -> None:
+@pytest.mark.parametrize("effects", [(), ("dispersion",)])
+def test_the_same_picture_twice(effects: tuple[str, ...]) -> None:
     lens = rc.Lens.load("tessar-50mm").focused(4.0)
     camera = rc.Camera(lens, film=rc.Film(36, 24, (60, 40)), position=(0, 1, 3), look_at=(0, 0.6, -2))
-    a, b = pictures(SCENES["all kinds"](), camera, ("cuda", "cuda"), spp=50)
+    a, b = pictures(SCENES["all kinds"](), camera, ("cuda", "cuda"), spp=50, effects=effects)
     np.testing.assert_array_equal(a.pixels, b.pixels)
 
 

@@ -7,6 +7,7 @@ Functions" (JCGT 2013), and D65 the CIE's table every 20 nm: neither comes from 
 from __future__ import annotations
 
 import math
+import threading
 import warnings
 from pathlib import Path
 
@@ -235,6 +236,45 @@ def test_noise_where_colours_stay_in_a_pixel() -> None:
 
     added = np.sqrt(variance("dispersion") - variance(()))
     assert (added < 0.07).all(), added
+
+
+def test_samples_count_in_the_pixels_where_their_colours_end() -> None:
+    """Through a singlet whose colours lie some pixels apart. With the layer of the variance a sample counts in its own
+    pixel alone: the same mean, also where tiles of pixels that share samples meet, and more noise."""
+    camera = rc.Camera(landscape_lens(40.0, 4.0), film=rc.Film(36, 15, (96, 40)), exposure_time_s=1)
+    scene = busy_scene()
+
+    def pictures(seeds: range, **settings: object) -> np.ndarray:
+        return np.array(
+            [quiet(scene, camera, spp=64, seed=seed, **settings).pixels.astype(np.float64) for seed in seeds]
+        )
+
+    shared, alone = pictures(range(10)), pictures(range(10, 20), layers=("variance",))
+    noise = [np.sqrt(np.mean(each.var(axis=0, ddof=1), axis=(0, 1))) for each in (shared, alone)]
+    assert (noise[0] < 0.95 * noise[1]).all(), noise
+    # Shared samples make neighbours err alike, so that the error of a mean of pixels is known from the seeds alone.
+    for axis in (1, 2):  # the means of columns, and of rows
+        means = [each.mean(axis=axis) for each in (shared, alone)]  # (seeds, pixels, channels)
+        error = np.sqrt(sum(mean.var(axis=0, ddof=1) for mean in means) / 10)
+        apart = (means[0].mean(axis=0) - means[1].mean(axis=0)) / error
+        # Some hundred quotients of 18 degrees of freedom: one in 1e5 is beyond 6, and the mean square is 1.13.
+        assert np.abs(apart).max() < 6
+        assert (apart**2).mean() < 1.5
+
+
+def test_a_stop_leaves_no_tile_half_done() -> None:
+    """Samples that other pixels have not had could not count here."""
+    camera = rc.Camera(rc.Lens.load("double-gauss-50mm"), film=rc.Film(36, 24, (200, 150)), exposure_time_s=1)
+    session = rc.Session(busy_scene(), camera, device="cpu", effects=("dispersion",))
+    stop = threading.Timer(0.3, session.cancel)
+    stop.start()
+    with pytest.raises(rc.Cancelled):
+        session.add(1 << 20)
+    stop.join()
+    samples = session.samples
+    for row in range(0, 150, 32):
+        for column in range(0, 200, 32):
+            assert len(np.unique(samples[row : row + 32, column : column + 32])) == 1
 
 
 def test_effects_are_listed() -> None:

@@ -50,6 +50,16 @@ def test_several_processes_make_the_picture_of_one(tmp_path: Path) -> None:
     assert len(list((tmp_path / "job" / "rounds").rglob("*.npz"))) > 3  # the noise took several
 
 
+def test_colours_that_end_in_other_pixels(tmp_path: Path) -> None:
+    """Pixels share samples in tiles of 32 pixels, of which units have whole ones, and in no round of a wanted noise."""
+    with_colours = {"effects": ("dispersion",), "layers": ()}
+    shots = {"counted": shot(40, **with_colours), "noise": shot("auto", noise_codes=4, max_spp=64, **with_colours)}
+    job = made(tmp_path / "job", **shots)
+    job.work()
+    for name, each in shots.items():
+        assert job.image(name) == picture(each)
+
+
 def test_threads_are_processes_enough(tmp_path: Path) -> None:
     job = made(tmp_path / "job", lamp=shot(40))
     with concurrent.futures.ThreadPoolExecutor(3) as executor:

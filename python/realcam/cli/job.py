@@ -51,7 +51,9 @@ def make(
     fps: Annotated[float, typer.Option("--fps", metavar="N", help="Frames in a second of the scene")] = 24.0,
     tile: Annotated[
         Optional[str],  # noqa: UP045
-        typer.Option("--tile", metavar="PIXELS", help="Of a unit: 128, or 128x64 [a second of one core]"),
+        typer.Option(
+            "--tile", metavar="PIXELS", help="Of a unit: 128, or 128x64, in steps of 32 [a second of one core]"
+        ),
     ] = None,
     sbatch: Annotated[
         Optional[Path],  # noqa: UP045

@@ -58,8 +58,8 @@ class Job:
         """Writes a folder with all that the pictures need, under the names of the shots.
 
         Effects "auto" are planned here. device: that of all processes, "cpu" or "cuda". tile: width and height of units
-        in pixels; None: about a second's work of one core, or whole rows for a GPU. A limit of seconds falls away,
-        because machines differ: the noise alone decides, and max_spp.
+        in pixels, rounded up to multiples of 32; None: about a second's work of one core, or whole rows for a GPU. A
+        limit of seconds falls away, because machines differ: the noise alone decides, and max_spp.
         Raises InputError, also where the folder is there already; ImageFileError, DeviceError.
         """
         return cls(make_folder(folder, shots, device, tile))

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .._core import _SAMPLES_PER_SUM, InputError
+from .._core import _SAMPLES_PER_SUM, _SHARING_TILE_SIDE, InputError
 
 if TYPE_CHECKING:
     from .._core import _Region
@@ -134,15 +134,19 @@ def tile_for(resolution: tuple[int, int], spp: int | None, is_cpu: bool) -> tupl
     samples = min(spp or _SAMPLES_PER_SUM, _SAMPLES_PER_SUM)
     width, height = resolution
     if not is_cpu:
-        return width, min(height, max(1, 16 * _SAMPLES_PER_UNIT // (samples * width)))
-    side = int((_SAMPLES_PER_UNIT / samples) ** 0.5) // 32 * 32
-    side = min(512, max(64, side))
+        return width, min(height, _whole_tiles(16 * _SAMPLES_PER_UNIT // (samples * width)))
+    side = min(512, max(64, _whole_tiles(int((_SAMPLES_PER_UNIT / samples) ** 0.5))))
     return min(width, side), min(height, side)
 
 
 def checked_tile(tile: tuple[int, int]) -> tuple[int, int]:
-    """Raises InputError for what is no size of units."""
+    """In whole tiles. Raises InputError for what is no size of units."""
     width, height = tile
     if not (1 <= width <= 1 << 20 and 1 <= height <= 1 << 20):
         raise InputError("a tile must have 1 to 1048576 pixels along each side")
-    return width, height
+    return _whole_tiles(width), _whole_tiles(height)
+
+
+def _whole_tiles(pixels: int) -> int:
+    """As many, or some more: pixels of a tile share samples, and would miss those of another unit."""
+    return max(1, -(-pixels // _SHARING_TILE_SIDE)) * _SHARING_TILE_SIDE
