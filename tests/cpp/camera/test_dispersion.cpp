@@ -1,7 +1,10 @@
 // Dispersion's tables: indices over the wavelength, the film's matrix, wavelengths by their density, the pupil.
 
+#include <array>
+#include <bit>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "camera/dispersed_rays.hpp"
 #include "camera/film_spectrum.hpp"
@@ -12,13 +15,12 @@
 #include "optics/centred_lenses.hpp"
 #include "optics/pupil/pupil.hpp"
 #include "optics/trace/lens_dispersion.hpp"
+#include "render/render_samples.hpp"
 
 namespace {
 
 using namespace realcam;
 using namespace realcam::test;
-
-constexpr float kAll[kSharedWavelengths] = {1, 1, 1};  ///< a lens that passes all light on
 
 DispersionView view_of(const FilmSpectrum& spectrum) {
     return {spectrum.cells().data(),
@@ -27,6 +29,7 @@ DispersionView view_of(const FilmSpectrum& spectrum) {
             nullptr,
             nullptr,
             nullptr,
+            {},
             {}};
 }
 
@@ -158,8 +161,10 @@ TEST_CASE("three wavelengths that share a sample differ from white by what the d
     double squares[3] = {}, alone[3] = {};
     for (int cell = 0; cell < view.cell_count; ++cell) {
         const float place = static_cast<float>(cell) + 0.5f;
-        const Color three = film_color(view, place, 7, kAll, {1, 1, 1}),
-                    one = film_color(view, place, 1, kAll, {1, 1, 1});
+        const Color one = film_color(view, place, {1, 1, 1});
+        Color three = {0, 0, 0};
+        for (int step = 0; step < kSharedWavelengths; ++step)
+            three += (1.0f / kSharedWavelengths) * film_color(view, shared_place(view, place, step), {1, 1, 1});
         const double of_three[] = {static_cast<double>(three.r), static_cast<double>(three.g),
                                    static_cast<double>(three.b)};
         const double of_one[] = {static_cast<double>(one.r), static_cast<double>(one.g), static_cast<double>(one.b)};
@@ -174,10 +179,60 @@ TEST_CASE("three wavelengths that share a sample differ from white by what the d
     }
 }
 
+TEST_CASE("a sample's light is divided in equal parts among the pixels where its wavelengths end") {
+    const FilmSpectrum spectrum(Illuminant::named("D65"));
+    const DispersionView view = view_of(spectrum);
+    constexpr Effects kDispersion = {.dispersion = true};
+    const Color light = {0.3f, 2.0f, 0.7f};
+    SampleWavelengths<1> of;
+    of.place[0] = 2.25f;
+    // Which steps count, and where: in the own pixel, to the left, and below the latter.
+    for (const auto& [shares, away] :
+         {std::pair(1, std::array{0, 0, 0}), std::pair(7, std::array{0, 0, 0}), std::pair(5, std::array{0, 0, -1}),
+          std::pair(7, std::array{0, -1, 31}), std::pair(3, std::array{0, -1, 99})}) {
+        of.shares[0] = shares;
+        for (int step = 0; step < kSharedWavelengths; ++step) of.away[step][0] = away[static_cast<std::size_t>(step)];
+        PathResultsWith<1, kDispersion> results;
+        results.irradiance.set(0, light);
+        count_wavelengths<false>(view, of, 0, results);
+        Color own = {0, 0, 0};
+        for (int step = 0; step < kSharedWavelengths; ++step) {
+            const bool counts = (shares >> step & 1) != 0;
+            const Color part = 1.0f / static_cast<float>(std::popcount(static_cast<unsigned>(shares))) *
+                               film_color(view, shared_place(view, of.place[0], step), light);
+            const int pixel = of.away[step][0];
+            if (counts && pixel == 0) own += part;
+            if (step == 0) continue;
+            CHECK(results.shared.away[step - 1][0] == (counts ? pixel : 0));
+            if (counts && pixel != 0) CHECK(results.shared.irradiance[step - 1][0] == part);
+        }
+        CHECK(std::fabs(results.irradiance[0].r - own.r) < 1e-6f);
+        CHECK(std::fabs(results.irradiance[0].g - own.g) < 1e-6f);
+        CHECK(std::fabs(results.irradiance[0].b - own.b) < 1e-6f);
+    }
+}
+
+TEST_CASE("pixels share samples with those of their tile in a part of the film, and no others") {
+    const SampleSharing sharing = {{5, 7, 70, 40}, 70};
+    // Tiles of 32 pixels begin at the part's corner; the last ones are cut off at its edges.
+    const auto both = [&](int column, int row, int other_column, int other_row) {
+        const bool is_shared = sharing.has_both(column, row, other_column, other_row);
+        CHECK(is_shared == sharing.has_both(other_column, other_row, column, row));
+        return is_shared;
+    };
+    CHECK(both(5, 7, 36, 38));
+    CHECK_FALSE(both(36, 7, 37, 7));
+    CHECK_FALSE(both(5, 38, 5, 39));
+    CHECK(both(69, 39, 74, 46));
+    for (const auto& [column, row] : {std::pair(4, 7), std::pair(5, 6), std::pair(75, 7), std::pair(5, 47)})
+        CHECK_FALSE(sharing.has_both(5, 7, column, row));
+    CHECK_FALSE(SampleSharing{}.has_both(0, 0, 0, 0));
+}
+
 TEST_CASE("a line is one wavelength, and shows all colours in grey") {
     const FilmSpectrum spectrum(Illuminant::line(546.1));
     CHECK(std::fabs(wavelength_at(view_of(spectrum), 0.7f) - 546.1f) < 1e-4f);
-    const Color film = film_color(view_of(spectrum), 0.7f, 1, kAll, {0.2f, 0.9f, 0.4f});
+    const Color film = film_color(view_of(spectrum), 0.7f, {0.2f, 0.9f, 0.4f});
     CHECK(film.r == film.g);
     CHECK(film.g == film.b);
 }
