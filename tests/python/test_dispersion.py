@@ -7,7 +7,6 @@ Functions" (JCGT 2013), and D65 the CIE's table every 20 nm: neither comes from 
 from __future__ import annotations
 
 import math
-import threading
 import warnings
 from pathlib import Path
 
@@ -260,21 +259,6 @@ def test_samples_count_in_the_pixels_where_their_colours_end() -> None:
         # Some hundred quotients of 18 degrees of freedom: one in 1e5 is beyond 6, and the mean square is 1.13.
         assert np.abs(apart).max() < 6
         assert (apart**2).mean() < 1.5
-
-
-def test_a_stop_leaves_no_tile_half_done() -> None:
-    """Samples that other pixels have not had could not count here."""
-    camera = rc.Camera(rc.Lens.load("double-gauss-50mm"), film=rc.Film(36, 24, (200, 150)), exposure_time_s=1)
-    session = rc.Session(busy_scene(), camera, device="cpu", effects=("dispersion",))
-    stop = threading.Timer(0.3, session.cancel)
-    stop.start()
-    with pytest.raises(rc.Cancelled):
-        session.add(1 << 20)
-    stop.join()
-    samples = session.samples
-    for row in range(0, 150, 32):
-        for column in range(0, 200, 32):
-            assert len(np.unique(samples[row : row + 32, column : column + 32])) == 1
 
 
 def test_effects_are_listed() -> None:

@@ -169,15 +169,20 @@ def test_a_scene_without_light_is_told() -> None:
     assert {warning.filename for warning in (*told, *told_again)} == {__file__}
 
 
-def test_a_stop_keeps_what_was_taken(device: str) -> None:
-    """Pixels then differ in their samples, and each is divided by its own: a constant field stays constant."""
-    sky, wide = scenes.sky(), camera(400, 300)
-    session = rc.Session(sky, wide, device=device, max_bounces=0, effects=())
-    stop = threading.Timer(0.3, session.cancel)
+def add_until_stopped(session: rc.Session, seconds: float) -> None:
+    """Adds samples that would take minutes, and cancels them."""
+    stop = threading.Timer(seconds, session.cancel)
     stop.start()
     with pytest.raises(rc.Cancelled):
         session.add(1 << 24)
     stop.join()
+
+
+def test_a_stop_keeps_what_was_taken(device: str) -> None:
+    """Pixels then differ in their samples, and each is divided by its own: a constant field stays constant."""
+    sky, wide = scenes.sky(), camera(400, 300)
+    session = rc.Session(sky, wide, device=device, max_bounces=0, effects=())
+    add_until_stopped(session, 0.3)
     samples = session.samples
     assert samples.max() > samples.min()
     image = session.image()
@@ -193,13 +198,19 @@ def test_a_stop_keeps_what_was_taken(device: str) -> None:
     assert (session.samples == samples + 1).all()
 
 
+def test_a_stop_leaves_no_tile_half_done() -> None:
+    """With dispersion pixels share samples: those that other pixels of a tile have not had could not count here."""
+    session = rc.Session(room(), camera(200, 150), device="cpu", effects=("dispersion",))
+    add_until_stopped(session, 0.3)
+    samples = session.samples
+    for row in range(0, 150, 32):
+        for column in range(0, 200, 32):
+            assert len(np.unique(samples[row : row + 32, column : column + 32])) == 1
+
+
 def test_the_samples_after_a_stop_are_others(device: str) -> None:
     session = rc.Session(room(), camera(200, 150), device=device, seed=3, effects=())
-    stop = threading.Timer(0.2, session.cancel)
-    stop.start()
-    with pytest.raises(rc.Cancelled):
-        session.add(1 << 20)
-    stop.join()
+    add_until_stopped(session, 0.2)
     before, counts = session.image().pixels.astype(float), session.samples[..., None]
     session.add(1)
     after = session.image().pixels * (counts + 1.0) - before * counts
