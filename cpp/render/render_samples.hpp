@@ -21,7 +21,7 @@ REALCAM_INLINE void count_wavelengths(const DispersionView& view, const SampleWa
             color = weight * film_color(view, shared_place(view, of.place[lane], step), scene);
             away = of.away[step][lane];
         }
-        own += select(away == 0, 1.0f, 0.0f) * color;
+        if (away == 0) own += color;
         if constexpr (effects.share_pixels()) {
             if (step == 0) continue;
             results.shared.irradiance[step - 1].set(lane, color);
