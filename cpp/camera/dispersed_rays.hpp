@@ -11,7 +11,7 @@ namespace REALCAM_NAMESPACE {
 // Guibas 1995), if they lie in the tile of its own pixel (SampleSharing). The three are the same whichever of them
 // comes first, so that nothing is counted twice or left out.
 
-/// Lets a sample count at a step in the pixel of a film point, if that is its own or one that shares with it.
+/// Lets a sample count at a further step in the pixel of a film point, if that is its own or one that shares with it.
 template <int N>
 REALCAM_INLINE void share(const CameraView& camera, const SampleBlock<N>& block, int lane, int step, bool arrives,
                           Vec2f film, SampleWavelengths<N>& wavelengths) {
@@ -28,7 +28,7 @@ REALCAM_INLINE void share(const CameraView& camera, const SampleBlock<N>& block,
     const bool counts = is_near & (is_own | sharing.has_both(block.column[lane], block.row[lane],
                                                              block.column[lane] + right, block.row[lane] + down));
     wavelengths.shares[lane] |= select(counts, 1 << step, 0);
-    wavelengths.away[step][lane] = down * sharing.stride + right;
+    wavelengths.away[step - 1][lane] = down * sharing.stride + right;
 }
 
 /// A wavelength for each sample, stratified over those of its pixel, for which alone it counts so far.
@@ -40,7 +40,6 @@ REALCAM_INLINE void draw_wavelengths(const DispersionView& view, const SampleBlo
     for (int i = 0; i < N; ++i) {
         wavelengths.place[i] = u[i].y * static_cast<float>(view.cell_count);
         wavelengths.shares[i] = 1;
-        wavelengths.away[0][i] = 0;
     }
     REALCAM_LANES
     for (int i = 0; i < N; ++i) wavelengths.nm[i] = wavelength_at(view, wavelengths.place[i]);

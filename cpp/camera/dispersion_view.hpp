@@ -26,16 +26,16 @@ struct DispersionView {
     const IndexCubic *to_scene, *to_film;  ///< of the lens's surfaces, in the order in which light meets them
     const SurfaceView<float>* film_surfaces;  ///< of the lens, on the light's way to the film
     FreeParts<float> film_free;               ///< and what belongs to them
-    SampleSharing sharing;
+    SampleSharing sharing{};
 };
 
 /// Wavelengths for which samples count: one that was drawn, and others at steps from its place.
 template <int N>
 struct SampleWavelengths {
     Lanes<float, N> nm, place;
-    Lanes<std::int32_t, N> shares;                     ///< a bit for each step that counts, and the first of them
-    Lanes<std::int32_t, N> away[kSharedWavelengths];   ///< from its own pixel to that in which each counts
-    Lanes<float, N> passed[kSharedWavelengths];        ///< by a coated lens, at each step
+    Lanes<std::int32_t, N> shares;  ///< a bit for each step that counts, and the first of them
+    Lanes<std::int32_t, N> away[kSharedWavelengths - 1];  ///< from its own pixel to that in which a further one counts
+    Lanes<float, N> passed[kSharedWavelengths];  ///< by a coated lens, at each step
 };
 
 /// Wavelengths are drawn evenly over the cells: this one is the same share of its cell as the place's.

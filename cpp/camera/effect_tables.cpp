@@ -41,8 +41,7 @@ EffectViews EffectTables::views(double film_angle) const {
                             data_of(to_scene_),
                             data_of(to_film_),
                             film_path.surfaces,
-                            film_path.free,
-                            {}};
+                            film_path.free};
     views.coatings = {data_of(coatings_), data_of(coatings_to_scene_), data_of(coatings_to_film_)};
     if (diffraction_) views.diffraction = diffraction_->view(film_angle);
     return views;

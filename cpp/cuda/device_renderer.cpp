@@ -145,9 +145,8 @@ FilmSums DeviceRenderer::expose_region(const FilmRegion& region, const SampleRan
     sample_counts_.upload(of_pixels.data(), pixels, stream_);
     region_sums_.resize(pixels);
     region_sums_.clear(stream_);
-    const bool shares = shares_samples(camera_, settings, counts);
     launch(part, settings, region_sums_.data(), {sample_counts_.data(), 0}, film_pixels(),
-           shares ? region : FilmRegion{}, stop_.data());
+           sharing_in(region, settings, counts), stop_.data());
     FilmSums rows(pixels), sums;
     region_sums_.download(rows.data(), stream_);
     stream_.wait("rendering");
@@ -181,6 +180,11 @@ void DeviceRenderer::rehearse() {
     launch_merge(sums_.data(), others_.data(), 0, stream_);
 }
 
+FilmRegion DeviceRenderer::sharing_in(const FilmRegion& region, const RenderSettings& settings,
+                                      const PixelCounts& counts) const {
+    return shares_samples(camera_, settings, counts) ? region : FilmRegion{};
+}
+
 void DeviceRenderer::launch(const FilmPart& part, const RenderSettings& settings, PixelSum* sums,
                             const PixelCounts& counts, std::int64_t pixels, const FilmRegion& sharing,
                             const volatile int* stop) {
@@ -206,8 +210,7 @@ void DeviceRenderer::expose(const FilmPart& part, const RenderSettings& settings
         sample_counts_.upload(counts.counts, pixels, stream_);
     }
     // Where pixels share samples, a launch that has begun ends: as many samples of one pixel as of its neighbours.
-    const bool shares = shares_samples(camera_, settings, counts);
-    const volatile int* const stop = shares ? stop_.never() : stop_.data();
+    const volatile int* const stop = shares_samples(camera_, settings, counts) ? stop_.never() : stop_.data();
     // Two launches are under way at any time, so that the GPU never waits for the host.
     std::array<CudaEvent, 3> ends;
     std::array<std::int64_t, 3> sizes{};
@@ -228,8 +231,8 @@ void DeviceRenderer::expose(const FilmPart& part, const RenderSettings& settings
         const std::int64_t first = static_cast<std::int64_t>(piece.first_row - part.first_row) * camera_.width;
         const PixelCounts here{counts.counts ? sample_counts_.data() + first : nullptr,
                                counts.taken + (piece.first_sample - part.first_sample)};
-        launch(piece, settings, sums_.data() + first, here, pixels_of(piece), shares ? rows_of(piece) : FilmRegion{},
-               stop);
+        launch(piece, settings, sums_.data() + first, here, pixels_of(piece),
+               sharing_in(rows_of(piece), settings, counts), stop);
         const std::size_t i = started++ % 3;
         ends[i].record(stream_);
         sizes[i] = static_cast<std::int64_t>(piece.sample_count) * piece.row_count * camera_.width;
@@ -239,8 +242,7 @@ void DeviceRenderer::expose(const FilmPart& part, const RenderSettings& settings
 
 void DeviceRenderer::add(const FilmPart& part, const RenderSettings& settings) {
     const CurrentDevice current(ordinal_);
-    const bool shares = shares_samples(camera_, settings, {});
-    launch(part, settings, sums_.data(), {}, pixels_of(part), shares ? rows_of(part) : FilmRegion{}, stop_.data());
+    launch(part, settings, sums_.data(), {}, pixels_of(part), sharing_in(rows_of(part), settings, {}), stop_.data());
 }
 
 void DeviceRenderer::develop_codes(double exposure_time_s, double iso, ToneCurve curve, std::uint8_t* codes) {

@@ -82,14 +82,10 @@ struct ThreadSums {
     }
 };
 
-/// What neighbours bring to a pixel comes in any order. Whole numbers of this unit have the same sum in each, up to
-/// 2^53 of them. `dither`: a random number from 0 to 1, so that what is less than a unit is not lost in the mean.
-__device__ inline double in_sharing_units(double lux, float dither) {
-    return 0x1p-24 * floor(0x1p24 * lux + static_cast<double>(dither));
-}
-
+/// What neighbours bring to a pixel comes in any order. Whole numbers of a unit have the same sum in each, up to 2^53
+/// of them. `dither`: a random number from 0 to 1, so that what is less than a unit is not lost in the mean.
 __device__ inline void add_shared(PixelSum& sum, int channel, double lux, float dither) {
-    atomicAdd(&sum.irradiance[channel], in_sharing_units(lux, dither));
+    atomicAdd(&sum.irradiance[channel], 0x1p-24 * floor(0x1p24 * lux + static_cast<double>(dither)));
 }
 
 /// What a sample brings to other pixels than its own.
@@ -98,8 +94,8 @@ __device__ inline void add_shared(const SampleBlock<1>& block, const PathResults
                                   PixelSum* own) {
     for (int step = 0; step < kSharedWavelengths - 1; ++step) {
         const std::int32_t away = results.shared.away[step][0];
-        if (away == 0) continue;
         const Color c = results.shared.irradiance[step][0];
+        if (away == 0 || is_black(c)) continue;
         const float dither = unit_float(block.bits(0, static_cast<std::uint32_t>(step)));
         add_shared(own[away], 0, static_cast<double>(c.r), dither);
         add_shared(own[away], 1, static_cast<double>(c.g), dither);
@@ -168,7 +164,7 @@ __global__ void __launch_bounds__(kBlockSize, kBlocksPerMultiprocessor)
     if (inside && lane % tiles.lanes == 0) {
         if (shares) {
             const std::uint32_t bits =
-                hash32(pixel_stream(static_cast<std::int32_t>(pixel), job.seed), job.first_sample);
+                hash32(pixel_stream((job.first_row + row) * job.camera.width + column, job.seed), job.first_sample);
             for (int c = 0; c < 3; ++c) add_shared(job.sums[pixel], c, sum.irradiance[c], unit_float(bits));
             job.sums[pixel].add_all_but_irradiance(sum);
         } else {

@@ -19,7 +19,7 @@ REALCAM_INLINE void count_wavelengths(const DispersionView& view, const SampleWa
         if (shares >> step & 1) {
             const float weight = coated ? part * of.passed[step][lane] : part;
             color = weight * film_color(view, shared_place(view, of.place[lane], step), scene);
-            away = of.away[step][lane];
+            if (step > 0) away = of.away[step - 1][lane];
         }
         if (away == 0) own += color;
         if constexpr (effects.share_pixels()) {

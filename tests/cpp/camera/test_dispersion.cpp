@@ -29,7 +29,6 @@ DispersionView view_of(const FilmSpectrum& spectrum) {
             nullptr,
             nullptr,
             nullptr,
-            {},
             {}};
 }
 
@@ -186,12 +185,12 @@ TEST_CASE("a sample's light is divided in equal parts among the pixels where its
     const Color light = {0.3f, 2.0f, 0.7f};
     SampleWavelengths<1> of;
     of.place[0] = 2.25f;
-    // Which steps count, and where: in the own pixel, to the left, and below the latter.
+    // Which steps count, and where further ones do: in the own pixel, to the left, and below the latter.
     for (const auto& [shares, away] :
-         {std::pair(1, std::array{0, 0, 0}), std::pair(7, std::array{0, 0, 0}), std::pair(5, std::array{0, 0, -1}),
-          std::pair(7, std::array{0, -1, 31}), std::pair(3, std::array{0, -1, 99})}) {
+         {std::pair(1, std::array{0, 0}), std::pair(7, std::array{0, 0}), std::pair(5, std::array{0, -1}),
+          std::pair(7, std::array{-1, 31}), std::pair(3, std::array{-1, 99})}) {
         of.shares[0] = shares;
-        for (int step = 0; step < kSharedWavelengths; ++step) of.away[step][0] = away[static_cast<std::size_t>(step)];
+        for (std::size_t further = 0; further < away.size(); ++further) of.away[further][0] = away[further];
         PathResultsWith<1, kDispersion> results;
         results.irradiance.set(0, light);
         count_wavelengths<false>(view, of, 0, results);
@@ -200,7 +199,7 @@ TEST_CASE("a sample's light is divided in equal parts among the pixels where its
             const bool counts = (shares >> step & 1) != 0;
             const Color part = 1.0f / static_cast<float>(std::popcount(static_cast<unsigned>(shares))) *
                                film_color(view, shared_place(view, of.place[0], step), light);
-            const int pixel = of.away[step][0];
+            const int pixel = step > 0 ? of.away[step - 1][0] : 0;
             if (counts && pixel == 0) own += part;
             if (step == 0) continue;
             CHECK(results.shared.away[step - 1][0] == (counts ? pixel : 0));
