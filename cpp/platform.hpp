@@ -20,6 +20,16 @@
 #define REALCAM_INLINE REALCAM_HD inline
 #endif
 
+// Large functions of which each kernel of a GPU has one copy, however often it calls them: its cache of instructions is
+// full, and a call takes less time than to wait for more code. REALCAM_GPU_CALL leaves a CPU's compiler the choice.
+#if defined(__CUDACC__)
+#define REALCAM_ONE_COPY REALCAM_HD inline __noinline__
+#define REALCAM_GPU_CALL REALCAM_ONE_COPY
+#else
+#define REALCAM_ONE_COPY REALCAM_INLINE
+#define REALCAM_GPU_CALL inline
+#endif
+
 // Written before a loop over the lanes of a block: no lane reads what another lane writes.
 #if defined(__CUDA_ARCH__) || !defined(__GNUC__) || defined(__clang__)
 #define REALCAM_LANES

@@ -35,6 +35,8 @@ struct SlabRay {
     }
 
     /// A bit for each slot whose box the ray meets at a parameter in [0, far]. Bits of empty slots mean nothing.
+    /// `is_short`: with half of the code, and some instructions more.
+    template <bool is_short>
     REALCAM_INLINE unsigned slots_met(const WideNode& node, float far) const {
         const Vec3f to = node.origin - origin;
         // The reach is 18 times 255 steps: once the farthest plane, and 17 times, which 2^-20 makes 2^-8 of a step, for
@@ -46,20 +48,25 @@ struct SlabRay {
         const Axis y(to.y, std::bit_cast<float>(node.steps_xy << 16), per_axis.y, slack);
         const Axis z(to.z, std::bit_cast<float>(node.step_z_reach & 0xffff0000u), per_axis.z, slack);
         unsigned missed = 0;
-        for (int half = 1; half >= 0; --half) {
-            const std::uint32_t near_x = down_x ? node.upper[0][half] : node.lower[0][half];
-            const std::uint32_t near_y = down_y ? node.upper[1][half] : node.lower[1][half];
-            const std::uint32_t near_z = down_z ? node.upper[2][half] : node.lower[2][half];
-            const std::uint32_t far_x = down_x ? node.lower[0][half] : node.upper[0][half];
-            const std::uint32_t far_y = down_y ? node.lower[1][half] : node.upper[1][half];
-            const std::uint32_t far_z = down_z ? node.lower[2][half] : node.upper[2][half];
+        const auto test = [&](const FourSlots& slots) {
             for (unsigned i = 4; i-- > 0;) {
-                const float enter =
-                    largest_or_zero(x.near(byte(near_x, i)), y.near(byte(near_y, i)), z.near(byte(near_z, i)));
-                const float leave =
-                    smallest_if_positive(x.far(byte(far_x, i)), y.far(byte(far_y, i)), z.far(byte(far_z, i)), far);
+                const float enter = largest_or_zero(x.near(byte(slots.near_x, i)), y.near(byte(slots.near_y, i)),
+                                                    z.near(byte(slots.near_z, i)));
+                const float leave = smallest_if_positive(x.far(byte(slots.far_x, i)), y.far(byte(slots.far_y, i)),
+                                                         z.far(byte(slots.far_z, i)), far);
                 missed = append_sign(missed, leave - enter);
             }
+        };
+        if constexpr (is_short) {
+            FourSlots slots = four_slots(node, 1);
+            REALCAM_NO_UNROLL
+            for (int turn = 0; turn < 2; ++turn) {
+                test(slots);
+                slots = four_slots(node, 0);
+            }
+        } else {
+            test(four_slots(node, 1));
+            test(four_slots(node, 0));
         }
         return ~missed & 0xffu;
     }
@@ -84,6 +91,16 @@ private:
         REALCAM_INLINE float near(float plane) const { return std::fma(plane, step, near_start); }
         REALCAM_INLINE float far(float plane) const { return std::fma(plane, step, far_start); }
     };
+
+    /// The planes of half of a node's slots, on the near and on the far side.
+    struct FourSlots {
+        std::uint32_t near_x, near_y, near_z, far_x, far_y, far_z;
+    };
+    REALCAM_INLINE FourSlots four_slots(const WideNode& node, int half) const {
+        return {down_x ? node.upper[0][half] : node.lower[0][half], down_y ? node.upper[1][half] : node.lower[1][half],
+                down_z ? node.upper[2][half] : node.lower[2][half], down_x ? node.lower[0][half] : node.upper[0][half],
+                down_y ? node.lower[1][half] : node.upper[1][half], down_z ? node.lower[2][half] : node.upper[2][half]};
+    }
 
     REALCAM_INLINE float byte(std::uint32_t planes, unsigned i) const {
         return byte_above_32768(planes, i, bits_of_32768);

@@ -11,28 +11,26 @@ using SceneTraversalStack = PendingSlots[3 * kMaxBvhDepth];
 ///
 /// Within an object the traversal is watertight; between two of them, whose corners come from different roundings,
 /// there is no edge to be tight.
-template <bool any>
-class SceneTraversal : Traversal<any> {
-    using Base = Traversal<any>;
-
+class SceneTraversal : Traversal {
 public:
-    REALCAM_INLINE SceneTraversal(const SceneBvhView& bvh, Vec3f origin, Vec3f direction, float far)
-        : Base(origin, direction, far),
+    REALCAM_INLINE SceneTraversal(const SceneBvhView& bvh, Vec3f origin, Vec3f direction, float far, bool any)
+        : Traversal(origin, direction, far, any),
           origin_(origin),
           direction_(direction),
           nodes_(bvh.static_geometry.nodes),
           triangles_of_mesh_(bvh.static_geometry.triangles) {}
 
-    using Base::active;
-    using Base::hit;
+    using Traversal::active;
+    using Traversal::hit;
 
     template <class SceneRay>
     REALCAM_INLINE void step(const SceneBvhView& bvh, SceneTraversalStack& stack, const SceneRay& scene_ray) {
-        if (!this->triangles_) this->enter_node(nodes_, stack);
+        // The shorter code is 9% faster here, and 2 to 4% slower without a second level (H100).
+        if (!triangles_) enter_node<true>(nodes_, stack);
         if (level_ == Level::objects) {
             put_off_objects(stack);
-        } else if (this->meet_triangles(triangles_of_mesh_, instance_, scene_ray, NoTraversalProbe()) && any) {
-            this->pending_.slots = this->triangles_ = 0;
+        } else if (meet_triangles(triangles_of_mesh_, instance_, scene_ray) && any_) {
+            pending_.slots = triangles_ = 0;
             return;
         }
         while (!active() && go_on(bvh, stack, scene_ray)) {
@@ -46,45 +44,45 @@ private:
 
     /// The objects that the ray meets in the last node wait until its children are through.
     REALCAM_INLINE void put_off_objects(SceneTraversalStack& stack) {
-        if (!this->triangles_) return;
+        if (!triangles_) return;
         std::uint32_t objects = kObjects;
-        while (this->triangles_) {
-            const unsigned first = this->triangles_ & (0u - this->triangles_);
-            this->triangles_ ^= first;
-            objects |= 1u << count_bits(this->content_ & (first - 1u));
+        while (triangles_) {
+            const unsigned first = triangles_ & (0u - triangles_);
+            triangles_ ^= first;
+            objects |= 1u << count_bits(content_ & (first - 1u));
         }
-        stack[this->waiting_++] = {this->first_triangle_, objects};
+        stack[waiting_++] = {first_triangle_, objects};
     }
 
     /// Where nothing is left at hand: takes up what waits. Whether there was anything.
     template <class SceneRay>
     REALCAM_INLINE bool go_on(const SceneBvhView& bvh, SceneTraversalStack& stack, const SceneRay& scene_ray) {
-        if (level_ == Level::object && this->waiting_ == floor_) {
+        if (level_ == Level::object && waiting_ == floor_) {
             level_ = Level::objects;
             nodes_ = bvh.nodes;
             floor_ = 0;
         }
-        if (this->waiting_ == floor_) {
+        if (waiting_ == floor_) {
             if (level_ == Level::objects) return false;
             level_ = Level::objects;  // static geometry is done
             nodes_ = bvh.nodes;
-            this->pending_ = {0, 0x0101u};
+            pending_ = {0, 0x0101u};
             return true;
         }
-        PendingSlots& next = stack[this->waiting_ - 1];
+        PendingSlots& next = stack[waiting_ - 1];
         if (next.slots & kObjects) {
             const unsigned first = next.slots & (0u - next.slots);
             next.slots ^= first;
-            if (next.slots == kObjects) --this->waiting_;
+            if (next.slots == kObjects) --waiting_;
             enter_object(load_constant(bvh.instances + next.first_child + count_bits(first - 1u)), scene_ray);
             return true;
         }
         if (level_ == Level::objects && turned_) {
-            this->turn_to(origin_, direction_);
+            turn_to(origin_, direction_);
             turned_ = false;
         }
-        this->pending_ = next;
-        --this->waiting_;
+        pending_ = next;
+        --waiting_;
         return true;
     }
 
@@ -94,13 +92,13 @@ private:
         instance_ = instance.index;
         nodes_ = instance.object.nodes;
         triangles_of_mesh_ = instance.object.triangles;
-        floor_ = this->waiting_;
+        floor_ = waiting_;
         turned_ = true;
         InverseAffine<float> into = instance.object_from_render;
         if constexpr (!SceneRay::is_plain) {
             if (instance.moves) into = scene_ray.into_object(instance.index);
         }
-        this->turn_to(into.point(origin_), into.direction(direction_));
+        turn_to(into.point(origin_), into.direction(direction_));
     }
 
     Vec3f origin_, direction_;
@@ -112,10 +110,10 @@ private:
     bool turned_ = false;  ///< out of the frame of the scene
 };
 
-template <bool any, class SceneRay>
-REALCAM_HD inline Hit traverse(const SceneBvhView& bvh, Vec3f origin, Vec3f direction, float far,
-                               const SceneRay& scene_ray) {
-    SceneTraversal<any> ray(bvh, origin, direction, far);
+template <class SceneRay>
+REALCAM_ONE_COPY Hit traverse(const SceneBvhView& bvh, Vec3f origin, Vec3f direction, float far, bool any,
+                              SceneRay scene_ray) {
+    SceneTraversal ray(bvh, origin, direction, far, any);
     SceneTraversalStack stack;
     while (ray.active()) ray.step(bvh, stack, scene_ray);
     return ray.hit(far);
@@ -126,7 +124,7 @@ template <bool instanced, class SceneRay = PlainSceneRay>
 REALCAM_HD inline Hit closest_hit(const SceneBvhView& bvh, Vec3f origin, Vec3f direction, float far,
                                   const SceneRay& scene_ray = {}) {
     if constexpr (instanced)
-        return traverse<false>(bvh, origin, direction, far, scene_ray);
+        return traverse(bvh, origin, direction, far, false, scene_ray);
     else
         return closest_hit(bvh.static_geometry, origin, direction, far, scene_ray);
 }
@@ -135,7 +133,7 @@ template <bool instanced, class SceneRay = PlainSceneRay>
 REALCAM_HD inline bool any_hit(const SceneBvhView& bvh, Vec3f origin, Vec3f direction, float far,
                                const SceneRay& scene_ray = {}) {
     if constexpr (instanced)
-        return traverse<true>(bvh, origin, direction, far, scene_ray).triangle != kNoTriangle;
+        return traverse(bvh, origin, direction, far, true, scene_ray).triangle != kNoTriangle;
     else
         return any_hit(bvh.static_geometry, origin, direction, far, scene_ray);
 }

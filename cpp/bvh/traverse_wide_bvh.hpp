@@ -5,12 +5,6 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// For those who want to know what a ray costs: a type like this one that counts.
-struct NoTraversalProbe {
-    REALCAM_INLINE void node() const {}
-    REALCAM_INLINE void triangle() const {}
-};
-
 /// Slots of one node that a ray meets and has not entered yet.
 struct PendingSlots {
     std::uint32_t first_child;
@@ -26,23 +20,18 @@ using TraversalStack = PendingSlots[kMaxBvhDepth];
 ///
 /// For `any`, it ends at the first triangle that is found. A ray with a number that is not finite (`far` may be
 /// infinite), or without a direction of normal floating-point size, meets nothing.
-template <bool any>
 class Traversal {
 public:
-    REALCAM_INLINE Traversal(Vec3f origin, Vec3f direction, float far)
-        : Traversal(origin, direction, far, exponent_of(largest_coordinate(direction))) {}
+    REALCAM_INLINE Traversal(Vec3f origin, Vec3f direction, float far, bool any)
+        : Traversal(origin, direction, far, any, exponent_of(largest_coordinate(direction))) {}
 
     REALCAM_INLINE bool active() const { return ((pending_.slots & 0xffu) | triangles_) != 0; }
 
     /// One node, unless triangles of the last one are left, and up to kTrianglesPerStep triangles. The ray is active.
-    template <class SceneRay, class Probe = NoTraversalProbe>
-    REALCAM_INLINE void step(const WideBvhView& bvh, TraversalStack& stack, const SceneRay& scene_ray,
-                             Probe&& probe = {}) {
-        if (!triangles_) {
-            probe.node();
-            enter_node(bvh.nodes, stack);
-        }
-        if (meet_triangles(bvh.triangles, kNoInstance, scene_ray, probe) && any)
+    template <class SceneRay>
+    REALCAM_INLINE void step(const WideBvhView& bvh, TraversalStack& stack, const SceneRay& scene_ray) {
+        if (!triangles_) enter_node<false>(bvh.nodes, stack);
+        if (meet_triangles(bvh.triangles, kNoInstance, scene_ray) && any_)
             pending_.slots = triangles_ = 0;
         else if (!active() && waiting_ > 0)
             pending_ = stack[--waiting_];
@@ -66,8 +55,9 @@ protected:
     }
 
     /// A power of two makes the largest component 1 to 2 (4 at the end of the range), so that nothing overflows.
-    REALCAM_INLINE Traversal(Vec3f origin, Vec3f direction, float far, std::uint32_t exponent)
-        : scale_(std::bit_cast<float>((254u - exponent) << 23)),
+    REALCAM_INLINE Traversal(Vec3f origin, Vec3f direction, float far, bool any, std::uint32_t exponent)
+        : any_(any),
+          scale_(std::bit_cast<float>((254u - exponent) << 23)),
           slabs_(origin, scale_ * direction),
           sheared_(origin, scale_ * direction),
           hit_{far * std::bit_cast<float>(exponent << 23), kNoTriangle, 0, 0} {
@@ -79,7 +69,7 @@ protected:
     REALCAM_INLINE void turn_to(Vec3f origin, Vec3f direction) {
         const Hit so_far = hit_;
         const int waiting = waiting_;
-        *this = Traversal(origin, direction, so_far.distance * scale_);
+        *this = Traversal(origin, direction, so_far.distance * scale_, any_);
         hit_.triangle = so_far.triangle;
         hit_.u = so_far.u;
         hit_.v = so_far.v;
@@ -88,13 +78,12 @@ protected:
     }
 
     /// Up to kTrianglesPerStep of the last node; for `any`, until the first hit. Whether there was one.
-    template <class SceneRay, class Probe>
-    REALCAM_INLINE bool meet_triangles(const BvhTriangle* triangles, std::uint32_t instance, const SceneRay& scene_ray,
-                                       Probe&& probe) {
+    template <class SceneRay>
+    REALCAM_INLINE bool meet_triangles(const BvhTriangle* triangles, std::uint32_t instance,
+                                       const SceneRay& scene_ray) {
         bool met = false;
         for (int i = 0; i < kTrianglesPerStep; ++i) {
             if (!triangles_) break;
-            probe.triangle();
             const unsigned first = triangles_ & (0u - triangles_);
             triangles_ ^= first;
             const std::uint32_t number = first_triangle_ + count_bits(content_ & (first - 1u));
@@ -108,19 +97,20 @@ protected:
                 }
             }
             met = true;
-            if (any) break;
+            if (any_) break;
         }
         return met;
     }
 
     /// Goes to the next node in order, and leaves in `pending_` and `triangles_` what the ray meets there.
+    template <bool is_short>
     REALCAM_INLINE void enter_node(const WideNode* nodes, PendingSlots* stack) {
         const unsigned slot = slabs_.nearest(pending_.slots & 0xffu);
         const std::uint32_t index = pending_.first_child + count_bits(pending_.slots >> 8 & (slot - 1u));
         pending_.slots ^= slot;
         if (pending_.slots & 0xffu) stack[waiting_++] = pending_;
         const WideNode node = load_constant(nodes + index);
-        const unsigned met = slabs_.slots_met(node, hit_.distance);
+        const unsigned met = slabs_.slots_met<is_short>(node, hit_.distance);
         const unsigned children = node.content >> 24;
         pending_ = {node.first_child, (met & children) | children << 8};
         content_ = node.content;
@@ -136,6 +126,7 @@ protected:
         return slots * 7u;
     }
 
+    bool any_;
     float scale_;
     SlabRay slabs_;
     ShearedRay sheared_;
@@ -145,12 +136,13 @@ protected:
     int waiting_ = 0;
 };
 
-template <bool any, class SceneRay = PlainSceneRay, class Probe = NoTraversalProbe>
-REALCAM_HD inline Hit traverse(const WideBvhView& bvh, Vec3f origin, Vec3f direction, float far,
-                               const SceneRay& scene_ray = {}, Probe&& probe = {}) {
-    Traversal<any> ray(origin, direction, far);
+/// Of both kinds of rays, because a kernel with a traversal for each is slower (docs/decisions/gpu-kernel.md).
+template <class SceneRay>
+REALCAM_ONE_COPY Hit traverse(const WideBvhView& bvh, Vec3f origin, Vec3f direction, float far, bool any,
+                              SceneRay scene_ray) {
+    Traversal ray(origin, direction, far, any);
     TraversalStack stack;
-    while (ray.active()) ray.step(bvh, stack, scene_ray, probe);
+    while (ray.active()) ray.step(bvh, stack, scene_ray);
     return ray.hit(far);
 }
 
@@ -159,14 +151,14 @@ REALCAM_HD inline Hit traverse(const WideBvhView& bvh, Vec3f origin, Vec3f direc
 template <class SceneRay = PlainSceneRay>
 REALCAM_HD inline Hit closest_hit(const WideBvhView& bvh, Vec3f origin, Vec3f direction, float far,
                                   const SceneRay& scene_ray = {}) {
-    return traverse<false>(bvh, origin, direction, far, scene_ray);
+    return traverse(bvh, origin, direction, far, false, scene_ray);
 }
 
 /// Whether there is a triangle at a distance in [0, far), in lengths of the direction.
 template <class SceneRay = PlainSceneRay>
 REALCAM_HD inline bool any_hit(const WideBvhView& bvh, Vec3f origin, Vec3f direction, float far,
                                const SceneRay& scene_ray = {}) {
-    return traverse<true>(bvh, origin, direction, far, scene_ray).triangle != kNoTriangle;
+    return traverse(bvh, origin, direction, far, true, scene_ray).triangle != kNoTriangle;
 }
 
 }  // namespace REALCAM_NAMESPACE

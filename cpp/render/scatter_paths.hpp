@@ -60,7 +60,7 @@ namespace scatter_paths_detail {
 /// eight pairs of samples, chosen by its share of their illuminance (resampling, Talbot et al. 2005). Where
 /// all of those are behind the surface, up to 64 are drawn. Black: no light.
 template <SceneKind scene_kind>
-REALCAM_INLINE LightSample light_by_illuminance(const SceneView& scene, LightReceiver receiver, std::uint32_t seed) {
+REALCAM_ONE_COPY LightSample light_by_illuminance(const SceneView& scene, LightReceiver receiver, std::uint32_t seed) {
     LightSample chosen{{0, 1, 0}, kFarAway, 1.0f, {0, 0, 0}, kDelta};
     float sum = 0.0f;
     for (int i = 0; i < 8 || (i < 64 && !(sum > 0.0f)); ++i) {

@@ -79,7 +79,7 @@ REALCAM_INLINE GgxAlbedo inlined_ggx_albedo(float cosine, float alpha) {
 }
 
 /// Likewise, for all others.
-REALCAM_HD inline GgxAlbedo ggx_albedo(float cosine, float alpha) {
+REALCAM_GPU_CALL GgxAlbedo ggx_albedo(float cosine, float alpha) {
     return inlined_ggx_albedo(cosine, alpha);
 }
 
@@ -95,7 +95,7 @@ REALCAM_INLINE GgxAlbedo inlined_ggx_mean_albedo(float alpha) {
 }
 
 /// Likewise.
-REALCAM_HD inline GgxAlbedo ggx_mean_albedo(float alpha) {
+REALCAM_GPU_CALL GgxAlbedo ggx_mean_albedo(float alpha) {
     return inlined_ggx_mean_albedo(alpha);
 }
 

@@ -192,13 +192,22 @@ REALCAM_INLINE LightKinds light_kinds(const SceneView& scene, SkySampling sampli
             select(is_chosen, shares.probability(sky), 0.0f), is_apart};
 }
 
-REALCAM_INLINE LightKinds light_kinds(const SceneView& scene, SkySampling sampling, LightReceiver receiver) {
+/// Of all point and area lights, and of all suns.
+struct LightImportances {
     float local = 0.0f, suns = 0.0f;
-    if (count_light_kinds(scene) > 1) {
-        if (scene.light_node_count > 0) local = most_illuminance(scene.light_nodes[0], receiver);
-        for (int i = 0; i < scene.sun_count; ++i) suns += sun_importance(scene.suns[i], receiver.normal);
-    }
-    return light_kinds(scene, sampling, local, suns);
+};
+
+REALCAM_ONE_COPY LightImportances light_importances(const SceneView& scene, LightReceiver receiver) {
+    LightImportances of;
+    if (scene.light_node_count > 0) of.local = most_illuminance(scene.light_nodes[0], receiver);
+    for (int i = 0; i < scene.sun_count; ++i) of.suns += sun_importance(scene.suns[i], receiver.normal);
+    return of;
+}
+
+REALCAM_INLINE LightKinds light_kinds(const SceneView& scene, SkySampling sampling, LightReceiver receiver) {
+    LightImportances of;
+    if (count_light_kinds(scene) > 1) of = light_importances(scene, receiver);
+    return light_kinds(scene, sampling, of.local, of.suns);
 }
 
 /// Density per steradian of sample_light in a direction in which the environment is seen. One of its two samples may

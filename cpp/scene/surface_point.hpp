@@ -139,18 +139,16 @@ REALCAM_INLINE TextureView level_for(const TextureView& texture, const TextureRe
     return level_of(texture, static_cast<int>(0.5f * std::log2(texels < 1e30f ? texels : 1e30f) + footprint.chance));
 }
 
-/// White where there is no texture.
-REALCAM_INLINE Color texture_color(const MeshView& mesh, const TextureReference& reference, Vec2f uv) {
-    if (reference.texture < 0 || !mesh.uvs) return {1, 1, 1};
-    return sample_texture(mesh.textures[reference.texture], transformed(reference, uv), reference.sampler);
+REALCAM_ONE_COPY Color color_of(const TextureView& texture, const TextureReference& reference, Vec2f uv,
+                                UvFootprint footprint) {
+    return sample_texture(level_for(texture, reference, footprint), transformed(reference, uv), reference.sampler);
 }
 
-/// The same for a part of the surface.
+/// White where there is no texture. `footprint`: of a part of the surface, or of a point.
 REALCAM_INLINE Color texture_color(const MeshView& mesh, const TextureReference& reference, Vec2f uv,
-                                   UvFootprint footprint) {
+                                   UvFootprint footprint = {}) {
     if (reference.texture < 0 || !mesh.uvs) return {1, 1, 1};
-    const TextureView level = level_for(mesh.textures[reference.texture], reference, footprint);
-    return sample_texture(level, transformed(reference, uv), reference.sampler);
+    return color_of(mesh.textures[reference.texture], reference, uv, footprint);
 }
 
 /// The colour of the vertices at a hit; white where they have none.
