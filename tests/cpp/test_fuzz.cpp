@@ -1,10 +1,4 @@
-// The fuzz targets of tests/fuzz for a few seconds, always with the same inputs; `./run fuzz` goes on for hours.
-
-#include <cstdio>
-#include <string>
-
-#include "../fuzz/inputs.hpp"
-#include "measurement.hpp"
+#include "fuzz_run.hpp"
 
 namespace {
 
@@ -12,27 +6,10 @@ using namespace realcam;
 using namespace realcam::test;
 using fuzz::Findings;
 
-std::string count_of(std::uint64_t n) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.1e", static_cast<double>(n));
-    return text;
-}
-
-/// Runs a target until so many are counted; the broken invariants.
-double run(fuzz::Target target, std::uint64_t Findings::* counts, std::uint64_t wanted) {
-    Findings& all = fuzz::findings();
-    all = {};
-    const fuzz::Run run = fuzz::run_inputs(target, 1, [&] { return all.*counts >= wanted; }, [](const fuzz::Input&) {});
-    CHECK(run.slowest < 20);  // of processor time: the usual input takes milliseconds
-    for (const auto& [kind, found] : all.kinds)
-        MESSAGE(kind << ", " << found.count << " times, first in input " << found.first_input << ": " << found.first);
-    return static_cast<double>(all.broken);
-}
-
 }  // namespace
 
 TEST_CASE("fuzzed rays end with finite numbers and keep the laws of optics") {
-    const double broken = run(fuzz::fuzz_lens_trace, &Findings::rays, 1000000);
+    const double broken = run_target(fuzz::fuzz_lens_trace, &Findings::rays, 1000000);
     const Findings& all = fuzz::findings();
     CHECK(all.passed > all.rays / 40);  // it is not all waste
     hold({"Rays", "fuzzed rays that end with a NaN, an infinity or a broken invariant",
@@ -41,7 +18,7 @@ TEST_CASE("fuzzed rays end with finite numbers and keep the laws of optics") {
 }
 
 TEST_CASE("a mutated lens file is a lens or a LensFileError") {
-    const double broken = run(fuzz::fuzz_lens_file, &Findings::files, 400);
+    const double broken = run_target(fuzz::fuzz_lens_file, &Findings::files, 400);
     CHECK(fuzz::findings().files_read > 8);
     hold({"Lenses", "mutated lens files that end in anything but a lens or a LensFileError",
           std::to_string(fuzz::findings().files) + " files", "core", "float64", broken, 0, "files"});
@@ -53,27 +30,20 @@ TEST_CASE("a mutated file of any kind is what it should be, or an error") {
         fuzz::Target target;
     };
     const Kind kinds[] = {
-        {"OBJ", fuzz::fuzz_obj},         {"MTL", fuzz::fuzz_mtl}, {"glTF", fuzz::fuzz_gltf},
-        {"GLB", fuzz::fuzz_glb},         {"PLY", fuzz::fuzz_ply},
+        {"OBJ", fuzz::fuzz_obj},        {"MTL", fuzz::fuzz_mtl}, {"glTF", fuzz::fuzz_gltf},
+        {"GLB", fuzz::fuzz_glb},        {"PLY", fuzz::fuzz_ply},
 #if defined(REALCAM_FUZZ_SHOT_FILES)
         {"shot", fuzz::fuzz_shot_file},
-#endif
-#if defined(REALCAM_FUZZ_PICTURES)
-        {"picture", fuzz::fuzz_picture},
 #endif
     };
     for (const Kind& kind : kinds) {
         CAPTURE(kind.name);
-        const double broken = run(kind.target, &Findings::files, 150);
-        CHECK(fuzz::findings().files_read > 5);  // it is not all refused at the door
-        hold({"Scenes",
-              std::string("mutated files that end in anything but what they should be or an error: ") + kind.name,
-              std::to_string(fuzz::findings().files) + " files", "core", "float64", broken, 0, "files"});
+        hold_mutated_files(kind.name, kind.target);
     }
 }
 
 TEST_CASE("a camera with absurd dials is refused or its rays are finite") {
-    const double broken = run(fuzz::fuzz_camera, &Findings::pupil_samples, 100000);
+    const double broken = run_target(fuzz::fuzz_camera, &Findings::pupil_samples, 100000);
     CHECK(fuzz::findings().cameras_made > 0);
     hold({"Rays", "rays of absurd cameras, and samples of pupils at absurd film points, that are not finite",
           count_of(fuzz::findings().pupil_samples) + " samples, " + std::to_string(fuzz::findings().cameras) +
