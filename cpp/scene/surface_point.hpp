@@ -139,6 +139,7 @@ REALCAM_INLINE TextureView level_for(const TextureView& texture, const TextureRe
     return level_of(texture, static_cast<int>(0.5f * std::log2(texels < 1e30f ? texels : 1e30f) + footprint.chance));
 }
 
+/// What a texture shows at a place of a surface.
 REALCAM_ONE_COPY Color color_of(const TextureView& texture, const TextureReference& reference, Vec2f uv,
                                 UvFootprint footprint) {
     return sample_texture(level_for(texture, reference, footprint), transformed(reference, uv), reference.sampler);
