@@ -46,6 +46,12 @@ private:
     PrescriptionSurface& row_of(Words& words);
     /// False where the command is none of a surface.
     bool read_surface_command(const std::string& word, Words words);
+    /// Of these, radius, asphere, thickness, glass and stop.
+    bool read_profile(const std::string& word, Words& words);
+    /// Toroids and other forms that are not of revolution, decentres, tilts and apertures.
+    bool read_form_or_place(const std::string& word, Words& words);
+    /// What is not read, and changes the lens.
+    bool tell_foreign_surface(const std::string& word, Words& words);
     /// A circle, a side of a rectangle or an ellipse, or where its middle is and how it is turned.
     void read_aperture(const std::string& word, Words& words);
     /// SPS and the kind of special surface.

@@ -75,10 +75,10 @@ PrescriptionSurface& CodeVReader::row_of(Words& words) {
 }
 
 bool CodeVReader::read_surface_command(const std::string& word, Words words) {
-    static const std::set<std::string> shapes{"DIF", "GRT", "DOE", "HOE", "HWL", "HOR", "HCT", "HCO", "GRO", "GRS",
-                                              "TOR", "ANA", "UD1", "LNS", "MOD", "NSS", "INT", "ARR", "GRI"};
-    static const std::set<std::string> tilts{"XOD", "YOD", "ZOD", "GLB", "XGR", "YGR", "ZGR", "AGR", "BGR", "CGR"};
-    static const std::set<std::string> rectangles{"REC", "ELL", "CIG", "REG", "ELG"};
+    return read_profile(word, words) || read_form_or_place(word, words) || tell_foreign_surface(word, words);
+}
+
+bool CodeVReader::read_profile(const std::string& word, Words& words) {
     if (word == "STO") {
         PrescriptionSurface& row = row_of(words);
         for (PrescriptionSurface& other : rows_) other.is_stop = false;  // a lens has one, and this moves it
@@ -114,7 +114,14 @@ bool CodeVReader::read_surface_command(const std::string& word, Words words) {
         remark("the values in the file are taken for those of its solves and pickups (" + word + ")");
     } else if (word == "COA" || word == "MLT") {
         remark("coatings are left out (" + word + ")");
-    } else if (word == "YTO" || word == "XTO" || word == "CYL" || word == "AAS") {
+    } else {
+        return false;
+    }
+    return true;
+}
+
+bool CodeVReader::read_form_or_place(const std::string& word, Words& words) {
+    if (word == "YTO" || word == "XTO" || word == "CYL" || word == "AAS") {
         toroids_[row_of(words).number] = word;
     } else if (word == "RDX" || word == "CUX") {
         PrescriptionSurface& row = row_of(words);
@@ -143,7 +150,18 @@ bool CodeVReader::read_surface_command(const std::string& word, Words words) {
     } else if (word == "CIR" || word == "REX" || word == "REY" || word == "ELX" || word == "ELY" || word == "ADX" ||
                word == "ADY" || word == "ARO") {
         read_aperture(word, words);
-    } else if (shapes.contains(word)) {
+    } else {
+        return false;
+    }
+    return true;
+}
+
+bool CodeVReader::tell_foreign_surface(const std::string& word, Words& words) {
+    static const std::set<std::string> shapes{"DIF", "GRT", "DOE", "HOE", "HWL", "HOR", "HCT", "HCO", "GRO", "GRS",
+                                              "TOR", "ANA", "UD1", "LNS", "MOD", "NSS", "INT", "ARR", "GRI"};
+    static const std::set<std::string> tilts{"XOD", "YOD", "ZOD", "GLB", "XGR", "YGR", "ZGR", "AGR", "BGR", "CGR"};
+    static const std::set<std::string> rectangles{"REC", "ELL", "CIG", "REG", "ELG"};
+    if (shapes.contains(word)) {
         row_of(words);
         if (shaped_.insert({word, rows_[current_].number}).second)
             foreign("a surface that is no sphere, conic or asphere (" + word + ")");
