@@ -1,12 +1,8 @@
 #include "fuzz_run.hpp"
 
-namespace {
-
 using namespace realcam;
 using namespace realcam::test;
 using fuzz::Findings;
-
-}  // namespace
 
 TEST_CASE("fuzzed rays end with finite numbers and keep the laws of optics") {
     const double broken = run_target(fuzz::fuzz_lens_trace, &Findings::rays, 1000000);
