@@ -154,13 +154,13 @@ std::vector<PupilOutline> Pupil::outlines_of(int row, const OutlinesByEighth& se
 
 void Pupil::add_row(int row, PupilRow sectors, double reach, int clean_rounds) {
     constexpr int kMostRounds = 256, kBlock = PupilSearch::kBlock;
-    int held = 0, passing = 0;  // of the rays inside the sectors
-    for (int round = 0, clean = 0; round < kMostRounds && clean < clean_rounds; ++round) {
-        const auto stream = static_cast<std::uint32_t>(kMostRounds * row + round);
+    int rounds = 0, passing = 0;
+    for (int clean = 0; rounds < kMostRounds && clean < clean_rounds; ++rounds) {
+        const auto stream = static_cast<std::uint32_t>(kMostRounds * row + rounds);
         // Both ends of the row first.
-        const double position = row + (round == 0   ? 0.9999
-                                       : round == 1 ? 0.0
-                                                    : static_cast<double>(sample_2d(stream, 0, 1).x));
+        const double position = row + (rounds == 0   ? 0.9999
+                                       : rounds == 1 ? 0.0
+                                                     : static_cast<double>(sample_2d(stream, 0, 1).x));
         const PupilNode node = node_at(position);
         const double radius = radius_at(position);
         Vec2f places[kBlock];
@@ -175,13 +175,14 @@ void Pupil::add_row(int row, PupilRow sectors, double reach, int clean_rounds) {
         bool passes[kBlock], strayed = false;
         search_.lens().trace(rays, passes);
         for (int i = 0; i < kBlock; ++i) {
-            const bool holds = sectors.holds(places[i]);
-            held += static_cast<int>(holds);
-            passing += static_cast<int>(passes[i]);
-            strayed |= passes[i] && !holds && sectors.take_in(places[i]);
+            if (!passes[i]) continue;
+            ++passing;
+            strayed |= sectors.take_in(places[i]);
         }
         clean = strayed ? 0 : clean + 1;
     }
+    // Of the rays as many lie inside the sectors as these take of the surroundings.
+    const double held = rounds * kBlock * sectors.area() / (2 * reach * reach);
     if (passing < held / 4) sectors = PupilRow(box_outline());
     std::copy(sectors.sectors().begin(), sectors.sectors().end(), outline_.begin() + row * kSectors);
 }

@@ -263,8 +263,7 @@ void PupilGrid::set_cell(int column, int row, const std::vector<PupilOutline>& o
     double areas[2] = {0, 0};
     for (int half = 0; half < 2; ++half) {
         std::copy(halves[half].sectors().begin(), halves[half].sectors().end(), sectors + half * kPupilGridSectors);
-        for (const PupilSector& s : halves[half].sectors())
-            areas[half] += static_cast<double>((s.x * s.dy - s.y * s.dx) * (1 - s.hole_squared));
+        areas[half] = halves[half].area();
     }
     // A half without light may still be hit by a rounding.
     const double share = std::clamp(areas[0] / (areas[0] + areas[1]), 0.01, 0.99);

@@ -29,6 +29,8 @@ public:
     /// `wavelengths_nm`: at any of which a ray may leave the lens; none: the design wavelength.
     PupilLens(const LensSystem& lens, PupilTracer tracer, const std::vector<double>& wavelengths_nm = {});
 
+    /// Of the opening's circle, mm.
+    double stop_radius() const { return lens_.open_stop_radius(); }
     double index_squared() const { return path_.entry_index * path_.entry_index; }
 
     /// Sets passes[0] to passes[kBlock - 1] to whether these rays leave the lens.

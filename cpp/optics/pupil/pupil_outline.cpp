@@ -104,9 +104,11 @@ PupilRow::PupilRow(const PupilOutline& outline) {
     }
 }
 
-bool PupilRow::holds(Vec2f place) const {
-    const std::optional<std::size_t> at = sector_of(place);
-    return at && holds(sectors_[*at], reach_in(sectors_[*at], place));
+double PupilRow::area() const {
+    double twice = 0;
+    for (const PupilSector& s : sectors_)
+        twice += static_cast<double>((s.x * s.dy - s.y * s.dx) * (1 - s.hole_squared));
+    return 0.5 * twice;
 }
 
 bool PupilRow::take_in(Vec2f place) {

@@ -45,8 +45,6 @@ public:
     /// Cuts the outline into sectors of nearly equal area.
     explicit PupilRow(const PupilOutline& outline);
 
-    bool holds(Vec2f place) const;
-
     /// Widens the sector of a place in the box such that it holds it; false where it does already.
     bool take_in(Vec2f place);
 
@@ -54,6 +52,9 @@ public:
     Vec2f beside(std::size_t sector, Vec2f u) const;
 
     const std::vector<PupilSector>& sectors() const { return sectors_; }
+
+    /// Of all sectors without their holes, in units of the box's half-widths.
+    double area() const;
 
 private:
     struct Point {

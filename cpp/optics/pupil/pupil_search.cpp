@@ -1,5 +1,6 @@
 #include "pupil_search.hpp"
 
+#include <cmath>
 #include <limits>
 
 namespace realcam {
@@ -66,14 +67,16 @@ PupilBox PupilSearch::refined(double radius, const PupilBox& search, const Passi
 
 std::optional<PupilBox> PupilSearch::find_box(double radius, PupilBox search, const PupilBox& widest) const {
     constexpr int kLevels = 6, kEnough = 48;
+    std::optional<NearestRay> last;
     for (int level = 0; level < kLevels; ++level) {
         const Passing seen = passing(radius, search);
         if (seen.count >= kEnough) return whole(radius, refined(radius, search, seen), search, widest);
-        const auto nearest = nearest_to_stop(radius, search);
-        if (!nearest) return std::nullopt;
+        const std::optional<NearestRay> nearest = nearest_to_stop(radius, search);
+        if (!nearest || (seen.count == 0 && is_dark_around(*nearest, last))) return std::nullopt;
+        last = nearest;
         const double w = search.half_width() / 6, h = search.m_max / 6;
         search = seen.count > 0 ? refined(radius, search, seen).grown(0.2)
-                                : PupilBox{nearest->l - w, nearest->l + w, nearest->m + h};
+                                : PupilBox{nearest->at.l - w, nearest->at.l + w, nearest->at.m + h};
     }
     const Passing few = passing(radius, search);
     if (few.count == 0) return std::nullopt;
@@ -91,28 +94,51 @@ PupilBox PupilSearch::whole(double radius, PupilBox box, PupilBox search, const 
     return box;
 }
 
-std::optional<PupilDirection> PupilSearch::nearest_to_stop(double radius, const PupilBox& search) const {
-    struct Place {
-        float squared_distance;
-        int point;
+std::optional<PupilSearch::NearestRay> PupilSearch::nearest_to_stop(double radius, const PupilBox& search) const {
+    struct Reached {
+        float least_squared = std::numeric_limits<float>::max(), most_squared = 0;
+        int nearest = -1;
+        bool all = true;
     };
-    constexpr Place kNone{std::numeric_limits<float>::max(), -1};
-    const auto nearer = [](Place a, Place b) { return a.squared_distance < b.squared_distance; };
-    Place nearest[kGridBlocks];
+    Reached of_block[kGridBlocks];
     trace_grid(radius, search, [&](const PupilRays& from, int first) {
         PupilTracer::Rays rays;
         lens_.trace_to_stop(from, rays);
-        Place best = kNone;
+        Reached reached;
         for (int i = 0; i < std::min(kBlock, kPoints - first); ++i) {
-            const float x = rays.origin.x[i], y = rays.origin.y[i];
-            const Place place{x * x + y * y, first + i};
-            if (rays.status[i] == 0 && nearer(place, best)) best = place;
+            const float x = rays.origin.x[i], y = rays.origin.y[i], squared = x * x + y * y;
+            if (rays.status[i] != 0) {
+                reached.all = false;
+                continue;
+            }
+            reached.most_squared = std::max(reached.most_squared, squared);
+            if (!(squared < reached.least_squared)) continue;
+            reached.least_squared = squared;
+            reached.nearest = first + i;
         }
-        nearest[first / kBlock] = best;
+        of_block[first / kBlock] = reached;
     });
-    const int point = std::min_element(nearest, nearest + kGridBlocks, nearer)->point;
-    if (point < 0) return std::nullopt;
-    return PupilDirection{grid_l(search, point % kColumns), grid_m(search, point / kColumns)};
+    Reached all;
+    for (const Reached& reached : of_block) {
+        all.all &= reached.all;
+        all.most_squared = std::max(all.most_squared, reached.most_squared);
+        if (!(reached.least_squared < all.least_squared)) continue;
+        all.least_squared = reached.least_squared;
+        all.nearest = reached.nearest;
+    }
+    if (all.nearest < 0) return std::nullopt;
+    const double stop = lens_.stop_radius();
+    return NearestRay{{grid_l(search, all.nearest % kColumns), grid_m(search, all.nearest / kColumns)},
+                      std::sqrt(static_cast<double>(all.least_squared)) / stop,
+                      all.all && static_cast<double>(all.most_squared) < stop * stop};
+}
+
+bool PupilSearch::is_dark_around(const NearestRay& nearest, const std::optional<NearestRay>& last) {
+    // A grid six times as fine comes about six times as near, and at least 2% nearer where a stop of a thousandth of
+    // the full one lies in a bent part of the pupil.
+    constexpr double kLeastGain = 0.98;
+    const bool comes_nearer = !last || nearest.distance < kLeastGain * last->distance;
+    return nearest.all_in_stop || !comes_nearer;
 }
 
 }  // namespace realcam

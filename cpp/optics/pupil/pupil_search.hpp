@@ -73,7 +73,17 @@ private:
     /// by more than its size begins as a sliver, and one that is found by its nearest ray as its middle.
     PupilBox whole(double radius, PupilBox box, PupilBox search, const PupilBox& widest) const;
 
-    std::optional<PupilDirection> nearest_to_stop(double radius, const PupilBox& search) const;
+    /// The ray of a grid that comes nearest to the middle of the stop.
+    struct NearestRay {
+        PupilDirection at;
+        double distance;  ///< from there, as a share of the stop's radius
+        bool all_in_stop;  ///< the whole grid goes through the opening of the stop
+    };
+    std::optional<NearestRay> nearest_to_stop(double radius, const PupilBox& search) const;
+
+    /// Whether a finer grid around it will show no light where this one shows none. Either the stop is open for all of
+    /// this one, and a rim blocks it; or a finer grid came no nearer than `last`, the one before, if there was one.
+    static bool is_dark_around(const NearestRay& nearest, const std::optional<NearestRay>& last);
 
     PupilLens lens_;
 };
