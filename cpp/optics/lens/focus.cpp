@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <limits>
 
 #include "../../math/root.hpp"
 #include "../prescription/clearance.hpp"
@@ -84,17 +83,18 @@ LensSystem moved_as_a_whole(LensSystem lens, double focus_distance) {
     return lens;
 }
 
-/// The film goes along the last axis to where the image is, which then moves a little. Secants find the place.
+/// The film goes along the last axis to where the image is, which then moves by the square of the magnification: not
+/// at all, for the first step. Secants find the place.
 LensSystem film_moved(LensSystem lens, double focus_distance) {
     const double start = lens.film_distance, ahead = std::copysign(1.0, start);  // where the light goes there
     const double tolerance = 1e-12 * std::max(std::fabs(lens.film_position()), 1.0);
-    double before = 0, at_before = std::numeric_limits<double>::quiet_NaN();
+    double before = 0, at_before = start;
     constexpr int kMost = 60;
     for (int i = 0; i < kMost; ++i) {
         const double error = focus_error(lens, focus_distance);
         if (std::fabs(error) <= tolerance) return lens;
         if (!std::isfinite(error)) break;
-        const double slope = ahead * (error - before) / (lens.film_distance - at_before);
+        const double slope = i == 0 ? -1 : ahead * (error - before) / (lens.film_distance - at_before);
         before = error;
         at_before = lens.film_distance;
         // An image that goes ahead of the film, or stays behind it, is that of another plane or of none.
