@@ -95,42 +95,35 @@ PupilBox PupilSearch::whole(double radius, PupilBox box, PupilBox search, const 
 }
 
 std::optional<PupilSearch::NearestRay> PupilSearch::nearest_to_stop(double radius, const PupilBox& search) const {
-    struct Reached {
-        float least_squared = std::numeric_limits<float>::max(), most_squared = 0;
-        int nearest = -1;
-        bool all = true;
+    struct Place {
+        float squared_distance;
+        int point;
     };
-    Reached of_block[kGridBlocks];
+    constexpr Place kNone{std::numeric_limits<float>::max(), -1};
+    const auto nearer = [](Place a, Place b) { return a.squared_distance < b.squared_distance; };
+    const double stop = lens_.stop_radius();
+    Place nearest[kGridBlocks];
+    bool all_in_stop[kGridBlocks];
     trace_grid(radius, search, [&](const PupilRays& from, int first) {
         PupilTracer::Rays rays;
         lens_.trace_to_stop(from, rays);
-        Reached reached;
+        Place best = kNone;
+        bool all_in = true;
         for (int i = 0; i < std::min(kBlock, kPoints - first); ++i) {
-            const float x = rays.origin.x[i], y = rays.origin.y[i], squared = x * x + y * y;
-            if (rays.status[i] != 0) {
-                reached.all = false;
-                continue;
-            }
-            reached.most_squared = std::max(reached.most_squared, squared);
-            if (!(squared < reached.least_squared)) continue;
-            reached.least_squared = squared;
-            reached.nearest = first + i;
+            const float x = rays.origin.x[i], y = rays.origin.y[i];
+            const Place place{x * x + y * y, first + i};
+            const bool reaches = rays.status[i] == 0;
+            if (reaches && nearer(place, best)) best = place;
+            all_in &= reaches && static_cast<double>(place.squared_distance) < stop * stop;
         }
-        of_block[first / kBlock] = reached;
+        nearest[first / kBlock] = best;
+        all_in_stop[first / kBlock] = all_in;
     });
-    Reached all;
-    for (const Reached& reached : of_block) {
-        all.all &= reached.all;
-        all.most_squared = std::max(all.most_squared, reached.most_squared);
-        if (!(reached.least_squared < all.least_squared)) continue;
-        all.least_squared = reached.least_squared;
-        all.nearest = reached.nearest;
-    }
-    if (all.nearest < 0) return std::nullopt;
-    const double stop = lens_.stop_radius();
-    return NearestRay{{grid_l(search, all.nearest % kColumns), grid_m(search, all.nearest / kColumns)},
-                      std::sqrt(static_cast<double>(all.least_squared)) / stop,
-                      all.all && static_cast<double>(all.most_squared) < stop * stop};
+    const Place best = *std::min_element(nearest, nearest + kGridBlocks, nearer);
+    if (best.point < 0) return std::nullopt;
+    return NearestRay{{grid_l(search, best.point % kColumns), grid_m(search, best.point / kColumns)},
+                      std::sqrt(static_cast<double>(best.squared_distance)) / stop,
+                      std::all_of(all_in_stop, all_in_stop + kGridBlocks, [](bool all_in) { return all_in; })};
 }
 
 bool PupilSearch::is_dark_around(const NearestRay& nearest, const std::optional<NearestRay>& last) {
