@@ -345,15 +345,14 @@ def test_a_slow_link_shows_the_newest_frame_and_recovers(browser: playwright.Bro
             time.sleep(0.02)
         fetch(f"{own.url}tests/asked/{stream_path(bench).split('/')[-1]}")  # until all are done
         link.is_open.set()
-        frames = until(
-            seen,
-            lambda f: f and f[-1]["is_final"] and min(frame["jpeg_quality"] for frame in f) < 80,
-            "coarser frames, and the last picture",
-        )
+        frames = until(seen, lambda f: f and f[-1]["is_final"], "the last picture")
         serials = [frame["serial"] for frame in frames]
         assert serials == sorted(serials)
         # One was under way while the link was shut. Of the others those that waited were out of date.
         assert len(set(serials)) < 6
+        # The last picture may have been made before the first was acknowledged, so that the next one shows it.
+        bench.send({"type": "orbit", "x": 0.05, "y": 0})
+        until(seen, lambda f: any(frame["jpeg_quality"] < 80 for frame in f[len(frames) :]), "a coarser frame")
         link.bytes_per_s = float("inf")
         bench.send({"type": "orbit", "x": 0.05, "y": 0})
         # At its best, although nothing is touched any more.
