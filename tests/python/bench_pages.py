@@ -369,13 +369,20 @@ class BenchPage:
         self.test_id("lens").fill(name)
         self.page.locator(".q-menu .q-item").get_by_text(name, exact=True).click()
 
-    def choose_what_to_save(self, what: str) -> None:
-        """Waits for the name that the server then proposes: it would replace one that is filled in before it."""
-        if self.page.locator('.q-field:has([data-testid="save-what"]) .q-field__native span').inner_text() == what:
-            return
-        proposed = {"picture": "picture.png", "shot": "shot.toml", "lens": "lens.toml"}[what]
-        self.choose("save-what", what)
-        until(self.test_id("save-name").input_value, lambda name: name == proposed, "the name that is proposed")
+    def choose_what_to_save(self, what: str, name: str) -> None:
+        """Waits for the name that the server proposes: it would replace one that is filled in before it."""
+        field = self.test_id("save-name")
+        if self.page.locator('.q-field:has([data-testid="save-what"]) .q-field__native span').inner_text() != what:
+            proposed = {"picture": "picture.png", "shot": "shot.toml", "lens": "lens.toml"}[what]
+            self.choose("save-what", what)
+            until(field.input_value, lambda shown: shown == proposed, "the name that is proposed")
+
+        def filled() -> str:
+            field.fill(name)
+            return str(field.input_value())
+
+        # A list takes the focus back some time after it has closed. What is typed at that moment goes nowhere.
+        until(filled, lambda shown: shown == name, "the name that is filled in")
 
     def cell(self, surface: int, field: str) -> Any:
         return self.page.locator(f'[data-cell="{surface}-{field}"]')

@@ -261,9 +261,7 @@ def lens_info(path: Path) -> float:
 
 
 def save(bench: BenchPage, what: str, name: str) -> None:
-    if what != "picture":
-        bench.choose_what_to_save(what)
-    bench.test_id("save-name").fill(name)
+    bench.choose_what_to_save(what, name)
     bench.test_id("save").click()
     bench.until_text("said", lambda text: text == f"Wrote {name}")
 
@@ -549,14 +547,13 @@ def test_saving(bench: BenchPage, server: Server) -> None:
     save(bench, "shot", "saved.toml")
     shot = rc.Shot.load(server.shot.parent / "saved.toml")
     assert shot.camera.lens.first_order().f_number == pytest.approx(4, rel=0.05)
-    bench.choose_what_to_save("picture")
     for name, why in (
         ("../outside.png", "outside the folders"),
         ("saved.gif", "wanted"),
         ("/tmp/outside.png", "outside the folders"),
         ("", "wanted"),
     ):
-        bench.test_id("save-name").fill(name)
+        bench.choose_what_to_save("picture", name)
 
         def answer() -> str:
             """Of another click, as of one who sees nothing happen on a busy machine: each is refused alike."""
@@ -572,8 +569,7 @@ def test_no_file_is_replaced_without_a_word(bench: BenchPage, server: Server) ->
     file = server.shot.parent / "mine.toml"
     file.write_text("of some worth")
     for answer, is_kept in (("Keep it", True), ("Replace it", False)):
-        bench.choose_what_to_save("lens")
-        bench.test_id("save-name").fill(file.name)
+        bench.choose_what_to_save("lens", file.name)
         bench.test_id("save").click()
         bench.page.get_by_text("mine.toml is there already").wait_for()
         bench.page.get_by_role("button", name=answer).click()

@@ -19,9 +19,7 @@ pytestmark = [pytest.mark.picture_files, pytest.mark.skipif(CHROMIUM is None, re
 
 
 def ask_to_save(bench: BenchPage, what: str, name: str, button: str = "save") -> None:
-    if what != "picture":
-        bench.choose_what_to_save(what)
-    bench.test_id("save-name").fill(name)
+    bench.choose_what_to_save(what, name)
     bench.test_id(button).click()
 
 
@@ -79,8 +77,7 @@ def test_two_windows_that_save_one_new_name(browser: Any, server: Server, bench:
     other = BenchPage(browser, server.url)
     try:
         for page in (bench, other):
-            page.choose_what_to_save("lens")
-            page.test_id("save-name").fill(f"{folder.name}/mine.toml")
+            page.choose_what_to_save("lens", f"{folder.name}/mine.toml")
         for page in (bench, other):
             page.test_id("save").click(no_wait_after=True)
 
