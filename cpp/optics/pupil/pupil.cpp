@@ -36,21 +36,18 @@ PupilView Pupil::view() const {
 }
 
 void Pupil::find_nodes() {
-    PupilRowBoxes boxes = rows().look_from_axis();
-    const auto lit = [](const std::optional<PupilBox>& box) { return box.has_value(); };
-    const auto last = std::find_if(boxes.rbegin(), boxes.rend(), lit);
-    if (last == boxes.rend()) {
+    PupilRowSearch::Sight sight = rows().look_from_axis();
+    if (sight.lit.empty()) {
         image_radius_ = 0;
         nodes_.assign(kRows + 1, PupilNode{});
         return;
     }
-    if (last != boxes.rbegin()) {
-        const PupilRowSearch::Edge edge = rows().edge_of_image(static_cast<int>(boxes.rend() - last - 1), boxes);
-        image_radius_ = edge.radius;
-        ends_inside_film_ = true;
-        boxes = rows().look_from_axis();
-        boxes.back() = edge.last_box;
-    }
+    rows().find_edge_of_image(sight);
+    ends_inside_film_ = !sight.dark.empty();
+    if (ends_inside_film_) image_radius_ = sight.dark.back();
+    PupilRowBoxes boxes = rows().look_between(sight.lit);
+    if (ends_inside_film_) boxes.back() = sight.lit.back().box;
+    const auto lit = [](const std::optional<PupilBox>& found) { return found.has_value(); };
     std::optional<PupilBox> box = *std::find_if(boxes.begin(), boxes.end(), lit);
     for (const auto& found : boxes) {
         if (found) box = found;  // a node without light takes its inner neighbour's box
@@ -141,7 +138,7 @@ void Pupil::find_outlines() {
             return;
         }
         const PupilRow sectors(holding_all(outlines_of(row, seen)));
-        add_row(row, sectors, does_change(row) ? 1.4 : 1.15, does_change(row) ? 24 : 1);
+        add_row(row, sectors, does_change(row) ? 1.4 : 1.15, does_change(row) ? 8 : 1);
     });
 }
 
@@ -154,35 +151,37 @@ std::vector<PupilOutline> Pupil::outlines_of(int row, const OutlinesByEighth& se
 
 void Pupil::add_row(int row, PupilRow sectors, double reach, int clean_rounds) {
     constexpr int kMostRounds = 256, kBlock = PupilSearch::kBlock;
-    int rounds = 0, passing = 0;
+    int rounds = 0, all_over = 0, passing = 0;
     for (int clean = 0; rounds < kMostRounds && clean < clean_rounds; ++rounds) {
         const auto stream = static_cast<std::uint32_t>(kMostRounds * row + rounds);
         // Both ends of the row first.
-        const double position = row + (rounds == 0   ? 0.9999
-                                       : rounds == 1 ? 0.0
-                                                     : static_cast<double>(sample_2d(stream, 0, 1).x));
+        const double position = row + (rounds < 2   ? 0.9999
+                                       : rounds < 4 ? 0.0
+                                                    : static_cast<double>(sample_2d(stream, 0, 1).x));
         const PupilNode node = node_at(position);
         const double radius = radius_at(position);
+        const bool is_beside = rounds % 2 != 0;
         Vec2f places[kBlock];
         PupilRays rays;
         for (int i = 0; i < kBlock; ++i) {
             const Vec2f u = sample_2d(stream, static_cast<std::uint32_t>(i), 0);
-            places[i] = {static_cast<float>(reach) * (2 * u.x - 1), static_cast<float>(reach) * u.y};
+            places[i] = is_beside ? sectors.beside(static_cast<std::size_t>(i) % kSectors, u)
+                                  : Vec2f{static_cast<float>(reach) * (2 * u.x - 1), static_cast<float>(reach) * u.y};
             rays.set(i, radius,
                      {static_cast<double>(node.centre + node.half_width * places[i].x),
                       static_cast<double>(node.half_height * places[i].y)});
         }
         bool passes[kBlock], strayed = false;
         search_.lens().trace(rays, passes);
-        for (int i = 0; i < kBlock; ++i) {
-            if (!passes[i]) continue;
-            ++passing;
-            strayed |= sectors.take_in(places[i]);
+        for (int i = 0; i < kBlock; ++i) strayed |= passes[i] && sectors.take_in(places[i]);
+        if (!is_beside) {
+            ++all_over;
+            passing += static_cast<int>(std::count(passes, passes + kBlock, true));
         }
         clean = strayed ? 0 : clean + 1;
     }
-    // Of the rays as many lie inside the sectors as these take of the surroundings.
-    const double held = rounds * kBlock * sectors.area() / (2 * reach * reach);
+    // Of the rays all over, as many lie inside the sectors as these take of the surroundings.
+    const double held = all_over * kBlock * sectors.area() / (2 * reach * reach);
     if (passing < held / 4) sectors = PupilRow(box_outline());
     std::copy(sectors.sectors().begin(), sectors.sectors().end(), outline_.begin() + row * kSectors);
 }

@@ -14,9 +14,9 @@ class Pupil {
 public:
     static constexpr int kRows = PupilRowSearch::kRows;
     static constexpr int kSectors = PupilRow::kSectors;  ///< for m >= 0
-    /// No search traces more, whatever the lens. There are 270 looks at a film radius: two tables of nodes, both also
-    /// looked for ahead, the edge of the image, and half-way between rows. Each row has outlines at both ends and seven
-    /// places, looked for in five steps, and 256 rounds. Lenses that can be made take a hundredth of it.
+    /// No search traces more, whatever the lens. There are 270 looks at a film radius: every eighth row, those around
+    /// and beyond a dark one, the edge of the image, all rows, and half-way between them. Each row has outlines at both
+    /// ends and seven places, looked for in five steps, and 256 rounds. Lenses that can be made take a hundredth of it.
     static constexpr int kMostBlocks = 270 * PupilSearch::kMostBlocks + OutlineSearch::most_blocks(kRows / 2 + 1) +
                                        OutlineSearch::most_blocks(kRows / 2) + OutlineSearch::most_blocks(kRows) +
                                        OutlineSearch::most_blocks(2 * kRows) + OutlineSearch::most_blocks(4 * kRows) +
@@ -64,10 +64,10 @@ private:
     /// From the beginning of a row to its end.
     static std::vector<PupilOutline> outlines_of(int row, const OutlinesByEighth& seen);
 
-    /// Adds a row. Sends rays all over its surroundings first, and widens the sectors beside which some pass, until so
-    /// many rounds in a row find none. The reason is that corners of slivers lie between spokes, and ends of crescents
-    /// between the points of a grid. Sectors that few rays pass do not tell where the light is, which may lie in
-    /// several rings: the whole box takes their place.
+    /// Adds a row. Sends rays all over its surroundings in one round, and just beside the sectors in the next, and
+    /// widens those that do not hold what passes, until so many rounds in a row find none. The reason is that corners
+    /// of slivers lie between spokes, and ends of crescents between the points of a grid. Sectors that few rays pass do
+    /// not tell where the light is, which may lie in several rings: the whole box takes their place.
     void add_row(int row, PupilRow sectors, double reach, int clean_rounds);
 
     PupilSearch search_;

@@ -87,7 +87,11 @@ PupilRow::PupilRow(const PupilOutline& outline) {
         const double before = outline.outer[a], after = outline.outer[a + 1];
         // Where the reach jumps, the corner of a sliver lies between the two spokes, further out than either.
         const bool corner = std::fabs(after - before) > 0.2 * std::max(before, after);
-        outer[i] = corner ? 1.25 * std::max(before, after) : before + f * (after - before);
+        // Where two rims meet, the outline goes on straight from both sides until they do.
+        const double from_before = before + f * (before - outline.outer[a > 0 ? a - 1 : 1]);
+        const double from_after = after + (1 - f) * (after - outline.outer[a + 1 < kAzimuths ? a + 2 : kAzimuths - 1]);
+        const double straight = before + f * (after - before);
+        outer[i] = corner ? 1.25 * std::max(before, after) : std::max(straight, std::min(from_before, from_after));
         inner[i] = corner ? std::min(outline.inner[a], outline.inner[a + 1])
                           : outline.inner[a] + f * (outline.inner[a + 1] - outline.inner[a]);
     }

@@ -1,5 +1,8 @@
 #include "pupil_row_search.hpp"
 
+#include <algorithm>
+#include <iterator>
+
 namespace realcam {
 
 double PupilRowSearch::radius_at(double position) const {
@@ -7,69 +10,83 @@ double PupilRowSearch::radius_at(double position) const {
     return image_radius_ * (1 - inward * inward);
 }
 
-PupilRowBoxes PupilRowSearch::look_from_axis() const {
-    constexpr int kStride = 8;
+PupilRowSearch::Sight PupilRowSearch::look_from_axis() const {
     static_assert(kRows % kStride == 0);
-    PupilRowBoxes boxes;
+    Sight sight;
     PupilTrack track;
-    int dark = kRows + 1;
-    for (int row = 0; row <= kRows; row += kStride) {
-        const std::optional<PupilBox> box = search_.look(radius_at(row), track);
-        if (!box) {
-            dark = row;
-            break;
-        }
-        boxes.resize(static_cast<std::size_t>(row) + 1);
-        boxes.back() = box;
-    }
-    search_.lens().for_each(static_cast<int>(boxes.size()) / kStride, [&](int stretch) {
-        const int first = stretch * kStride;
-        PupilTrack own = track_to(boxes, first, kStride);
-        for (int row = first + 1; row < first + kStride; ++row)
-            boxes[static_cast<std::size_t>(row)] = search_.look(radius_at(row), own);
+    const auto is_lit = [&](int row) {
+        if (!search_.look(radius_at(row), track)) return false;
+        sight.lit.push_back(*track.last);
+        return true;
+    };
+    int dark = 0;
+    while (dark <= kRows && is_lit(dark)) dark += kStride;
+    if (dark > kRows) return sight;
+    // Towards the edge of the image the light moves and shrinks, so that every row is needed to follow it.
+    const int dark_for_sure = dark;
+    if (dark > 0) dark -= kStride - 1;
+    while (dark < dark_for_sure && is_lit(dark)) ++dark;
+    PupilRowBoxes ahead(kRows + 1);
+    search_.lens().for_each(kRows - dark, [&](int i) {
+        PupilTrack own = track;
+        const int row = dark + 1 + i;
+        ahead[static_cast<std::size_t>(row)] = search_.look(radius_at(row), own);
     });
-    look_outwards(boxes, dark);
-    return boxes;
+    int last = kRows;
+    while (last > dark && !ahead[static_cast<std::size_t>(last)]) --last;
+    for (int row = dark + 1; row <= last; ++row)
+        if (const auto& box = ahead[static_cast<std::size_t>(row)]) sight.lit.push_back({radius_at(row), *box});
+    if (last == dark) --last;
+    for (int row = kRows; row > last; --row) sight.dark.push_back(radius_at(row));
+    return sight;
 }
 
-PupilRowSearch::Edge PupilRowSearch::edge_of_image(int last_lit_row, const PupilRowBoxes& boxes) const {
-    PupilTrack track = track_to(boxes, last_lit_row, 1);
-    double dark = radius_at(last_lit_row + 1);
-    for (int i = 0; i < kEdgeHalvings; ++i) {
-        const double middle = 0.5 * (track.last->radius + dark);
-        if (!search_.look_near(middle, track)) dark = middle;
-    }
-    return {dark, track.last->box};
-}
-
-PupilTrack PupilRowSearch::track_to(const PupilRowBoxes& boxes, int row, int step) const {
+void PupilRowSearch::find_edge_of_image(Sight& sight) const {
     PupilTrack track;
-    for (const int at : {row - step, row})
-        if (at >= 0)
-            if (const auto& box = boxes[static_cast<std::size_t>(at)]) track.add(radius_at(at), *box);
+    for (const PupilTrack::Seen& seen : sight.lit) track.add(seen.radius, seen.box);
+    std::vector<double>& dark = sight.dark;
+    for (int round = 0; round < kMostEdgeRounds && !dark.empty(); ++round) {
+        const double lit = track.last->radius, third = (dark.back() - lit) / 3;
+        if (3 * third < kEdgeWidth * dark.back()) break;
+        // A sliver that moves is missed from afar. So where none was seen is looked at again from nearby.
+        const double radii[] = {lit + third, lit + 2 * third, dark.back()};
+        constexpr int kCount = std::size(radii);
+        std::optional<PupilBox> boxes[kCount];
+        search_.lens().for_each(kCount, [&](int i) {
+            PupilTrack own = track;
+            boxes[i] = round < 2 ? search_.look(radii[i], own) : search_.look_near(radii[i], own);
+        });
+        dark.pop_back();
+        for (int i = kCount - 1; i >= 0 && !boxes[i]; --i) dark.push_back(radii[i]);
+        for (int i = 0; i < kCount; ++i)
+            if (boxes[i]) track.add(radii[i], *boxes[i]);
+    }
+    if (track.last->radius > sight.lit.back().radius) sight.lit.push_back(*track.last);
+}
+
+PupilTrack PupilRowSearch::track_between(const std::vector<PupilTrack::Seen>& seen, double radius) {
+    const auto is_further = [](double r, const PupilTrack::Seen& other) { return r < other.radius; };
+    const auto outer = std::upper_bound(seen.begin(), seen.end(), radius, is_further);
+    const auto inner = outer == seen.begin() ? outer : std::prev(outer);
+    PupilTrack track;
+    if (inner + 1 != seen.end()) {
+        track.add(inner[1].radius, inner[1].box);
+    } else if (inner != seen.begin()) {
+        track.add(inner[-1].radius, inner[-1].box);
+    }
+    track.add(inner->radius, inner->box);
     return track;
 }
 
-void PupilRowSearch::look_outwards(PupilRowBoxes& boxes, int dark) const {
-    const auto look = [&](int row, PupilTrack& track) {
-        return row == dark ? std::nullopt : search_.look(radius_at(row), track);
-    };
-    PupilTrack track = track_to(boxes, static_cast<int>(boxes.size()) - 1, 1);
-    bool looked_ahead = false;
-    while (static_cast<int>(boxes.size()) <= kRows) {
-        boxes.push_back(look(static_cast<int>(boxes.size()), track));
-        if (boxes.back() || looked_ahead) continue;
-        // Beyond the first dark row nearly always all is dark. Then no row depends on one before it.
-        looked_ahead = true;
-        const int next = static_cast<int>(boxes.size());
-        PupilRowBoxes ahead(static_cast<std::size_t>(kRows + 1 - next));
-        search_.lens().for_each(kRows + 1 - next, [&](int i) {
-            PupilTrack own = track;
-            ahead[static_cast<std::size_t>(i)] = look(next + i, own);
-        });
-        const auto lit = std::find_if(ahead.begin(), ahead.end(), [](const auto& box) { return box.has_value(); });
-        boxes.insert(boxes.end(), ahead.begin(), lit);
-    }
+PupilRowBoxes PupilRowSearch::look_between(const std::vector<PupilTrack::Seen>& seen) const {
+    PupilRowBoxes boxes(kRows + 1);
+    search_.lens().for_each(kRows + 1, [&](int row) {
+        const double radius = radius_at(row);
+        PupilTrack track = track_between(seen, radius);
+        const bool is_seen = track.last->radius == radius;
+        boxes[static_cast<std::size_t>(row)] = is_seen ? track.last->box : search_.look(radius, track);
+    });
+    return boxes;
 }
 
 }  // namespace realcam

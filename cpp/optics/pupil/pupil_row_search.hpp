@@ -20,25 +20,30 @@ public:
     /// Film radius at which a row, or a place inside one, lies.
     double radius_at(double position) const;
 
-    /// Far apart first: what lies between rows with light is looked for at once, and then what lies beyond them.
-    PupilRowBoxes look_from_axis() const;
-
-    struct Edge {
-        double radius;  ///< the first without light
-        PupilBox last_box;  ///< just inside
+    /// Radii with light, going outwards, and those beyond them where none was seen, going inwards.
+    struct Sight {
+        std::vector<PupilTrack::Seen> lit;
+        std::vector<double> dark;
     };
 
-    /// Within a millionth of the image's radius, on the dark side.
-    Edge edge_of_image(int last_lit_row, const PupilRowBoxes& boxes) const;
+    /// Every eighth row from the axis. Before and beyond a dark one all of them: the light may end there or begin
+    /// again.
+    Sight look_from_axis() const;
+
+    /// Adds the last radius with light, and at most 1e-5 of it further out the first without; none where light reaches
+    /// the last row.
+    void find_edge_of_image(Sight& sight) const;
+
+    /// All rows, each looked for where its neighbours among those that were seen lead to.
+    PupilRowBoxes look_between(const std::vector<PupilTrack::Seen>& seen) const;
 
 private:
-    static constexpr int kEdgeHalvings = 16;  ///< of a row, which takes 4% of the radius at most
+    static constexpr int kStride = 8;
+    static constexpr int kMostEdgeRounds = 32;
+    static constexpr double kEdgeWidth = 1e-5;  ///< of the image's radius
 
-    /// What was seen at a row and at one further in.
-    PupilTrack track_to(const PupilRowBoxes& boxes, int row, int step) const;
-
-    /// Row after row, from those that are there to the last. One is known to be dark.
-    void look_outwards(PupilRowBoxes& boxes, int dark) const;
+    /// Leads to a radius from the nearest two that were seen, on both sides of it where there are such.
+    static PupilTrack track_between(const std::vector<PupilTrack::Seen>& seen, double radius);
 
     const PupilSearch& search_;
     double image_radius_;

@@ -204,3 +204,20 @@ TEST_CASE("a film point out of the image circle gets no weight") {
             CHECK(std::isfinite(length(s.direction)));
         }
 }
+
+TEST_CASE("the lens ends the image, whatever the size of the film that it is on") {
+    for (const char* name : {"eye-22mm", "fisheye-6mm-220deg", "phone-4mm", "phone-4mm-three-elements"}) {
+        CAPTURE(name);
+        LensSystem lens = io::read_lens(name);
+        const double open = lens.stop_semi_diameter;
+        for (const double share : {1.0, 0.1, 0.01, 0.001}) {
+            CAPTURE(share);
+            lens.stop_semi_diameter = share * open;
+            const double edge = Pupil(lens, 21.6).image_radius();
+            REQUIRE(edge < 21.6);
+            // A search is done where its steps are a hundred-thousandth, on the dark side.
+            CHECK(Pupil(lens, 80).image_radius() == about(edge, 3e-5));
+            CHECK(Pupil(lens, 1.2 * edge).image_radius() == about(edge, 3e-5));
+        }
+    }
+}
