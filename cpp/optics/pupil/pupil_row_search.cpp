@@ -54,6 +54,7 @@ void PupilRowSearch::find_edge_of_image(Sight& sight) const {
         std::optional<PupilBox> boxes[kCount];
         search_.lens().for_each(kCount, [&](int i) {
             PupilTrack own = track;
+            // At first the track leads from so far away that the light may lie elsewhere.
             boxes[i] = round < 2 ? search_.look(radii[i], own) : search_.look_near(radii[i], own);
         });
         dark.pop_back();
