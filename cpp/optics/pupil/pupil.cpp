@@ -47,8 +47,8 @@ void Pupil::find_nodes() {
     if (ends_inside_film_) image_radius_ = sight.dark.back();
     PupilRowBoxes boxes = rows().look_between(sight.lit);
     if (ends_inside_film_) boxes.back() = sight.lit.back().box;
-    const auto lit = [](const std::optional<PupilBox>& found) { return found.has_value(); };
-    std::optional<PupilBox> box = *std::find_if(boxes.begin(), boxes.end(), lit);
+    std::optional<PupilBox> box =
+        *std::find_if(boxes.begin(), boxes.end(), [](const auto& found) { return found.has_value(); });
     for (const auto& found : boxes) {
         if (found) box = found;  // a node without light takes its inner neighbour's box
         nodes_.push_back(
@@ -151,7 +151,7 @@ std::vector<PupilOutline> Pupil::outlines_of(int row, const OutlinesByEighth& se
 
 void Pupil::add_row(int row, PupilRow sectors, double reach, int clean_rounds) {
     constexpr int kMostRounds = 256, kBlock = PupilSearch::kBlock;
-    int rounds = 0, all_over = 0, passing = 0;
+    int rounds = 0, passing = 0;
     for (int clean = 0; rounds < kMostRounds && clean < clean_rounds; ++rounds) {
         const auto stream = static_cast<std::uint32_t>(kMostRounds * row + rounds);
         // Both ends of the row first.
@@ -174,14 +174,11 @@ void Pupil::add_row(int row, PupilRow sectors, double reach, int clean_rounds) {
         bool passes[kBlock], strayed = false;
         search_.lens().trace(rays, passes);
         for (int i = 0; i < kBlock; ++i) strayed |= passes[i] && sectors.take_in(places[i]);
-        if (!is_beside) {
-            ++all_over;
-            passing += static_cast<int>(std::count(passes, passes + kBlock, true));
-        }
+        if (!is_beside) passing += static_cast<int>(std::count(passes, passes + kBlock, true));
         clean = strayed ? 0 : clean + 1;
     }
     // Of the rays all over, as many lie inside the sectors as these take of the surroundings.
-    const double held = all_over * kBlock * sectors.area() / (2 * reach * reach);
+    const double held = (rounds + 1) / 2 * kBlock * sectors.area() / (2 * reach * reach);
     if (passing < held / 4) sectors = PupilRow(box_outline());
     std::copy(sectors.sectors().begin(), sectors.sectors().end(), outline_.begin() + row * kSectors);
 }

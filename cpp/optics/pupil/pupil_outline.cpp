@@ -87,7 +87,8 @@ PupilRow::PupilRow(const PupilOutline& outline) {
         const double before = outline.outer[a], after = outline.outer[a + 1];
         // Where the reach jumps, the corner of a sliver lies between the two spokes, further out than either.
         const bool corner = std::fabs(after - before) > 0.2 * std::max(before, after);
-        // Where two rims meet, the outline goes on straight from both sides until they do.
+        // Where two rims meet, the outline goes on straight from both sides until they do. At the ends it is taken to
+        // be symmetric in m.
         const double from_before = before + f * (before - outline.outer[a > 0 ? a - 1 : 1]);
         const double from_after = after + (1 - f) * (after - outline.outer[a + 1 < kAzimuths ? a + 2 : kAzimuths - 1]);
         const double straight = before + f * (after - before);

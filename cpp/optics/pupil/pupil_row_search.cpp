@@ -33,10 +33,9 @@ PupilRowSearch::Sight PupilRowSearch::look_from_axis() const {
         ahead[static_cast<std::size_t>(row)] = search_.look(radius_at(row), own);
     });
     int last = kRows;
-    while (last > dark && !ahead[static_cast<std::size_t>(last)]) --last;
+    while (last >= dark && !ahead[static_cast<std::size_t>(last)]) --last;
     for (int row = dark + 1; row <= last; ++row)
         if (const auto& box = ahead[static_cast<std::size_t>(row)]) sight.lit.push_back({radius_at(row), *box});
-    if (last == dark) --last;
     for (int row = kRows; row > last; --row) sight.dark.push_back(radius_at(row));
     return sight;
 }
