@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import gc
 import json
 import threading
 from collections.abc import AsyncIterator, Awaitable, Callable
@@ -16,8 +17,9 @@ import pytest
 pytest.importorskip("simplejpeg")
 pytest.importorskip("starlette")
 
+from realcam import InputError
 from realcam.viewer.lens_bench import LensBench
-from realcam.viewer.listeners import Listeners
+from realcam.viewer.listeners import Listeners, Problem
 from realcam.viewer.picture_request import Frame
 from realcam.viewer.stream import PictureStream
 
@@ -180,6 +182,28 @@ def test_what_was_asked_for_before_a_connection_was_lost_is_done() -> None:
             slow.may.set()
             await until(lambda: len(slow.turned) == 7)
             assert slow.turned == [move["steps"] for move in MOVES[:7]]
+
+    run(test)
+
+
+def test_what_cannot_be_done_is_told_although_the_connection_was_lost() -> None:
+    async def test(slow: SlowBench, stream: PictureStream) -> None:
+        def undo() -> None:
+            assert slow.may.wait(WAIT_S)
+            raise InputError("there is nothing to take back")
+
+        slow.bench.undo.side_effect = undo
+        unseen: list[dict[str, Any]] = []
+        asyncio.get_running_loop().set_exception_handler(lambda _, context: unseen.append(context))
+        link = Link()
+        async with served(stream, link):
+            link.says({"type": "undo"})
+            await until(link.from_page.empty)
+        slow.may.set()
+        await until(lambda: slow.bench.report.called)
+        slow.bench.report.assert_called_once_with(Problem("there is nothing to take back", of="lens"))
+        gc.collect()  # asyncio tells of an exception that nobody has taken when its future goes
+        assert unseen == []
 
     run(test)
 

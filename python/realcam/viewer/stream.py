@@ -21,7 +21,7 @@ from .._core import Plan, RealcamError
 from .inbox import Inbox
 from .lens_bench import LensBench
 from .listeners import Problem
-from .messages import BadMessage, json_text, parsed, perform, subject
+from .messages import BadMessage, Message, json_text, parsed, perform, subject
 from .picture_request import Frame
 from .server_loop import call_on_loop
 
@@ -97,17 +97,27 @@ class PictureStream:
     async def _work(self) -> None:
         while True:
             message = await self.inbox.next()
-            try:
-                # Shielded, because what waits for its turn would be given up with the connection.
-                await asyncio.shield(self._loop.run_in_executor(self._executor, perform, message, self._bench))
-            except BadMessage:
-                raise
-            except RealcamError as error:
-                self._bench.report(Problem(str(error), of=subject(message)))
-            except Exception:
-                _log.exception("%.200s could not be done", message)
-                text = "that could not be done; the server's log says more"
-                self._bench.report(Problem(text, of=subject(message)))
+            # Shielded, because what waits for its turn would be given up with the connection.
+            bad = await asyncio.shield(self._loop.run_in_executor(self._executor, self._perform, message))
+            if bad:
+                raise bad
+
+    def _perform(self, message: Message) -> BadMessage | None:
+        """On the executor's thread. Raises nothing, because nobody waits for it where the connection is lost meanwhile.
+
+        Returns what makes it no message of our pages.
+        """
+        try:
+            perform(message, self._bench)
+        except BadMessage as bad:
+            return bad
+        except RealcamError as error:
+            self._bench.report(Problem(str(error), of=subject(message)))
+        except Exception:
+            _log.exception("%.200s could not be done", message)
+            text = "that could not be done; the server's log says more"
+            self._bench.report(Problem(text, of=subject(message)))
+        return None
 
     async def _send(self, socket: WebSocket) -> None:
         while True:
