@@ -20,7 +20,7 @@ target_compile_features(realcam_optics PUBLIC cxx_std_20)
 target_link_libraries(realcam_optics PRIVATE $<BUILD_INTERFACE:realcam_settings>)
 realcam_precompile_headers(realcam_optics)
 set_source_files_properties(${PROJECT_SOURCE_DIR}/cpp/optics/derivatives/adjoint_path.cpp PROPERTIES
-  COMPILE_OPTIONS "${REALCAM_KERNEL_FLAGS}" SKIP_PRECOMPILE_HEADERS ON)
+  COMPILE_OPTIONS "$<$<NOT:$<CONFIG:Debug>>:${REALCAM_KERNEL_FLAGS}>" SKIP_PRECOMPILE_HEADERS ON)
 target_include_directories(realcam_optics PUBLIC
   $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/cpp>
   $<BUILD_INTERFACE:${PROJECT_BINARY_DIR}/include>
