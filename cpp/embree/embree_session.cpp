@@ -1,5 +1,6 @@
 #include "embree_session.hpp"
 
+#include <tbb/blocked_range.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
@@ -145,7 +146,7 @@ private:
                 splat(splats_, range, settings);
             }
             if (is_stopped()) throw Cancelled();
-            return developed_codes(film_, dials.exposure_time_s, dials.iso, curve, splatted());
+            return developed_codes(dials, curve, settings);
         };
         const Film& film = camera().film;
         try {
@@ -180,6 +181,18 @@ private:
         // For more threads than cores TBB writes a warning to the console, and starts as many as there are cores.
         const int most = tbb::info::default_concurrency();
         return tbb::task_arena(settings.threads > 0 ? std::min(settings.threads, most) : most);
+    }
+
+    std::vector<std::uint8_t> developed_codes(const Dials& dials, ToneCurve curve, const RenderSettings& settings) {
+        std::vector<std::uint8_t> codes(3 * film_.size());
+        const CodeTable code_of(dials.iso, curve);
+        const SplattedLight light = splatted();
+        arena(settings).execute([&] {
+            tbb::parallel_for(tbb::blocked_range<std::size_t>(0, film_.size(), 4096), [&](const auto& pixels) {
+                develop_codes(film_, pixels.begin(), pixels.end(), dials.exposure_time_s, code_of, light, codes);
+            });
+        });
+        return codes;
     }
 
     void place(const Assembly& scene, const Camera& camera) {

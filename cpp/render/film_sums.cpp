@@ -1,7 +1,5 @@
 #include "film_sums.hpp"
 
-#include <cstddef>
-
 namespace realcam {
 
 Image developed(const FilmSums& film, int width, int height, double exposure_time_s, const SplattedLight& splatted) {
@@ -19,15 +17,12 @@ Image developed(const FilmSums& film, int width, int height, double exposure_tim
     return image;
 }
 
-std::vector<std::uint8_t> developed_codes(const FilmSums& film, double exposure_time_s, double iso, ToneCurve curve,
-                                          const SplattedLight& splatted) {
-    std::vector<std::uint8_t> codes;
-    codes.reserve(3 * film.size());
-    for (std::size_t i = 0; i < film.size(); ++i)
+void develop_codes(const FilmSums& film, std::size_t first, std::size_t last, double exposure_time_s,
+                   const CodeTable& code_of, const SplattedLight& splatted, std::span<std::uint8_t> codes) {
+    for (std::size_t i = first; i < last; ++i)
         for (int channel = 0; channel < 3; ++channel)
-            codes.push_back(film[i].code(channel, exposure_time_s, iso, curve,
-                                         splatted.irradiance(static_cast<std::int64_t>(i), channel)));
-    return codes;
+            codes[3 * i + static_cast<std::size_t>(channel)] = code_of(
+                film[i].exposure(channel, exposure_time_s, splatted.irradiance(static_cast<std::int64_t>(i), channel)));
 }
 
 LayerImage developed_variance(const FilmSums& film, double exposure_time_s, const SplattedLight& splatted) {

@@ -1,7 +1,10 @@
 #pragma once
+#include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
+#include "../camera/code_table.hpp"
 #include "ghost_film.hpp"
 #include "image.hpp"
 #include "pixel_sum.hpp"
@@ -15,9 +18,9 @@ using FilmSums = std::vector<PixelSum>;
 Image developed(const FilmSums& film, int width, int height, double exposure_time_s,
                 const SplattedLight& splatted = {});
 
-/// A film as 8-bit sRGB, 3 per pixel.
-std::vector<std::uint8_t> developed_codes(const FilmSums& film, double exposure_time_s, double iso, ToneCurve curve,
-                                          const SplattedLight& splatted = {});
+/// Pixels first to last - 1 as 8-bit sRGB, into `codes` of the film, 3 per pixel.
+void develop_codes(const FilmSums& film, std::size_t first, std::size_t last, double exposure_time_s,
+                   const CodeTable& code_of, const SplattedLight& splatted, std::span<std::uint8_t> codes);
 
 /// Variance of the exposure, 3 per pixel (PixelSum::variance).
 LayerImage developed_variance(const FilmSums& film, double exposure_time_s, const SplattedLight& splatted = {});
