@@ -18,10 +18,19 @@ namespace {
 
 constexpr std::int64_t kChunk = 4096;
 
+/// f(begin, end) for parts of [from, to), on all threads.
+template <class I, class F>
+void in_parallel(I from, I to, I grain, F&& f) {
+    // With the rounding of the calling thread. Otherwise it is that of whoever used this thread's arena first, such as
+    // Embree, which takes denormal numbers for zeros while it builds a scene.
+    tbb::task_group_context context(tbb::task_group_context::bound, tbb::task_group_context::fp_settings);
+    tbb::parallel_for(
+        tbb::blocked_range<I>(from, to, grain), [&](const auto& range) { f(range.begin(), range.end()); }, context);
+}
+
 template <class F>
 void in_chunks(std::int64_t from, std::int64_t to, F&& f) {
-    tbb::parallel_for(tbb::blocked_range<std::int64_t>(from, to, kChunk),
-                      [&](const tbb::blocked_range<std::int64_t>& range) { f(range.begin(), range.end()); });
+    in_parallel(from, to, kChunk, f);
 }
 
 template <class T>
@@ -135,13 +144,10 @@ void generate_camera_rays(const CameraSetup& setup, std::uint32_t spp, std::uint
 }
 
 RayLoop parallel_ray_loop(KeepGoing keep_going, std::size_t grain) {
-    return {std::move(keep_going),
-            [grain](std::size_t first, std::size_t last, const RayTask& task) {
-                tbb::parallel_for(
-                    tbb::blocked_range<std::size_t>(first, last, grain),
-                    [&](const tbb::blocked_range<std::size_t>& range) { task(range.begin(), range.end()); });
-            },
-            [](const AimRequest& request) { kernels().aim_rays(&request); }};
+    return {
+        std::move(keep_going),
+        [grain](std::size_t first, std::size_t last, const RayTask& task) { in_parallel(first, last, grain, task); },
+        [](const AimRequest& request) { kernels().aim_rays(&request); }};
 }
 
 }  // namespace realcam
