@@ -146,7 +146,8 @@ private:
                 splat(splats_, range, settings);
             }
             if (is_stopped()) throw Cancelled();
-            return developed_codes(dials, curve, settings);
+            return developed_codes(film_, dials.exposure_time_s, dials.iso, curve, splatted(),
+                                   on_all_threads(settings));
         };
         const Film& film = camera().film;
         try {
@@ -158,7 +159,8 @@ private:
     }
 
     Image develop() override {
-        Image image = developed(film_, camera().film.width, camera().film.height, camera().exposure_time_s, splatted());
+        Image image = developed(film_, camera().film.width, camera().film.height, camera().exposure_time_s, splatted(),
+                                on_all_threads(settings()));
         image.stats = stats_;
         image.stats.device = name();
         return image;
@@ -183,16 +185,13 @@ private:
         return tbb::task_arena(settings.threads > 0 ? std::min(settings.threads, most) : most);
     }
 
-    std::vector<std::uint8_t> developed_codes(const Dials& dials, ToneCurve curve, const RenderSettings& settings) {
-        std::vector<std::uint8_t> codes(3 * film_.size());
-        const CodeTable code_of(dials.iso, curve);
-        const SplattedLight light = splatted();
-        arena(settings).execute([&] {
-            tbb::parallel_for(tbb::blocked_range<std::size_t>(0, film_.size(), 4096), [&](const auto& pixels) {
-                develop_codes(film_, pixels.begin(), pixels.end(), dials.exposure_time_s, code_of, light, codes);
+    static PixelLoop on_all_threads(const RenderSettings& settings) {
+        return [settings](std::size_t count, const PixelTask& task) {
+            arena(settings).execute([&] {
+                tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 4096),
+                                  [&](const auto& pixels) { task(pixels.begin(), pixels.end()); });
             });
-        });
-        return codes;
+        };
     }
 
     void place(const Assembly& scene, const Camera& camera) {

@@ -1,28 +1,46 @@
 #include "film_sums.hpp"
 
+#include "../camera/code_table.hpp"
+
 namespace realcam {
 
-Image developed(const FilmSums& film, int width, int height, double exposure_time_s, const SplattedLight& splatted) {
+namespace {
+
+/// take(place, exposure) for each channel of the film, at its place among them all.
+template <class Take>
+void for_exposures(const FilmSums& film, double exposure_time_s, const SplattedLight& splatted, const PixelLoop& loop,
+                   Take&& take) {
+    loop(film.size(), [&](std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i)
+            for (int channel = 0; channel < 3; ++channel)
+                take(3 * i + static_cast<std::size_t>(channel),
+                     film[i].exposure(channel, exposure_time_s,
+                                      splatted.irradiance(static_cast<std::int64_t>(i), channel)));
+    });
+}
+
+}  // namespace
+
+Image developed(const FilmSums& film, int width, int height, double exposure_time_s, const SplattedLight& splatted,
+                const PixelLoop& loop) {
     Image image;
     image.width = width;
     image.height = height;
     image.exposure = PictureFloats(3 * film.size());
     image.depth = PictureFloats(film.size());
-    for (std::size_t i = 0; i < film.size(); ++i) {
-        for (int channel = 0; channel < 3; ++channel)
-            image.exposure[3 * i + static_cast<std::size_t>(channel)] =
-                film[i].exposure(channel, exposure_time_s, splatted.irradiance(static_cast<std::int64_t>(i), channel));
-        image.depth[i] = film[i].mean_depth();
-    }
+    for_exposures(film, exposure_time_s, splatted, loop,
+                  [&](std::size_t place, float exposure) { image.exposure[place] = exposure; });
+    for (std::size_t i = 0; i < film.size(); ++i) image.depth[i] = film[i].mean_depth();
     return image;
 }
 
-void develop_codes(const FilmSums& film, std::size_t first, std::size_t last, double exposure_time_s,
-                   const CodeTable& code_of, const SplattedLight& splatted, std::span<std::uint8_t> codes) {
-    for (std::size_t i = first; i < last; ++i)
-        for (int channel = 0; channel < 3; ++channel)
-            codes[3 * i + static_cast<std::size_t>(channel)] = code_of(
-                film[i].exposure(channel, exposure_time_s, splatted.irradiance(static_cast<std::int64_t>(i), channel)));
+std::vector<std::uint8_t> developed_codes(const FilmSums& film, double exposure_time_s, double iso, ToneCurve curve,
+                                          const SplattedLight& splatted, const PixelLoop& loop) {
+    std::vector<std::uint8_t> codes(3 * film.size());
+    const CodeTable code_of(iso, curve);
+    for_exposures(film, exposure_time_s, splatted, loop,
+                  [&](std::size_t place, float exposure) { codes[place] = code_of(exposure); });
+    return codes;
 }
 
 LayerImage developed_variance(const FilmSums& film, double exposure_time_s, const SplattedLight& splatted) {

@@ -1,10 +1,9 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
-#include <span>
+#include <functional>
 #include <vector>
 
-#include "../camera/code_table.hpp"
 #include "ghost_film.hpp"
 #include "image.hpp"
 #include "pixel_sum.hpp"
@@ -14,13 +13,21 @@ namespace REALCAM_NAMESPACE {
 /// A film in the host's memory while it is exposed, row by row.
 using FilmSums = std::vector<PixelSum>;
 
-/// Exposure and depth of a film, without what the picture cost.
-Image developed(const FilmSums& film, int width, int height, double exposure_time_s,
-                const SplattedLight& splatted = {});
+/// Calls the task for all of so many pixels, in parts [first, last) of any size and on any threads.
+using PixelTask = std::function<void(std::size_t first, std::size_t last)>;
+using PixelLoop = std::function<void(std::size_t count, const PixelTask& task)>;
 
-/// Pixels first to last - 1 as 8-bit sRGB, into `codes` of the film, 3 per pixel.
-void develop_codes(const FilmSums& film, std::size_t first, std::size_t last, double exposure_time_s,
-                   const CodeTable& code_of, const SplattedLight& splatted, std::span<std::uint8_t> codes);
+inline void on_this_thread(std::size_t count, const PixelTask& task) {
+    task(0, count);
+}
+
+/// Exposure and depth of a film, without what the picture cost.
+Image developed(const FilmSums& film, int width, int height, double exposure_time_s, const SplattedLight& splatted = {},
+                const PixelLoop& loop = on_this_thread);
+
+/// A film as 8-bit sRGB, 3 per pixel.
+std::vector<std::uint8_t> developed_codes(const FilmSums& film, double exposure_time_s, double iso, ToneCurve curve,
+                                          const SplattedLight& splatted = {}, const PixelLoop& loop = on_this_thread);
 
 /// Variance of the exposure, 3 per pixel (PixelSum::variance).
 LayerImage developed_variance(const FilmSums& film, double exposure_time_s, const SplattedLight& splatted = {});

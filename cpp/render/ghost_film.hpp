@@ -69,21 +69,29 @@ private:
         for (int film = first_film; sums && film < end; ++film) taken += blocks[film];
         if (taken == 0) return 0;
         const double scale = units_per_lux * static_cast<double>(taken) * kGhostBlock;
+        const std::int64_t pixels = std::int64_t{width} * height;
+        const GhostSum* const first = sums + first_film * pixels;
+        const bool is_two = end - first_film > 1;
         const auto units_at = [&](std::int64_t at) {
-            std::int64_t units = 0;
-            for (int film = first_film; film < end; ++film)
-                units += sums[at + film * std::int64_t{width} * height].units[channel];
+            std::int64_t units = first[at].units[channel];
+            if (is_two) units += first[at + pixels].units[channel];
             return static_cast<double>(units);
         };
         if (light == GhostLight::starbursts || light == GhostLight::direct) return units_at(pixel) / scale;
         constexpr double kWeights[] = {1, 4, 6, 4, 1}, kSum = 256;
-        const int column = static_cast<int>(pixel % width), row = static_cast<int>(pixel / width);
+        // Beyond the border lies the border's own pixel again.
         const auto inside = [](int place, int count) { return place < 0 ? 0 : place < count ? place : count - 1; };
+        const int column = static_cast<int>(pixel % width), row = static_cast<int>(pixel / width);
+        std::int64_t columns[5];
+        REALCAM_UNROLL
+        for (int x = 0; x < 5; ++x) columns[x] = inside(column + x - 2, width);
         double units = 0;
-        for (int y = -2; y <= 2; ++y) {
-            const std::int64_t first = static_cast<std::int64_t>(inside(row + y, height)) * width;
-            for (int x = -2; x <= 2; ++x)
-                units += kWeights[y + 2] * kWeights[x + 2] * units_at(first + inside(column + x, width));
+        for (int y = 0; y < 5; ++y) {
+            const std::int64_t line = static_cast<std::int64_t>(inside(row + y - 2, height)) * width;
+            double of_row = 0;
+            REALCAM_UNROLL
+            for (int x = 0; x < 5; ++x) of_row += kWeights[x] * units_at(line + columns[x]);
+            units += kWeights[y] * of_row;
         }
         return units / kSum / scale;
     }
