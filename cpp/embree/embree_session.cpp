@@ -1,6 +1,5 @@
 #include "embree_session.hpp"
 
-#include <tbb/blocked_range.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
@@ -24,11 +23,13 @@
 #include "host_frame.hpp"
 #include "host_stop.hpp"
 #include "kernels.hpp"
+#include "lens_rays.hpp"
 
 namespace realcam {
 namespace {
 
 constexpr int kTileSide = SampleSharing::kTileSide;
+constexpr std::size_t kDevelopedAtOnce = 4096;  // pixels
 
 DeviceError rtc_error(RTCError code) {
     const std::string text = "Embree could not be started: ";
@@ -146,8 +147,10 @@ private:
                 splat(splats_, range, settings);
             }
             if (is_stopped()) throw Cancelled();
-            return developed_codes(film_, dials.exposure_time_s, dials.iso, curve, splatted(),
-                                   on_all_threads(settings));
+            return arena(settings).execute([&] {
+                return developed_codes(film_, dials.exposure_time_s, dials.iso, curve, splatted(),
+                                       parallel_ray_loop({}, kDevelopedAtOnce));
+            });
         };
         const Film& film = camera().film;
         try {
@@ -159,8 +162,10 @@ private:
     }
 
     Image develop() override {
-        Image image = developed(film_, camera().film.width, camera().film.height, camera().exposure_time_s, splatted(),
-                                on_all_threads(settings()));
+        Image image = arena(settings()).execute([&] {
+            return developed(film_, camera().film.width, camera().film.height, camera().exposure_time_s, splatted(),
+                             parallel_ray_loop({}, kDevelopedAtOnce));
+        });
         image.stats = stats_;
         image.stats.device = name();
         return image;
@@ -183,15 +188,6 @@ private:
         // For more threads than cores TBB writes a warning to the console, and starts as many as there are cores.
         const int most = tbb::info::default_concurrency();
         return tbb::task_arena(settings.threads > 0 ? std::min(settings.threads, most) : most);
-    }
-
-    static PixelLoop on_all_threads(const RenderSettings& settings) {
-        return [settings](std::size_t count, const PixelTask& task) {
-            arena(settings).execute([&] {
-                tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 4096),
-                                  [&](const auto& pixels) { task(pixels.begin(), pixels.end()); });
-            });
-        };
     }
 
     void place(const Assembly& scene, const Camera& camera) {

@@ -8,9 +8,9 @@ namespace {
 
 /// take(place, exposure) for each channel of the film, at its place among them all.
 template <class Take>
-void for_exposures(const FilmSums& film, double exposure_time_s, const SplattedLight& splatted, const PixelLoop& loop,
+void for_exposures(const FilmSums& film, double exposure_time_s, const SplattedLight& splatted, const RayLoop& loop,
                    Take&& take) {
-    loop(film.size(), [&](std::size_t first, std::size_t last) {
+    loop.run(0, film.size(), [&](std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i)
             for (int channel = 0; channel < 3; ++channel)
                 take(3 * i + static_cast<std::size_t>(channel),
@@ -22,7 +22,7 @@ void for_exposures(const FilmSums& film, double exposure_time_s, const SplattedL
 }  // namespace
 
 Image developed(const FilmSums& film, int width, int height, double exposure_time_s, const SplattedLight& splatted,
-                const PixelLoop& loop) {
+                const RayLoop& loop) {
     Image image;
     image.width = width;
     image.height = height;
@@ -35,7 +35,7 @@ Image developed(const FilmSums& film, int width, int height, double exposure_tim
 }
 
 std::vector<std::uint8_t> developed_codes(const FilmSums& film, double exposure_time_s, double iso, ToneCurve curve,
-                                          const SplattedLight& splatted, const PixelLoop& loop) {
+                                          const SplattedLight& splatted, const RayLoop& loop) {
     std::vector<std::uint8_t> codes(3 * film.size());
     const CodeTable code_of(iso, curve);
     for_exposures(film, exposure_time_s, splatted, loop,

@@ -1,9 +1,8 @@
 #pragma once
-#include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <vector>
 
+#include "../optics/trace/ray_loop.hpp"
 #include "ghost_film.hpp"
 #include "image.hpp"
 #include "pixel_sum.hpp"
@@ -13,21 +12,13 @@ namespace REALCAM_NAMESPACE {
 /// A film in the host's memory while it is exposed, row by row.
 using FilmSums = std::vector<PixelSum>;
 
-/// Calls the task for all of so many pixels, in parts [first, last) of any size and on any threads.
-using PixelTask = std::function<void(std::size_t first, std::size_t last)>;
-using PixelLoop = std::function<void(std::size_t count, const PixelTask& task)>;
-
-inline void on_this_thread(std::size_t count, const PixelTask& task) {
-    task(0, count);
-}
-
-/// Exposure and depth of a film, without what the picture cost.
+/// Exposure and depth of a film, without what the picture cost. `loop`: over its pixels.
 Image developed(const FilmSums& film, int width, int height, double exposure_time_s, const SplattedLight& splatted = {},
-                const PixelLoop& loop = on_this_thread);
+                const RayLoop& loop = {});
 
-/// A film as 8-bit sRGB, 3 per pixel.
+/// A film as 8-bit sRGB, 3 per pixel. `loop`: likewise.
 std::vector<std::uint8_t> developed_codes(const FilmSums& film, double exposure_time_s, double iso, ToneCurve curve,
-                                          const SplattedLight& splatted = {}, const PixelLoop& loop = on_this_thread);
+                                          const SplattedLight& splatted = {}, const RayLoop& loop = {});
 
 /// Variance of the exposure, 3 per pixel (PixelSum::variance).
 LayerImage developed_variance(const FilmSums& film, double exposure_time_s, const SplattedLight& splatted = {});
