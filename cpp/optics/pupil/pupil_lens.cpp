@@ -23,10 +23,7 @@ PupilLens::PupilLens(const LensSystem& lens, PupilTracer tracer, const std::vect
       path_(lens_, LightDirection::to_scene, wavelengths_nm.empty() ? lens.wavelength_nm : wavelengths_nm.front(),
             ends_),
       film_{static_cast<float>(lens.film_distance), static_cast<float>(1 / lens.film_radius_of_curvature)},
-      tracer_(std::move(tracer)),
-      has_aspheres_(std::any_of(lens.surfaces.begin(), lens.surfaces.end(), [](const Surface& surface) {
-          return surface.is_asphere() || !surface.form.is_none();
-      })) {
+      tracer_(std::move(tracer)) {
     for (std::size_t i = 1; i < wavelengths_nm.size(); ++i)
         others_.emplace_back(lens_, LightDirection::to_scene, wavelengths_nm[i], ends_);
     const LensView<float> all = path_.view();

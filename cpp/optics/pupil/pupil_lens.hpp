@@ -44,13 +44,6 @@ public:
     void for_each(int count, Task&& task) const {
         tracer_.for_each(count, std::ref(task));
     }
-    /// The same for tasks of one block of rays each. A block takes less time through spheres than a thread to wake up:
-    /// only aspheres are worth it.
-    template <class Task>
-    void for_each_block(int count, Task&& task) const {
-        if (has_aspheres_) return for_each(count, task);
-        for (int i = 0; i < count; ++i) task(i);
-    }
 
     /// Box of the directions from a film point to the last surface's clear aperture.
     PupilBox box_of_last_surface(double radius) const;
@@ -72,7 +65,6 @@ private:
     std::vector<SurfaceView<float>> surfaces_to_stop_;
     std::vector<FrameChanges<float>> frames_to_stop_;
     Affine<double> last_surface_;  ///< its frame, as rays from the film see it
-    bool has_aspheres_;
 };
 
 }  // namespace REALCAM_NAMESPACE

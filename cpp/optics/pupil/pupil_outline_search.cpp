@@ -1,6 +1,7 @@
 #include "pupil_outline_search.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <memory>
 #include <numeric>
@@ -9,27 +10,21 @@ namespace realcam {
 
 std::vector<PupilOutline> OutlineSearch::find(const PupilLens& lens, const std::vector<OutlineLook>& looks) {
     std::vector<PupilOutline> outlines(looks.size());
-    Spokes all(looks.size() * kSpokes);
-    std::iota(all.begin(), all.end(), 0);
-    scan_all(lens, looks, all, outlines);
+    scan_all(lens, looks, spokes_of(looks), outlines);
     return outlines;
 }
 
 std::vector<PupilOutline> OutlineSearch::find_near(const PupilLens& lens, const std::vector<OutlineLook>& looks,
                                                    const std::vector<PupilOutline>& expected, double tolerance) {
     std::vector<PupilOutline> outlines(looks.size());
-    Spokes left(looks.size() * kSpokes);
-    std::iota(left.begin(), left.end(), 0);
+    Spokes left = spokes_of(looks);
     constexpr double kWidest = 0.2;  // beyond, a scan takes fewer rays
     for (const double reach : {tolerance, 8 * tolerance}) {
         if (reach > kWidest) break;
-        const int count = static_cast<int>(left.size()), blocks = (count + kBlock - 1) / kBlock;
-        const auto found = std::make_unique<bool[]>(static_cast<std::size_t>(blocks * kBlock));
-        lens.for_each(blocks, [&](int block) {
-            const int first = block * kBlock;
-            OutlineSearch part(looks, left.data() + first, std::min(kBlock, count - first));
-            part.narrow(lens, expected, reach, found.get() + first);
-            part.write(found.get() + first, outlines);
+        const auto found = std::make_unique<bool[]>(left.size());
+        for_each_group(lens, looks, left, [&](OutlineSearch& group, std::size_t first) {
+            group.narrow(lens, expected, reach, found.get() + first);
+            group.write(found.get() + first, outlines);
         });
         Spokes lost;
         for (std::size_t i = 0; i < left.size(); ++i)
@@ -40,52 +35,82 @@ std::vector<PupilOutline> OutlineSearch::find_near(const PupilLens& lens, const 
     return outlines;
 }
 
+OutlineSearch::Spokes OutlineSearch::spokes_of(const std::vector<OutlineLook>& looks) {
+    Spokes spokes(looks.size() * kSpokes);
+    std::iota(spokes.begin(), spokes.end(), 0);
+    return spokes;
+}
+
 void OutlineSearch::scan_all(const PupilLens& lens, const std::vector<OutlineLook>& looks, const Spokes& spokes,
                              std::vector<PupilOutline>& outlines) {
-    const int count = static_cast<int>(spokes.size());
-    lens.for_each((count + kBlock - 1) / kBlock, [&](int block) {
-        const int first = block * kBlock;
-        OutlineSearch part(looks, spokes.data() + first, std::min(kBlock, count - first));
-        part.scan(lens);
-        part.write(nullptr, outlines);
+    for_each_group(lens, looks, spokes, [&](OutlineSearch& group, std::size_t) {
+        group.scan(lens);
+        group.write(nullptr, outlines);
+    });
+}
+
+template <class Task>
+void OutlineSearch::for_each_group(const PupilLens& lens, const std::vector<OutlineLook>& looks, const Spokes& spokes,
+                                   Task&& task) {
+    const std::size_t size = spokes.size() > kBlock ? kBlock : kSmallGroup, count = (spokes.size() + size - 1) / size;
+    lens.for_each(static_cast<int>(count), [&](int i) {
+        const std::size_t first = static_cast<std::size_t>(i) * size;
+        OutlineSearch group(looks, spokes.data() + first, static_cast<int>(std::min(size, spokes.size() - first)));
+        task(group, first);
     });
 }
 
 OutlineSearch::OutlineSearch(const std::vector<OutlineLook>& looks, const int* spokes, int count)
     : spokes_(spokes), count_(count) {
-    for (int i = 0; i < kBlock; ++i) {
-        const int spoke = spokes[std::min(i, count - 1)];
-        const OutlineLook& look = looks[static_cast<std::size_t>(spoke / kSpokes)];
-        const PupilDirection unit = PupilOutline::direction(spoke % kSpokes);
-        rays_.set(i, look.film, look.centre);
+    for (int i = 0; i < count; ++i) {
+        const OutlineLook& look = looks[static_cast<std::size_t>(spokes[i] / kSpokes)];
+        const PupilDirection unit = PupilOutline::direction(spokes[i] % kSpokes);
+        film_[i] = look.film;
         centre_[i] = look.centre;
         unit_[i] = {look.half_width * unit.l, look.half_height * unit.m};
     }
 }
 
+template <class Reach>
+void OutlineSearch::trace(const PupilLens& lens, int reaches, Reach&& reach) {
+    const int at_once = kBlock / count_;
+    lens.for_each((reaches + at_once - 1) / at_once, [&](int block) {
+        const int first = block * at_once, last = std::min(first + at_once, reaches);
+        PupilRays rays;
+        int lane = 0;
+        for (int k = first; k < last; ++k)
+            for (int i = 0; i < count_; ++i) {
+                const double r = reach(i, k);
+                rays.set(lane++, film_[i], {centre_[i].l + r * unit_[i].l, centre_[i].m + r * unit_[i].m});
+            }
+        for (int i = lane; i < kBlock; ++i) rays.set(i, film_[0], centre_[0]);
+        bool passes[kBlock];
+        lens.trace(rays, passes);
+        std::copy(passes, passes + lane, passes_ + first * count_);
+    });
+}
+
 void OutlineSearch::scan(const PupilLens& lens) {
+    const auto at = [](int step) { return kReach * step / kSteps; };
+    trace(lens, kSteps, [&](int, int step) { return at(step); });
     int first[kBlock], last[kBlock];
     std::fill(first, first + kBlock, -1);
     std::fill(last, last + kBlock, -1);
-    for (int step = 0; step < kSteps; ++step) {
-        std::fill(reach_, reach_ + kBlock, kReach * step / kSteps);
-        trace(lens);
-        for (int i = 0; i < kBlock; ++i) {
-            if (!passes_[i]) continue;
+    for (int step = 0; step < kSteps; ++step)
+        for (int i = 0; i < count_; ++i) {
+            if (!passes(i, step)) continue;
             if (first[i] < 0) first[i] = step;
             last[i] = step;
         }
-    }
-    const auto at = [](int step) { return kReach * step / kSteps; };
     double open[kBlock];
-    for (int i = 0; i < kBlock; ++i) {
+    for (int i = 0; i < count_; ++i) {
         open[i] = at(std::max(last[i], 0));
         outer_[i] = at(last[i] + 1);
     }
     halve(lens, kHalvings, open, outer_);
-    std::fill(inner_, inner_ + kBlock, 0.0);
-    if (std::none_of(first, first + kBlock, [](int step) { return step > 0; })) return;
-    for (int i = 0; i < kBlock; ++i) {
+    std::fill(inner_, inner_ + count_, 0.0);
+    if (std::none_of(first, first + count_, [](int step) { return step > 0; })) return;
+    for (int i = 0; i < count_; ++i) {
         open[i] = at(std::max(first[i], 0));
         inner_[i] = at(std::max(first[i] - 1, 0));
     }
@@ -95,10 +120,9 @@ void OutlineSearch::scan(const PupilLens& lens) {
 void OutlineSearch::narrow(const PupilLens& lens, const std::vector<PupilOutline>& expected, double tolerance,
                            bool* found) {
     double open[kBlock], hole_open[kBlock], hole_shut[kBlock];
-    for (int i = 0; i < kBlock; ++i) {
-        const int spoke = spokes_[std::min(i, count_ - 1)];
-        const PupilOutline& near = expected[static_cast<std::size_t>(spoke / kSpokes)];
-        const double outer = near.outer[spoke % kSpokes], inner = near.inner[spoke % kSpokes];
+    for (int i = 0; i < count_; ++i) {
+        const PupilOutline& near = expected[static_cast<std::size_t>(spokes_[i] / kSpokes)];
+        const double outer = near.outer[spokes_[i] % kSpokes], inner = near.inner[spokes_[i] % kSpokes];
         open[i] = std::max(0.0, outer - tolerance);
         outer_[i] = outer + tolerance;
         hole_open[i] = inner > 0 ? inner + tolerance : 0;
@@ -108,37 +132,35 @@ void OutlineSearch::narrow(const PupilLens& lens, const std::vector<PupilOutline
     const int halvings = static_cast<int>(std::lround(std::log2(2 * tolerance / kPrecision)));
     test(lens, open, outer_, found);
     halve(lens, halvings, open, outer_);
-    std::copy(hole_shut, hole_shut + kBlock, inner_);
-    if (std::all_of(hole_open, hole_open + kBlock, [](double reach) { return reach == 0; })) return;
+    std::copy(hole_shut, hole_shut + count_, inner_);
+    if (std::all_of(hole_open, hole_open + count_, [](double reach) { return reach == 0; })) return;
     test(lens, hole_open, hole_shut, found);
     halve(lens, halvings, hole_open, inner_);
 }
 
 void OutlineSearch::test(const PupilLens& lens, const double (&open)[kBlock], const double (&shut)[kBlock],
                          bool* found) {
-    for (int i = 0; i < kBlock; ++i) reach_[i] = open[i];
-    trace(lens);
-    for (int i = 0; i < kBlock; ++i) found[i] &= passes_[i] || open[i] == shut[i];
-    for (int i = 0; i < kBlock; ++i) reach_[i] = shut[i];
-    trace(lens);
-    for (int i = 0; i < kBlock; ++i) found[i] &= !passes_[i] || open[i] == shut[i];
+    trace(lens, 2, [&](int i, int end) { return end == 0 ? open[i] : shut[i]; });
+    for (int i = 0; i < count_; ++i) found[i] &= (passes(i, 0) && !passes(i, 1)) || open[i] == shut[i];
 }
 
 void OutlineSearch::halve(const PupilLens& lens, int halvings, double (&open)[kBlock], double (&shut)[kBlock]) {
-    for (int halving = 0; halving < halvings; ++halving) {
-        for (int i = 0; i < kBlock; ++i) reach_[i] = 0.5 * (open[i] + shut[i]);
-        trace(lens);
-        for (int i = 0; i < kBlock; ++i) (passes_[i] ? open : shut)[i] = reach_[i];
+    // Where a block has room for several rays of each spoke, they are those that the next halvings can ask for.
+    const int most_at_once = std::bit_width(static_cast<unsigned>(kBlock / count_ + 1)) - 1;
+    while (halvings > 0) {
+        const int at_once = std::min(halvings, most_at_once), parts = 1 << at_once;
+        const auto at = [&](int i, int part) { return open[i] + (shut[i] - open[i]) * part / parts; };
+        trace(lens, parts - 1, [&](int i, int ray) { return at(i, ray + 1); });
+        for (int i = 0; i < count_; ++i) {
+            int lit = 0;
+            for (int step = parts / 2; step > 0; step /= 2)
+                if (passes(i, lit + step - 1)) lit += step;
+            const double new_open = at(i, lit);
+            shut[i] = at(i, lit + 1);
+            open[i] = new_open;
+        }
+        halvings -= at_once;
     }
-}
-
-void OutlineSearch::trace(const PupilLens& lens) {
-    REALCAM_LANES
-    for (int i = 0; i < kBlock; ++i) {
-        rays_.l[i] = centre_[i].l + reach_[i] * unit_[i].l;
-        rays_.m[i] = centre_[i].m + reach_[i] * unit_[i].m;
-    }
-    lens.trace(rays_, passes_);
 }
 
 void OutlineSearch::write(const bool* found, std::vector<PupilOutline>& outlines) const {

@@ -48,7 +48,7 @@ private:
         double l[kColumns], m[kRows];
         for (int i = 0; i < kColumns; ++i) l[i] = grid_l(box, i);
         for (int i = 0; i < kRows; ++i) m[i] = grid_m(box, i);
-        lens_.for_each_block(kGridBlocks, [&](int block) {
+        lens_.for_each(kGridBlocks, [&](int block) {
             PupilRays rays;
             for (int i = 0; i < kBlock; ++i) {
                 const int point = std::min(block * kBlock + i, kPoints - 1);
