@@ -159,8 +159,8 @@ REALCAM_HD inline int find_single_crossings(const SurfaceView<T>& surface, const
 template <class T, int N>
 REALCAM_HD inline void search_in_brackets(const SurfaceView<T>& surface, const LensRays<T, N>& rays,
                                           AsphereHits<T, N>& hits) {
-    AsphereSearch<T, N> search;
     // Zeros, because gcc fears that a lane is read before it is written.
+    AsphereSearch<T, N> search{};
     Vec3Lanes<T, N> origin{}, direction{};
     Lanes<T, N> outside{};
     int lane_of[N], count = 0;
