@@ -46,6 +46,30 @@ constexpr double kFocusTolerance = 1e-9;
     throw InputError("cannot focus at " + metres(focus_distance) + ": lens \"" + lens.name + "\" " + reason);
 }
 
+/// Tolerance of the sum of lengths that place object, lens and film, as a share of the focus distance.
+constexpr double kRounding = 1e-14;
+
+/// The film distance for an object plane beyond `nearest`, where the image moves less than the object: by the square of
+/// the magnification, mostly next to nothing. So secants that begin far away are there in two or three steps. Nothing
+/// where they are not. `length` is the lens's.
+template <class ImageOf>
+std::optional<double> image_by_secants(ImageOf&& image_of, double length, double focus_distance, double nearest) {
+    constexpr int kMost = 8;
+    // As if the film stood at the last vertex.
+    double object = focus_distance - length, before = 0, object_before = 0;
+    for (int i = 0; i < kMost && object > nearest; ++i) {
+        const double image = image_of(object), excess = object + length + image - focus_distance;
+        if (!(image >= 0)) break;
+        if (std::fabs(excess) <= kRounding * focus_distance) return image;
+        const double slope = i == 0 ? 1 : (excess - before) / (object - object_before);
+        if (!(slope > 0.5)) break;
+        before = excess;
+        object_before = object;
+        object -= excess / slope;
+    }
+    return {};
+}
+
 /// Object to film, by real rays, has its minimum near magnification -1; the far branch is the photographic one.
 LensSystem moved_as_a_whole(LensSystem lens, double focus_distance) {
     const auto image_of = [&](double object) { return best_focus_distance(lens, lens.wavelength_nm, object); };
@@ -59,7 +83,11 @@ LensSystem moved_as_a_whole(LensSystem lens, double focus_distance) {
     // deep in it, as in a fisheye.
     const FirstOrder data = first_order(lens, lens.wavelength_nm);
     double near = std::max(0.0, std::fabs(data.effective_focal_length) - data.front_focal_distance);
-    double far = focus_distance - length;  // there object to film is longer by the image distance
+    if (const std::optional<double> image = image_by_secants(image_of, length, focus_distance, near)) {
+        lens.film_distance = *image;
+        return lens;
+    }
+    const double far = focus_distance - length;  // there object to film is longer by the image distance
     double excess_near = excess(near);
     // If an object is very near, it may be that no ray passes the lens. A little further away some do.
     for (int i = 30; i > 0 && std::isnan(excess_near) && near < far; --i) {
@@ -76,7 +104,7 @@ LensSystem moved_as_a_whole(LensSystem lens, double focus_distance) {
     }
     const double excess_far = excess(far);
     if (!(excess_far >= 0)) fail(lens, focus_distance, "makes no real image behind its last surface");
-    const Root object = find_root(excess, near, excess_near, far, excess_far, 1e-14 * focus_distance);
+    const Root object = find_root(excess, near, excess_near, far, excess_far, kRounding * focus_distance);
     if (!(std::fabs(object.value) <= kFocusTolerance * focus_distance))
         fail(lens, focus_distance, "has no plane there that its rays make sharp");
     lens.film_distance = image_of(object.at);
