@@ -57,17 +57,20 @@ py::array_t<float> developed_exposure(const FilmArrays& arrays, double exposure_
 class Rounds {
 public:
     Rounds(const RenderSettings& settings, double iso, const InputArray<float>& exposure,
-           const InputArray<std::int64_t>& samples)
+           const InputArray<std::int64_t>& samples, const InputArray<float>& traced)
         : height_(samples.shape(0)),
           width_(samples.shape(1)),
           goal_(settings.noise.value_or(NoiseGoal())),
           tiles_(static_cast<int>(width_), static_cast<int>(height_), goal_, iso, floats_of(exposure),
-                 values_of<std::int64_t>(samples)) {}
+                 values_of<std::int64_t>(samples), floats_of(traced)) {}
 
     py::array_t<std::uint32_t> next() { return array_from(tiles_.next(kInfinity), {height_, width_}); }
 
-    void add(const InputArray<float>& exposure, const InputArray<std::uint32_t>& counts) {
-        tiles_.add(floats_of(exposure), values_of<std::uint32_t>(counts));
+    bool traces_lights() const { return tiles_.traces_lights(); }
+
+    void add(const InputArray<float>& exposure, const InputArray<std::uint32_t>& counts,
+             const InputArray<float>& traced) {
+        tiles_.add(floats_of(exposure), values_of<std::uint32_t>(counts), floats_of(traced));
     }
 
     std::string shortfall() const { return shortfall_of(tiles_.reached(), goal_); }
@@ -143,9 +146,21 @@ void bind_film_parts(py::module_& m) {
             return developed_exposure({pixels, std::nullopt, splats}, exposure_time_s);
         },
         "pixels"_a, "splats"_a, "exposure_time_s"_a);
+    m.def(
+        "_traced_exposure",
+        [](const py::list& splats, double exposure_time_s) {
+            std::vector<SplatFilm> films;
+            for (const py::handle& of_light : splats) films.push_back(splat_film_from(of_light.cast<py::dict>()));
+            std::vector<float> exposure = traced_exposure(films, exposure_time_s);
+            const py::ssize_t height = exposure.empty() ? 0 : films.front().height,
+                              width = films.empty() ? 0 : films.front().width;
+            return array_from(std::move(exposure), {height, width, 3});
+        },
+        "splats"_a, "exposure_time_s"_a);
     py::class_<Rounds>(m, "_Rounds")
-        .def(py::init<const RenderSettings&, double, const InputArray<float>&, const InputArray<std::int64_t>&>(),
-             "settings"_a, "iso"_a, "exposure"_a, "samples"_a)
+        .def(py::init<const RenderSettings&, double, const InputArray<float>&, const InputArray<std::int64_t>&,
+                      const InputArray<float>&>(),
+             "settings"_a, "iso"_a, "exposure"_a, "samples"_a, "traced"_a)
         .def_static(
             "first_samples",
             [](const RenderSettings& settings) {
@@ -153,7 +168,8 @@ void bind_film_parts(py::module_& m) {
             },
             "settings"_a)
         .def("next", &Rounds::next)
-        .def("add", &Rounds::add, "exposure"_a, "counts"_a)
+        .def_property_readonly("traces_lights", &Rounds::traces_lights)
+        .def("add", &Rounds::add, "exposure"_a, "counts"_a, "traced"_a)
         .def("left", &Rounds::left)
         .def("shortfall", &Rounds::shortfall);
 }

@@ -89,7 +89,7 @@ private:
         front().clear_splats(width(), height(), splat_films());
     }
 
-    void take(const SampleRange& range, const PixelCounts& counts, std::atomic<std::int64_t>& done,
+    void take(const SampleRange& range, const PixelCounts& counts, bool traces_lights, std::atomic<std::int64_t>& done,
               OwnStop& stop) override {
         if (rows_ == 0) lay_out_film();
         const auto exposing = std::chrono::steady_clock::now();
@@ -101,7 +101,7 @@ private:
         } else {
             expose_bands(range, counts, stop, done);
         }
-        front().splat(range, settings().path());
+        if (traces_lights) front().splat(range, settings().path());
         for (const auto& renderer : renderers_) renderer->wait();
         stats_.seconds += seconds_since(exposing);
     }
@@ -187,6 +187,10 @@ private:
         image.stats = stats_;
         image.stats.device = name();
         return image;
+    }
+
+    std::vector<float> develop_traced() override {
+        return traced_exposure(front().download_splats(), camera().exposure_time_s);
     }
 
     std::vector<std::int64_t> count_samples() override {

@@ -84,7 +84,8 @@ private:
         stats_ = {};
     }
 
-    void take(const SampleRange& range, const PixelCounts& counts, std::atomic<std::int64_t>& done, OwnStop&) override {
+    void take(const SampleRange& range, const PixelCounts& counts, bool traces_lights, std::atomic<std::int64_t>& done,
+              OwnStop&) override {
         if (camera_view_.pixel_pupils.known) {
             for (const SampleRange& pass : learning_passes(range)) {
                 expose_film(pass, counts.behind(pass.first - range.first), settings(), done);
@@ -93,7 +94,7 @@ private:
         } else {
             expose_film(range, counts, settings(), done);
         }
-        splat(splats_, range, settings());
+        if (traces_lights) splat(splats_, range, settings());
     }
 
     RegionSums take_region(const FilmRegion& region, const SampleRange& range, const PixelCounts& counts,
@@ -170,6 +171,8 @@ private:
         image.stats.device = name();
         return image;
     }
+
+    std::vector<float> develop_traced() override { return traced_exposure(splats_, camera().exposure_time_s); }
 
     std::vector<std::int64_t> count_samples() override { return samples_of(film_); }
     PlacedCamera placed_camera() const override { return {camera_view_, scene_->placed().origin_m()}; }

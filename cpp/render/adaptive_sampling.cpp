@@ -9,31 +9,39 @@
 namespace realcam {
 
 AdaptiveSampling::AdaptiveSampling(int width, int height, const NoiseGoal& goal, double iso,
-                                   std::span<const float> exposure, const std::vector<std::int64_t>& samples)
+                                   std::span<const float> exposure, const std::vector<std::int64_t>& samples,
+                                   std::span<const float> traced)
     : width_(width),
       height_(height),
       goal_(goal),
       iso_(iso),
       across_(tiles_of(width)),
       down_(tiles_of(height)),
-      halves_(2 * static_cast<std::size_t>(across_) * static_cast<std::size_t>(down_)) {
+      halves_(2 * static_cast<std::size_t>(across_) * static_cast<std::size_t>(down_)),
+      traced_(traced.begin(), traced.end()),
+      traced_samples_(static_cast<double>(*std::max_element(samples.begin(), samples.end()))) {
     values_.reserve(exposure.size());
     for (const float e : exposure) values_.push_back(value_of(e));
     for_pixels([&](std::size_t pixel, std::size_t half) {
         ++halves_[half].pixels;
         halves_[half].samples += static_cast<double>(samples[pixel]);
     });
-    for (Half& half : halves_) half.samples = std::max(1.0, half.samples / std::max(half.pixels, 1.0));
+    for (Half& half : halves_) {
+        half.samples = std::max(1.0, half.samples / std::max(half.pixels, 1.0));
+        half.traced = traced_.empty() ? 0 : std::numeric_limits<double>::infinity();
+    }
 }
 
 std::vector<std::uint32_t> AdaptiveSampling::next(double most) {
     std::vector<double> wanted(halves_.size());
     double sum = 0;
+    traces_lights_ = false;
     for (std::size_t h = 0; h < halves_.size(); ++h) {
         const double end = end_of(other(h));
         halves_[h].is_finished |= end <= halves_[h].samples;
         wanted[h] = next_of(halves_[h], end);
         sum += wanted[h] * halves_[h].pixels;
+        traces_lights_ |= wanted[h] > 0 && halves_[h].traced > kTracedShare * variance_wanted(halves_[h]);
     }
     const double scale = std::clamp(most / std::max(sum, 1.0), 0.0, 1.0);
     std::vector<std::uint32_t> counts(values_.size() / 3);
@@ -42,8 +50,11 @@ std::vector<std::uint32_t> AdaptiveSampling::next(double most) {
     return counts;
 }
 
-void AdaptiveSampling::add(std::span<const float> exposure, const std::vector<std::uint32_t>& counts) {
-    std::vector<double> difference(halves_.size()), mean(halves_.size()), taken(halves_.size());
+void AdaptiveSampling::add(std::span<const float> exposure, const std::vector<std::uint32_t>& counts,
+                           std::span<const float> traced) {
+    std::vector<double> difference(halves_.size()), by_lights(halves_.size()), mean(halves_.size()),
+        taken(halves_.size());
+    const bool is_traced = traces_lights_ && !traced.empty();
     for_pixels([&](std::size_t pixel, std::size_t half) {
         for (std::size_t c = 3 * pixel; c < 3 * pixel + 3; ++c) {
             if (counts[pixel] > 0) {
@@ -51,16 +62,31 @@ void AdaptiveSampling::add(std::span<const float> exposure, const std::vector<st
                 const double step = static_cast<double>(value) - static_cast<double>(values_[c]);
                 difference[half] += step * step;
                 values_[c] = value;
+                if (is_traced) {
+                    const float without = value_of(exposure[c] - (traced[c] - traced_[c]));
+                    const double by_light = static_cast<double>(value) - static_cast<double>(without);
+                    by_lights[half] += by_light * by_light;
+                }
             }
             mean[half] += static_cast<double>(values_[c]);
         }
         taken[half] = counts[pixel];
     });
+    // N new samples change the mean of B by N / (B + N) of what both means differ, whose variance is s^2 (1/B + 1/N).
+    // So the variance of the new mean, s^2 / (B + N), is B / N of the change's.
+    const double traced_now = *std::max_element(counts.begin(), counts.end());
+    const double over_change = traced_samples_ / std::max(traced_now, 1.0);
     for (std::size_t h = 0; h < halves_.size(); ++h) {
         const double numbers = 3 * std::max(halves_[h].pixels, 1.0);
         halves_[h].mean = mean[h] / numbers;
-        if (taken[h] > 0) halves_[h].add(difference[h] / numbers, taken[h]);
+        if (taken[h] == 0) continue;
+        // Both kinds of samples are independent, so that what they change adds up in squares.
+        halves_[h].add(std::max(0.0, difference[h] - by_lights[h]) / numbers, taken[h]);
+        if (is_traced) halves_[h].traced = over_change * by_lights[h] / numbers;
     }
+    if (!is_traced) return;
+    traced_.assign(traced.begin(), traced.end());
+    traced_samples_ += traced_now;
 }
 
 ReachedNoise AdaptiveSampling::reached() const {
@@ -128,12 +154,17 @@ double AdaptiveSampling::decay_of(std::size_t half) const {
     return std::clamp(std::log2(before / last) - 2 * std::numbers::log2e * 2 / std::sqrt(numbers), 1.0, kMostDecay);
 }
 
-double AdaptiveSampling::excess_of(std::size_t half) const {
+double AdaptiveSampling::variance_wanted(const Half& half) const {
     constexpr double kDarkest = 0.01;  // of white
+    const double goal = goal_.unit == NoiseUnit::codes ? goal_.noise : goal_.noise * std::max(half.mean, kDarkest);
+    return goal * goal;
+}
+
+double AdaptiveSampling::excess_of(std::size_t half) const {
     const Half& h = halves_[half];
-    const double goal = goal_.unit == NoiseUnit::codes ? goal_.noise : goal_.noise * std::max(h.mean, kDarkest);
     const double decay = decay_of(half);
-    return h.square / (std::exp2(decay) - 1) * std::pow(h.doubled_to / h.samples, decay) / (goal * goal);
+    const double variance = h.square / (std::exp2(decay) - 1) * std::pow(h.doubled_to / h.samples, decay);
+    return (variance + h.traced) / variance_wanted(h);
 }
 
 double AdaptiveSampling::end_of(std::size_t half) const {

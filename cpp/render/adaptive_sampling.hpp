@@ -21,6 +21,10 @@ namespace REALCAM_NAMESPACE {
 /// The samples of a pixel are stratified, so where it is smooth its variance falls faster than 1 / n, like n^-p. The
 /// variance of the mean of all samples is then that of the last difference over 2^p - 1. p is estimated from the last
 /// two doublings of a tile and its neighbours where these show it with some certainty; else it is 1.
+///
+/// Light that is traced from the lights (SplattedLight) falls on the whole film, and its noise is apart from that of
+/// the pixels' samples. It is measured by what more of it changes, and no more is taken once it is small everywhere
+/// where samples are still wanted.
 class AdaptiveSampling {
 public:
     static constexpr int kTileSide = 16;
@@ -31,15 +35,20 @@ public:
         return std::min(std::int64_t{8}, goal.most_samples / 2);
     }
 
-    /// `exposure`: of the picture so far, 3 per pixel, lux seconds; `samples`: of each pixel.
+    /// `exposure`: of the picture so far, 3 per pixel, lux seconds; `samples`: of each pixel; `traced`: what of the
+    /// exposure was traced from the lights, empty where nothing is.
     AdaptiveSampling(int width, int height, const NoiseGoal& goal, double iso, std::span<const float> exposure,
-                     const std::vector<std::int64_t>& samples);
+                     const std::vector<std::int64_t>& samples, std::span<const float> traced = {});
 
     /// Samples that each pixel is to get more; all 0: it is finished. `most`: of all pixels together, about.
     std::vector<std::uint32_t> next(double most);
 
-    /// Takes in the picture with these samples.
-    void add(std::span<const float> exposure, const std::vector<std::uint32_t>& counts);
+    /// Whether light is to be traced with them, as much as the largest number of samples asks for.
+    bool traces_lights() const { return traces_lights_; }
+
+    /// Takes in the picture with these samples, and with the light if it was to be traced.
+    void add(std::span<const float> exposure, const std::vector<std::uint32_t>& counts,
+             std::span<const float> traced = {});
 
     ReachedNoise reached() const;
 
@@ -49,6 +58,8 @@ public:
 private:
     /// More is too good to be believed of few doublings.
     static constexpr double kMostDecay = 1.25;
+    /// The largest variance of traced light of which no more is taken, as a share of the goal's.
+    static constexpr double kTracedShare = 0.2;
 
     /// The pixels of a tile that are decided upon together.
     struct Half {
@@ -58,6 +69,7 @@ private:
         double doublings = 0;
         double square = 0, square_before = 0;  ///< mean squares of what the last doubling changed, and the one before
         double doubled_to = 0;  ///< samples after the last doubling
+        double traced = 0;  ///< variance of the light that was traced; infinite before it is known
 
         void add(double change, double taken);
     };
@@ -84,6 +96,8 @@ private:
     /// p of a half: by the halves of the same colour of its tile and those about it.
     double decay_of(std::size_t half) const;
 
+    double variance_wanted(const Half& half) const;
+
     /// Variance of a pixel's mean over that of the goal.
     double excess_of(std::size_t half) const;
 
@@ -102,6 +116,9 @@ private:
     int across_, down_;
     std::vector<Half> halves_;  ///< two of each tile, tile by tile
     std::vector<float> values_;
+    std::vector<float> traced_;
+    double traced_samples_;  ///< of a pixel, to which the traced light belongs
+    bool traces_lights_ = true;
 };
 
 }  // namespace REALCAM_NAMESPACE

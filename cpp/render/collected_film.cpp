@@ -10,4 +10,17 @@ SplattedLight view_of(const std::vector<SplatFilm>& films) {
     return light;
 }
 
+std::vector<float> traced_exposure(const std::vector<SplatFilm>& films, double exposure_time_s) {
+    const auto lit = std::find_if(films.begin(), films.end(), [](const SplatFilm& film) { return !film.sums.empty(); });
+    if (lit == films.end()) return {};
+    const SplattedLight light = view_of(films);
+    std::vector<float> exposure;
+    const auto pixels = static_cast<std::int64_t>(lit->width) * lit->height;
+    exposure.reserve(3 * static_cast<std::size_t>(pixels));
+    for (std::int64_t pixel = 0; pixel < pixels; ++pixel)
+        for (int channel = 0; channel < 3; ++channel)
+            exposure.push_back(film_exposure(light.irradiance(pixel, channel) * exposure_time_s));
+    return exposure;
+}
+
 }  // namespace realcam

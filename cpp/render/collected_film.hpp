@@ -40,6 +40,9 @@ struct SplatFilm {
 /// Views of at most kMostSplats films, which must outlive them.
 SplattedLight view_of(const std::vector<SplatFilm>& films);
 
+/// What of the exposure these are, 3 per pixel, lux seconds. Empty where they have no pixels.
+std::vector<float> traced_exposure(const std::vector<SplatFilm>& films, double exposure_time_s);
+
 /// What the pixels of a region have collected.
 struct RegionSums {
     FilmSums pixels;

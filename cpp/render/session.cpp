@@ -46,7 +46,7 @@ void Session::add(int spp, const Progress& progress) {
     const double total = static_cast<double>(spp) * camera_.film.width * camera_.film.height *
                          (settings_.layers.has_any(kSampledLayers) ? 2 : 1);
     const auto work = [&] {
-        expose(spp, [&](const SampleRange& range) { take(range, {}, done, stop); });
+        expose(spp, [&](const SampleRange& range) { take(range, {}, true, done, stop); });
         mean_samples_ += spp;
         see_what_is_missing(done, stop);
     };
@@ -356,10 +356,10 @@ void Session::add_layers(Image& image, const LayerFilm& layers, Besides&& beside
 ReachedNoise Session::take_until(const NoiseGoal& goal, std::atomic<double>& share, OwnStop& stop) {
     const auto begin = std::chrono::steady_clock::now();
     std::atomic<std::int64_t> done{0};
-    const auto take_round = [&](std::int64_t count, const std::uint32_t* counts) {
+    const auto take_round = [&](std::int64_t count, const std::uint32_t* counts, bool traces_lights) {
         std::uint32_t before = 0;
         expose(count, [&](const SampleRange& range) {
-            take(range, {counts, before}, done, stop);
+            take(range, {counts, before}, traces_lights, done, stop);
             before += range.count;
         });
     };
@@ -369,10 +369,10 @@ ReachedNoise Session::take_until(const NoiseGoal& goal, std::atomic<double>& sha
         // A count for each pixel, though it is the same: what the two halves of a tile find must be independent, so
         // that no pixel may share its samples.
         const std::vector<std::uint32_t> first(pixel_count(), static_cast<std::uint32_t>(mean_samples_));
-        take_round(mean_samples_, first.data());
+        take_round(mean_samples_, first.data(), true);
     }
     AdaptiveSampling tiles(camera_.film.width, camera_.film.height, goal, camera_.iso, develop().exposure,
-                           count_samples());
+                           count_samples(), develop_traced());
     const auto pixels = static_cast<double>(pixel_count());
     double taken = is_new ? static_cast<double>(mean_samples_) * pixels : 0;
     while (!stop) {
@@ -385,12 +385,12 @@ ReachedNoise Session::take_until(const NoiseGoal& goal, std::atomic<double>& sha
         const std::vector<std::uint32_t> counts = tiles.next(affordable);
         const std::uint32_t most = *std::max_element(counts.begin(), counts.end());
         if (most == 0) break;
-        take_round(most, counts.data());
+        take_round(most, counts.data(), tiles.traces_lights());
         double round = 0;
         for (const std::uint32_t count : counts) round += count;
         mean_samples_ += static_cast<std::int64_t>(std::ceil(round / pixels));
         taken += round;
-        tiles.add(develop().exposure, counts);
+        tiles.add(develop().exposure, counts, develop_traced());
         share = std::max(share.load(), std::min(1.0, taken / (taken + tiles.left())));
     }
     return tiles.reached();

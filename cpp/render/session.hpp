@@ -137,12 +137,13 @@ protected:
     /// An empty film, and nothing counted.
     virtual void clear() = 0;
     /// Takes samples of the pixels, or fewer of some where it is stopped. `done` counts them, at least about.
-    virtual void take(const SampleRange& range, const PixelCounts& counts, std::atomic<std::int64_t>& done,
-                      OwnStop& stop) = 0;
+    virtual void take(const SampleRange& range, const PixelCounts& counts, bool traces_lights,
+                      std::atomic<std::int64_t>& done, OwnStop& stop) = 0;
     /// Starts to take samples, and to develop what is there then.
     virtual std::shared_ptr<LiveFrame> start(const std::vector<SampleRange>& ranges, ToneCurve curve,
                                              std::shared_ptr<void> under_way) = 0;
     virtual Image develop() = 0;
+    virtual std::vector<float> develop_traced() = 0;  ///< traced_exposure
     /// developed_besides of a film whose samples were taken while the settings asked for it.
     virtual std::vector<LayerImage> develop_besides() = 0;
     /// Samples of a region apart from the film. `counts`: of the region's pixels.

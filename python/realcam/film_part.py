@@ -171,6 +171,10 @@ class CollectedFilm:
         """(H, W, 3) float32, lux seconds."""
         return _core._developed_exposure(self.pixels, self.splats, exposure_time_s)
 
+    def traced_exposure(self, exposure_time_s: float) -> np.ndarray:
+        """What of it was traced from the lights; (0, W, 3) where nothing was."""
+        return _core._traced_exposure(self.splats, exposure_time_s)
+
     def _add_splats(self, part: FilmPart) -> None:
         if not self.splats:
             self.splats = [{**light, "sums": light["sums"].copy()} for light in part.splats]

@@ -120,7 +120,7 @@ def write_round(path: Path, round_: Round | None) -> None:
         np.savez(content, end=True)
     else:
         counts: dict[str, Any] = {} if round_.counts is None else {"counts": round_.counts}
-        numbers = [round_.number, round_.samples, round_.spp, round_.is_of_layers]
+        numbers = [round_.number, round_.samples, round_.spp, round_.is_of_layers, round_.traces_lights]
         np.savez_compressed(content, numbers=numbers, estimate=[round_.taken, round_.left], **counts)
     path.parent.mkdir(parents=True, exist_ok=True)
     write_whole(path, content.getvalue(), is_durable=True)
@@ -132,10 +132,10 @@ def read_round(path: Path) -> Round | None:
         with np.load(path, allow_pickle=False) as arrays:
             if "end" in arrays:
                 return None
-            number, samples, spp, is_of_layers = (int(value) for value in arrays["numbers"])
+            number, samples, spp, is_of_layers, traces_lights = (int(value) for value in arrays["numbers"])
             taken, left = (float(value) for value in arrays["estimate"])
             counts = arrays.get("counts")
-            return Round(number, samples, spp, counts, bool(is_of_layers), taken, left)
+            return Round(number, samples, spp, counts, bool(is_of_layers), bool(traces_lights), taken, left)
     except Exception as error:  # numpy and zipfile have many words for what is damaged
         path.unlink(missing_ok=True)
         raise DamagedFileError(f"{path}: this was damaged: {error}") from None

@@ -38,17 +38,26 @@ class ShotFilm:
         if round_.is_of_layers:
             return None
         exposure = self.film.exposure(self._camera.exposure_time_s)
+        traced = self.film.traced_exposure(self._camera.exposure_time_s)
         if self._noise is None:
             samples = self.film.pixels["samples"].astype("int64")
-            self._noise = _core._Rounds(self._settings, self._camera.iso, exposure, samples)
+            self._noise = _core._Rounds(self._settings, self._camera.iso, exposure, samples, traced)
         else:
             assert round_.counts is not None
-            self._noise.add(exposure, round_.counts)
+            self._noise.add(exposure, round_.counts, traced)
         counts = self._noise.next()
         most, taken = int(counts.max()), float(self.film.pixels["samples"].sum())
         if most > 0:
             left = max(self._noise.left(), float(counts.sum(dtype="int64")))
-            return Round(round_.number + 1, round_.samples + round_.spp, most, counts, taken=taken, left=left)
+            return Round(
+                round_.number + 1,
+                round_.samples + round_.spp,
+                most,
+                counts,
+                traces_lights=self._noise.traces_lights,
+                taken=taken,
+                left=left,
+            )
         if self._folder.shots[self._shot].has_layers:
             return Round(round_.number + 1, 0, self._mean_spp, is_of_layers=True, taken=taken, left=0)
         return None

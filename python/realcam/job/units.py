@@ -52,7 +52,8 @@ class Round:
     """Samples of which the number is known before they are taken: all of a shot, or as many as its noise called for.
 
     samples: taken before. spp: the most that a pixel takes. counts: (H, W), how many each takes; None: all.
-    taken, left: samples of all pixels before it, and from there on as far as is known.
+    traces_lights: whether as much light is traced from the lights as belongs to spp samples. taken, left: samples of all
+    pixels before it, and from there on as far as is known.
     """
 
     number: int
@@ -60,6 +61,7 @@ class Round:
     spp: int
     counts: np.ndarray | None = None
     is_of_layers: bool = False  # after the last samples of a shot whose number of samples follows its noise
+    traces_lights: bool = True
     taken: float = 0
     left: float = 0
 
@@ -93,7 +95,7 @@ class ShotRecord:
         for first in range(round_.samples, round_.samples + round_.spp, _SAMPLES_PER_SUM):
             spp = min(_SAMPLES_PER_SUM, round_.samples + round_.spp - first)
             kind = "layers" if round_.is_of_layers else "pixels"
-            if self.has_traced_light and not round_.is_of_layers:
+            if self.has_traced_light and round_.traces_lights and not round_.is_of_layers:
                 for begin, end in self._pieces(first, spp):
                     yield Unit(shot, round_.number, "light", None, begin, end - begin)
             for region in self._tiles():

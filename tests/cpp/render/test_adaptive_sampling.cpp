@@ -107,6 +107,68 @@ TEST_CASE("each tile gets the samples that its noise needs") {
     }
 }
 
+TEST_CASE("light is traced until its noise is small where samples are taken, and no longer") {
+    constexpr int kSide = 64;
+    const double relative = 0.01, goal_sigma = relative * NoisyFilm::kGrey;
+    NoisyFilm film(kSide, kSide, 1);
+    // The first tiles want 800 samples, the others 20.
+    const auto sigma = [&](std::size_t i) { return goal_sigma * std::sqrt(i % kSide < 16 ? 640.0 : 16.0); };
+    // The mean of the traced light errs by this over the root of its samples: by a fifth of the goal's variance at 64.
+    const double traced_sigma = goal_sigma * std::sqrt(0.2 * 64);
+    std::mt19937_64 random(11);
+    std::normal_distribution<double> normal;
+    double traced_samples = 0;
+    std::vector<double> traced_error(3 * film.pixels());
+    const auto trace = [&](double more) {
+        for (double& error : traced_error)
+            error =
+                (traced_samples * error + traced_sigma * std::sqrt(more) * normal(random)) / (traced_samples + more);
+        traced_samples += more;
+    };
+    const auto traced = [&] {
+        std::vector<float> exposure;
+        for (const double error : traced_error) exposure.push_back(static_cast<float>(0.5 * NoisyFilm::kGrey + error));
+        return exposure;
+    };
+    const auto exposure = [&] {
+        std::vector<float> all = film.exposure();
+        for (std::size_t c = 0; c < all.size(); ++c) all[c] += static_cast<float>(traced_error[c]);
+        return all;
+    };
+    film.take(std::vector<std::uint32_t>(film.pixels(), 8), sigma);
+    trace(8);
+    AdaptiveSampling tiles(kSide, kSide, {relative, NoiseUnit::relative, 1 << 20}, 100, exposure(), film.samples,
+                           traced());
+    for (int round = 0;; ++round) {
+        REQUIRE(round < 40);
+        const std::vector<std::uint32_t> counts = tiles.next(1e18);
+        const std::uint32_t most = *std::max_element(counts.begin(), counts.end());
+        if (most == 0) break;
+        film.take(counts, sigma);
+        if (tiles.traces_lights()) trace(most);
+        tiles.add(exposure(), counts, traced());
+    }
+    CHECK(tiles.reached().is_reached);
+    CHECK(film.samples[0] > 600);
+    // At 64 samples, or at 128 where chance has one half of a tile look noisier than it is.
+    CHECK(traced_samples >= 64);
+    CHECK(traced_samples <= 128);
+    for (int column = 0; column < 4; ++column) {
+        CAPTURE(column);
+        double square = 0;
+        for (int y = 0; y < kSide; ++y)
+            for (int x = 16 * column; x < 16 * (column + 1); ++x) {
+                const auto i = static_cast<std::size_t>(y * kSide + x);
+                const double error = film.error(i) + traced_error[3 * i];
+                square += error * error;
+            }
+        // 1024 errors: known within 2.2%. Bounds as above.
+        CHECK(std::sqrt(square / (16 * kSide)) < 1.1 * goal_sigma);
+        // Traced light leaves 0.8 - 0.2 of the variance, so 640 / 0.6 and 16 / 0.6 are needed; steps are doublings.
+        CHECK(film.samples[static_cast<std::size_t>(16 * column)] < (column == 0 ? 2000 : 60));
+    }
+}
+
 TEST_CASE("of noise that is not there no samples are taken, and what is clipped has none in codes") {
     constexpr int kSide = 32;
     const std::vector<std::int64_t> samples(kSide * kSide, 8);

@@ -59,7 +59,7 @@ private:
         if (fails) throw DeviceError("lost");
     }
     void clear() override { notes.push_back("clear"); }
-    void take(const SampleRange& range, const PixelCounts&, std::atomic<std::int64_t>& done, OwnStop&) override {
+    void take(const SampleRange& range, const PixelCounts&, bool, std::atomic<std::int64_t>& done, OwnStop&) override {
         notes.push_back("take");
         taken.push_back(range);
         if (while_taking) while_taking();
@@ -72,6 +72,7 @@ private:
         return frames.emplace_back(std::make_shared<NotedFrame>(samples(), stop_flag));
     }
     Image develop() override { return {}; }
+    std::vector<float> develop_traced() override { return {}; }
     std::vector<LayerImage> develop_besides() override { return {{Layer::variance, {0, 0, 0}, {}}}; }
     RegionSums take_region(const FilmRegion& region, const SampleRange& range, const PixelCounts&,
                            std::atomic<std::int64_t>&, OwnStop&) override {
