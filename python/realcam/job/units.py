@@ -52,8 +52,8 @@ class Round:
     """Samples of which the number is known before they are taken: all of a shot, or as many as its noise called for.
 
     samples: taken before. spp: the most that a pixel takes. counts: (H, W), how many each takes; None: all.
-    traces_lights: whether as much light is traced from the lights as belongs to spp samples. taken, left: samples of all
-    pixels before it, and from there on as far as is known.
+    traces_lights: whether as much light is traced from the lights as belongs to spp samples. taken, left: samples of
+    all pixels before it, and from there on as far as is known.
     """
 
     number: int
