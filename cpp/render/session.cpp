@@ -353,6 +353,15 @@ void Session::add_layers(Image& image, const LayerFilm& layers, Besides&& beside
               [](const LayerImage& a, const LayerImage& b) { return a.layer < b.layer; });
 }
 
+double Session::seconds_of_layers(OwnStop& stop) {
+    if (!settings_.layers.has_any(kSampledLayers)) return 0;
+    std::vector<LayerSum> unused(pixel_count());
+    std::atomic<std::int64_t> done{0};
+    const auto begin = std::chrono::steady_clock::now();
+    see_layers(whole_film(), {settings_.seed, 0, 1}, unused, done, stop);
+    return seconds_since(begin);
+}
+
 ReachedNoise Session::take_until(const NoiseGoal& goal, std::atomic<double>& share, OwnStop& stop) {
     const auto begin = std::chrono::steady_clock::now();
     std::atomic<std::int64_t> done{0};
@@ -374,12 +383,16 @@ ReachedNoise Session::take_until(const NoiseGoal& goal, std::atomic<double>& sha
     AdaptiveSampling tiles(camera_.film.width, camera_.film.height, goal, camera_.iso, develop().exposure,
                            count_samples(), develop_traced());
     const auto pixels = static_cast<double>(pixel_count());
+    // Layers are seen afterwards, in a time that belongs to the goal's, too.
+    const double layer_seconds = std::isfinite(goal.seconds) ? seconds_of_layers(stop) : 0;
     double taken = is_new ? static_cast<double>(mean_samples_) * pixels : 0;
     while (!stop) {
         double affordable = kInfinity;
         if (std::isfinite(goal.seconds)) {
             const double spent = seconds_since(begin);
-            affordable = taken > 0 ? taken / spent * (goal.seconds - spent)
+            const double left =
+                goal.seconds - spent - layer_seconds * static_cast<double>(mean_samples_ - layer_samples_);
+            affordable = taken > 0 ? left / (spent / taken + layer_seconds / pixels)
                                    : static_cast<double>(AdaptiveSampling::first_samples(goal)) * pixels;
         }
         const std::vector<std::uint32_t> counts = tiles.next(affordable);

@@ -249,6 +249,9 @@ private:
     void take_part(std::int64_t first, int count, const Progress& progress, const std::atomic<std::int64_t>& done,
                    std::size_t pixels, Work&& work);
 
+    /// How long the layers that samples see take for a sample of each pixel; 0 where none is wanted.
+    double seconds_of_layers(OwnStop& stop);
+
     ReachedNoise take_until(const NoiseGoal& goal, std::atomic<double>& share, OwnStop& stop);
 
     /// f(range) for the ranges of so many samples more.
