@@ -42,6 +42,12 @@ SplatFilm splat_film_from(const py::dict& splats) {
     return film;
 }
 
+std::vector<SplatFilm> splat_films_from(const py::list& splats) {
+    std::vector<SplatFilm> films;
+    for (const py::handle& of_light : splats) films.push_back(splat_film_from(of_light.cast<py::dict>()));
+    return films;
+}
+
 /// Exposure, 3 numbers per pixel in lux seconds.
 py::array_t<float> developed_exposure(const FilmArrays& arrays, double exposure_time_s) {
     const CollectedFilm film = arrays.film();
@@ -93,8 +99,7 @@ CollectedFilm FilmArrays::film() const {
     CollectedFilm film;
     film.pixels = values_of<PixelSum>(pixels);
     if (layers) film.layers = values_of<LayerSum>(*layers);
-    for (const py::handle& splats_of_light : splats)
-        film.splats.push_back(splat_film_from(splats_of_light.cast<py::dict>()));
+    film.splats = splat_films_from(splats);
     return film;
 }
 
@@ -149,8 +154,7 @@ void bind_film_parts(py::module_& m) {
     m.def(
         "_traced_exposure",
         [](const py::list& splats, double exposure_time_s) {
-            std::vector<SplatFilm> films;
-            for (const py::handle& of_light : splats) films.push_back(splat_film_from(of_light.cast<py::dict>()));
+            const std::vector<SplatFilm> films = splat_films_from(splats);
             std::vector<float> exposure = traced_exposure(films, exposure_time_s);
             const py::ssize_t height = exposure.empty() ? 0 : films.front().height,
                               width = films.empty() ? 0 : films.front().width;

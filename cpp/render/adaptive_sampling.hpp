@@ -46,7 +46,7 @@ public:
     /// Whether light is to be traced with them, as much as the largest number of samples asks for.
     bool traces_lights() const { return traces_lights_; }
 
-    /// Takes in the picture with these samples, and with the light if it was to be traced.
+    /// Takes in the picture with these samples, and with the light if it was to be traced; else `traced` is not read.
     void add(std::span<const float> exposure, const std::vector<std::uint32_t>& counts,
              std::span<const float> traced = {});
 

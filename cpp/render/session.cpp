@@ -403,7 +403,7 @@ ReachedNoise Session::take_until(const NoiseGoal& goal, std::atomic<double>& sha
         for (const std::uint32_t count : counts) round += count;
         mean_samples_ += static_cast<std::int64_t>(std::ceil(round / pixels));
         taken += round;
-        tiles.add(develop().exposure, counts, develop_traced());
+        tiles.add(develop().exposure, counts, tiles.traces_lights() ? develop_traced() : std::vector<float>());
         share = std::max(share.load(), std::min(1.0, taken / (taken + tiles.left())));
     }
     return tiles.reached();

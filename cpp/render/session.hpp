@@ -136,7 +136,8 @@ protected:
                          const KeepGoing& keep_going, OwnStop& stop) = 0;
     /// An empty film, and nothing counted.
     virtual void clear() = 0;
-    /// Takes samples of the pixels, or fewer of some where it is stopped. `done` counts them, at least about.
+    /// Takes samples of the pixels, or fewer of some where it is stopped. `traces_lights`: and the light that is traced
+    /// apart and belongs to the range. `done` counts the samples, at least about.
     virtual void take(const SampleRange& range, const PixelCounts& counts, bool traces_lights,
                       std::atomic<std::int64_t>& done, OwnStop& stop) = 0;
     /// Starts to take samples, and to develop what is there then.

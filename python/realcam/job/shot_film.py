@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from .. import _core
 from .._core import Camera, RenderSettings
 from ..film_part import CollectedFilm
@@ -37,8 +39,9 @@ class ShotFilm:
         """
         if round_.is_of_layers:
             return None
-        exposure = self.film.exposure(self._camera.exposure_time_s)
-        traced = self.film.traced_exposure(self._camera.exposure_time_s)
+        seconds = self._camera.exposure_time_s
+        exposure = self.film.exposure(seconds)
+        traced = self.film.traced_exposure(seconds) if round_.traces_lights else np.empty(0, np.float32)
         if self._noise is None:
             samples = self.film.pixels["samples"].astype("int64")
             self._noise = _core._Rounds(self._settings, self._camera.iso, exposure, samples, traced)
