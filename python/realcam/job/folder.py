@@ -17,7 +17,7 @@ from ..film_part import FilmPart
 from .engine import Engine
 from .units import Round, ShotRecord, Unit
 
-FORMAT = 2
+FORMAT = 3
 JOB_FILE = "job.json"
 
 
