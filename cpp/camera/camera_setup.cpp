@@ -66,7 +66,8 @@ CircleOfConfusion circle_of_confusion(double entrance_pupil_position, ThinLens t
 
 }  // namespace
 
-CameraSetup::CameraSetup(const Camera& camera, PupilTracer tracer, const CameraSetup* last, const LensEffects& effects)
+CameraSetup::CameraSetup(const Camera& camera, PupilTracer tracer, const CameraSetup* last, const LensEffects& effects,
+                         PupilStart start)
     : camera_(validated(camera)),
       effects_(effects),
       path_(camera.lens, LightDirection::to_scene, camera.lens.wavelength_nm,
@@ -83,7 +84,7 @@ CameraSetup::CameraSetup(const Camera& camera, PupilTracer tracer, const CameraS
         return;
     }
     if (camera.model == CameraModel::polynomial_lens) require_radial_pupil(camera.lens, "the camera model polynomial");
-    set_pupil(tracer, last);
+    set_pupil(tracer, last, start);
     check_light();
     if (camera.model == CameraModel::polynomial_lens)
         polynomial_.emplace(camera.lens, pupil_->view(), std::min(film_radius(), pupil_->image_radius()));
@@ -138,16 +139,19 @@ const Camera& CameraSetup::validated(const Camera& camera) {
     return camera;
 }
 
-void CameraSetup::set_pupil(const PupilTracer& tracer, const CameraSetup* last) {
+void CameraSetup::set_pupil(const PupilTracer& tracer, const CameraSetup* last, PupilStart start) {
     const std::vector<double>& wavelengths = tables_.pupil_wavelengths();
-    if (last && last->has_pupil_of(camera_, wavelengths, effects_.pupil_sampling)) {
+    const bool is_alike = last && last->has_pupil_for(wavelengths, effects_.pupil_sampling);
+    const bool is_same = is_alike && last->has_lens_and_film_of(camera_);
+    if (is_same && last->has_pupil_anew()) {
         pupil_ = last->pupil_;
         pupil_grid_ = last->pupil_grid_;
         return;
     }
+    const Pupil* similar = is_alike && !is_same && start == PupilStart::near_last ? last->pupil_.get() : nullptr;
     const LensSystem lens = sampled_lens(camera_.lens, effects_.pupil_sampling);
     if (has_radial_pupil(lens))
-        pupil_ = std::make_shared<const Pupil>(lens, film_radius(), tracer, wavelengths);
+        pupil_ = std::make_shared<const Pupil>(lens, film_radius(), tracer, wavelengths, similar);
     else
         pupil_grid_ = std::make_shared<const PupilGrid>(lens, film_area(), mirror_planes(lens), tracer, wavelengths);
 }
@@ -203,10 +207,8 @@ bool CameraSetup::has_lens_and_film_of(const Camera& camera) const {
            camera_.film.height_mm == camera.film.height_mm && camera_.film.shift_mm == camera.film.shift_mm;
 }
 
-bool CameraSetup::has_pupil_of(const Camera& camera, const std::vector<double>& wavelengths,
-                               PupilSampling sampling) const {
-    return (pupil_ || pupil_grid_) && has_real_pupil(camera.model) && has_lens_and_film_of(camera) &&
-           tables_.pupil_wavelengths() == wavelengths && effects_.pupil_sampling == sampling;
+bool CameraSetup::has_pupil_for(const std::vector<double>& wavelengths, PupilSampling sampling) const {
+    return (pupil_ || pupil_grid_) && tables_.pupil_wavelengths() == wavelengths && effects_.pupil_sampling == sampling;
 }
 
 }  // namespace realcam

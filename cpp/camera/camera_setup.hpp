@@ -10,6 +10,7 @@
 #include "effect_tables.hpp"
 #include "lens_map.hpp"
 #include "pupil_entries.hpp"
+#include "pupil_start.hpp"
 
 namespace REALCAM_NAMESPACE {
 
@@ -20,7 +21,7 @@ public:
     /// whose pupil is taken over if it is the same one: finding it is most of the work, and a camera that only moves
     /// keeps it.
     explicit CameraSetup(const Camera& camera, PupilTracer tracer = {}, const CameraSetup* last = nullptr,
-                         const LensEffects& effects = {});
+                         const LensEffects& effects = {}, PupilStart start = PupilStart::anew);
 
     /// `origin_m`: of the placed scene. `scene_moves`: whether that does during the exposure.
     CameraView view(Vec3d origin_m, bool scene_moves = false) const;
@@ -31,6 +32,8 @@ public:
     const EffectTables& effects() const { return tables_; }
     /// Of a camera whose lens is not of revolution; else null.
     const PupilGrid* pupil_grid() const { return pupil_grid_.get(); }
+    /// Whether its pupil is the same for any last set-up.
+    bool has_pupil_anew() const { return !pupil_ || !pupil_->is_moved(); }
     FilmArea film_area() const;
     /// Whether lights can be followed through every surface of the lens.
     bool traces_lights() const {
@@ -47,7 +50,7 @@ private:
     double film_radius() const { return camera_.film.radius_mm(); }
 
     /// Finds where rays are sent into the lens, or takes it over.
-    void set_pupil(const PupilTracer& tracer, const CameraSetup* last);
+    void set_pupil(const PupilTracer& tracer, const CameraSetup* last, PupilStart start);
     /// Throws InputError where no light arrives.
     void check_light() const;
 
@@ -58,7 +61,8 @@ private:
     void set_times(CameraView& view, bool scene_moves) const;
 
     bool has_lens_and_film_of(const Camera& camera) const;
-    bool has_pupil_of(const Camera& camera, const std::vector<double>& wavelengths, PupilSampling sampling) const;
+    /// Whether it has a pupil, and that is one for all of these wavelengths and this sampling.
+    bool has_pupil_for(const std::vector<double>& wavelengths, PupilSampling sampling) const;
 
     Camera camera_;
     LensEffects effects_;

@@ -5,10 +5,10 @@
 namespace realcam {
 
 std::shared_ptr<const CameraSetup> LastSetup::make(const Camera& camera, const PupilTracer& tracer,
-                                                   const LensEffects& effects) {
+                                                   const LensEffects& effects, PupilStart start) {
     // Not locked while the pupil is found: another thread's camera may be ready at once.
     const std::shared_ptr<const CameraSetup> last = get();
-    auto setup = std::make_shared<const CameraSetup>(camera, tracer, last.get(), effects);
+    auto setup = std::make_shared<const CameraSetup>(camera, tracer, last.get(), effects, start);
     const std::lock_guard lock(mutex_);
     return setup_ = std::move(setup);
 }

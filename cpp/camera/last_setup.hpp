@@ -12,7 +12,7 @@ class LastSetup {
 public:
     /// Throws InputError, and keeps the last one then.
     std::shared_ptr<const CameraSetup> make(const Camera& camera, const PupilTracer& tracer,
-                                            const LensEffects& effects = {});
+                                            const LensEffects& effects = {}, PupilStart start = PupilStart::anew);
 
 private:
     std::shared_ptr<const CameraSetup> get() const;

@@ -8,12 +8,13 @@ namespace {
 std::vector<FoundRay> rays_of(const PupilView& pupil, const LensView<float>& lens, double film_radius,
                               double film_distance, const PupilTracer& tracer) {
     constexpr int kBlock = PupilTracer::kBlock, kSide = 8, kPerRing = kSide * kSide, kRings = kGhostBins;
-    static_assert(kRings * kPerRing % kBlock == 0);
-    std::vector<FoundRay> found;
-    for (int first = 0; first < kRings * kPerRing; first += kBlock) {
-        PupilTracer::Rays rays;
+    constexpr int kBlocks = kRings * kPerRing / kBlock;
+    static_assert(kBlocks * kBlock == kRings * kPerRing);
+    std::vector<PupilTracer::Rays> blocks(kBlocks);
+    tracer.for_each(kBlocks, [&](int block) {
+        PupilTracer::Rays& rays = blocks[static_cast<std::size_t>(block)];
         for (int k = 0; k < kBlock; ++k) {
-            const int ring = (first + k) / kPerRing, place = (first + k) % kPerRing;
+            const int ring = (block * kBlock + k) / kPerRing, place = (block * kBlock + k) % kPerRing;
             const float radius = static_cast<float>(film_radius) * (static_cast<float>(ring) + 0.5f) / kRings;
             const PupilSample sample =
                 sample_pupil(pupil, radius, 0, (static_cast<float>(place % kSide) + 0.5f) / kSide,
@@ -23,13 +24,15 @@ std::vector<FoundRay> rays_of(const PupilView& pupil, const LensView<float>& len
             rays.status[k] = sample.weight > 0 ? 0 : static_cast<int>(RayStatus::vignetted);
         }
         tracer.trace(lens, rays);
+    });
+    std::vector<FoundRay> found;
+    for (const PupilTracer::Rays& rays : blocks)
         for (int k = 0; k < kBlock; ++k) {
             if (rays.status[k] != 0) continue;
             FoundRay ray{};
             set_front(rays.origin[k], normalized(rays.direction[k]), ray);
             found.push_back(ray);
         }
-    }
     return found;
 }
 

@@ -49,10 +49,10 @@ public:
     }
 
 private:
-    void prepare(const Assembly& scene, const Camera& camera, const RenderSettings& settings,
+    void prepare(const Assembly& scene, const Camera& camera, const RenderSettings& settings, PupilStart start,
                  const KeepGoing& keep_going, OwnStop& stop) override {
         validate_on_gpu(camera);
-        setup_ = last_setup_.make(camera, tracer_, settings.lens_effects());
+        setup_ = last_setup_.make(camera, tracer_, settings.lens_effects(), start);
         const auto place = [&] { scene_.place(scene, camera, [&] { return !stop; }); };
         if (scene_.change_to(scene, camera) == SceneChange::all) {
             run_heeding(place, keep_going, stop);
@@ -66,6 +66,8 @@ private:
         for (const auto& renderer : renderers_) renderer->set_camera(view);
         set_splats(view);
     }
+
+    bool has_pupil_anew() const override { return setup_->has_pupil_anew(); }
 
     void set_splats(const CameraView& camera) { front().set_splats(splat_sources(camera)); }
 

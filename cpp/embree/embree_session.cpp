@@ -56,7 +56,8 @@ public:
     }
 
 private:
-    void prepare(const Assembly& scene, const Camera& camera, const RenderSettings& settings,
+    /// Any pupil is found anew: a frame takes so much longer that one given up would cost more than that.
+    void prepare(const Assembly& scene, const Camera& camera, const RenderSettings& settings, PupilStart,
                  const KeepGoing& keep_going, OwnStop& stop) override {
         const auto work = [&] {
             arena(settings).execute([&] {

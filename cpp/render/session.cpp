@@ -26,7 +26,7 @@ void Session::set(const Assembly& scene, const Camera& camera, const RenderSetti
     const Turn turn(mutex_, keep_going);
     check_all(scene, camera, settings, keep_going);
     make_way(keep_going);
-    make_ready(scene, camera, settings, keep_going);
+    make_ready(scene, camera, settings, PupilStart::anew, keep_going);
 }
 
 void Session::restart(const KeepGoing& keep_going) {
@@ -84,7 +84,7 @@ std::shared_ptr<const LiveFrame> Session::shoot(const Assembly& scene, const Cam
     const Turn turn(mutex_, keep_going);
     check_all(scene, camera, settings, keep_going);
     make_way(keep_going);
-    make_ready(scene, camera, settings, keep_going);
+    make_ready(scene, camera, settings, PupilStart::near_last, keep_going);
     std::vector<SampleRange> ranges;
     expose(settings.spp, [&](const SampleRange& range) { ranges.push_back(range); });
     mean_samples_ += settings.spp;
@@ -262,17 +262,20 @@ bool Session::is_same_picture(const Assembly& scene, const Camera& camera, const
 }
 
 void Session::make_ready(const Assembly& wanted_scene, const Camera& wanted_camera, const RenderSettings& settings,
-                         const KeepGoing& keep_going) {
+                         PupilStart start, const KeepGoing& keep_going) {
     const auto changed = without_left_out_motion(wanted_scene, wanted_camera, settings.effects);
     const Assembly& scene = changed ? changed->scene : wanted_scene;
     const Camera& camera = changed ? changed->camera : wanted_camera;
-    if (!ready_ || !is_same_picture(scene, camera, settings)) {
+    const bool is_same = ready_ && is_same_picture(scene, camera, settings);
+    // Frames of a camera that stands still become a picture: with the pupil that any session would find.
+    const bool stands_still = is_same && start == PupilStart::near_last && !has_pupil_anew();
+    if (!is_same || stands_still) {
         ready_ = false;  // whatever fails from here on, the next call begins anew
         give_up_samples();
         scene_ = {};  // before the next takes as much memory
         OwnStop stop(*this);
         const auto begin = std::chrono::steady_clock::now();
-        prepare(scene, camera, settings, keep_going, stop);
+        prepare(scene, camera, settings, start, keep_going, stop);
         setup_seconds_ = seconds_since(begin);
         scene_ = scene;
         ready_ = true;

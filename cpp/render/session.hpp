@@ -10,6 +10,7 @@
 #include "../camera/camera.hpp"
 #include "../camera/develop.hpp"
 #include "../camera/film_region.hpp"
+#include "../camera/pupil_start.hpp"
 #include "../scene/scene_checks.hpp"
 #include "collected_film.hpp"
 #include "image.hpp"
@@ -69,7 +70,9 @@ public:
 
     /// `set`, and starts to take settings.spp samples more of each pixel and to develop them; returns while that goes
     /// on. The next frame may be shot before this one is there: where the device has as many under way as it takes,
-    /// this waits for the oldest. `under_way`: kept by what works on the host until that has ended.
+    /// this waits for the oldest. `under_way`: kept by what works on the host until that has ended. Of a lens that
+    /// changes from frame to frame, a GPU finds the pupil near the last one. The second frame of one that does not
+    /// change any more begins a new picture, with the pupil of `set`.
     std::shared_ptr<const LiveFrame> shoot(const Assembly& scene, const Camera& camera, const RenderSettings& settings,
                                            ToneCurve curve, const KeepGoing& keep_going = {},
                                            std::shared_ptr<void> under_way = {});
@@ -130,10 +133,12 @@ protected:
     // What a device does. But for the three of the stop, they are called in turn, with fewer frames under way than
     // frames_in_flight().
 
-    /// Makes ready what follows. Scene, camera and settings are valid, and the film is given up. Throws Cancelled where
-    /// the stop, which `keep_going` may ask for, has left something undone.
-    virtual void prepare(const Assembly& scene, const Camera& camera, const RenderSettings& settings,
+    /// Makes ready what follows. Scene, camera and settings are valid, and the film is given up. `start`: how its pupil
+    /// may be found. Throws Cancelled where the stop, which `keep_going` may ask for, has left something undone.
+    virtual void prepare(const Assembly& scene, const Camera& camera, const RenderSettings& settings, PupilStart start,
                          const KeepGoing& keep_going, OwnStop& stop) = 0;
+    /// Whether the pupil is the same as that of a new session.
+    virtual bool has_pupil_anew() const { return true; }
     /// An empty film, and nothing counted.
     virtual void clear() = 0;
     /// Takes samples of the pixels, or fewer of some where it is stopped. `traces_lights`: and the light that is traced
@@ -224,7 +229,7 @@ private:
     bool is_same_picture(const Assembly& scene, const Camera& camera, const RenderSettings& settings) const;
 
     void make_ready(const Assembly& wanted_scene, const Camera& wanted_camera, const RenderSettings& settings,
-                    const KeepGoing& keep_going);
+                    PupilStart start, const KeepGoing& keep_going);
 
     void give_up_samples();
 

@@ -54,6 +54,21 @@ def test_frames_collect_the_samples_of_one_picture(scene: rc.Scene, on: str) -> 
 
 
 @on_each
+def test_a_view_that_stands_still_after_focusing_is_any_sessions_picture(scene: rc.Scene, on: str) -> None:
+    live = rc.LiveView(scene, device=on, seed=3, max_bounces=1)
+    for distance in (2.0, 2.01, 2.02):
+        camera_now = camera().replace(lens=LENS.focused(distance))
+        first = live.shoot(camera_now, spp=8)
+    assert first.samples == 8
+    samples = [live.shoot(camera_now, spp=8).samples for _ in range(3)]
+    # On a GPU, the pupils of the moving lens were found near one another.
+    assert samples == ([16, 24, 32] if on == "cpu" else [8, 16, 24])
+    whole = rc.render(scene, camera_now, effects=(), spp=samples[-1], seed=3, max_bounces=1, device=on)
+    # Of the same samples, float sums in another order: 1e-4 would be another table of the pupil.
+    np.testing.assert_allclose(live.image().pixels, whole.pixels, rtol=2e-6, atol=1e-9)
+
+
+@on_each
 @pytest.mark.parametrize("effects", [["dispersion"], ["diffraction"], ["coatings", "ghosts"]])
 def test_frames_have_the_effects_that_are_named(scene: rc.Scene, on: str, effects: list[str]) -> None:
     live = rc.LiveView(scene, device=on, seed=3)

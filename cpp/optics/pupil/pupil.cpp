@@ -9,18 +9,57 @@
 
 namespace realcam {
 
-Pupil::Pupil(const LensSystem& lens, double film_radius, PupilTracer tracer, const std::vector<double>& wavelengths_nm)
-    : search_(lens, std::move(tracer), wavelengths_nm), image_radius_(film_radius * (1 + 1e-6)) {
+Pupil::Pupil(const LensSystem& lens, double film_radius, PupilTracer tracer, const std::vector<double>& wavelengths_nm,
+             const Pupil* similar)
+    : search_(lens, std::move(tracer), wavelengths_nm),
+      film_radius_(film_radius * (1 + 1e-6)),
+      image_radius_(film_radius_) {
     lens.require_rotational("the search for a pupil");
     if (!(film_radius > 0) || !(film_radius <= kLongest))
         throw InputError("the film's radius must be a positive length, of at most 1e9 mm");
+    is_moved_ = similar && find_near(*similar);
+    if (!is_moved_) find_anew();
+}
+
+void Pupil::find_anew() {
+    image_radius_ = film_radius_;
+    nodes_.clear();
     find_nodes();
     follows_ = image_radius_ > 0 && nodes_follow();
     if (image_radius_ > 0) {
-        find_outlines();
+        seen_ = std::make_shared<const OutlinesByEighth>(find_outlines());
+        add_rows(*seen_);
     } else {
         outline_.assign(kRows * kSectors, PupilSector{});  // no light at all; a sampler still reads the table
     }
+}
+
+bool Pupil::find_near(const Pupil& similar) {
+    if (similar.film_radius_ != film_radius_ || !similar.follows_ || similar.nodes_.front().half_width <= kSmall)
+        return false;
+    nodes_ = similar.nodes_;
+    ends_inside_film_ = similar.ends_inside_film_;
+    follows_ = true;
+    seen_ = similar.seen_;
+    const auto look = [this](const std::vector<int>& eighths, std::vector<PupilOutline>& expected) {
+        for (const int eighth : eighths) expected.push_back(seen_->at(eighth));
+        constexpr double kMoved = 2 * OutlineSearch::kChange;
+        return OutlineSearch::find_near(search_.lens(), looks_at(eighths), expected, kMoved);
+    };
+    std::vector<PupilOutline> expected, found;
+    const auto are_alike = [&] { return mean_difference(expected, found) < 0.03; };
+    found = look({0}, expected);  // the axis tells in a few rays whether the stop has changed
+    if (!are_alike()) return false;
+    if (ends_inside_film_ && !find_edge_near(similar)) return false;
+    std::vector<int> eighths;
+    for (const auto& [eighth, outline] : *seen_) eighths.push_back(eighth);
+    expected.clear();
+    found = look(eighths, expected);
+    if (!are_alike()) return false;
+    OutlinesByEighth moved;
+    for (std::size_t i = 0; i < found.size(); ++i) moved.emplace(eighths[i], found[i]);
+    add_rows(moved);
+    return true;
 }
 
 PupilView Pupil::view() const {
@@ -35,6 +74,20 @@ PupilView Pupil::view() const {
             static_cast<float>(search_.lens().index_squared())};
 }
 
+bool Pupil::find_edge_near(const Pupil& similar) {
+    PupilRowSearch::Sight sight = rows().look_near_edge(similar.image_radius_, similar.last_box_);
+    if (sight.lit.empty() || sight.dark.empty() || sight.dark.back() > film_radius_) return false;
+    end_image(sight);
+    if (image_radius_ == similar.image_radius_) return true;
+    // Rows without outlines are as wide as their boxes, so that these must be right.
+    constexpr int kFirst = kRows - kEdgeRows + 1;
+    const PupilRowBoxes boxes = rows().look_between(sight.lit, kFirst);
+    for (std::size_t row = kFirst; row < boxes.size(); ++row)
+        if (boxes[row]) nodes_[row] = node_of(*boxes[row]);
+    widen_last_nodes();
+    return true;
+}
+
 void Pupil::find_nodes() {
     PupilRowSearch::Sight sight = rows().look_from_axis();
     if (sight.lit.empty()) {
@@ -44,18 +97,28 @@ void Pupil::find_nodes() {
     }
     rows().find_edge_of_image(sight);
     ends_inside_film_ = !sight.dark.empty();
-    if (ends_inside_film_) image_radius_ = sight.dark.back();
-    PupilRowBoxes boxes = rows().look_between(sight.lit);
-    if (ends_inside_film_) boxes.back() = sight.lit.back().box;
+    if (ends_inside_film_) end_image(sight);
+    const PupilRowBoxes boxes = rows().look_between(sight.lit);
     std::optional<PupilBox> box =
         *std::find_if(boxes.begin(), boxes.end(), [](const auto& found) { return found.has_value(); });
     for (const auto& found : boxes) {
         if (found) box = found;  // a node without light takes its inner neighbour's box
-        nodes_.push_back(
-            {static_cast<float>(box->l()), static_cast<float>(box->half_width()), static_cast<float>(box->m_max)});
+        nodes_.push_back(node_of(*box));
     }
-    if (!ends_inside_film_) return;
-    // The grid sees too little of a crescent's thin ends: its box must not shrink as fast as it does.
+    if (ends_inside_film_) widen_last_nodes();
+}
+
+void Pupil::end_image(PupilRowSearch::Sight& sight) {
+    image_radius_ = sight.dark.back();
+    last_box_ = sight.lit.back().box;
+    sight.lit.push_back({image_radius_, last_box_});
+}
+
+PupilNode Pupil::node_of(const PupilBox& box) {
+    return {static_cast<float>(box.l()), static_cast<float>(box.half_width()), static_cast<float>(box.m_max)};
+}
+
+void Pupil::widen_last_nodes() {
     const float least = 0.75f * nodes_[kRows - kEdgeRows].half_width;
     for (int i = kRows - kEdgeRows + 1; i <= kRows; ++i) {
         float& width = nodes_[static_cast<std::size_t>(i)].half_width;
@@ -64,7 +127,6 @@ void Pupil::find_nodes() {
 }
 
 bool Pupil::nodes_follow() const {
-    constexpr float kSmall = 1e-3f;
     const float on_axis = nodes_.front().half_width;
     if (on_axis > kSmall) return true;
     PupilTrack track;
@@ -114,9 +176,9 @@ void Pupil::look_between(int step, int rows, const std::function<bool(int row)>&
     for (std::size_t i = 0; i < found.size(); ++i) seen.emplace(eighths[i], found[i]);
 }
 
-void Pupil::find_outlines() {
+Pupil::OutlinesByEighth Pupil::find_outlines() const {
     constexpr int kFirstStep = 16;
-    const int rows = ends_inside_film_ ? kRows - kEdgeRows : kRows;
+    const int rows = outlined_rows();
     static_assert(kRows % 2 == 0 && kEdgeRows % 2 == 0);
     std::vector<int> first;
     for (int eighth = 0; eighth <= 8 * rows; eighth += kFirstStep) first.push_back(eighth);
@@ -131,14 +193,19 @@ void Pupil::find_outlines() {
     }
     const auto does_change = [&](int row) { return changes[static_cast<std::size_t>(row)] != 0; };
     for (const int step : {2, 1}) look_between(step, rows, does_change, seen);
+    return seen;
+}
+
+void Pupil::add_rows(const OutlinesByEighth& seen) {
     outline_.resize(kRows * kSectors);
     search_.lens().for_each(kRows, [&](int row) {
-        if (row >= rows) {
+        if (row >= outlined_rows()) {
             add_row(row, PupilRow(box_outline()), 1.5, 16);
             return;
         }
         const PupilRow sectors(holding_all(outlines_of(row, seen)));
-        add_row(row, sectors, does_change(row) ? 1.4 : 1.15, does_change(row) ? 8 : 1);
+        const bool changes = seen.contains(8 * row + 1);
+        add_row(row, sectors, changes ? 1.4 : 1.15, changes ? 8 : 1);
     });
 }
 

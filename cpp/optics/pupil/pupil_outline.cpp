@@ -42,6 +42,16 @@ double largest_spread(const std::vector<PupilOutline>& looks) {
     return largest;
 }
 
+double mean_difference(const std::vector<PupilOutline>& a, const std::vector<PupilOutline>& b) {
+    double sum = 0;
+    for (std::size_t i = 0; i < a.size(); ++i)
+        for (int k = 0; k <= PupilOutline::kAzimuths; ++k) {
+            const bool changed = (a[i].outer[k] > 0) != (b[i].outer[k] > 0);
+            sum += changed ? 1 : std::fabs(a[i].outer[k] - b[i].outer[k]);
+        }
+    return sum / static_cast<double>(a.size() * (PupilOutline::kAzimuths + 1));
+}
+
 PupilOutline between(const std::vector<const PupilOutline*>& looks) {
     PupilOutline mean;
     for (int a = 0; a <= PupilOutline::kAzimuths; ++a) {

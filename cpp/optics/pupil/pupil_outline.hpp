@@ -29,6 +29,10 @@ double spread(const std::vector<PupilOutline>& looks, int azimuth);
 
 double largest_spread(const std::vector<PupilOutline>& looks);
 
+/// By how much the outer edges of the same looks differ, mean of all azimuths in units of the box. One that is dark in
+/// one and lit in the other counts as one unit.
+double mean_difference(const std::vector<PupilOutline>& a, const std::vector<PupilOutline>& b);
+
 /// The mean of these: what lies between them looks about so. Nothing at azimuths at which some are dark and others not,
 /// or only some have a hole.
 PupilOutline between(const std::vector<const PupilOutline*>& looks);

@@ -40,21 +40,20 @@ PupilRowSearch::Sight PupilRowSearch::look_from_axis() const {
     return sight;
 }
 
-void PupilRowSearch::find_edge_of_image(Sight& sight) const {
+void PupilRowSearch::find_edge_of_image(Sight& sight, double width, int far_rounds) const {
     PupilTrack track;
     for (const PupilTrack::Seen& seen : sight.lit) track.add(seen.radius, seen.box);
     std::vector<double>& dark = sight.dark;
     for (int round = 0; round < kMostEdgeRounds && !dark.empty(); ++round) {
         const double lit = track.last->radius, third = (dark.back() - lit) / 3;
-        if (3 * third < kEdgeWidth * dark.back()) break;
+        if (3 * third < width * dark.back()) break;
         // A sliver that moves is missed from afar. So where none was seen is looked at again from nearby.
         const double radii[] = {lit + third, lit + 2 * third, dark.back()};
         constexpr int kCount = std::size(radii);
         std::optional<PupilBox> boxes[kCount];
         search_.lens().for_each(kCount, [&](int i) {
             PupilTrack own = track;
-            // At first the track leads from so far away that the light may lie elsewhere.
-            boxes[i] = round < 2 ? search_.look(radii[i], own) : search_.look_near(radii[i], own);
+            boxes[i] = round < far_rounds ? search_.look(radii[i], own) : search_.look_near(radii[i], own);
         });
         dark.pop_back();
         for (int i = kCount - 1; i >= 0 && !boxes[i]; --i) dark.push_back(radii[i]);
@@ -62,6 +61,30 @@ void PupilRowSearch::find_edge_of_image(Sight& sight) const {
             if (boxes[i]) track.add(radii[i], *boxes[i]);
     }
     if (track.last->radius > sight.lit.back().radius) sight.lit.push_back(*track.last);
+}
+
+PupilRowSearch::Sight PupilRowSearch::look_near_edge(double radius, const PupilBox& box) const {
+    Sight sight = look_around(radius, box, {0.99994, 1});
+    if (sight.lit.size() == 1 && sight.dark.size() == 1) return sight;
+    sight = look_around(radius, box, {0.999, 0.9999, 1, 1.0001, 1.001});
+    if (!sight.lit.empty()) find_edge_of_image(sight, 1.1e-4, 0);
+    return sight;
+}
+
+PupilRowSearch::Sight PupilRowSearch::look_around(double radius, const PupilBox& box,
+                                                  const std::vector<double>& shares) const {
+    PupilRowBoxes boxes(shares.size());
+    search_.lens().for_each(static_cast<int>(shares.size()), [&](int i) {
+        PupilTrack track;
+        track.add(radius, box);
+        boxes[static_cast<std::size_t>(i)] = search_.look_near(radius * shares[static_cast<std::size_t>(i)], track);
+    });
+    Sight sight;
+    std::size_t lit = boxes.size();
+    for (; lit > 0 && !boxes[lit - 1]; --lit) sight.dark.push_back(radius * shares[lit - 1]);
+    for (std::size_t i = 0; i < lit; ++i)
+        if (boxes[i]) sight.lit.push_back({radius * shares[i], *boxes[i]});
+    return sight;
 }
 
 PupilTrack PupilRowSearch::track_between(const std::vector<PupilTrack::Seen>& seen, double radius) {
@@ -78,9 +101,10 @@ PupilTrack PupilRowSearch::track_between(const std::vector<PupilTrack::Seen>& se
     return track;
 }
 
-PupilRowBoxes PupilRowSearch::look_between(const std::vector<PupilTrack::Seen>& seen) const {
+PupilRowBoxes PupilRowSearch::look_between(const std::vector<PupilTrack::Seen>& seen, int first_row) const {
     PupilRowBoxes boxes(kRows + 1);
-    search_.lens().for_each(kRows + 1, [&](int row) {
+    search_.lens().for_each(kRows + 1 - first_row, [&](int i) {
+        const int row = first_row + i;
         const double radius = radius_at(row);
         PupilTrack track = track_between(seen, radius);
         const bool is_seen = track.last->radius == radius;

@@ -30,17 +30,25 @@ public:
     /// again.
     Sight look_from_axis() const;
 
-    /// Adds the last radius with light, and at most 1e-5 of it further out the first without; none where light reaches
-    /// the last row.
-    void find_edge_of_image(Sight& sight) const;
+    /// Adds the last radius with light, and at most `width` of it further out the first without; none where light
+    /// reaches the last dark one. In so many rounds at first the light may lie elsewhere than where the last lit ones
+    /// lead.
+    void find_edge_of_image(Sight& sight, double width = 1e-5, int far_rounds = 2) const;
 
-    /// All rows, each looked for where its neighbours among those that were seen lead to.
-    PupilRowBoxes look_between(const std::vector<PupilTrack::Seen>& seen) const;
+    /// The edge, to 1e-4, of an image that ends about at `radius`, where the light has this box. It is `radius` itself
+    /// where it lies 6e-5 further in or less. Nothing is lit, or nothing dark, where the image ends more than a
+    /// thousandth elsewhere.
+    Sight look_near_edge(double radius, const PupilBox& box) const;
+
+    /// All rows from the first one on, each looked for where its neighbours among those that were seen lead to.
+    PupilRowBoxes look_between(const std::vector<PupilTrack::Seen>& seen, int first_row = 0) const;
 
 private:
     static constexpr int kStride = 8;
     static constexpr int kMostEdgeRounds = 32;
-    static constexpr double kEdgeWidth = 1e-5;  ///< of the image's radius
+
+    /// What is seen at these shares of a radius, going outwards, near the box of that radius.
+    Sight look_around(double radius, const PupilBox& box, const std::vector<double>& shares) const;
 
     /// Leads to a radius from the nearest two that were seen, on both sides of it where there are such.
     static PupilTrack track_between(const std::vector<PupilTrack::Seen>& seen, double radius);

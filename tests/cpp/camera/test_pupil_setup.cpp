@@ -144,6 +144,50 @@ TEST_CASE("a camera of the same lens and film takes over the last one's pupil, a
     CHECK(blocks > twice);
 }
 
+TEST_CASE("from frame to frame a pupil is found in less than half of the blocks") {
+    // Of the fisheye and the phone lens, on a film that shows where the image ends, outlines change over all rows.
+    for (const char* name : {"double-gauss-50mm", "fisheye-6mm-220deg", "phone-4mm"}) {
+        CAPTURE(std::string(name));
+        const LensSystem lens = io::read_lens(name);
+        const double radius = half_diagonal(lens);
+        const Pupil before(focused(lens, 4000), radius);
+        Blocks anew, near;
+        const LensSystem next = focused(lens, 4010);
+        const Pupil whole(next, radius, anew.tracer()), moved(next, radius, near.tracer(), {}, &before);
+        CHECK(moved.is_moved());
+        CHECK(2 * near.all <= anew.all);
+        CHECK(2 * near.in_a_row <= anew.in_a_row);
+    }
+}
+
+TEST_CASE("errors of pupils that are found near others do not add up") {
+    // Each starts from the last one that was found anew, and here from an image that ends with the film.
+    const LensSystem lens = io::read_lens("double-gauss-50mm");
+    const double radius = half_diagonal(lens);
+    const Pupil first(focused(lens, 4000), radius);
+    const LensSystem end = focused(lens, 4200);
+    Pupil moved = first;
+    for (const double distance : {4050.0, 4100.0, 4150.0, 4200.0})
+        moved = Pupil(focused(lens, distance), radius, {}, {}, &moved);
+    CHECK(moved.is_moved());
+    CHECK(same_pupil(moved.view(), Pupil(end, radius, {}, {}, &first).view()));
+}
+
+TEST_CASE("only where it may is a camera's pupil found near the last one's") {
+    LastSetup last;
+    Camera camera = camera_with(io::read_lens("double-gauss-50mm"), CameraModel::full_lens);
+    const auto at = [&](double distance, PupilStart start) {
+        camera.lens = focused(camera.lens, distance);
+        return last.make(camera, fast_pupil_tracer(), {}, start);
+    };
+    CHECK(at(4000, PupilStart::near_last)->has_pupil_anew());
+    CHECK(at(4010, PupilStart::anew)->has_pupil_anew());
+    for (const double distance : {4020.0, 4030.0}) CHECK(!at(distance, PupilStart::near_last)->has_pupil_anew());
+    const auto still = at(4030, PupilStart::near_last);
+    CHECK(still->has_pupil_anew());
+    CHECK(same_pupil(still->view({0, 0, 0}).pupil, CameraSetup(camera, fast_pupil_tracer()).view({0, 0, 0}).pupil));
+}
+
 TEST_CASE("threads that make cameras ready at once each get their own") {
     LastSetup last;
     const LensSystem lens = io::read_lens("singlet-100mm");

@@ -1,5 +1,6 @@
 // What all sessions have in common, on a device that only writes down what it is asked for.
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cmath>
@@ -54,10 +55,14 @@ public:
     std::atomic<bool> stop_flag{false};
 
 private:
-    void prepare(const Assembly&, const Camera&, const RenderSettings&, const KeepGoing&, OwnStop&) override {
+    void prepare(const Assembly&, const Camera& camera, const RenderSettings&, PupilStart start, const KeepGoing&,
+                 OwnStop&) override {
         notes.push_back("prepare");
         if (fails) throw DeviceError("lost");
+        has_pupil_anew_ = start == PupilStart::anew || lens_ == camera.lens || lens_.surfaces.empty();
+        lens_ = camera.lens;
     }
+    bool has_pupil_anew() const override { return has_pupil_anew_; }
     void clear() override { notes.push_back("clear"); }
     void take(const SampleRange& range, const PixelCounts&, bool, std::atomic<std::int64_t>& done, OwnStop&) override {
         notes.push_back("take");
@@ -109,6 +114,8 @@ private:
     bool is_stopped() const override { return stop_flag; }
 
     std::atomic<int> raised_{0};
+    LensSystem lens_{};
+    bool has_pupil_anew_ = true;
 };
 
 Camera small_camera() {
@@ -350,6 +357,32 @@ TEST_CASE("the variance of a pixel is that of the mean of its samples") {
     CHECK(variance.values[1] == 0);
     CHECK(variance.values[2] == 0);
     for (std::size_t i = 3; i < 6; ++i) CHECK(std::isnan(variance.values[i]));
+}
+
+TEST_CASE("a view that stands still is a new session's picture, whatever lens was before") {
+    const Assembly scene(test::bare_scene());
+    Camera camera = small_camera();
+    NotedSession session;
+    const auto samples_of_frame = [&] {
+        const auto frame = session.shoot(scene, camera, {.spp = 2, .effects = {}}, ToneCurve::film);
+        session.frames.back()->is_there = true;
+        return frame->samples();
+    };
+    const auto count_prepared = [&] { return std::count(session.notes.begin(), session.notes.end(), "prepare"); };
+    CHECK(samples_of_frame() == 2);
+    CHECK(samples_of_frame() == 4);  // there was no pupil near which it could be found
+    for (const double distance : {2000.0, 1900.0}) {
+        camera.lens = focused(camera.lens, distance);
+        CHECK(samples_of_frame() == 2);
+    }
+    CHECK(count_prepared() == 3);
+    session.set(scene, camera, {.effects = {}});  // what was collected can be looked at
+    CHECK(session.picture().spp == 2);
+    CHECK(count_prepared() == 3);
+    CHECK(samples_of_frame() == 2);
+    CHECK(count_prepared() == 4);
+    CHECK(samples_of_frame() == 4);
+    CHECK(count_prepared() == 4);
 }
 
 TEST_CASE("parts of a picture are exposed apart from it, in steps that whole pictures add up in") {

@@ -118,6 +118,48 @@ TEST_CASE("the same with blades, whose corners reach past the circle of their ar
         }
 }
 
+TEST_CASE("a pupil found near that of a similar state holds all that passes, and as little else") {
+    int moved_pupils = 0;
+    for (const std::string& name : centred_lens_names())
+        for (LensState state : states_of(name)) {
+            const double radius = half_diagonal(state.lens);
+            const Pupil before(state.lens, radius);
+            // As a turn of two rings changes it from one frame to the next.
+            state.lens.stop_semi_diameter *= 0.99;
+            state.lens.film_distance *= 1.0005;
+            state.description += ", a little later";
+            const Pupil pupil(state.lens, radius, {}, {}, &before);
+            if (!pupil.is_moved()) continue;
+            ++moved_pupils;
+            CHECK(pupil.follows());
+            check_no_leaks(state, pupil);
+            // It may keep the edge of the image where it was, by as much as the searches allow.
+            const Pupil anew(state.lens, radius);
+            CHECK(pupil.image_radius() == about(anew.image_radius(), 2e-4));
+            if (state.is_open) CHECK(passing_share(state.lens, pupil) >= 0.95);
+        }
+    CHECK(moved_pupils >= 150);
+}
+
+TEST_CASE("a pupil that has changed much is the same as without the one before") {
+    const LensSystem lens = focused(io::read_lens("double-gauss-50mm"), 4000);
+    const Pupil before(lens, 21.6);
+    const auto is_as_without = [&](const LensSystem& changed, double radius) {
+        const Pupil pupil(changed, radius, {}, {}, &before), anew(changed, radius);
+        const PupilView a = pupil.view(), b = anew.view();
+        return !pupil.is_moved() && a.image_radius == b.image_radius &&
+               std::equal(a.outline, a.outline + a.rows * a.sectors, b.outline,
+                          [](const PupilSector& s, const PupilSector& t) {
+                              return s.x == t.x && s.y == t.y && s.dx == t.dx && s.dy == t.dy &&
+                                     s.hole_squared == t.hole_squared;
+                          });
+    };
+    CHECK(is_as_without(stopped_down(lens, 8), 21.6));
+    CHECK(is_as_without(focused(lens, 400), 21.6));
+    CHECK(is_as_without(io::read_lens("fisheye-10mm"), 21.6));
+    CHECK(is_as_without(lens, 20));
+}
+
 TEST_CASE("samples are even over the region: weights times counts are areas") {
     struct Place {
         const char* name;
