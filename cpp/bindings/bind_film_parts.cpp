@@ -1,5 +1,6 @@
 #include "../render/adaptive_sampling.hpp"
 #include "../render/film_sums.hpp"
+#include "../render/wavelength_balance.hpp"
 #include "film_parts.hpp"
 
 namespace realcam::bindings {
@@ -49,13 +50,14 @@ std::vector<SplatFilm> splat_films_from(const py::list& splats) {
 }
 
 /// Exposure, 3 numbers per pixel in lux seconds.
-py::array_t<float> developed_exposure(const FilmArrays& arrays, double exposure_time_s) {
+py::array_t<float> developed_exposure(const FilmArrays& arrays, const RenderSettings& settings,
+                                      double exposure_time_s) {
     const CollectedFilm film = arrays.film();
     const auto height = arrays.pixels.shape(0), width = arrays.pixels.shape(1);
     Image image = [&] {
         const Unlocked unlocked;
-        return developed(film.pixels, static_cast<int>(width), static_cast<int>(height), exposure_time_s,
-                         view_of(film.splats));
+        return developed(film.pixels, {static_cast<int>(width), static_cast<int>(height)},
+                         balances_wavelengths(settings), exposure_time_s, view_of(film.splats));
     }();
     return array_from(std::move(image.exposure), {height, width, 3});
 }
@@ -147,10 +149,11 @@ void bind_film_parts(py::module_& m) {
     m.attr("_SAMPLED_LAYERS") = sampled_layers;
     m.def(
         "_developed_exposure",
-        [](const InputArray<PixelSum>& pixels, const py::list& splats, double exposure_time_s) {
-            return developed_exposure({pixels, std::nullopt, splats}, exposure_time_s);
+        [](const InputArray<PixelSum>& pixels, const py::list& splats, const RenderSettings& settings,
+           double exposure_time_s) {
+            return developed_exposure({pixels, std::nullopt, splats}, settings, exposure_time_s);
         },
-        "pixels"_a, "splats"_a, "exposure_time_s"_a);
+        "pixels"_a, "splats"_a, "settings"_a, "exposure_time_s"_a);
     m.def(
         "_traced_exposure",
         [](const py::list& splats, double exposure_time_s) {

@@ -13,6 +13,7 @@
 #include "../render/run_with_progress.hpp"
 #include "../render/seconds_since.hpp"
 #include "../render/traced_lights.hpp"
+#include "../render/wavelength_balance.hpp"
 #include "cuda_devices.hpp"
 #include "device_frame.hpp"
 #include "device_renderer.hpp"
@@ -168,7 +169,7 @@ private:
         }
         const std::shared_ptr<DeviceFrame> frame =
             make_on_device<DeviceFrame>(front().ordinal(), camera().film, samples(), pool_);
-        frame->develop(front(), camera(), curve);
+        frame->develop(front(), balances_wavelengths(settings()), camera(), curve);
         return frame;
     }
 
@@ -180,10 +181,12 @@ private:
             const std::size_t pixels = static_cast<std::size_t>(width()) * static_cast<std::size_t>(height());
             image.exposure = exposures_.take(3 * pixels);
             image.depth = depths_.take(pixels);
-            front().develop(camera().exposure_time_s, image.exposure.data(), image.depth.data());
+            front().develop(balances_wavelengths(settings()), camera().exposure_time_s, image.exposure.data(),
+                            image.depth.data());
         } else {
             const std::vector<SplatFilm> splats = front().download_splats();
-            image = developed(film_, width(), height(), camera().exposure_time_s, view_of(splats));
+            image = developed(film_, {width(), height()}, balances_wavelengths(settings()), camera().exposure_time_s,
+                              view_of(splats));
         }
         set_stats(stats_, all_counts(), stats_.seconds);
         image.stats = stats_;
@@ -312,7 +315,7 @@ private:
         const std::int64_t columns = width(), rows = height();
         DeviceArray<float> exposure(static_cast<std::size_t>(3 * columns * rows)),
             depth(static_cast<std::size_t>(columns * rows));
-        front().develop_here(camera().exposure_time_s, exposure.data(), depth.data());
+        front().develop_here(balances_wavelengths(settings()), camera().exposure_time_s, exposure.data(), depth.data());
         int stopped = 0;
         front().stop_flag().download(&stopped, front().stream());
         front().wait();

@@ -73,7 +73,8 @@ public:
     void add(const FilmPart& part, const RenderSettings& settings);
 
     /// Starts to develop the film as 8-bit sRGB, 3 per pixel, into memory of the host that it can write to.
-    void develop_codes(double exposure_time_s, double iso, ToneCurve curve, std::uint8_t* codes);
+    /// `balances`: the film holds what wavelength_balance.hpp needs.
+    void develop_codes(bool balances, double exposure_time_s, double iso, ToneCurve curve, std::uint8_t* codes);
 
     /// The stream in which all of this runs.
     cudaStream_t stream() const { return stream_; }
@@ -86,10 +87,10 @@ public:
     void download_film(PixelSum* to);
 
     /// Starts to develop the film as exposure and depth into memory of this GPU, 3 and 1 numbers per pixel.
-    void develop_here(double exposure_time_s, float* exposure, float* depth);
+    void develop_here(bool balances, double exposure_time_s, float* exposure, float* depth);
 
     /// Exposure and depth of the film's pixels, into the host's memory.
-    void develop(double exposure_time_s, float* exposure, float* depth);
+    void develop(bool balances, double exposure_time_s, float* exposure, float* depth);
 
     /// The number of samples of each pixel, into the host's memory.
     void count_samples(std::int64_t* counts);
@@ -116,6 +117,8 @@ private:
                 std::int64_t pixels, const FilmRegion& sharing, const volatile int* stop);
 
     /// The region, if its pixels share samples; else an empty one.
+    DeviceFilm film(bool balances) const;
+
     FilmRegion sharing_in(const FilmRegion& region, const RenderSettings& settings, const PixelCounts& counts) const;
     FilmRegion rows_of(const FilmPart& part) const { return {0, part.first_row, camera_.width, part.row_count}; }
     std::int64_t film_pixels() const { return static_cast<std::int64_t>(camera_.width) * camera_.height; }

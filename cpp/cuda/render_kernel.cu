@@ -1,6 +1,7 @@
 #include "render_kernel.hpp"
 
 #include "../render/kind_of.hpp"
+#include "../render/wavelength_balance.hpp"
 #include "cuda_error.hpp"
 #include "lanes_per_pixel.hpp"
 #include "launch_grid.hpp"
@@ -10,20 +11,34 @@
 namespace realcam {
 namespace {
 
-__global__ void develop(const PixelSum* sums, SplattedLight splatted, std::int64_t pixels, double exposure_time_s,
-                        float* exposure, float* depth) {
-    const std::int64_t i = thread_index();
-    if (i >= pixels) return;
-    for (int c = 0; c < 3; ++c) exposure[3 * i + c] = sums[i].exposure(c, exposure_time_s, splatted.irradiance(i, c));
-    depth[i] = sums[i].mean_depth();
+/// take(channel, exposure) of a pixel.
+template <class Take>
+__device__ void expose(const DeviceFilm& film, std::int64_t pixel, double exposure_time_s, Take&& take) {
+    const PixelSum& sum = film.sums[pixel];
+    double balance[3] = {1, 1, 1};
+    if (film.balances) {
+        const MeanExcess mean(film.sums, film.width, film.height, static_cast<int>(pixel % film.width),
+                              static_cast<int>(pixel / film.width));
+        for (int c = 0; c < 3; ++c) balance[c] = wavelength_balance(sum, c, mean.of[c]);
+    }
+    for (int c = 0; c < 3; ++c)
+        take(c, sum.exposure(c, exposure_time_s, film.splatted.irradiance(pixel, c), balance[c]));
 }
 
-__global__ void develop_codes(const PixelSum* sums, SplattedLight splatted, std::int64_t pixels, double exposure_time_s,
-                              double iso, ToneCurve curve, std::uint8_t* codes) {
+__global__ void develop(DeviceFilm film, double exposure_time_s, float* exposure, float* depth) {
     const std::int64_t i = thread_index();
-    if (i >= pixels) return;
-    for (int c = 0; c < 3; ++c)
-        codes[3 * i + c] = sums[i].code(c, exposure_time_s, iso, curve, splatted.irradiance(i, c));
+    if (i >= film.pixels()) return;
+    expose(film, i, exposure_time_s, [&](int c, float lux_s) { exposure[3 * i + c] = lux_s; });
+    depth[i] = film.sums[i].mean_depth();
+}
+
+__global__ void develop_codes(DeviceFilm film, double exposure_time_s, double iso, ToneCurve curve,
+                              std::uint8_t* codes) {
+    const std::int64_t i = thread_index();
+    if (i >= film.pixels()) return;
+    expose(film, i, exposure_time_s, [&](int c, float lux_s) {
+        codes[3 * i + c] = srgb_code(apply_tone_curve(curve, sensor_value(static_cast<double>(lux_s), iso)));
+    });
 }
 
 __global__ void count(const PixelSum* sums, std::int64_t pixels, std::int64_t* counts) {
@@ -84,17 +99,15 @@ void launch_render(const RenderJob& job, std::int64_t pixels, cudaStream_t strea
     check_cuda(cudaGetLastError(), "starting to render");
 }
 
-void launch_develop(const PixelSum* sums, const SplattedLight& splatted, std::int64_t pixels, double exposure_time_s,
-                    float* exposure, float* depth, cudaStream_t stream) {
-    develop<<<blocks_for(pixels), kBlockSize, 0, stream>>>(sums, splatted, pixels, exposure_time_s, exposure, depth);
+void launch_develop(const DeviceFilm& film, double exposure_time_s, float* exposure, float* depth,
+                    cudaStream_t stream) {
+    develop<<<blocks_for(film.pixels()), kBlockSize, 0, stream>>>(film, exposure_time_s, exposure, depth);
     check_cuda(cudaGetLastError(), "starting to develop");
 }
 
-void launch_develop_codes(const PixelSum* sums, const SplattedLight& splatted, std::int64_t pixels,
-                          double exposure_time_s, double iso, ToneCurve curve, std::uint8_t* codes,
-                          cudaStream_t stream) {
-    develop_codes<<<blocks_for(pixels), kBlockSize, 0, stream>>>(sums, splatted, pixels, exposure_time_s, iso, curve,
-                                                                 codes);
+void launch_develop_codes(const DeviceFilm& film, double exposure_time_s, double iso, ToneCurve curve,
+                          std::uint8_t* codes, cudaStream_t stream) {
+    develop_codes<<<blocks_for(film.pixels()), kBlockSize, 0, stream>>>(film, exposure_time_s, iso, curve, codes);
     check_cuda(cudaGetLastError(), "starting to develop");
 }
 

@@ -46,7 +46,7 @@ struct RenderJob {
     const std::uint32_t* of_pixels;  ///< how many of them single pixels of the band take, after pixels_taken; none: all
     std::uint32_t pixels_taken;
     int first_row, row_count;  ///< of the picture
-    bool adds_squares, adds_half;  ///< PixelSum::besides, too
+    bool adds_squares, adds_half, balances;  ///< PixelSum::besides, too, for one of them
 };
 
 /// Throws UnsupportedGpu where the current device cannot run this build's code.
@@ -56,14 +56,22 @@ void check_render_code();
 /// DeviceError.
 void launch_render(const RenderJob& job, std::int64_t pixels, cudaStream_t stream);
 
-/// Sums as exposure (3 per pixel, lux seconds) and depth (metres).
-void launch_develop(const PixelSum* sums, const SplattedLight& splatted, std::int64_t pixels, double exposure_time_s,
-                    float* exposure, float* depth, cudaStream_t stream);
+/// A film in the memory of the device.
+struct DeviceFilm {
+    const PixelSum* sums;
+    int width, height;
+    bool balances;  ///< it holds what wavelength_balance.hpp needs
+    SplattedLight splatted;
+
+    REALCAM_HD std::int64_t pixels() const { return std::int64_t{width} * height; }
+};
+
+/// A film as exposure (3 per pixel, lux seconds) and depth (metres).
+void launch_develop(const DeviceFilm& film, double exposure_time_s, float* exposure, float* depth, cudaStream_t stream);
 
 /// The same as 8-bit sRGB (3 per pixel).
-void launch_develop_codes(const PixelSum* sums, const SplattedLight& splatted, std::int64_t pixels,
-                          double exposure_time_s, double iso, ToneCurve curve, std::uint8_t* codes,
-                          cudaStream_t stream);
+void launch_develop_codes(const DeviceFilm& film, double exposure_time_s, double iso, ToneCurve curve,
+                          std::uint8_t* codes, cudaStream_t stream);
 
 /// The number of samples of each pixel.
 void launch_count(const PixelSum* sums, std::int64_t pixels, std::int64_t* counts, cudaStream_t stream);

@@ -84,8 +84,13 @@ struct ThreadSums {
 
 /// What neighbours bring to a pixel comes in any order. Whole numbers of a unit have the same sum in each, up to 2^53
 /// of them. `dither`: a random number from 0 to 1, so that what is less than a unit is not lost in the mean.
-__device__ inline void add_shared(PixelSum& sum, int channel, double lux, float dither) {
-    atomicAdd(&sum.irradiance[channel], 0x1p-24 * floor(0x1p24 * lux + static_cast<double>(dither)));
+__device__ inline void add_shared(double& sum, double value, float dither) {
+    atomicAdd(&sum, 0x1p-24 * floor(0x1p24 * value + static_cast<double>(dither)));
+}
+__device__ inline void add_shared(double (&sums)[3], Color c, float dither) {
+    add_shared(sums[0], static_cast<double>(c.r), dither);
+    add_shared(sums[1], static_cast<double>(c.g), dither);
+    add_shared(sums[2], static_cast<double>(c.b), dither);
 }
 
 /// What a sample brings to other pixels than its own.
@@ -94,12 +99,11 @@ __device__ inline void add_shared(const SampleBlock<1>& block, const PathResults
                                   PixelSum* own) {
     for (int step = 0; step < kSharedWavelengths - 1; ++step) {
         const std::int32_t away = results.shared.away[step][0];
-        const Color c = results.shared.irradiance[step][0];
-        if (away == 0 || is_black(c)) continue;
+        if (away == 0) continue;
         const float dither = unit_float(block.bits(0, static_cast<std::uint32_t>(step)));
-        add_shared(own[away], 0, static_cast<double>(c.r), dither);
-        add_shared(own[away], 1, static_cast<double>(c.g), dither);
-        add_shared(own[away], 2, static_cast<double>(c.b), dither);
+        const Color c = results.shared.irradiance[step][0];
+        if (!is_black(c)) add_shared(own[away].irradiance, c, dither);
+        add_shared(own[away].besides, results.shared.white[step][0], dither);
     }
 }
 
@@ -108,6 +112,19 @@ __device__ inline std::uint32_t samples_of(const RenderJob& job, std::int64_t pi
     if (!job.of_pixels) return job.sample_count;
     const std::uint32_t wanted = job.of_pixels[pixel];
     return wanted > job.pixels_taken ? min(wanted - job.pixels_taken, job.sample_count) : 0;
+}
+
+/// Returns whether the job asks for them.
+template <Effects effects>
+__device__ inline bool add_besides(const RenderJob& job, const PathResultsWith<1, effects>& results, PixelSum& sample) {
+    if constexpr (effects.have_wavelengths()) {
+        if (job.balances) {
+            sample.add_excess(results.excess[0]);
+            return true;
+        }
+    }
+    sample.add_squares(results, 0);
+    return job.adds_squares;
 }
 
 template <LensKind lens_kind, SceneKind scene_kind, int effects_number, bool instanced, bool halves = false>
@@ -149,8 +166,8 @@ __global__ void __launch_bounds__(kBlockSize, kBlocksPerMultiprocessor)
                 sample.add_half(results, 0, is_right[0] != 0);
                 sums.add(sample, true);
             } else {
-                sample.add_squares(results, 0);
-                sums.add(sample, job.adds_squares);
+                const bool has_besides = add_besides<effects>(job, results, sample);
+                sums.add(sample, has_besides);
             }
             if constexpr (effects.share_pixels())
                 if (shares) add_shared(block, results, job.sums + pixel);
@@ -165,8 +182,11 @@ __global__ void __launch_bounds__(kBlockSize, kBlocksPerMultiprocessor)
         if (shares) {
             const std::uint32_t bits =
                 hash32(pixel_stream((job.first_row + row) * job.camera.width + column, job.seed), job.first_sample);
-            for (int c = 0; c < 3; ++c) add_shared(job.sums[pixel], c, sum.irradiance[c], unit_float(bits));
-            job.sums[pixel].add_all_but_irradiance(sum);
+            for (int c = 0; c < 3; ++c) {
+                add_shared(job.sums[pixel].irradiance[c], sum.irradiance[c], unit_float(bits));
+                add_shared(job.sums[pixel].besides[c], sum.besides[c], unit_float(bits));
+            }
+            job.sums[pixel].add_all_but_colours(sum);
         } else {
             job.sums[pixel] += sum;
         }

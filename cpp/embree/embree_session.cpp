@@ -18,6 +18,7 @@
 #include "../render/scene_change.hpp"
 #include "../render/shares_samples.hpp"
 #include "../render/traced_lights.hpp"
+#include "../render/wavelength_balance.hpp"
 #include "embree_scene.hpp"
 #include "fast_pupil_tracer.hpp"
 #include "host_frame.hpp"
@@ -140,8 +141,8 @@ private:
     std::shared_ptr<LiveFrame> start(const std::vector<SampleRange>& ranges, ToneCurve curve,
                                      std::shared_ptr<void> under_way) override {
         // Turns that follow wait for the frame, so that what this thread works with stays as it is.
-        auto work = [this, ranges, curve, dials = Dials{camera().exposure_time_s, camera().iso}, settings = settings(),
-                     token = std::move(under_way)]() mutable {
+        auto work = [this, ranges, curve, size = size(), dials = Dials{camera().exposure_time_s, camera().iso},
+                     settings = settings(), token = std::move(under_way)]() mutable {
             const std::shared_ptr<void> until_the_end = std::move(token);
             std::atomic<std::int64_t> done{0};
             for (const SampleRange& range : ranges) {
@@ -150,8 +151,8 @@ private:
             }
             if (is_stopped()) throw Cancelled();
             return arena(settings).execute([&] {
-                return developed_codes(film_, dials.exposure_time_s, dials.iso, curve, splatted(),
-                                       parallel_ray_loop({}, kDevelopedAtOnce));
+                return developed_codes(film_, size, balances_wavelengths(settings), dials.exposure_time_s, dials.iso,
+                                       curve, splatted(), parallel_ray_loop({}, kDevelopedAtOnce));
             });
         };
         const Film& film = camera().film;
@@ -165,7 +166,7 @@ private:
 
     Image develop() override {
         Image image = arena(settings()).execute([&] {
-            return developed(film_, camera().film.width, camera().film.height, camera().exposure_time_s, splatted(),
+            return developed(film_, size(), balances_wavelengths(settings()), camera().exposure_time_s, splatted(),
                              parallel_ray_loop({}, kDevelopedAtOnce));
         });
         image.stats = stats_;
@@ -187,6 +188,8 @@ private:
     struct Dials {
         double exposure_time_s, iso;
     };
+
+    FilmSize size() const { return {camera().film.width, camera().film.height}; }
 
     static tbb::task_arena arena(const RenderSettings& settings) {
         // For more threads than cores TBB writes a warning to the console, and starts as many as there are cores.
@@ -227,6 +230,7 @@ private:
             tile.path_settings = &path;
             tile.adds_squares = settings.layers.has(Layer::variance);
             tile.adds_half = settings.layers.has_any(kHalfLayers);
+            tile.balances = balances_wavelengths(settings);
             FilmSums sums(pixels_of(tile));
             tile.sums = sums.data();
             kernels().render_tile(&tile);

@@ -127,8 +127,10 @@ template <Effects effects>
 void add_shared(const PathResultsWith<kLanes, effects>& results, int lanes, const int* place, PixelSum* sums) {
     for (int step = 0; step < kSharedWavelengths - 1; ++step)
         for (int k = 0; k < lanes; ++k)
-            if (const int away = results.shared.away[step][k]; away != 0)
+            if (const int away = results.shared.away[step][k]; away != 0) {
                 sums[place[k] + away].add(results.shared.irradiance[step][k]);
+                sums[place[k] + away].add_excess(results.shared.white[step][k]);
+            }
 }
 
 template <LensKind lens_kind, SceneKind scene_kind, Effects effects>
@@ -152,6 +154,9 @@ void render_tile_of(realcam_tile* tile) {
         }
         if constexpr (effects.share_pixels())
             if (tile->shares) add_shared(results, lanes, place, sums);
+        if constexpr (effects.have_wavelengths())
+            if (tile->balances)
+                for (int k = 0; k < lanes; ++k) sums[place[k]].add_excess(results.excess[k]);
         std::int32_t sampled = 0, passed = 0;
         for (int k = 0; k < lanes; ++k) {
             sampled += results.sampled[k];

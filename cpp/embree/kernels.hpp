@@ -18,7 +18,7 @@ struct realcam_tile {
     int (*stopped)(const void* stop);  // asked before each block of samples; what is left then is left out
     const void* stop;
     void* sums;  // PixelSum, LayerSum or MiddleSurface of the tile, row by row; sums are added to
-    int adds_squares, adds_half;  // PixelSum::besides, too
+    int adds_squares, adds_half, balances;  // PixelSum::besides, too, for one of them
     int shares;  // its pixels share samples (SampleSharing); none of them is right where it is stopped
     double lens_seconds, scene_seconds, other_seconds;
     std::uint64_t sampled_rays, passed_rays, scene_rays;

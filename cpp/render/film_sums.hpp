@@ -12,13 +12,19 @@ namespace REALCAM_NAMESPACE {
 /// A film in the host's memory while it is exposed, row by row.
 using FilmSums = std::vector<PixelSum>;
 
-/// Exposure and depth of a film, without what the picture cost. `loop`: over its pixels.
-Image developed(const FilmSums& film, int width, int height, double exposure_time_s, const SplattedLight& splatted = {},
-                const RayLoop& loop = {});
+struct FilmSize {
+    int width, height;  ///< pixels
+};
 
-/// A film as 8-bit sRGB, 3 per pixel. `loop`: likewise.
-std::vector<std::uint8_t> developed_codes(const FilmSums& film, double exposure_time_s, double iso, ToneCurve curve,
-                                          const SplattedLight& splatted = {}, const RayLoop& loop = {});
+/// Exposure and depth of a film, without what the picture cost. `balances`: the film holds what wavelength_balance.hpp
+/// needs. `loop`: over its pixels.
+Image developed(const FilmSums& film, FilmSize size, bool balances, double exposure_time_s,
+                const SplattedLight& splatted = {}, const RayLoop& loop = {});
+
+/// A film as 8-bit sRGB, 3 per pixel. `balances`, `loop`: likewise.
+std::vector<std::uint8_t> developed_codes(const FilmSums& film, FilmSize size, bool balances, double exposure_time_s,
+                                          double iso, ToneCurve curve, const SplattedLight& splatted = {},
+                                          const RayLoop& loop = {});
 
 /// Variance of the exposure, 3 per pixel (PixelSum::variance).
 LayerImage developed_variance(const FilmSums& film, double exposure_time_s, const SplattedLight& splatted = {});

@@ -39,12 +39,16 @@ struct PathResults {
 template <int N>
 struct SharedResults {
     ColorLanes<N> irradiance[kSharedWavelengths - 1];
+    ColorLanes<N> white[kSharedWavelengths - 1];  ///< for how many samples they count
     Lanes<std::int32_t, N> away[kSharedWavelengths - 1];  ///< from the sample's own pixel in the sums; 0: nothing
 };
 struct NothingShared {};
+struct NoExcess {};
 template <int N, Effects effects>
 struct PathResultsWith : PathResults<N> {
     [[no_unique_address]] std::conditional_t<effects.share_pixels(), SharedResults<N>, NothingShared> shared;
+    /// By how much those that pass count in their own pixel for more than one, in each channel.
+    [[no_unique_address]] std::conditional_t<effects.have_wavelengths(), ColorLanes<N>, NoExcess> excess;
 };
 
 /// Paths on their way from the film into the scene: the next ray of each, and what is known of the way up to it. At

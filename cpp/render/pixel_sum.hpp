@@ -12,18 +12,19 @@ namespace REALCAM_NAMESPACE {
 struct PixelSum {
     double irradiance[3];   ///< lux, summed over the samples
     double besides[3];  ///< summed where layers ask for it: squares of the samples' irradiance, or the irradiance
-                        ///< of those that came through the right half of the exit pupil
+                        ///< of those that came through the right half of the exit pupil; else, of samples with
+                        ///< wavelengths, what wavelength_balance.hpp needs
     double depth;  ///< metres, summed over those that met something, times their weight in the exposure
     double met;  ///< their weight
     std::uint64_t samples;  ///< a small picture that is never finished passes 2^32 within minutes
 
     REALCAM_HD PixelSum& operator+=(const PixelSum& other) {
         for (int c = 0; c < 3; ++c) irradiance[c] += other.irradiance[c];
-        add_all_but_irradiance(other);
+        for (int c = 0; c < 3; ++c) besides[c] += other.besides[c];
+        add_all_but_colours(other);
         return *this;
     }
-    REALCAM_HD void add_all_but_irradiance(const PixelSum& other) {
-        for (int c = 0; c < 3; ++c) besides[c] += other.besides[c];
+    REALCAM_HD void add_all_but_colours(const PixelSum& other) {
         depth += other.depth;
         met += other.met;
         samples += other.samples;
@@ -46,6 +47,12 @@ struct PixelSum {
         ++samples;
     }
 
+    REALCAM_INLINE void add_excess(Color c) {
+        besides[0] += static_cast<double>(c.r);
+        besides[1] += static_cast<double>(c.g);
+        besides[2] += static_cast<double>(c.b);
+    }
+
     template <int N>
     REALCAM_INLINE void add_squares(const PathResults<N>& results, int lane) {
         const Color c = results.irradiance[lane];
@@ -63,15 +70,10 @@ struct PixelSum {
     }
 
     /// Lux seconds on the film; 0 where no sample was taken. `ghosts`: irradiance that was found apart from them, lux.
-    REALCAM_HD float exposure(int channel, double exposure_time_s, double ghosts = 0) const {
+    /// `balance`: see wavelength_balance.hpp.
+    REALCAM_HD float exposure(int channel, double exposure_time_s, double ghosts = 0, double balance = 1) const {
         if (samples == 0) return 0;
-        return film_exposure((irradiance[channel] / static_cast<double>(samples) + ghosts) * exposure_time_s);
-    }
-    /// The same as 8-bit sRGB.
-    REALCAM_HD std::uint8_t code(int channel, double exposure_time_s, double iso, ToneCurve curve,
-                                 double ghosts = 0) const {
-        const double lux_s = static_cast<double>(exposure(channel, exposure_time_s, ghosts));
-        return srgb_code(apply_tone_curve(curve, sensor_value(lux_s, iso)));
+        return film_exposure((balance * irradiance[channel] / static_cast<double>(samples) + ghosts) * exposure_time_s);
     }
     /// Variance of the exposure, (lux seconds)^2, as the mean of independent samples; NaN for fewer than two. `ghosts`:
     /// that of the irradiance that was found apart from them, lux^2.

@@ -11,24 +11,32 @@ REALCAM_INLINE void count_wavelengths(const DispersionView& view, const SampleWa
     const Color scene = results.irradiance[lane];
     const std::int32_t shares = of.shares[lane];
     const float part = 1.0f / static_cast<float>(count_bits(static_cast<unsigned>(shares)));
-    Color own = {0, 0, 0};
+    const float passed = static_cast<float>(results.passed[lane]);
+    Color own = {0, 0, 0}, excess = {-passed, -passed, -passed};
     REALCAM_UNROLL
     for (int step = 0; step < kSharedWavelengths; ++step) {
-        Color color = {0, 0, 0};
+        Color color = {0, 0, 0}, white = {0, 0, 0};
         std::int32_t away = 0;
         if (shares >> step & 1) {
             const float weight = coated ? part * of.passed[step][lane] : part;
-            color = weight * film_color(view, shared_place(view, of.place[lane], step), scene);
+            const float place = shared_place(view, of.place[lane], step);
+            color = weight * film_color(view, place, scene);
+            white = passed * weight * film_color(view, place, {1, 1, 1});
             if (step > 0) away = of.away[step - 1][lane];
         }
-        if (away == 0) own += color;
+        if (away == 0) {
+            own += color;
+            excess += white;
+        }
         if constexpr (effects.share_pixels()) {
             if (step == 0) continue;
             results.shared.irradiance[step - 1].set(lane, color);
+            results.shared.white[step - 1].set(lane, white);
             results.shared.away[step - 1][lane] = away;
         }
     }
     results.irradiance.set(lane, own);
+    results.excess.set(lane, excess);
 }
 
 /// Takes one block of samples from the film, through the lens, to the scene and its lights: the whole path.

@@ -13,6 +13,7 @@
 #include "run_with_progress.hpp"
 #include "seconds_since.hpp"
 #include "see_layers.hpp"
+#include "wavelength_balance.hpp"
 
 namespace realcam {
 
@@ -187,7 +188,8 @@ Image Session::picture_of(const CollectedFilm& film, const KeepGoing& keep_going
         run_heeding([&] { see_middle_surfaces(layers.middle, stop); }, keep_going, stop);
         if (stop) throw Cancelled();
     }
-    Image image = developed(film.pixels, width, height, camera_.exposure_time_s, splatted);
+    Image image =
+        developed(film.pixels, {width, height}, balances_wavelengths(settings_), camera_.exposure_time_s, splatted);
     add_layers(
         image, layers, [&] { return developed_besides(film.pixels, wanted, camera_.exposure_time_s, splatted); },
         [&] { return samples_of(film.pixels); });

@@ -1727,7 +1727,7 @@ class _Splats(TypedDict):
     units_per_lux: float
 
 def _developed_exposure(
-    pixels: NDArray[np.void], splats: list[_Splats], exposure_time_s: float
+    pixels: NDArray[np.void], splats: list[_Splats], settings: RenderSettings, exposure_time_s: float
 ) -> NDArray[np.float32]: ...
 def _traced_exposure(splats: list[_Splats], exposure_time_s: float) -> NDArray[np.float32]: ...
 

@@ -17,7 +17,7 @@ from .files import write_whole
 from .pickling import same_arrays, set_checked_state
 
 if TYPE_CHECKING:
-    from ._core import _Region, _Splats
+    from ._core import RenderSettings, _Region, _Splats
 
 FORMAT = 1
 
@@ -167,9 +167,9 @@ class CollectedFilm:
         for name, value in part.stats.items():
             self.stats[name] = self.stats.get(name, 0) + value
 
-    def exposure(self, exposure_time_s: float) -> np.ndarray:
-        """(H, W, 3) float32, lux seconds."""
-        return _core._developed_exposure(self.pixels, self.splats, exposure_time_s)
+    def exposure(self, settings: RenderSettings, exposure_time_s: float) -> np.ndarray:
+        """(H, W, 3) float32, lux seconds. settings: with which the samples were taken."""
+        return _core._developed_exposure(self.pixels, self.splats, settings, exposure_time_s)
 
     def traced_exposure(self, exposure_time_s: float) -> np.ndarray:
         """What of it was traced from the lights; (0, W, 3) where nothing was."""

@@ -24,8 +24,9 @@ class LiveView:
     "cuda" or "cuda:1".
 
     Only what changed is prepared again; samples are collected for as long as scene, lens, film and pose of the camera
-    stay the same. Frames are taken one behind the other without waiting: up to three are under way on a GPU, one on the
-    CPU. Not for two threads at once, but for cancel().
+    stay the same. On a GPU they begin once more with the second frame after the lens has changed. Frames are taken one
+    behind the other without waiting: up to three are under way on a GPU, one on the CPU. Not for two threads at once,
+    but for cancel().
 
     settings, also by their names, are those of render, but that effects are none unless they are named: planning
     ("auto") takes longer than a frame, and rc.plan says what it would choose. Layers are image()'s, not frames'. Raises

@@ -42,7 +42,7 @@ CUTS = {
     ],
     "render/path_state.hpp": [
         (r"template <int N>\nstruct SharedResults.*?(?=template <int N, Effects effects>)", ""),
-        (r"    \[\[no_unique_address\]\] .* shared;\n", ""),
+        (r"    \[\[no_unique_address\]\] .* shared;\n(.*\n){2}", ""),
     ],
     "render/render_samples.hpp": [
         (r"/// Turns the light of a sample.*?(?=/// Takes one block)", ""),
@@ -50,6 +50,7 @@ CUTS = {
     ],
     "cuda/render_kernel_template.hpp": [
         (r"/// What neighbours bring to a pixel.*?(?=/// How many samples)", ""),
+        (r"    if constexpr \(effects\.have_wavelengths\(\)\) \{.*?\n    \}\n", ""),
         (r"    const bool shares = .*?;\n", ""),
         (r"            if constexpr \(effects\.share_pixels\(\)\)\n.*\n", ""),
         (r"        if \(shares\) \{.*?\} else \{\n(.*?)        \}\n", r"\1"),

@@ -237,6 +237,31 @@ def test_noise_where_colours_stay_in_a_pixel() -> None:
     assert (added < 0.07).all(), added
 
 
+def test_a_bright_sky_is_as_even_as_in_rgb() -> None:
+    """All samples bring the same light, and pixels would differ by the colours alone that they get by chance: by 8%."""
+    lens = rc.Lens.load("double-gauss-50mm").focused(2.0)
+    camera = rc.Camera(lens, film=rc.Film(36, 24, (240, 160)), exposure_time_s=1)
+    sky = scenes.scene_of(scenes.quad((0, 0, 9000), 0.01)).with_environment(50.0)
+
+    def pictures(effects: str | tuple[()]) -> np.ndarray:
+        return np.array(
+            [rc.render(sky, camera, spp=32, seed=seed, effects=effects).pixels.astype(np.float64) for seed in range(6)]
+        )
+
+    rgb, dispersed = pictures(()), pictures("dispersion")
+    noise = [np.sqrt(each.var(axis=0, ddof=1).mean(axis=(0, 1))) for each in (rgb, dispersed)]
+    # A mean of 25 pixels is known to a fifth of 8%, and most of that is shared with the pixel's own.
+    assert (noise[1] < 1.4 * noise[0]).all(), noise
+    # The colours of the lens's vignetting are no chance: the corners' means are those of samples that count alone.
+    alone = np.array(
+        [quiet(sky, camera, spp=32, seed=seed, layers=("variance",)).pixels.astype(np.float64) for seed in range(6, 12)]
+    )
+    for corner in (np.s_[:, :40, :40], np.s_[:, -40:, -40:]):
+        means = [each[corner].mean(axis=(1, 2)) for each in (dispersed, alone)]
+        error = np.sqrt(sum(mean.var(axis=0, ddof=1) for mean in means) / 6) + 2e-4 * means[1].mean(axis=0)
+        assert (np.abs(means[0].mean(axis=0) - means[1].mean(axis=0)) < 5 * error).all()
+
+
 def test_samples_count_in_the_pixels_where_their_colours_end() -> None:
     """Through a singlet whose colours lie some pixels apart. With the layer of the variance a sample counts in its own
     pixel alone: the same mean, also where tiles of pixels that share samples meet, and more noise."""

@@ -40,7 +40,7 @@ class ShotFilm:
         if round_.is_of_layers:
             return None
         seconds = self._camera.exposure_time_s
-        exposure = self.film.exposure(seconds)
+        exposure = self.film.exposure(self._settings, seconds)
         traced = self.film.traced_exposure(seconds) if round_.traces_lights else np.empty(0, np.float32)
         if self._noise is None:
             samples = self.film.pixels["samples"].astype("int64")
