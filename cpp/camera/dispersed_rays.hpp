@@ -11,24 +11,39 @@ namespace REALCAM_NAMESPACE {
 // Guibas 1995), if they lie in the tile of its own pixel (SampleSharing). The three are the same whichever of them
 // comes first, so that nothing is counted twice or left out.
 
-/// Lets a sample count at a further step in the pixel of a film point, if that is its own or one that shares with it.
+/// Where a pixel lies from that of a sample.
+struct PixelOffset {
+    int right, down;
+    bool is_near;  ///< else the numbers mean nothing
+
+    REALCAM_INLINE bool is_own() const { return is_near & (right == 0) & (down == 0); }
+};
+
+/// The pixel of a film point, if it is not further away than tiles are large.
 template <int N>
-REALCAM_INLINE void share(const CameraView& camera, const SampleBlock<N>& block, int lane, int step, bool arrives,
-                          Vec2f film, SampleWavelengths<N>& wavelengths) {
-    const SampleSharing& sharing = camera.dispersion.sharing;
+REALCAM_INLINE PixelOffset pixel_at(const CameraView& camera, const SampleBlock<N>& block, int lane, Vec2f film) {
     const float columns_per_mm = -0.5f * static_cast<float>(camera.width) / camera.film_half_width;
     const float rows_per_mm = 0.5f * static_cast<float>(camera.height) / camera.film_half_height;
     const Vec2f corner = film_point(camera, block.column[lane], block.row[lane], {0.0f, 0.0f});
     const float column = columns_per_mm * (film.x - corner.x), row = rows_per_mm * (film.y - corner.y);
     constexpr float kFar = SampleSharing::kTileSide;  // beyond it numbers need not fit into integers
-    const bool is_near = arrives & (std::abs(column) < kFar) & (std::abs(row) < kFar);
-    const int right = static_cast<int>(std::floor(select(is_near, column, 0.0f))),
-              down = static_cast<int>(std::floor(select(is_near, row, 0.0f)));
-    const bool is_own = (right == 0) & (down == 0);
-    const bool counts = is_near & (is_own | sharing.has_both(block.column[lane], block.row[lane],
-                                                             block.column[lane] + right, block.row[lane] + down));
+    const bool is_near = (std::abs(column) < kFar) & (std::abs(row) < kFar);
+    return {static_cast<int>(std::floor(select(is_near, column, 0.0f))),
+            static_cast<int>(std::floor(select(is_near, row, 0.0f))), is_near};
+}
+
+/// Lets a sample count at a further step in the pixel of a film point, if that is its own or one that shares with it.
+template <int N>
+REALCAM_INLINE void share(const CameraView& camera, const SampleBlock<N>& block, int lane, int step, bool arrives,
+                          Vec2f film, SampleWavelengths<N>& wavelengths) {
+    const SampleSharing& sharing = camera.dispersion.sharing;
+    const PixelOffset pixel = pixel_at(camera, block, lane, film);
+    const bool counts =
+        arrives & pixel.is_near &
+        (pixel.is_own() | sharing.has_both(block.column[lane], block.row[lane], block.column[lane] + pixel.right,
+                                           block.row[lane] + pixel.down));
     wavelengths.shares[lane] |= select(counts, 1 << step, 0);
-    wavelengths.away[step - 1][lane] = down * sharing.stride + right;
+    wavelengths.away[step - 1][lane] = pixel.down * sharing.stride + pixel.right;
 }
 
 /// A wavelength for each sample, stratified over those of its pixel, for which alone it counts so far.
@@ -76,7 +91,8 @@ REALCAM_HD inline void find_shares(const CameraView& camera, const SampleBlock<N
     }
 }
 
-/// The same of rays that go as at the design wavelength, whatever their own is.
+/// The same of rays that go as at the design wavelength, whatever their own is. Their light is on a line on the film,
+/// by the wavelength. Where both of its ends are in the sample's pixel, all wavelengths could have drawn it.
 template <int N, class Points>
 REALCAM_INLINE void find_shares_of_landings(const CameraView& camera, const SampleBlock<N>& block, const Points& film,
                                             SampleWavelengths<N>& wavelengths) {
@@ -87,6 +103,13 @@ REALCAM_INLINE void find_shares_of_landings(const CameraView& camera, const Samp
             const float nm = wavelength_at(view, shared_place(view, wavelengths.place[i], step));
             share(camera, block, i, step, true, film.landing(i, film[i], nm), wavelengths);
         }
+    }
+    const float ends_nm[] = {view.cells[0].first_nm, view.cells[view.cell_count - 1].last_nm};
+    REALCAM_LANES
+    for (int i = 0; i < N; ++i) {
+        bool all_stay = true;
+        for (const float nm : ends_nm) all_stay &= pixel_at(camera, block, i, film.landing(i, film[i], nm)).is_own();
+        wavelengths.shares[i] = select(all_stay, kAllWavelengths, wavelengths.shares[i]);
     }
 }
 

@@ -27,13 +27,17 @@ struct DispersionView {
     const SurfaceView<float>* film_surfaces;  ///< of the lens, on the light's way to the film
     FreeParts<float> film_free;               ///< and what belongs to them
     SampleSharing sharing{};
+    float film[9]{};  ///< as that of a cell: their mean, by which white stays white
 };
+
+/// The shares of a sample that counts for all wavelengths alike, in its own pixel.
+inline constexpr std::int32_t kAllWavelengths = 1 << kSharedWavelengths;
 
 /// Wavelengths for which samples count: one that was drawn, and others at steps from its place.
 template <int N>
 struct SampleWavelengths {
     Lanes<float, N> nm, place;
-    Lanes<std::int32_t, N> shares;  ///< a bit for each step that counts, and the first of them
+    Lanes<std::int32_t, N> shares;  ///< a bit for each step that counts, and the first of them; or kAllWavelengths
     Lanes<std::int32_t, N> away[kSharedWavelengths - 1];  ///< from its own pixel to that in which a further one counts
     Lanes<float, N> passed[kSharedWavelengths];  ///< by a coated lens, at each step
 };
@@ -53,11 +57,14 @@ REALCAM_INLINE float shared_place(const DispersionView& view, float place, int s
     return at < cells ? at : at - cells;
 }
 
-/// The film's colour for light of a scene's colour that has the wavelengths of a place's cell.
-REALCAM_INLINE Color film_color(const DispersionView& view, float place, Color scene) {
-    const float (&m)[9] = view.cells[static_cast<std::int32_t>(place)].film;
+/// The film's colour for light of a scene's colour. `m`: from one to the other, row by row.
+REALCAM_INLINE Color film_color(const float (&m)[9], Color scene) {
     return {m[0] * scene.r + m[1] * scene.g + m[2] * scene.b, m[3] * scene.r + m[4] * scene.g + m[5] * scene.b,
             m[6] * scene.r + m[7] * scene.g + m[8] * scene.b};
+}
+/// The same for light that has the wavelengths of a place's cell.
+REALCAM_INLINE Color film_color(const DispersionView& view, float place, Color scene) {
+    return film_color(view.cells[static_cast<std::int32_t>(place)].film, scene);
 }
 
 }  // namespace REALCAM_NAMESPACE

@@ -1,6 +1,7 @@
 #include "effect_tables.hpp"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include "../optics/trace/film_frame.hpp"
@@ -34,7 +35,7 @@ EffectViews EffectTables::views(double film_angle) const {
     EffectViews views{};
     views.effects = effects_;
     const LensView<float> film_path = film_path_ ? film_path_->view() : LensView<float>{};
-    if (spectrum_)
+    if (spectrum_) {
         views.dispersion = {spectrum_->cells().data(),
                             static_cast<int>(spectrum_->cells().size()),
                             variable_over(spectrum_->range()),
@@ -42,6 +43,9 @@ EffectViews EffectTables::views(double film_angle) const {
                             data_of(to_film_),
                             film_path.surfaces,
                             film_path.free};
+        const std::array<float, 9> mean = spectrum_->mean_film();
+        std::copy(mean.begin(), mean.end(), views.dispersion.film);
+    }
     views.coatings = {data_of(coatings_), data_of(coatings_to_scene_), data_of(coatings_to_film_)};
     if (diffraction_) views.diffraction = diffraction_->view(film_angle);
     return views;

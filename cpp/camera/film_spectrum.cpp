@@ -191,6 +191,16 @@ FilmSpectrum::FilmSpectrum(const Illuminant& illuminant) {
 FilmSpectrum::FilmSpectrum(WavelengthRange range)
     : cells_{{static_cast<float>(range.first), static_cast<float>(range.last), {1, 0, 0, 0, 1, 0, 0, 0, 1}}} {}
 
+std::array<float, 9> FilmSpectrum::mean_film() const {
+    std::array<float, 9> mean;
+    for (std::size_t k = 0; k < mean.size(); ++k) {
+        double sum = 0;
+        for (const WavelengthCell& cell : cells_) sum += static_cast<double>(cell.film[k]);
+        mean[k] = static_cast<float>(sum / static_cast<double>(cells_.size()));
+    }
+    return mean;
+}
+
 std::vector<double> FilmSpectrum::even_wavelengths() const {
     constexpr std::size_t kCount = 32;
     std::vector<double> wavelengths;

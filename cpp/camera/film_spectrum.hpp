@@ -48,6 +48,8 @@ public:
     WavelengthRange range() const {
         return {static_cast<double>(cells_.front().first_nm), static_cast<double>(cells_.back().last_nm)};
     }
+    /// WavelengthCell::film, mean of all.
+    std::array<float, 9> mean_film() const;
     /// 32, spread as the wavelengths of samples are.
     std::vector<double> even_wavelengths() const;
 

@@ -116,9 +116,10 @@ private:
     void launch(const FilmPart& part, const RenderSettings& settings, PixelSum* sums, const PixelCounts& counts,
                 std::int64_t pixels, const FilmRegion& sharing, const volatile int* stop);
 
-    /// The region, if its pixels share samples; else an empty one.
+    /// The film that this GPU holds.
     DeviceFilm film(bool balances) const;
 
+    /// The region, if its pixels share samples; else an empty one.
     FilmRegion sharing_in(const FilmRegion& region, const RenderSettings& settings, const PixelCounts& counts) const;
     FilmRegion rows_of(const FilmPart& part) const { return {0, part.first_row, camera_.width, part.row_count}; }
     std::int64_t film_pixels() const { return static_cast<std::int64_t>(camera_.width) * camera_.height; }

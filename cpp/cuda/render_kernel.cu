@@ -17,9 +17,10 @@ __device__ void expose(const DeviceFilm& film, std::int64_t pixel, double exposu
     const PixelSum& sum = film.sums[pixel];
     double balance[3] = {1, 1, 1};
     if (film.balances) {
-        const MeanExcess mean(film.sums, film.width, film.height, static_cast<int>(pixel % film.width),
-                              static_cast<int>(pixel / film.width));
-        for (int c = 0; c < 3; ++c) balance[c] = wavelength_balance(sum, c, mean.of[c]);
+        const int column = static_cast<int>(pixel % film.width), row = static_cast<int>(pixel / film.width);
+        const ExcessSum around = ExcessSum::around(
+            column, [&](int x) { return ExcessSum::of_column(film.sums, film.width, film.height, x, row); });
+        for (int c = 0; c < 3; ++c) balance[c] = wavelength_balance(sum, c, around.mean(c));
     }
     for (int c = 0; c < 3; ++c)
         take(c, sum.exposure(c, exposure_time_s, film.splatted.irradiance(pixel, c), balance[c]));

@@ -1,11 +1,32 @@
 #include "film_sums.hpp"
 
+#include <algorithm>
+
 #include "../camera/code_table.hpp"
 #include "wavelength_balance.hpp"
 
 namespace realcam {
 
 namespace {
+
+/// visit(pixel, what lies around it) for some pixels of a film.
+template <class Visit>
+void for_surroundings(const FilmSums& film, FilmSize size, std::size_t first, std::size_t last, Visit&& visit) {
+    const auto columns = static_cast<std::size_t>(size.width);
+    std::vector<ExcessSum> of_columns;
+    while (first < last) {
+        const std::size_t row = first / columns, end = std::min(last, (row + 1) * columns);
+        const int begin_column = static_cast<int>(first % columns) - ExcessSum::kReach,
+                  end_column = static_cast<int>(end - row * columns) + ExcessSum::kReach;
+        of_columns.clear();
+        for (int x = begin_column; x < end_column; ++x)
+            of_columns.push_back(ExcessSum::of_column(film.data(), size.width, size.height, x, static_cast<int>(row)));
+        for (; first < end; ++first)
+            visit(first, ExcessSum::around(static_cast<int>(first % columns), [&](int x) -> const ExcessSum& {
+                      return of_columns[static_cast<std::size_t>(x - begin_column)];
+                  }));
+    }
+}
 
 /// take(place, exposure) for each channel of the film, at its place among them all.
 template <class Take>
@@ -16,15 +37,13 @@ void for_exposures(const FilmSums& film, FilmSize size, bool balances, double ex
         take(3 * i + static_cast<std::size_t>(channel), film[i].exposure(channel, exposure_time_s, ghosts, balance));
     };
     loop.run(0, film.size(), [&](std::size_t first, std::size_t last) {
-        for (std::size_t i = first; i < last; ++i) {
-            if (!balances) {
+        if (balances) {
+            for_surroundings(film, size, first, last, [&](std::size_t i, const ExcessSum& around) {
+                for (int c = 0; c < 3; ++c) expose(i, c, wavelength_balance(film[i], c, around.mean(c)));
+            });
+        } else {
+            for (std::size_t i = first; i < last; ++i)
                 for (int c = 0; c < 3; ++c) expose(i, c, 1);
-                continue;
-            }
-            const auto columns = static_cast<std::size_t>(size.width);
-            const MeanExcess mean(film.data(), size.width, size.height, static_cast<int>(i % columns),
-                                  static_cast<int>(i / columns));
-            for (int c = 0; c < 3; ++c) expose(i, c, wavelength_balance(film[i], c, mean.of[c]));
         }
     });
 }

@@ -10,6 +10,13 @@ REALCAM_INLINE void count_wavelengths(const DispersionView& view, const SampleWa
                                       PathResultsWith<N, effects>& results) {
     const Color scene = results.irradiance[lane];
     const std::int32_t shares = of.shares[lane];
+    if constexpr (!effects.dispersion) {
+        if (shares == kAllWavelengths) {
+            results.irradiance.set(lane, film_color(view.film, scene));
+            results.excess.set(lane, {0, 0, 0});
+            return;
+        }
+    }
     const float part = 1.0f / static_cast<float>(count_bits(static_cast<unsigned>(shares)));
     const float passed = static_cast<float>(results.passed[lane]);
     Color own = {0, 0, 0}, excess = {-passed, -passed, -passed};

@@ -251,6 +251,7 @@ bool Session::is_same_exposure(const Assembly& scene, const Camera& camera) cons
 bool Session::has_sums_for(LayerSet wanted) const {
     const LayerSet had = settings_.layers;
     if (had.has_any(kHalfLayers) != wanted.has_any(kHalfLayers)) return false;  // which also choose how lights are met
+    if (settings_.effects.have_wavelengths() && had.has(Layer::variance) != wanted.has(Layer::variance)) return false;
     return had.has(Layer::variance) || !wanted.has(Layer::variance);
 }
 

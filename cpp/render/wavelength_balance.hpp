@@ -33,25 +33,37 @@ REALCAM_HD inline double wavelength_balance(const PixelSum& pixel, int channel, 
     return 1 - n / (n + kFew) * d * (1 - d);
 }
 
-/// The excess of a sample, mean of the pixels around, in the three channels.
-struct MeanExcess {
-    static constexpr int kReach = 2;  ///< pixels to all sides
+/// The excess of some pixels, in the three channels, and their samples.
+struct ExcessSum {
+    static constexpr int kReach = 2;  ///< pixels around one, to all sides
 
-    double of[3] = {0, 0, 0};
+    double excess[3] = {0, 0, 0}, samples = 0;
 
-    /// `film`: row by row.
-    REALCAM_HD MeanExcess(const PixelSum* film, int width, int height, int column, int row) {
-        const int left = std::max(column - kReach, 0), right = std::min(column + kReach, width - 1),
-                  bottom = std::min(row + kReach, height - 1);
-        double samples = 0;
-        for (int y = std::max(row - kReach, 0); y <= bottom; ++y)
-            for (int x = left; x <= right; ++x) {
-                const PixelSum& pixel = film[static_cast<std::int64_t>(y) * width + x];
-                for (int c = 0; c < 3; ++c) of[c] += pixel.besides[c];
-                samples += static_cast<double>(pixel.samples);
-            }
-        for (double& excess : of) excess = samples > 0 ? excess / samples : 0;
+    /// The pixels around a place in one column of a film, which is stored row by row; none outside of it.
+    REALCAM_HD static ExcessSum of_column(const PixelSum* film, int width, int height, int column, int row) {
+        ExcessSum sum;
+        if (column < 0 || column >= width) return sum;
+        const int end = std::min(row + kReach + 1, height);
+        for (int y = std::max(row - kReach, 0); y < end; ++y) {
+            const PixelSum& pixel = film[static_cast<std::int64_t>(y) * width + column];
+            for (int c = 0; c < 3; ++c) sum.excess[c] += pixel.besides[c];
+            sum.samples += static_cast<double>(pixel.samples);
+        }
+        return sum;
     }
+    /// The same of all columns around a place: of_column(column) gives them.
+    template <class OfColumn>
+    REALCAM_HD static ExcessSum around(int column, OfColumn&& of_column) {
+        ExcessSum sum;
+        for (int x = column - kReach; x <= column + kReach; ++x) {
+            const ExcessSum& one = of_column(x);
+            for (int c = 0; c < 3; ++c) sum.excess[c] += one.excess[c];
+            sum.samples += one.samples;
+        }
+        return sum;
+    }
+    /// Of a sample.
+    REALCAM_HD double mean(int channel) const { return samples > 0 ? excess[channel] / samples : 0; }
 };
 
 }  // namespace REALCAM_NAMESPACE

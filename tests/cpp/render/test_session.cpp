@@ -368,6 +368,15 @@ TEST_CASE("layers catch up with the samples of a picture, and are seen once") {
     session.set(scene, camera, settings);
     session.add(1);
     CHECK(session.notes == kOn);
+    // Squares lie where something else is summed of samples with wavelengths.
+    settings.effects.dispersion = true;
+    for (const LayerSet layers : {LayerSet{Layer::variance}, LayerSet{}}) {
+        settings.layers = layers;
+        session.notes.clear();
+        session.set(scene, camera, settings);
+        session.add(1);
+        CHECK(session.notes == kAnew);
+    }
 }
 
 TEST_CASE("the variance of a pixel is that of the mean of its samples") {
