@@ -169,7 +169,7 @@ private:
         }
         const std::shared_ptr<DeviceFrame> frame =
             make_on_device<DeviceFrame>(front().ordinal(), camera().film, samples(), pool_);
-        frame->develop(front(), balances_wavelengths(settings()), camera(), curve);
+        frame->develop(front(), balances(), camera(), curve);
         return frame;
     }
 
@@ -181,12 +181,10 @@ private:
             const std::size_t pixels = static_cast<std::size_t>(width()) * static_cast<std::size_t>(height());
             image.exposure = exposures_.take(3 * pixels);
             image.depth = depths_.take(pixels);
-            front().develop(balances_wavelengths(settings()), camera().exposure_time_s, image.exposure.data(),
-                            image.depth.data());
+            front().develop(balances(), camera().exposure_time_s, image.exposure.data(), image.depth.data());
         } else {
             const std::vector<SplatFilm> splats = front().download_splats();
-            image = developed(film_, {width(), height()}, balances_wavelengths(settings()), camera().exposure_time_s,
-                              view_of(splats));
+            image = developed(film_, {width(), height()}, balances(), camera().exposure_time_s, view_of(splats));
         }
         set_stats(stats_, all_counts(), stats_.seconds);
         image.stats = stats_;
@@ -230,6 +228,7 @@ private:
     int width() const { return camera().film.width; }
     int height() const { return camera().film.height; }
     bool fits() const { return rows_ == height(); }
+    bool balances() const { return balances_wavelengths(settings()); }
 
     /// The settings of a range of samples. The seed changes where a random sequence ends.
     RenderSettings settings_of(const SampleRange& range) const {
@@ -315,7 +314,7 @@ private:
         const std::int64_t columns = width(), rows = height();
         DeviceArray<float> exposure(static_cast<std::size_t>(3 * columns * rows)),
             depth(static_cast<std::size_t>(columns * rows));
-        front().develop_here(balances_wavelengths(settings()), camera().exposure_time_s, exposure.data(), depth.data());
+        front().develop_here(balances(), camera().exposure_time_s, exposure.data(), depth.data());
         int stopped = 0;
         front().stop_flag().download(&stopped, front().stream());
         front().wait();

@@ -251,8 +251,9 @@ bool Session::is_same_exposure(const Assembly& scene, const Camera& camera) cons
 bool Session::has_sums_for(LayerSet wanted) const {
     const LayerSet had = settings_.layers;
     if (had.has_any(kHalfLayers) != wanted.has_any(kHalfLayers)) return false;  // which also choose how lights are met
-    if (settings_.effects.have_wavelengths() && had.has(Layer::variance) != wanted.has(Layer::variance)) return false;
-    return had.has(Layer::variance) || !wanted.has(Layer::variance);
+    if (had.has(Layer::variance) == wanted.has(Layer::variance)) return true;
+    // Squares that nobody asks for any more do no harm, unless they lie where wavelengths are balanced.
+    return had.has(Layer::variance) && !settings_.effects.have_wavelengths();
 }
 
 bool Session::is_same_picture(const Assembly& scene, const Camera& camera, const RenderSettings& settings) const {

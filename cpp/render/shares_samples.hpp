@@ -2,14 +2,16 @@
 #include "../camera/camera_view.hpp"
 #include "render_settings.hpp"
 #include "sample_range.hpp"
+#include "wavelength_balance.hpp"
 
 namespace realcam {
 
 /// Whether samples count for wavelengths in other pixels than their own (SampleSharing). All pixels must then draw the
-/// same rays equally often, and none may be asked for the noise of its own samples or for those of half the pupil.
+/// same rays equally often, and what others bring must be balanced: no layer may ask for the noise of a pixel's own
+/// samples, or for those of half the pupil.
 inline bool shares_samples(const CameraView& camera, const RenderSettings& settings, const PixelCounts& counts) {
     return camera.effects.share_pixels() && !counts.counts && !camera.pixel_pupils.known && camera.row_time == 0.0f &&
-           !settings.layers.has(Layer::variance) && !settings.layers.has_any(kHalfLayers);
+           balances_wavelengths(settings);
 }
 
 }  // namespace realcam
