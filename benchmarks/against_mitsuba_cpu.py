@@ -10,8 +10,9 @@ integrator "direct" with two emitter samples and no BSDF sample, one kernel for 
 take turns, so that what else the machine does falls on both; a figure is the least of four rounds. The pictures are
 compared, and the run stops where they differ.
 
-Error over time: relative mean square error of pictures through a thin lens against one of many more samples, at rising
-sample counts; Mitsuba with the integrators and the sampler that have the least error there.
+Error over time: relative mean square error of pictures against one of many more samples, at rising sample counts,
+through a thin lens and through the double Gauss; Mitsuba with the integrators and the sampler that have the least error
+there.
 
 Writes PROCESSOR-N-threads-against-mitsuba.json, .md and .png into benchmarks/results, or the folder of --output.
 """
@@ -160,17 +161,27 @@ def relative_mse(picture: np.ndarray, reference: np.ndarray, scale: np.ndarray) 
     return float(np.mean((picture - reference) ** 2 / scale))
 
 
-def error_over_time(scene: rc.Scene, peer: mi.Scene, threads: int, counts: list[int], reference_spp: int) -> Result:
-    camera = frame_camera("thin")
-    programs = {"realcam": realcam_program(scene, camera, threads)}
-    falloff = irradiance_of_unit_radiance(camera)
-    for name, (integrator, sampler) in BEST.items():
-        programs[f"Mitsuba: {name}"] = mitsuba_program(
-            peer,
-            lambda spp, sampler=sampler: mi.load_dict(sensor("thinlens", camera, sampler, spp)),
-            integrator,
-            falloff,
-        )
+def best_programs(peer: mi.Scene, camera: rc.Camera) -> dict[str, Program]:
+    """Mitsuba's, through the thin lens that it has, or the double Gauss as a sensor in Python."""
+    is_full = camera.model == "full"
+
+    def sensor_for(sampler: str) -> Callable[[int], mi.Sensor]:
+        if is_full:
+            return lambda spp: load_lens_sensor(camera, sampler, spp)
+        return lambda spp: mi.load_dict(sensor("thinlens", camera, sampler, spp))
+
+    falloff = 1.0 if is_full else irradiance_of_unit_radiance(camera)
+    return {
+        f"Mitsuba: {name}": mitsuba_program(peer, sensor_for(sampler), integrator, falloff)
+        for name, (integrator, sampler) in BEST.items()
+    }
+
+
+def error_over_time(
+    scene: rc.Scene, peer: mi.Scene, model: str, threads: int, counts: list[int], reference_spp: int
+) -> Result:
+    camera = frame_camera(model)
+    programs = {"realcam": realcam_program(scene, camera, threads)} | best_programs(peer, camera)
     # A seed that no measured picture has.
     reference = programs["realcam"].take(reference_spp, 1000)
     # Black pixels have no relative error: a hundredth of the mean is the least that differences are relative to.
@@ -214,7 +225,10 @@ def main() -> None:
         "triangles": scene.triangle_count,
         "spp": SPP,
         "same_work": same_work(scene, peer, arguments.threads),
-        "error_over_time": error_over_time(scene, peer, arguments.threads, counts, reference_spp),
+        "error_over_time": {
+            model: error_over_time(scene, peer, model, arguments.threads, counts, reference_spp)
+            for model in ("thin", "full")
+        },
     }
     write_report(record, arguments.output)
 

@@ -38,8 +38,7 @@ def same_work_table(record: dict) -> list[str]:
     return lines
 
 
-def error_tables(record: dict) -> list[str]:
-    programs = record["error_over_time"]["programs"]
+def error_tables(programs: dict[str, list[dict]]) -> list[str]:
     counts = [point["spp"] for point in programs["realcam"]]
     lines = [
         "| relative MSE (after CPU s) | " + " | ".join(f"{spp} samples" for spp in counts) + " |",
@@ -59,9 +58,9 @@ def error_tables(record: dict) -> list[str]:
 
 def markdown(record: dict, plot: str) -> str:
     machine, errors = record["machine"], record["error_over_time"]
-    farthest = max(
-        abs(points[-1]["relative_mse"] - points[-1]["relative_variance"]) for points in errors["programs"].values()
-    )
+    reference_spp = errors["thin"]["reference_spp"]
+    last_points = [points[-1] for of_camera in errors.values() for points in of_camera["programs"].values()]
+    farthest = max(abs(point["relative_mse"] - point["relative_variance"]) for point in last_points)
     lines = [
         f"{machine['processor']}, {record['threads']} threads; realcam {machine['commit']}, {machine['devices'][0]}; "
         f"Mitsuba {record['mitsuba']}; {machine['date']}. Made by benchmarks/against_mitsuba_cpu.py.",
@@ -72,15 +71,17 @@ def markdown(record: dict, plot: str) -> str:
         "",
         *same_work_table(record),
         "",
-        "Error over time: the same scene through the thin lens; each of Mitsuba's integrators with its best sampler "
-        "(multijitter; ldsampler for two emitter samples).",
-        "",
-        *error_tables(record),
+        "Error over time: the same scene; each of Mitsuba's integrators with its best sampler (multijitter; ldsampler "
+        "for two emitter samples).",
+    ]
+    for model, of_camera in errors.items():
+        lines += ["", f"Through the {CAMERAS[model]}:", "", *error_tables(of_camera["programs"])]
+    lines += [
         "",
         f"![Relative mean square error over CPU seconds]({plot})",
         "",
         "Squared differences are relative to the reference's square plus (1% of its mean)^2. The reference is realcam's"
-        f" picture of {errors['reference_spp']} samples. The variance of each program's pictures among themselves, "
+        f" picture of {reference_spp} samples. The variance of each program's pictures among themselves, "
         f"which needs no reference, is the same as its error to {farthest:.1g} at the most samples.",
     ]
     return "\n".join(lines) + "\n"
@@ -89,13 +90,16 @@ def markdown(record: dict, plot: str) -> str:
 def plot_errors(record: dict, path: Path) -> None:
     import matplotlib.pyplot as plt
 
-    figure, axes = plt.subplots(figsize=(6.4, 4), layout="constrained")
-    for name, points in record["error_over_time"]["programs"].items():
-        x, y = ([point[key] for point in points] for key in ("cpu_seconds", "relative_mse"))
-        axes.loglog(x, y, "o-" if name == "realcam" else "s--", label=name)
-    axes.set(xlabel="CPU seconds", ylabel="relative mean square error", title="Direct light through a thin lens")
-    axes.grid(True, which="both", alpha=0.3)
-    axes.legend()
+    errors = record["error_over_time"]
+    figure, all_axes = plt.subplots(1, len(errors), figsize=(10, 4), sharey=True, layout="constrained")
+    for axes, (model, of_camera) in zip(all_axes, errors.items(), strict=True):
+        for name, points in of_camera["programs"].items():
+            x, y = ([point[key] for point in points] for key in ("cpu_seconds", "relative_mse"))
+            axes.loglog(x, y, "o-" if name == "realcam" else "s--", label=name)
+        axes.set(xlabel="CPU seconds", title=f"Direct light: {CAMERAS[model]}")
+        axes.grid(True, which="both", alpha=0.3)
+    all_axes[0].set(ylabel="relative mean square error")
+    all_axes[0].legend()
     figure.savefig(path, dpi=120)
     plt.close(figure)
 

@@ -1,6 +1,5 @@
 #include "../render/adaptive_sampling.hpp"
 #include "../render/film_sums.hpp"
-#include "../render/wavelength_balance.hpp"
 #include "film_parts.hpp"
 
 namespace realcam::bindings {
@@ -56,8 +55,9 @@ py::array_t<float> developed_exposure(const FilmArrays& arrays, const RenderSett
     const auto height = arrays.pixels.shape(0), width = arrays.pixels.shape(1);
     Image image = [&] {
         const Unlocked unlocked;
-        return developed(film.pixels, {static_cast<int>(width), static_cast<int>(height)},
-                         balances_wavelengths(settings), exposure_time_s, view_of(film.splats));
+        return developed({film.pixels.data(), static_cast<int>(width), static_cast<int>(height), film_balance(settings),
+                          view_of(film.splats)},
+                         exposure_time_s);
     }();
     return array_from(std::move(image.exposure), {height, width, 3});
 }
@@ -137,7 +137,7 @@ py::list splats_to(std::vector<SplatFilm> films) {
 }
 
 void bind_film_parts(py::module_& m) {
-    PYBIND11_NUMPY_DTYPE(PixelSum, irradiance, besides, depth, met, samples);
+    PYBIND11_NUMPY_DTYPE(PixelSum, irradiance, besides, depth, met, samples, passed);
     PYBIND11_NUMPY_DTYPE(LayerSum, weight, met, normal, albedo, circle_mm);
     m.attr("_PIXEL_SUM") = py::dtype::of<PixelSum>();
     m.attr("_LAYER_SUM") = py::dtype::of<LayerSum>();

@@ -13,7 +13,6 @@
 #include "../render/run_with_progress.hpp"
 #include "../render/seconds_since.hpp"
 #include "../render/traced_lights.hpp"
-#include "../render/wavelength_balance.hpp"
 #include "cuda_devices.hpp"
 #include "device_frame.hpp"
 #include "device_renderer.hpp"
@@ -147,11 +146,13 @@ private:
 
     std::vector<LayerImage> develop_besides() override {
         const std::vector<SplatFilm> splats = front().download_splats();
-        const LayerSet layers = settings().layers;
-        if (!fits()) return developed_besides(film_, layers, camera().exposure_time_s, view_of(splats));
-        FilmSums sums(static_cast<std::size_t>(width()) * static_cast<std::size_t>(height()));
-        front().download_film(sums.data());
-        return developed_besides(sums, layers, camera().exposure_time_s, view_of(splats));
+        FilmSums downloaded;
+        if (fits()) {
+            downloaded.resize(static_cast<std::size_t>(width()) * static_cast<std::size_t>(height()));
+            front().download_film(downloaded.data());
+        }
+        return developed_besides(on_host(fits() ? downloaded : film_, splats), settings().layers,
+                                 camera().exposure_time_s);
     }
 
     std::shared_ptr<LiveFrame> start(const std::vector<SampleRange>& ranges, ToneCurve curve,
@@ -169,7 +170,7 @@ private:
         }
         const std::shared_ptr<DeviceFrame> frame =
             make_on_device<DeviceFrame>(front().ordinal(), camera().film, samples(), pool_);
-        frame->develop(front(), balances(), camera(), curve);
+        frame->develop(front(), balance(), camera(), curve);
         return frame;
     }
 
@@ -181,10 +182,10 @@ private:
             const std::size_t pixels = static_cast<std::size_t>(width()) * static_cast<std::size_t>(height());
             image.exposure = exposures_.take(3 * pixels);
             image.depth = depths_.take(pixels);
-            front().develop(balances(), camera().exposure_time_s, image.exposure.data(), image.depth.data());
+            front().develop(balance(), camera().exposure_time_s, image.exposure.data(), image.depth.data());
         } else {
             const std::vector<SplatFilm> splats = front().download_splats();
-            image = developed(film_, {width(), height()}, balances(), camera().exposure_time_s, view_of(splats));
+            image = developed(on_host(film_, splats), camera().exposure_time_s);
         }
         set_stats(stats_, all_counts(), stats_.seconds);
         image.stats = stats_;
@@ -228,7 +229,10 @@ private:
     int width() const { return camera().film.width; }
     int height() const { return camera().film.height; }
     bool fits() const { return rows_ == height(); }
-    bool balances() const { return balances_wavelengths(settings()); }
+    FilmBalance balance() const { return film_balance(settings()); }
+    FilmView on_host(const FilmSums& film, const std::vector<SplatFilm>& splats) const {
+        return {film.data(), width(), height(), balance(), view_of(splats)};
+    }
 
     /// The settings of a range of samples. The seed changes where a random sequence ends.
     RenderSettings settings_of(const SampleRange& range) const {
@@ -314,7 +318,7 @@ private:
         const std::int64_t columns = width(), rows = height();
         DeviceArray<float> exposure(static_cast<std::size_t>(3 * columns * rows)),
             depth(static_cast<std::size_t>(columns * rows));
-        front().develop_here(balances(), camera().exposure_time_s, exposure.data(), depth.data());
+        front().develop_here(balance(), camera().exposure_time_s, exposure.data(), depth.data());
         int stopped = 0;
         front().stop_flag().download(&stopped, front().stream());
         front().wait();

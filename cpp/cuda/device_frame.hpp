@@ -68,8 +68,8 @@ public:
     }
 
     /// Starts to develop it, behind all that exposes it.
-    void develop(DeviceRenderer& renderer, bool balances, const Camera& camera, ToneCurve curve) {
-        renderer.develop_codes(balances, camera.exposure_time_s, camera.iso, curve, memory_->codes.data());
+    void develop(DeviceRenderer& renderer, const FilmBalance& balance, const Camera& camera, ToneCurve curve) {
+        renderer.develop_codes(balance, camera.exposure_time_s, camera.iso, curve, memory_->codes.data());
         renderer.stop_flag().download(memory_->stopped.data(), renderer.stream());
         end_.record(renderer.stream());
     }

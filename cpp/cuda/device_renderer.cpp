@@ -4,8 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "../render/film_balance.hpp"
 #include "../render/shares_samples.hpp"
-#include "../render/wavelength_balance.hpp"
 
 namespace realcam {
 namespace {
@@ -177,7 +177,7 @@ void DeviceRenderer::reserve_film(std::int64_t pixels, bool merges) {
 
 void DeviceRenderer::rehearse() {
     launch({0, 0, 0, 0}, {}, sums_.data(), {}, 0, {}, stop_.data());
-    launch_develop({sums_.data(), 0, 0, false, {}}, 1, exposure_.data(), depth_.data(), stream_);
+    launch_develop({sums_.data(), 0, 0}, 1, exposure_.data(), depth_.data(), stream_);
     launch_merge(sums_.data(), others_.data(), 0, stream_);
 }
 
@@ -247,16 +247,16 @@ void DeviceRenderer::add(const FilmPart& part, const RenderSettings& settings) {
     launch(part, settings, sums_.data(), {}, pixels_of(part), sharing_in(rows_of(part), settings, {}), stop_.data());
 }
 
-DeviceFilm DeviceRenderer::film(bool balances) const {
+FilmView DeviceRenderer::film(const FilmBalance& balance) const {
     const auto rows = static_cast<int>(sums_.size() / static_cast<std::size_t>(camera_.width));
-    return {sums_.data(), camera_.width, rows, balances, splatted()};
+    return {sums_.data(), camera_.width, rows, balance, splatted()};
 }
 
-void DeviceRenderer::develop_codes(bool balances, double exposure_time_s, double iso, ToneCurve curve,
+void DeviceRenderer::develop_codes(const FilmBalance& balance, double exposure_time_s, double iso, ToneCurve curve,
                                    std::uint8_t* codes) {
     const CurrentDevice current(ordinal_);
     codes_.resize(3 * sums_.size());
-    launch_develop_codes(film(balances), exposure_time_s, iso, curve, codes_.data(), stream_);
+    launch_develop_codes(film(balance), exposure_time_s, iso, curve, codes_.data(), stream_);
     codes_.download(codes, stream_);
 }
 
@@ -282,16 +282,16 @@ void DeviceRenderer::download_film(PixelSum* to) {
     stream_.wait("copying the film from it");
 }
 
-void DeviceRenderer::develop_here(bool balances, double exposure_time_s, float* exposure, float* depth) {
+void DeviceRenderer::develop_here(const FilmBalance& balance, double exposure_time_s, float* exposure, float* depth) {
     const CurrentDevice current(ordinal_);
-    launch_develop(film(balances), exposure_time_s, exposure, depth, stream_);
+    launch_develop(film(balance), exposure_time_s, exposure, depth, stream_);
 }
 
-void DeviceRenderer::develop(bool balances, double exposure_time_s, float* exposure, float* depth) {
+void DeviceRenderer::develop(const FilmBalance& balance, double exposure_time_s, float* exposure, float* depth) {
     const CurrentDevice current(ordinal_);
     exposure_.resize(3 * sums_.size());
     depth_.resize(sums_.size());
-    develop_here(balances, exposure_time_s, exposure_.data(), depth_.data());
+    develop_here(balance, exposure_time_s, exposure_.data(), depth_.data());
     exposure_.download(exposure, stream_);
     depth_.download(depth, stream_);
     stream_.wait("copying the picture from it");

@@ -73,8 +73,8 @@ public:
     void add(const FilmPart& part, const RenderSettings& settings);
 
     /// Starts to develop the film as 8-bit sRGB, 3 per pixel, into memory of the host that it can write to.
-    /// `balances`: the film holds what wavelength_balance.hpp needs.
-    void develop_codes(bool balances, double exposure_time_s, double iso, ToneCurve curve, std::uint8_t* codes);
+    void develop_codes(const FilmBalance& balance, double exposure_time_s, double iso, ToneCurve curve,
+                       std::uint8_t* codes);
 
     /// The stream in which all of this runs.
     cudaStream_t stream() const { return stream_; }
@@ -87,10 +87,10 @@ public:
     void download_film(PixelSum* to);
 
     /// Starts to develop the film as exposure and depth into memory of this GPU, 3 and 1 numbers per pixel.
-    void develop_here(bool balances, double exposure_time_s, float* exposure, float* depth);
+    void develop_here(const FilmBalance& balance, double exposure_time_s, float* exposure, float* depth);
 
     /// Exposure and depth of the film's pixels, into the host's memory.
-    void develop(bool balances, double exposure_time_s, float* exposure, float* depth);
+    void develop(const FilmBalance& balance, double exposure_time_s, float* exposure, float* depth);
 
     /// The number of samples of each pixel, into the host's memory.
     void count_samples(std::int64_t* counts);
@@ -117,7 +117,7 @@ private:
                 std::int64_t pixels, const FilmRegion& sharing, const volatile int* stop);
 
     /// The film that this GPU holds.
-    DeviceFilm film(bool balances) const;
+    FilmView film(const FilmBalance& balance) const;
 
     /// The region, if its pixels share samples; else an empty one.
     FilmRegion sharing_in(const FilmRegion& region, const RenderSettings& settings, const PixelCounts& counts) const;

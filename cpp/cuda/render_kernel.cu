@@ -1,7 +1,6 @@
 #include "render_kernel.hpp"
 
 #include "../render/kind_of.hpp"
-#include "../render/wavelength_balance.hpp"
 #include "cuda_error.hpp"
 #include "lanes_per_pixel.hpp"
 #include "launch_grid.hpp"
@@ -13,30 +12,27 @@ namespace {
 
 /// take(channel, exposure) of a pixel.
 template <class Take>
-__device__ void expose(const DeviceFilm& film, std::int64_t pixel, double exposure_time_s, Take&& take) {
-    const PixelSum& sum = film.sums[pixel];
-    double balance[3] = {1, 1, 1};
-    if (film.balances) {
+__device__ void expose(const FilmView& film, std::int64_t pixel, double exposure_time_s, Take&& take) {
+    PixelNeighbourhood around;
+    if (film.balance.any()) {
         const int column = static_cast<int>(pixel % film.width), row = static_cast<int>(pixel / film.width);
-        const ExcessSum around = ExcessSum::around(
-            column, [&](int x) { return ExcessSum::of_column(film.sums, film.width, film.height, x, row); });
-        for (int c = 0; c < 3; ++c) balance[c] = wavelength_balance(sum, c, around.mean(c));
+        around = PixelNeighbourhood::around(column, film.width, [&](int x) { return film.column_around(x, row); });
     }
-    for (int c = 0; c < 3; ++c)
-        take(c, sum.exposure(c, exposure_time_s, film.splatted.irradiance(pixel, c), balance[c]));
+    film.for_channels(pixel, around, [&](int c, double ghosts, double balance) {
+        take(c, film.pixels[pixel].exposure(c, exposure_time_s, ghosts, balance));
+    });
 }
 
-__global__ void develop(DeviceFilm film, double exposure_time_s, float* exposure, float* depth) {
+__global__ void develop(FilmView film, double exposure_time_s, float* exposure, float* depth) {
     const std::int64_t i = thread_index();
-    if (i >= film.pixels()) return;
+    if (i >= film.pixel_count()) return;
     expose(film, i, exposure_time_s, [&](int c, float lux_s) { exposure[3 * i + c] = lux_s; });
-    depth[i] = film.sums[i].mean_depth();
+    depth[i] = film.pixels[i].mean_depth();
 }
 
-__global__ void develop_codes(DeviceFilm film, double exposure_time_s, double iso, ToneCurve curve,
-                              std::uint8_t* codes) {
+__global__ void develop_codes(FilmView film, double exposure_time_s, double iso, ToneCurve curve, std::uint8_t* codes) {
     const std::int64_t i = thread_index();
-    if (i >= film.pixels()) return;
+    if (i >= film.pixel_count()) return;
     expose(film, i, exposure_time_s, [&](int c, float lux_s) {
         codes[3 * i + c] = srgb_code(apply_tone_curve(curve, sensor_value(static_cast<double>(lux_s), iso)));
     });
@@ -100,15 +96,14 @@ void launch_render(const RenderJob& job, std::int64_t pixels, cudaStream_t strea
     check_cuda(cudaGetLastError(), "starting to render");
 }
 
-void launch_develop(const DeviceFilm& film, double exposure_time_s, float* exposure, float* depth,
-                    cudaStream_t stream) {
-    develop<<<blocks_for(film.pixels()), kBlockSize, 0, stream>>>(film, exposure_time_s, exposure, depth);
+void launch_develop(const FilmView& film, double exposure_time_s, float* exposure, float* depth, cudaStream_t stream) {
+    develop<<<blocks_for(film.pixel_count()), kBlockSize, 0, stream>>>(film, exposure_time_s, exposure, depth);
     check_cuda(cudaGetLastError(), "starting to develop");
 }
 
-void launch_develop_codes(const DeviceFilm& film, double exposure_time_s, double iso, ToneCurve curve,
+void launch_develop_codes(const FilmView& film, double exposure_time_s, double iso, ToneCurve curve,
                           std::uint8_t* codes, cudaStream_t stream) {
-    develop_codes<<<blocks_for(film.pixels()), kBlockSize, 0, stream>>>(film, exposure_time_s, iso, curve, codes);
+    develop_codes<<<blocks_for(film.pixel_count()), kBlockSize, 0, stream>>>(film, exposure_time_s, iso, curve, codes);
     check_cuda(cudaGetLastError(), "starting to develop");
 }
 

@@ -5,7 +5,7 @@
 
 #include "../bvh/wide_bvh.hpp"
 #include "../camera/camera_view.hpp"
-#include "../render/ghost_film.hpp"
+#include "../render/film_view.hpp"
 #include "../render/kind_of.hpp"
 #include "../render/path_settings.hpp"
 #include "../render/pixel_sum.hpp"
@@ -56,21 +56,11 @@ void check_render_code();
 /// DeviceError.
 void launch_render(const RenderJob& job, std::int64_t pixels, cudaStream_t stream);
 
-/// A film in the memory of the device.
-struct DeviceFilm {
-    const PixelSum* sums;
-    int width, height;
-    bool balances;  ///< it holds what wavelength_balance.hpp needs
-    SplattedLight splatted;
-
-    REALCAM_HD std::int64_t pixels() const { return std::int64_t{width} * height; }
-};
-
 /// A film as exposure (3 per pixel, lux seconds) and depth (metres).
-void launch_develop(const DeviceFilm& film, double exposure_time_s, float* exposure, float* depth, cudaStream_t stream);
+void launch_develop(const FilmView& film, double exposure_time_s, float* exposure, float* depth, cudaStream_t stream);
 
 /// The same as 8-bit sRGB (3 per pixel).
-void launch_develop_codes(const DeviceFilm& film, double exposure_time_s, double iso, ToneCurve curve,
+void launch_develop_codes(const FilmView& film, double exposure_time_s, double iso, ToneCurve curve,
                           std::uint8_t* codes, cudaStream_t stream);
 
 /// The number of samples of each pixel.

@@ -71,7 +71,7 @@ struct ThreadSums {
         if (!has_besides) return;
         for (int c = 0; c < 3; ++c) (*this)[5 + c] += sample.besides[c];
     }
-    /// Of all threads of the pixel, but for the number of samples.
+    /// Of all threads of the pixel, but for the numbers of samples.
     __device__ PixelSum of_pixel(int lanes) {
         PixelSum sum{};
         for (int c = 0; c < 3; ++c) sum.irradiance[c] = sum_of_neighbours((*this)[c], lanes);
@@ -178,6 +178,7 @@ __global__ void __launch_bounds__(kBlockSize, kBlocksPerMultiprocessor)
     }
     PixelSum sum = sums.of_pixel(tiles.lanes);
     sum.samples = sum_of_neighbours(samples, tiles.lanes);
+    sum.passed = sum_of_neighbours(passed, tiles.lanes);
     if (inside && lane % tiles.lanes == 0) {
         if (shares) {
             const std::uint32_t bits =

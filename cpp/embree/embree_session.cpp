@@ -18,7 +18,6 @@
 #include "../render/scene_change.hpp"
 #include "../render/shares_samples.hpp"
 #include "../render/traced_lights.hpp"
-#include "../render/wavelength_balance.hpp"
 #include "embree_scene.hpp"
 #include "fast_pupil_tracer.hpp"
 #include "host_frame.hpp"
@@ -135,13 +134,13 @@ private:
     }
 
     std::vector<LayerImage> develop_besides() override {
-        return developed_besides(film_, settings().layers, camera().exposure_time_s, splatted());
+        return developed_besides(view(), settings().layers, camera().exposure_time_s);
     }
 
     std::shared_ptr<LiveFrame> start(const std::vector<SampleRange>& ranges, ToneCurve curve,
                                      std::shared_ptr<void> under_way) override {
         // Turns that follow wait for the frame, so that what this thread works with stays as it is.
-        auto work = [this, ranges, curve, size = size(), dials = Dials{camera().exposure_time_s, camera().iso},
+        auto work = [this, ranges, curve, film = camera().film, dials = Dials{camera().exposure_time_s, camera().iso},
                      settings = settings(), token = std::move(under_way)]() mutable {
             const std::shared_ptr<void> until_the_end = std::move(token);
             std::atomic<std::int64_t> done{0};
@@ -151,8 +150,8 @@ private:
             }
             if (is_stopped()) throw Cancelled();
             return arena(settings).execute([&] {
-                return developed_codes(film_, size, balances_wavelengths(settings), dials.exposure_time_s, dials.iso,
-                                       curve, splatted(), parallel_ray_loop({}, kDevelopedAtOnce));
+                return developed_codes(view(film, settings), dials.exposure_time_s, dials.iso, curve,
+                                       parallel_ray_loop({}, kDevelopedAtOnce));
             });
         };
         const Film& film = camera().film;
@@ -166,8 +165,7 @@ private:
 
     Image develop() override {
         Image image = arena(settings()).execute([&] {
-            return developed(film_, size(), balances_wavelengths(settings()), camera().exposure_time_s, splatted(),
-                             parallel_ray_loop({}, kDevelopedAtOnce));
+            return developed(view(), camera().exposure_time_s, parallel_ray_loop({}, kDevelopedAtOnce));
         });
         image.stats = stats_;
         image.stats.device = name();
@@ -189,7 +187,10 @@ private:
         double exposure_time_s, iso;
     };
 
-    FilmSize size() const { return {camera().film.width, camera().film.height}; }
+    FilmView view() const { return view(camera().film, settings()); }
+    FilmView view(const Film& film, const RenderSettings& settings) const {
+        return {film_.data(), film.width, film.height, film_balance(settings), view_of(splats_)};
+    }
 
     static tbb::task_arena arena(const RenderSettings& settings) {
         // For more threads than cores TBB writes a warning to the console, and starts as many as there are cores.
@@ -300,8 +301,6 @@ private:
         arena(settings).execute(
             [&] { tbb::parallel_for(std::uint64_t{0}, (count + kVisit - 1) / kVisit, visit_blocks, group); });
     }
-
-    SplattedLight splatted() const { return view_of(splats_); }
 
     /// visit(tile, without sums) of the region's tiles and some of the samples, until all were taken. A tile is left
     /// after some samples for the next, so that the share done grows everywhere.

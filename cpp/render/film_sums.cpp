@@ -3,110 +3,112 @@
 #include <algorithm>
 
 #include "../camera/code_table.hpp"
-#include "wavelength_balance.hpp"
 
 namespace realcam {
 
 namespace {
 
+std::size_t pixels_of(const FilmView& film) {
+    return static_cast<std::size_t>(film.pixel_count());
+}
+
 /// visit(pixel, what lies around it) for some pixels of a film.
 template <class Visit>
-void for_surroundings(const FilmSums& film, FilmSize size, std::size_t first, std::size_t last, Visit&& visit) {
-    const auto columns = static_cast<std::size_t>(size.width);
-    std::vector<ExcessSum> of_columns;
+void for_neighbourhoods(const FilmView& film, std::size_t first, std::size_t last, Visit&& visit) {
+    constexpr int kReach = PixelNeighbourhood::kReach;
+    const auto columns = static_cast<std::size_t>(film.width);
+    std::vector<PixelNeighbourhood> of_columns;
     while (first < last) {
         const std::size_t row = first / columns, end = std::min(last, (row + 1) * columns);
-        const int begin_column = static_cast<int>(first % columns) - ExcessSum::kReach,
-                  end_column = static_cast<int>(end - row * columns) + ExcessSum::kReach;
+        const int begin_column = std::max(0, static_cast<int>(first % columns) - kReach),
+                  end_column = std::min(film.width, static_cast<int>(end - row * columns) + kReach);
         of_columns.clear();
         for (int x = begin_column; x < end_column; ++x)
-            of_columns.push_back(ExcessSum::of_column(film.data(), size.width, size.height, x, static_cast<int>(row)));
+            of_columns.push_back(film.column_around(x, static_cast<int>(row)));
         for (; first < end; ++first)
-            visit(first, ExcessSum::around(static_cast<int>(first % columns), [&](int x) -> const ExcessSum& {
-                      return of_columns[static_cast<std::size_t>(x - begin_column)];
-                  }));
+            visit(first, PixelNeighbourhood::around(static_cast<int>(first % columns), film.width,
+                                                    [&](int x) -> const PixelNeighbourhood& {
+                                                        return of_columns[static_cast<std::size_t>(x - begin_column)];
+                                                    }));
     }
 }
 
-/// take(place, exposure) for each channel of the film, at its place among them all.
+/// take(pixel, channel, irradiance of the splatted light, balance) for each channel of a film.
 template <class Take>
-void for_exposures(const FilmSums& film, FilmSize size, bool balances, double exposure_time_s,
-                   const SplattedLight& splatted, const RayLoop& loop, Take&& take) {
-    const auto expose = [&](std::size_t i, int channel, double balance) {
-        const double ghosts = splatted.irradiance(static_cast<std::int64_t>(i), channel);
-        take(3 * i + static_cast<std::size_t>(channel), film[i].exposure(channel, exposure_time_s, ghosts, balance));
+void for_channels(const FilmView& film, const RayLoop& loop, Take&& take) {
+    const auto visit = [&](std::size_t i, const PixelNeighbourhood& around) {
+        film.for_channels(static_cast<std::int64_t>(i), around,
+                          [&](int channel, double ghosts, double balance) { take(i, channel, ghosts, balance); });
     };
-    loop.run(0, film.size(), [&](std::size_t first, std::size_t last) {
-        if (balances) {
-            for_surroundings(film, size, first, last, [&](std::size_t i, const ExcessSum& around) {
-                for (int c = 0; c < 3; ++c) expose(i, c, wavelength_balance(film[i], c, around.mean(c)));
-            });
-        } else {
-            for (std::size_t i = first; i < last; ++i)
-                for (int c = 0; c < 3; ++c) expose(i, c, 1);
-        }
+    loop.run(0, pixels_of(film), [&](std::size_t first, std::size_t last) {
+        if (film.balance.any()) return for_neighbourhoods(film, first, last, visit);
+        for (std::size_t i = first; i < last; ++i) visit(i, {});
+    });
+}
+
+/// take(place, exposure) for each channel of a film, at its place among them all.
+template <class Take>
+void for_exposures(const FilmView& film, double exposure_time_s, const RayLoop& loop, Take&& take) {
+    for_channels(film, loop, [&](std::size_t i, int channel, double ghosts, double balance) {
+        take(3 * i + static_cast<std::size_t>(channel),
+             film.pixels[i].exposure(channel, exposure_time_s, ghosts, balance));
     });
 }
 
 }  // namespace
 
-Image developed(const FilmSums& film, FilmSize size, bool balances, double exposure_time_s,
-                const SplattedLight& splatted, const RayLoop& loop) {
+Image developed(const FilmView& film, double exposure_time_s, const RayLoop& loop) {
     Image image;
-    image.width = size.width;
-    image.height = size.height;
-    image.exposure = PictureFloats(3 * film.size());
-    image.depth = PictureFloats(film.size());
-    for_exposures(film, size, balances, exposure_time_s, splatted, loop,
+    image.width = film.width;
+    image.height = film.height;
+    const std::size_t pixels = pixels_of(film);
+    image.exposure = PictureFloats(3 * pixels);
+    image.depth = PictureFloats(pixels);
+    for_exposures(film, exposure_time_s, loop,
                   [&](std::size_t place, float exposure) { image.exposure[place] = exposure; });
-    for (std::size_t i = 0; i < film.size(); ++i) image.depth[i] = film[i].mean_depth();
+    for (std::size_t i = 0; i < pixels; ++i) image.depth[i] = film.pixels[i].mean_depth();
     return image;
 }
 
-std::vector<std::uint8_t> developed_codes(const FilmSums& film, FilmSize size, bool balances, double exposure_time_s,
-                                          double iso, ToneCurve curve, const SplattedLight& splatted,
+std::vector<std::uint8_t> developed_codes(const FilmView& film, double exposure_time_s, double iso, ToneCurve curve,
                                           const RayLoop& loop) {
-    std::vector<std::uint8_t> codes(3 * film.size());
+    std::vector<std::uint8_t> codes(3 * pixels_of(film));
     const CodeTable code_of(iso, curve);
-    for_exposures(film, size, balances, exposure_time_s, splatted, loop,
+    for_exposures(film, exposure_time_s, loop,
                   [&](std::size_t place, float exposure) { codes[place] = code_of(exposure); });
     return codes;
 }
 
-LayerImage developed_variance(const FilmSums& film, double exposure_time_s, const SplattedLight& splatted) {
+LayerImage developed_variance(const FilmView& film, double exposure_time_s) {
     LayerImage image{Layer::variance, {}, {}};
-    image.values.reserve(3 * film.size());
-    for (std::size_t i = 0; i < film.size(); ++i)
+    image.values.reserve(3 * pixels_of(film));
+    for (std::int64_t i = 0; i < film.pixel_count(); ++i)
         for (int channel = 0; channel < 3; ++channel)
             image.values.push_back(
-                film[i].variance(channel, exposure_time_s, splatted.variance(static_cast<std::int64_t>(i), channel)));
+                film.pixels[i].variance(channel, exposure_time_s, film.splatted.variance(i, channel)));
     return image;
 }
 
 namespace {
 
-LayerImage developed_half(const FilmSums& film, Layer half, double exposure_time_s, const SplattedLight& splatted) {
-    LayerImage image{half, {}, {}};
-    image.values.reserve(3 * film.size());
-    for (std::size_t i = 0; i < film.size(); ++i) {
-        for (int channel = 0; channel < 3; ++channel) {
-            const double ghosts = splatted.irradiance(static_cast<std::int64_t>(i), channel);
-            const float right = film[i].right_exposure(channel, exposure_time_s, ghosts);
-            image.values.push_back(
-                half == Layer::dual_pixel_right ? right : film[i].exposure(channel, exposure_time_s, ghosts) - right);
-        }
-    }
+LayerImage developed_half(const FilmView& film, Layer half, double exposure_time_s) {
+    LayerImage image{half, std::vector<float>(3 * pixels_of(film)), {}};
+    for_channels(film, {}, [&](std::size_t i, int channel, double ghosts, double balance) {
+        const PixelSum& sum = film.pixels[i];
+        const float right = sum.right_exposure(channel, exposure_time_s, ghosts, balance);
+        image.values[3 * i + static_cast<std::size_t>(channel)] =
+            half == Layer::dual_pixel_right ? right : sum.exposure(channel, exposure_time_s, ghosts, balance) - right;
+    });
     return image;
 }
 
 }  // namespace
 
-std::vector<LayerImage> developed_besides(const FilmSums& film, LayerSet wanted, double exposure_time_s,
-                                          const SplattedLight& splatted) {
+std::vector<LayerImage> developed_besides(const FilmView& film, LayerSet wanted, double exposure_time_s) {
     std::vector<LayerImage> images;
-    if (wanted.has(Layer::variance)) images.push_back(developed_variance(film, exposure_time_s, splatted));
+    if (wanted.has(Layer::variance)) images.push_back(developed_variance(film, exposure_time_s));
     for (const Layer half : {Layer::dual_pixel_left, Layer::dual_pixel_right})
-        if (wanted.has(half)) images.push_back(developed_half(film, half, exposure_time_s, splatted));
+        if (wanted.has(half)) images.push_back(developed_half(film, half, exposure_time_s));
     return images;
 }
 

@@ -13,10 +13,11 @@ struct PixelSum {
     double irradiance[3];   ///< lux, summed over the samples
     double besides[3];  ///< summed where layers ask for it: squares of the samples' irradiance, or the irradiance
                         ///< of those that came through the right half of the exit pupil; else, of samples with
-                        ///< wavelengths, what wavelength_balance.hpp needs
+                        ///< wavelengths, what film_balance.hpp needs
     double depth;  ///< metres, summed over those that met something, times their weight in the exposure
     double met;  ///< their weight
-    std::uint64_t samples;  ///< a small picture that is never finished passes 2^32 within minutes
+    std::uint64_t samples, passed;  ///< and those that passed the lens; a small picture that is never finished has
+                                    ///< more than 2^32 within minutes
 
     REALCAM_HD PixelSum& operator+=(const PixelSum& other) {
         for (int c = 0; c < 3; ++c) irradiance[c] += other.irradiance[c];
@@ -28,6 +29,7 @@ struct PixelSum {
         depth += other.depth;
         met += other.met;
         samples += other.samples;
+        passed += other.passed;
     }
 
     REALCAM_INLINE void add(Color c) {
@@ -45,6 +47,7 @@ struct PixelSum {
             met += weight;
         }
         ++samples;
+        passed += static_cast<std::uint64_t>(results.passed[lane]);
     }
 
     REALCAM_INLINE void add_excess(Color c) {
@@ -70,7 +73,7 @@ struct PixelSum {
     }
 
     /// Lux seconds on the film; 0 where no sample was taken. `ghosts`: irradiance that was found apart from them, lux.
-    /// `balance`: see wavelength_balance.hpp.
+    /// `balance`: see film_balance.hpp.
     REALCAM_HD float exposure(int channel, double exposure_time_s, double ghosts = 0, double balance = 1) const {
         if (samples == 0) return 0;
         return film_exposure((balance * irradiance[channel] / static_cast<double>(samples) + ghosts) * exposure_time_s);
@@ -84,9 +87,10 @@ struct PixelSum {
         return film_exposure(((spread > 0 ? spread : 0) / (n * (n - 1)) + ghosts) * exposure_time_s * exposure_time_s);
     }
     /// The part of the exposure that came through the right half. Half of the ghosts is counted for it.
-    REALCAM_HD float right_exposure(int channel, double exposure_time_s, double ghosts = 0) const {
+    REALCAM_HD float right_exposure(int channel, double exposure_time_s, double ghosts = 0, double balance = 1) const {
         if (samples == 0) return 0;
-        return film_exposure((besides[channel] / static_cast<double>(samples) + 0.5 * ghosts) * exposure_time_s);
+        const double mean = balance * besides[channel] / static_cast<double>(samples);
+        return film_exposure((mean + 0.5 * ghosts) * exposure_time_s);
     }
     /// Mean depth, metres; infinite where nothing was met.
     REALCAM_HD float mean_depth() const {

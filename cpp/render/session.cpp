@@ -13,7 +13,6 @@
 #include "run_with_progress.hpp"
 #include "seconds_since.hpp"
 #include "see_layers.hpp"
-#include "wavelength_balance.hpp"
 
 namespace realcam {
 
@@ -179,8 +178,8 @@ Image Session::picture_of(const CollectedFilm& film, const KeepGoing& keep_going
     for (const SplatFilm& splats : film.splats)
         if (splats.blocks.empty() || splats.sums.size() != splats.blocks.size() * pixel_count())
             throw InputError("the film has other pixels than the picture");
-    const auto [width, height] = std::pair(camera_.film.width, camera_.film.height);
-    const SplattedLight splatted = view_of(film.splats);
+    const FilmView view{film.pixels.data(), camera_.film.width, camera_.film.height, film_balance(settings_),
+                        view_of(film.splats)};
     LayerFilm layers{film.layers, {}};
     if (wanted.has_any(kMiddleLayers)) {
         layers.middle.resize(pixel_count());
@@ -188,10 +187,9 @@ Image Session::picture_of(const CollectedFilm& film, const KeepGoing& keep_going
         run_heeding([&] { see_middle_surfaces(layers.middle, stop); }, keep_going, stop);
         if (stop) throw Cancelled();
     }
-    Image image =
-        developed(film.pixels, {width, height}, balances_wavelengths(settings_), camera_.exposure_time_s, splatted);
+    Image image = developed(view, camera_.exposure_time_s);
     add_layers(
-        image, layers, [&] { return developed_besides(film.pixels, wanted, camera_.exposure_time_s, splatted); },
+        image, layers, [&] { return developed_besides(view, wanted, camera_.exposure_time_s); },
         [&] { return samples_of(film.pixels); });
     image.spp = mean_of(samples_of(film.pixels));
     image.stats = film.stats;

@@ -1,8 +1,7 @@
 #pragma once
 #include "../camera/camera_view.hpp"
-#include "render_settings.hpp"
+#include "film_balance.hpp"
 #include "sample_range.hpp"
-#include "wavelength_balance.hpp"
 
 namespace realcam {
 

@@ -19,7 +19,7 @@ from .pickling import same_arrays, set_checked_state
 if TYPE_CHECKING:
     from ._core import RenderSettings, _Region, _Splats
 
-FORMAT = 1
+FORMAT = 2
 
 
 @dataclass(frozen=True, eq=False)

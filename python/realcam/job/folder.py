@@ -17,7 +17,7 @@ from ..film_part import FilmPart
 from .engine import Engine
 from .units import Round, ShotRecord, Unit
 
-FORMAT = 3
+FORMAT = 4
 JOB_FILE = "job.json"
 
 

@@ -15,7 +15,6 @@
 #include "doctest/doctest.h"
 #include "io/lens/lens_file.hpp"
 #include "optics/lens/focus.hpp"
-#include "render/film_sums.hpp"
 #include "render/live_view.hpp"
 #include "render/take_picture.hpp"
 
@@ -263,47 +262,6 @@ TEST_CASE("as many frames are under way as the device takes") {
     session.stop_flag = true;  // so that the frames under way end
 }
 
-TEST_CASE("each pixel is developed with its own number of samples") {
-    FilmSums film(3);
-    film[0] = {{2, 4, 6}, {}, 9, 3, 4};
-    film[1] = {{2, 4, 6}, {}, 0, 0, 2};
-    const Image image = developed(film, {3, 1}, false, 2);
-    CHECK(std::vector<float>(image.exposure.begin(), image.exposure.end()) ==
-          std::vector<float>{1, 2, 3, 2, 4, 6, 0, 0, 0});
-    constexpr float none = std::numeric_limits<float>::infinity();
-    CHECK(std::vector<float>(image.depth.begin(), image.depth.end()) == std::vector<float>{3, none, none});
-    CHECK(samples_of(film) == std::vector<std::int64_t>{4, 2, 0});
-    // Exposures of 1 to 6 times middle grey, 10 / ISO lux seconds (ISO 12232): 0.18 to 1.08 of white, by IEC 61966-2-1.
-    CHECK(developed_codes(film, {3, 1}, false, 2, 10, ToneCurve::linear) ==
-          std::vector<std::uint8_t>{118, 162, 194, 162, 221, 255, 0, 0, 0});
-    film[0] += film[1];
-    CHECK(samples_of(film)[0] == 6);
-}
-
-TEST_CASE("what a pixel has too much of one colour by chance is taken out, and what all have is kept") {
-    // An evenly lit film of 6 lux, of whose light the lens passes a tenth more in red and a tenth less in blue.
-    constexpr double kChance = 0.1;
-    const PixelSum even = {{6600, 6000, 5400}, {100, 0, -100}, 0, 0, 1000};
-    FilmSums film(81, even);
-    PixelSum& pixel = film[40];
-    const double chance[3] = {kChance, -kChance, 0.5 * kChance};
-    for (std::size_t c = 0; c < 3; ++c) {
-        pixel.besides[c] += 1000 * chance[c];
-        pixel.irradiance[c] += 6000 * chance[c];
-    }
-    const Image image = developed(film, {9, 9}, true, 1);
-    for (std::size_t c = 0; c < 3; ++c) {
-        CAPTURE(c);
-        const double of_all = even.irradiance[c] / 1000, here = static_cast<double>(image.exposure[3 * 40 + c]);
-        // Left are the pixel's own part of the mean of 25, and what is of the second and third order: of a tenth.
-        CHECK(std::fabs(here / of_all - 1) < kChance * (0.04 + 0.1) + 2 * kChance * kChance * kChance);
-        CHECK(static_cast<double>(image.exposure[c]) == doctest::Approx(of_all).epsilon(1e-6));
-    }
-    // The same film as codes, and where the sums beside the light are not these.
-    CHECK(developed_codes(film, {9, 9}, true, 0.01, 100, ToneCurve::film)[3 * 40] <
-          developed_codes(film, {9, 9}, false, 0.01, 100, ToneCurve::film)[3 * 40]);
-}
-
 TEST_CASE("layers catch up with the samples of a picture, and are seen once") {
     const Assembly scene(test::bare_scene());
     Camera camera = small_camera();
@@ -377,19 +335,6 @@ TEST_CASE("layers catch up with the samples of a picture, and are seen once") {
         session.add(1);
         CHECK(session.notes == kAnew);
     }
-}
-
-TEST_CASE("the variance of a pixel is that of the mean of its samples") {
-    FilmSums film(2);
-    // Samples 1, 2 and 6 of one channel: their variance is 7, that of their mean 7 / 3, after 2 s four times as much.
-    film[0] = {{9, 0, 3}, {41, 0, 3}, 0, 0, 3};
-    film[1] = {{5, 5, 5}, {25, 25, 25}, 0, 0, 1};
-    const LayerImage variance = developed_variance(film, 2);
-    REQUIRE(variance.values.size() == 6);
-    CHECK(double(variance.values[0]) == doctest::Approx(28.0 / 3));
-    CHECK(variance.values[1] == 0);
-    CHECK(variance.values[2] == 0);
-    for (std::size_t i = 3; i < 6; ++i) CHECK(std::isnan(variance.values[i]));
 }
 
 TEST_CASE("a view that stands still is a new session's picture, whatever lens was before") {
@@ -478,7 +423,7 @@ TEST_CASE("a picture is developed of what was collected elsewhere") {
     NotedSession session;
     session.set(Assembly(test::bare_scene()), camera, settings);
     CollectedFilm film{FilmSums(1), {}, {}, {}};
-    film.pixels[0] = {{9, 0, 3}, {41, 0, 3}, 0, 0, 3};
+    film.pixels[0] = {{9, 0, 3}, {41, 0, 3}, 0, 0, 3, 3};
     film.stats.sampled_rays = 77;
     const Image image = session.picture_of(film);
     CHECK(image.exposure[0] == 6);  // 9 lux over 3 samples, 2 s

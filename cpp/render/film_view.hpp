@@ -1,0 +1,33 @@
+#pragma once
+#include "film_balance.hpp"
+#include "ghost_film.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// A film in the memory of the host or of a GPU, as it is developed.
+struct FilmView {
+    const PixelSum* pixels;  ///< row by row
+    int width, height;
+    FilmBalance balance = {};
+    SplattedLight splatted = {};
+
+    REALCAM_HD std::int64_t pixel_count() const { return std::int64_t{width} * height; }
+
+    REALCAM_HD PixelNeighbourhood column_around(int column, int row) const {
+        return PixelNeighbourhood::of_column(pixels, width, height, column, row, balance.wavelengths);
+    }
+
+    /// take(channel, irradiance of the splatted light, balance) of a pixel: what PixelSum::exposure asks for.
+    /// `around`: of the pixel, where anything is balanced.
+    template <class Take>
+    REALCAM_HD void for_channels(std::int64_t pixel, const PixelNeighbourhood& around, Take&& take) const {
+        const PixelSum& sum = pixels[pixel];
+        const double passes = balance.passes ? pass_balance(sum, around) : 1;
+        for (int c = 0; c < 3; ++c) {
+            const bool is_coloured = balance.wavelengths && sum.samples > 0;
+            take(c, splatted.irradiance(pixel, c), is_coloured ? passes * wavelength_balance(sum, c, around) : passes);
+        }
+    }
+};
+
+}  // namespace REALCAM_NAMESPACE
