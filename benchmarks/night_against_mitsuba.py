@@ -136,10 +136,11 @@ def main() -> None:
     arguments = parser.parse_args()
     dr.set_thread_count(arguments.threads)
     record: Result = {"machine": machine(), "threads": arguments.threads, "mitsuba": mi.__version__, "scenes": {}}
+    pieces = max(1, arguments.reference_spp // 1024)  # of Mitsuba's memory
     for name, make in SCENES.items():
         programs = programs_of(make(), arguments.threads)
         ours = programs["realcam"].take(arguments.reference_spp, 1000)
-        theirs = np.mean([programs["mitsuba"].take(1024, 1000 + k) for k in range(arguments.reference_spp // 1024)], 0)
+        theirs = np.mean([programs["mitsuba"].take(1024, 1000 + k) for k in range(pieces)], 0)
         reference = 0.5 * (ours + theirs)
         scale = reference**2 + (0.01 * reference.mean()) ** 2
         counts = {"realcam": [4, 16, 64], "realcam, samples of pixels alone": [64, 256], "mitsuba": [64, 256, 1024]}
