@@ -12,9 +12,15 @@ from frame_scene import FRAME_EMITTER_RADIANCE, frame_scene_arrays
 Settings = dict[str, object]
 
 
-def mesh(name: str, vertices: np.ndarray, faces: np.ndarray, radiance: float = 0.0) -> mi.Mesh:
+DIFFUSE: Settings = {"type": "diffuse", "reflectance": {"type": "rgb", "value": 0.5}}
+TWO_SIDED: Settings = {"type": "twosided", "bsdf": DIFFUSE}
+
+
+def mesh(
+    name: str, vertices: np.ndarray, faces: np.ndarray, radiance: float = 0.0, bsdf: Settings = DIFFUSE
+) -> mi.Mesh:
     properties = mi.Properties()
-    properties["mesh_bsdf"] = mi.load_dict({"type": "diffuse", "reflectance": {"type": "rgb", "value": 0.5}})
+    properties["mesh_bsdf"] = mi.load_dict(bsdf)
     if radiance:
         properties["mesh_emitter"] = mi.load_dict({"type": "area", "radiance": {"type": "rgb", "value": radiance}})
     result = mi.Mesh(name, len(vertices), len(faces), props=properties)

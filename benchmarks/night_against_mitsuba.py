@@ -23,10 +23,11 @@ import mitsuba as mi
 import numpy as np
 import realcam as rc
 from against_mitsuba_cpu import Program, error_at, mitsuba_program
+from demo_triangles import demo_triangles
 from frame_scene import _quad, _sphere
 from machine import Result, machine
 from mitsuba_lens import load_lens_sensor
-from mitsuba_scene import mesh
+from mitsuba_scene import TWO_SIDED, mesh
 
 FILM = rc.Film(36, 24, (240, 160))
 WANTED = 0.01  # relative mean square error
@@ -37,13 +38,14 @@ Mesh = tuple[np.ndarray, np.ndarray]
 
 @dataclass(frozen=True)
 class Night:
-    """Diffuse things and lamps of one radiance (cd/m^2) under a sky, and where the lens is focused (m)."""
+    """Diffuse things, lamps by their radiance (cd/m^2), and a sky; where the lens stands, looks and is focused (m)."""
 
     things: list[Mesh]
-    lamps: list[Mesh]
-    radiance: float
+    lamps: dict[float, list[Mesh]]
     sky: float
     focus_m: float
+    position: tuple[float, float, float] = (0, 0, 0)
+    look_at: tuple[float, float, float] = (0, 0, -1)
 
 
 def _joined(meshes: list[Mesh]) -> Mesh:
@@ -67,46 +69,53 @@ def garlands() -> Night:
     for _ in range(40):
         z = random.uniform(-10, -2.5)
         lamps.append(_sphere((random.uniform(-0.3, 0.3) * -z, random.uniform(-0.02, 0.2) * -z, z), 0.008, 8, 4))
-    return Night([table, *balls, _ground(-1)], lamps, 3e4, 1.0, 1.0)
+    return Night([table, *balls, _ground(-1)], {3e4: lamps}, 1.0, 1.0)
 
 
 def street() -> Night:
     """Lamps of a street at 8 to 60 m, seen past something at 1.5 m."""
     lamps = [_sphere((side * 3.5, 2.5, -z), 0.08, 12, 6) for side in (-1, 1) for z in np.linspace(8, 60, 10)]
-    # Mitsuba's diffuse surfaces have one side: that to the street.
-    walls = [
-        _quad([(side * 5, bottom, 0), (side * 5, -bottom, 0), (side * 5, -bottom, -70), (side * 5, bottom, -70)])
-        for side, bottom in ((1, -6), (-1, 6))
-    ]
-    return Night([_ground(-1.5), _sphere((0.1, -0.1, -1.5), 0.15, 32, 16), *walls], lamps, 2e4, 0.2, 1.5)
+    walls = [_quad([(x, -6, 0), (x, 6, 0), (x, 6, -70), (x, -6, -70)]) for x in (-5, 5)]
+    return Night([_ground(-1.5), _sphere((0.1, -0.1, -1.5), 0.15, 32, 16), *walls], {2e4: lamps}, 0.2, 1.5)
 
 
 def before_the_focus() -> Night:
     """Lamps at 0.5 to 0.8 m, where the lens is focused at 4 m."""
     lamps = [_sphere((0.02 * x, 0.05 * np.sin(x), -0.5 - 0.03 * abs(x)), 0.001, 8, 4) for x in range(-8, 9)]
-    return Night([_ground(-0.5), *(_sphere((x, 0, -4), 0.4, 32, 16) for x in (-1, 0, 1))], lamps, 1e5, 5.0, 4.0)
+    return Night([_ground(-0.5), *(_sphere((x, 0, -4), 0.4, 32, 16) for x in (-1, 0, 1))], {1e5: lamps}, 5.0, 4.0)
 
 
-SCENES: dict[str, Callable[[], Night]] = {"garlands": garlands, "street": street, "before the focus": before_the_focus}
+def demo() -> Night:
+    """The demo's shot in matt grey, whose lamps and sky have the mean of their channels."""
+    things: list[Mesh] = []
+    lamps: dict[float, list[Mesh]] = {}
+    for part, radiance in demo_triangles():
+        (lamps.setdefault(radiance, []) if radiance > 0 else things).append(part)
+    return Night(things, lamps, 31.3, 1.05, (0, 0.25, 1.1), (0, 0.12, 0))
+
+
+SCENES: dict[str, Callable[[], Night]] = {
+    "demo": demo,
+    "garlands": garlands,
+    "street": street,
+    "before the focus": before_the_focus,
+}
 
 
 def programs_of(night: Night, threads: int) -> dict[str, Program]:
-    (thing_points, things), (lamp_points, lamps) = _joined(night.things), _joined(night.lamps)
+    parts = {0.0: _joined(night.things)} | {radiance: _joined(lamps) for radiance, lamps in night.lamps.items()}
     scene = rc.Scene.from_arrays(
-        *_joined([(thing_points, things), (lamp_points, lamps)]),
-        triangle_materials=np.repeat([0, 1], [len(things), len(lamps)]),
-        materials=[rc.Material(), rc.Material(emission=3 * (night.radiance,))],
+        *_joined(list(parts.values())),
+        triangle_materials=np.repeat(range(len(parts)), [len(faces) for _, faces in parts.values()]),
+        materials=[rc.Material(emission=3 * (radiance,)) for radiance in parts],
     ).with_environment(night.sky)
-    peer = mi.load_dict(
-        {
-            "type": "scene",
-            "things": mesh("things", thing_points, things),
-            "lamps": mesh("lamps", lamp_points, lamps, night.radiance),
-            "sky": {"type": "constant", "radiance": {"type": "rgb", "value": night.sky}},
-        }
-    )
+    meshes = {
+        f"part{i}": mesh(f"part{i}", *part, radiance, TWO_SIDED) for i, (radiance, part) in enumerate(parts.items())
+    }
+    sky = {"type": "constant", "radiance": {"type": "rgb", "value": night.sky}}
+    peer = mi.load_dict({"type": "scene", "sky": sky} | meshes)
     lens = rc.Lens.load("double-gauss-50mm").focused(night.focus_m)
-    camera = rc.Camera(lens, film=FILM, position=(0, 0, 0), look_at=(0, 0, -1), exposure_time_s=1)
+    camera = rc.Camera(lens, film=FILM, position=night.position, look_at=night.look_at, exposure_time_s=1)
 
     def ours(tracing: str) -> Program:
         def take(spp: int, seed: int) -> np.ndarray:

@@ -1,0 +1,59 @@
+"""The triangles of scenes/demo.glb by material, for programs that read no glTF."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+
+DEMO = Path(__file__).parent.parent / "scenes" / "demo.glb"
+DTYPES = {5123: np.uint16, 5125: np.uint32, 5126: np.float32}
+WIDTHS = {"SCALAR": 1, "VEC3": 3}
+
+Mesh = tuple[np.ndarray, np.ndarray]
+
+
+def demo_triangles() -> list[tuple[Mesh, float]]:
+    """Each part of a mesh in metres, as (points, faces), with the mean radiance of its channels, cd/m^2."""
+    data = DEMO.read_bytes()
+    json_bytes = int.from_bytes(data[12:16], "little")
+    gltf, buffer = json.loads(data[20 : 20 + json_bytes]), data[28 + json_bytes :]
+
+    def array(accessor: int) -> np.ndarray:
+        about = gltf["accessors"][accessor]
+        view = gltf["bufferViews"][about["bufferView"]]
+        width = WIDTHS[about["type"]]
+        offset = view.get("byteOffset", 0) + about.get("byteOffset", 0)
+        values = np.frombuffer(buffer, DTYPES[about["componentType"]], about["count"] * width, offset)
+        return values.reshape(-1, width)
+
+    parts = []
+    for node in gltf["nodes"]:
+        if "mesh" not in node:
+            continue
+        if {"matrix", "children"} & node.keys():
+            raise ValueError("nodes of the demo are placed by translation, rotation and scale")
+        turn = rotation(node.get("rotation", (0, 0, 0, 1)))
+        for part in gltf["meshes"][node["mesh"]]["primitives"]:
+            points = array(part["attributes"]["POSITION"]) * node.get("scale", (1, 1, 1)) @ turn.T
+            faces = array(part["indices"]).reshape(-1, 3).astype(np.int64)
+            parts.append(((points + node.get("translation", (0, 0, 0)), faces), radiance(gltf, part["material"])))
+    return parts
+
+
+def rotation(quaternion: tuple[float, float, float, float]) -> np.ndarray:
+    x, y, z, w = quaternion
+    return np.array(
+        [
+            [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+            [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+            [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
+        ]
+    )
+
+
+def radiance(gltf: dict, material: int) -> float:
+    about = gltf["materials"][material]
+    strength = about.get("extensions", {}).get("KHR_materials_emissive_strength", {}).get("emissiveStrength", 1)
+    return float(np.mean(about.get("emissiveFactor", (0, 0, 0))) * strength)
