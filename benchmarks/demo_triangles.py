@@ -6,6 +6,7 @@ import json
 from pathlib import Path
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 DEMO = Path(__file__).parent.parent / "scenes" / "demo.glb"
 DTYPES = {5123: np.uint16, 5125: np.uint32, 5126: np.float32}
@@ -34,23 +35,12 @@ def demo_triangles() -> list[tuple[Mesh, float]]:
             continue
         if {"matrix", "children"} & node.keys():
             raise ValueError("nodes of the demo are placed by translation, rotation and scale")
-        turn = rotation(node.get("rotation", (0, 0, 0, 1)))
+        turn = Rotation.from_quat(node.get("rotation", (0, 0, 0, 1)))
         for part in gltf["meshes"][node["mesh"]]["primitives"]:
-            points = array(part["attributes"]["POSITION"]) * node.get("scale", (1, 1, 1)) @ turn.T
+            points = turn.apply(array(part["attributes"]["POSITION"]) * node.get("scale", (1, 1, 1)))
             faces = array(part["indices"]).reshape(-1, 3).astype(np.int64)
             parts.append(((points + node.get("translation", (0, 0, 0)), faces), radiance(gltf, part["material"])))
     return parts
-
-
-def rotation(quaternion: tuple[float, float, float, float]) -> np.ndarray:
-    x, y, z, w = quaternion
-    return np.array(
-        [
-            [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
-            [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
-            [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
-        ]
-    )
 
 
 def radiance(gltf: dict, material: int) -> float:

@@ -23,7 +23,7 @@ import mitsuba as mi
 import numpy as np
 import realcam as rc
 from against_mitsuba_cpu import Program, error_at, mitsuba_program
-from demo_triangles import demo_triangles
+from demo_triangles import DEMO, demo_triangles
 from frame_scene import _quad, _sphere
 from machine import Result, machine
 from mitsuba_lens import load_lens_sensor
@@ -91,7 +91,8 @@ def demo() -> Night:
     lamps: dict[float, list[Mesh]] = {}
     for part, radiance in demo_triangles():
         (lamps.setdefault(radiance, []) if radiance > 0 else things).append(part)
-    return Night(things, lamps, 31.3, 1.05, (0, 0.25, 1.1), (0, 0.12, 0))
+    camera = rc.Shot.load(DEMO.with_suffix(".toml")).camera
+    return Night(things, lamps, 31.3, camera.lens.focus_distance_m, camera.position, camera.look_at)
 
 
 SCENES: dict[str, Callable[[], Night]] = {

@@ -123,7 +123,7 @@ def test_another_version_is_refused_by_its_name(tmp_path: Path) -> None:
     )
     about["format"] += 1
     (folder / "job.json").write_text(json.dumps(about))
-    with pytest.raises(rc.InputError, match=r"its format is \d; this realcam reads \d"):
+    with pytest.raises(rc.InputError, match=f"its format is {FORMAT + 1}; this realcam reads {FORMAT}"):
         rc.Job.load(folder)
 
 
