@@ -55,8 +55,7 @@ py::array_t<float> developed_exposure(const FilmArrays& arrays, const RenderSett
     const auto height = arrays.pixels.shape(0), width = arrays.pixels.shape(1);
     Image image = [&] {
         const Unlocked unlocked;
-        return developed({film.pixels.data(), static_cast<int>(width), static_cast<int>(height), film_balance(settings),
-                          view_of(film.splats)},
+        return developed(view_of(film.pixels, static_cast<int>(width), static_cast<int>(height), settings, film.splats),
                          exposure_time_s);
     }();
     return array_from(std::move(image.exposure), {height, width, 3});

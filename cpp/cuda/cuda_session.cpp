@@ -231,7 +231,7 @@ private:
     bool fits() const { return rows_ == height(); }
     FilmBalance balance() const { return film_balance(settings()); }
     FilmView on_host(const FilmSums& film, const std::vector<SplatFilm>& splats) const {
-        return {film.data(), width(), height(), balance(), view_of(splats)};
+        return view_of(film, width(), height(), settings(), splats);
     }
 
     /// The settings of a range of samples. The seed changes where a random sequence ends.

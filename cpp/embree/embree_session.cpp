@@ -189,7 +189,7 @@ private:
 
     FilmView view() const { return view(camera().film, settings()); }
     FilmView view(const Film& film, const RenderSettings& settings) const {
-        return {film_.data(), film.width, film.height, film_balance(settings), view_of(splats_)};
+        return view_of(film_, film.width, film.height, settings, splats_);
     }
 
     static tbb::task_arena arena(const RenderSettings& settings) {

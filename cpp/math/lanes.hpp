@@ -61,4 +61,9 @@ REALCAM_INLINE constexpr Vec3<T> select(bool condition, Vec3<T> a, Vec3<T> b) {
     return {condition ? a.x : b.x, condition ? a.y : b.y, condition ? a.z : b.z};
 }
 
+/// NaN becomes the least.
+REALCAM_INLINE constexpr float at_least(float v, float least) {
+    return select(v > least, v, least);
+}
+
 }  // namespace REALCAM_NAMESPACE

@@ -10,6 +10,11 @@ SplattedLight view_of(const std::vector<SplatFilm>& films) {
     return light;
 }
 
+FilmView view_of(const FilmSums& pixels, int width, int height, const RenderSettings& settings,
+                 const std::vector<SplatFilm>& splats) {
+    return {pixels.data(), width, height, film_balance(settings), view_of(splats)};
+}
+
 std::vector<float> traced_exposure(const std::vector<SplatFilm>& films, double exposure_time_s) {
     const auto lit = std::find_if(films.begin(), films.end(), [](const SplatFilm& film) { return !film.sums.empty(); });
     if (lit == films.end()) return {};

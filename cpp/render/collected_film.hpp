@@ -40,6 +40,10 @@ struct SplatFilm {
 /// Views of at most kMostSplats films, which must outlive them.
 SplattedLight view_of(const std::vector<SplatFilm>& films);
 
+/// A film in the host's memory as it is developed. The pixels' sums and the splats must outlive it.
+FilmView view_of(const FilmSums& pixels, int width, int height, const RenderSettings& settings,
+                 const std::vector<SplatFilm>& splats);
+
 /// What of the exposure these are, 3 per pixel, lux seconds. Empty where they have no pixels.
 std::vector<float> traced_exposure(const std::vector<SplatFilm>& films, double exposure_time_s);
 

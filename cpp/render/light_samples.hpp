@@ -49,6 +49,7 @@ struct PickedLights {
     ColorLanes<N> radiance;
     Lanes<float, N> area, margin;
     Lanes<std::int32_t, N> is_two_sided;
+    Lanes<std::uint32_t, N> triangle, instance;
     bool any_area = false, any_sky = false, any_other = false;
 
     REALCAM_INLINE void set_area(int lane, const AreaLight& light) {
@@ -62,6 +63,8 @@ struct PickedLights {
         area[lane] = light.area;
         margin[lane] = light.margin;
         is_two_sided[lane] = light.is_two_sided;
+        triangle[lane] = light.triangle;
+        instance[lane] = light.instance;
     }
     REALCAM_INLINE void set_sky(int lane) {
         source[lane] = Source::sky;
@@ -73,8 +76,8 @@ struct PickedLights {
         others.set(lane, sample);
     }
     REALCAM_INLINE AreaLight area_light(int lane) const {
-        return {
-            corner[lane], edge_u[lane], edge_v[lane], normal[lane], 0, radiance[lane], area[lane], margin[lane], 0, 0};
+        return {corner[lane],   edge_u[lane], edge_v[lane], normal[lane],   is_two_sided[lane],
+                radiance[lane], area[lane],   margin[lane], triangle[lane], instance[lane]};
     }
 };
 
@@ -122,14 +125,37 @@ private:
 
 namespace light_samples_detail {
 
-/// Where it is at a time, with the radiance of the place that these numbers choose.
-template <SceneKind scene_kind>
-REALCAM_INLINE AreaLight placed_area_light(const SceneView& scene, const AreaLight& stored, Vec2f u, float time) {
-    AreaLight light = stored;
-    if constexpr (scene_kind == SceneKind::any) light = area_light_at(scene, stored, time);
-    const Vec2f place = sample_triangle(u);
-    light.radiance = emitted_radiance<scene_kind>(scene, light, place.x, place.y);
-    return light;
+/// Places on the area lights that lanes have picked.
+template <int N>
+struct LightPlaces {
+    Vec2Lanes<float, N> at;  ///< barycentric
+    Lanes<std::int32_t, N> is_near;
+    Lanes<float, N> solid_angle;  ///< of lights that are near
+};
+
+/// As sample_area_light draws them.
+template <int N, class SurfacesT>
+REALCAM_INLINE void sample_places(const PickedLights<N>& picked, const SurfacesT& surfaces, int places,
+                                  LightPlaces<N>& drawn) {
+    using realcam::select;
+    std::int32_t any_near = 0;
+    REALCAM_LANES
+    for (int i = 0; i < places; ++i) {
+        const bool is_near =
+            (picked.source[i] == Source::area) & realcam::is_near(picked.area_light(i), surfaces.position[i]);
+        drawn.is_near[i] = is_near ? 1 : 0;
+        any_near |= drawn.is_near[i];
+        drawn.at.set(i, sample_triangle(picked.u[i]));
+    }
+    if (any_near == 0) return;
+    REALCAM_LANES
+    for (int i = 0; i < places; ++i) {
+        const NearPlace near = sample_near(picked.area_light(i), surfaces.position[i], picked.u[i]);
+        const bool is_near = drawn.is_near[i] != 0;
+        const Vec2f far = drawn.at[i];
+        drawn.at.set(i, {select(is_near, near.at.x, far.x), select(is_near, near.at.y, far.y)});
+        drawn.solid_angle[i] = near.solid_angle;
+    }
 }
 
 /// Whether the places in its tables can be counted in 32 bits.
@@ -172,12 +198,15 @@ REALCAM_INLINE void pick_lights(const SceneView& scene, const LightKindsLanes<N>
         if (!(pick.probability > 0.0f)) continue;
         picked.u.set(i, pick.u);
         picked.probability[i] = pick.probability;
-        if (pick.kind == LightKind::area)
-            picked.set_area(i, placed_area_light<scene_kind>(scene, scene.areas[pick.index], pick.u, receiver.time));
-        else if (pick.kind == LightKind::environment && fits_lanes(scene.environment))
+        if (pick.kind == LightKind::area) {
+            AreaLight light = scene.areas[pick.index];
+            if constexpr (scene_kind == SceneKind::any) light = area_light_at(scene, light, receiver.time);
+            picked.set_area(i, light);
+        } else if (pick.kind == LightKind::environment && fits_lanes(scene.environment)) {
             picked.set_sky(i);
-        else
+        } else {
             picked.set_other(i, sample_picked<scene_kind>(scene, receiver, pick));
+        }
     }
 }
 
@@ -194,17 +223,25 @@ REALCAM_INLINE void sample_lights(const SceneView& scene, const LightKindsLanes<
     pick_lights<scene_kind>(scene, kinds, number, surfaces, path, u, seed, picked);
     const int count = path.count, places = whole_vectors<N>(count);
     if (picked.any_area) {
+        LightPlaces<N> drawn;
+        sample_places(picked, surfaces, places, drawn);
+        if constexpr (scene_kind != SceneKind::plain) {
+            for (int i = 0; i < count; ++i)
+                if (picked.source[i] == Source::area)
+                    picked.radiance.set(
+                        i, emitted_radiance<scene_kind>(scene, picked.area_light(i), drawn.at[i].x, drawn.at[i].y));
+        }
         REALCAM_LANES
         for (int i = 0; i < places; ++i) {
             const bool on_both_sides = scene_kind != SceneKind::plain && picked.is_two_sided[i] != 0;
-            const WayToLight way =
-                way_to(picked.area_light(i), on_both_sides, surfaces.position[i], sample_triangle(picked.u[i]));
-            const float scale = 1.0f / way.pdf;
+            const WayToLight way = way_to(picked.area_light(i), on_both_sides, surfaces.position[i], drawn.at[i]);
+            const bool is_near = drawn.is_near[i] != 0;
+            const float scale = select(is_near, drawn.solid_angle[i], 1.0f / way.pdf);
             samples.direction.set(i, way.direction);
             samples.irradiance.set(i, select(way.cosine > 0.0f, scale, 0.0f) * picked.radiance[i]);
             samples.distance[i] = way.distance;
             samples.reach[i] = way.reach;
-            samples.pdf[i] = way.pdf;
+            samples.pdf[i] = select(is_near, 1.0f / drawn.solid_angle[i], way.pdf);
         }
     }
     if (picked.any_sky) {

@@ -178,8 +178,7 @@ Image Session::picture_of(const CollectedFilm& film, const KeepGoing& keep_going
     for (const SplatFilm& splats : film.splats)
         if (splats.blocks.empty() || splats.sums.size() != splats.blocks.size() * pixel_count())
             throw InputError("the film has other pixels than the picture");
-    const FilmView view{film.pixels.data(), camera_.film.width, camera_.film.height, film_balance(settings_),
-                        view_of(film.splats)};
+    const FilmView view = view_of(film.pixels, camera_.film.width, camera_.film.height, settings_, film.splats);
     LayerFilm layers{film.layers, {}};
     if (wanted.has_any(kMiddleLayers)) {
         layers.middle.resize(pixel_count());

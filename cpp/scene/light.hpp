@@ -1,4 +1,5 @@
 #pragma once
+#include "../math/spherical_triangle.hpp"
 #include "environment.hpp"
 #include "light_tree.hpp"
 #include "opacity.hpp"
@@ -84,14 +85,72 @@ REALCAM_INLINE Vec2f sample_triangle(Vec2f u) {
     return {root * (1.0f - u.y), root * u.y};
 }
 
-/// A point on an area light, drawn evenly.
+/// Whether places on an area light are drawn evenly by the solid angle in which they are seen. Drawn evenly by area,
+/// those next to the position would count without a bound. This is so up to about 1.2 times the light's size, so that
+/// the nearest corner of those drawn by area is no less than a third of its middle's distance away.
+REALCAM_INLINE bool is_near(const AreaLight& light, Vec3f position) {
+    const Vec3f to_middle = light.corner + (1.0f / 3.0f) * (light.edge_u + light.edge_v) - position;
+    // 1.5 times the sum of the squared distances of the corners from the middle.
+    const float size2 =
+        dot(light.edge_u, light.edge_u) + dot(light.edge_v, light.edge_v) - dot(light.edge_u, light.edge_v);
+    return dot(to_middle, to_middle) < size2;
+}
+
+/// A place drawn evenly by solid angle, in barycentric coordinates.
+struct NearPlace {
+    Vec2f at;
+    float solid_angle;  ///< of the whole light
+};
+
+/// Called by GPUs, because few receivers are near a light.
+REALCAM_ONE_COPY NearPlace sample_spherical_triangle(Vec3f a, Vec3f b, Vec3f c, float double_area, float height,
+                                                     Vec2f u) {
+    const SphericalTriangle seen(a, b, c, double_area, height);
+    return {seen.sample(u), seen.solid_angle};
+}
+
+REALCAM_INLINE NearPlace sample_near(const AreaLight& light, Vec3f position, Vec2f u) {
+    const Vec3f way = light.corner - position;
+    return sample_spherical_triangle(way, way + light.edge_u, way + light.edge_v, 2.0f * light.area,
+                                     std::fabs(dot(way, light.normal)), u);
+}
+
+/// Of a place on an area light that sample_area_light draws, per steradian.
+REALCAM_INLINE float place_pdf(const AreaLight& light, Vec3f position, float distance, float cosine) {
+    return is_near(light, position) ? 1.0f / sample_near(light, position, {0, 0}).solid_angle
+                                    : area_light_pdf(light.area, distance * distance, cosine);
+}
+
+/// What arrives from a place on an area light, with its density. Black where the way is from behind.
 template <SceneKind scene_kind>
-REALCAM_INLINE LightSample sample_area_light(const SceneView& scene, const AreaLight& light, Vec3f position, Vec2f u) {
-    const Vec2f place = sample_triangle(u);
-    const WayToLight way = way_to(light, scene_kind != SceneKind::plain && light.is_two_sided, position, place);
+REALCAM_INLINE LightSample light_from(const SceneView& scene, const AreaLight& light, const WayToLight& way,
+                                      Vec2f place) {
     if (!(way.cosine > 0.0f)) return {light.normal, way.distance, 1.0f, {0, 0, 0}, kDelta};
     return {way.direction, way.distance, way.reach,
             (1.0f / way.pdf) * emitted_radiance<scene_kind>(scene, light, place.x, place.y), way.pdf};
+}
+
+template <SceneKind scene_kind>
+REALCAM_INLINE bool shines_on_both_sides(const AreaLight& light) {
+    return scene_kind != SceneKind::plain && light.is_two_sided != 0;
+}
+
+/// A place on an area light, drawn evenly by area.
+template <SceneKind scene_kind>
+REALCAM_INLINE LightSample sample_area(const SceneView& scene, const AreaLight& light, Vec3f position, Vec2f u) {
+    const Vec2f place = sample_triangle(u);
+    return light_from<scene_kind>(scene, light, way_to(light, shines_on_both_sides<scene_kind>(light), position, place),
+                                  place);
+}
+
+/// A place on an area light, drawn with place_pdf.
+template <SceneKind scene_kind>
+REALCAM_INLINE LightSample sample_area_light(const SceneView& scene, const AreaLight& light, Vec3f position, Vec2f u) {
+    if (!is_near(light, position)) return sample_area<scene_kind>(scene, light, position, u);
+    const NearPlace place = sample_near(light, position, u);
+    WayToLight way = way_to(light, shines_on_both_sides<scene_kind>(light), position, place.at);
+    way.pdf = 1.0f / place.solid_angle;
+    return light_from<scene_kind>(scene, light, way, place.at);
 }
 
 REALCAM_INLINE LightSample sample_point_light(const PointLight& light, Vec3f position) {
@@ -222,12 +281,11 @@ REALCAM_INLINE float environment_light_pdf(const SceneView& scene, SkySampling s
 template <SceneKind scene_kind>
 REALCAM_INLINE float emitter_light_pdf(const SceneView& scene, SkySampling sampling, LightReceiver receiver,
                                        std::int32_t area_light, float distance, float cosine) {
-    const AreaLight& light = scene.areas[area_light];
-    float area = light.area;
-    if constexpr (scene_kind == SceneKind::any) area = area_light_at(scene, light, receiver.time).area;
+    AreaLight light = scene.areas[area_light];
+    if constexpr (scene_kind == SceneKind::any) light = area_light_at(scene, light, receiver.time);
     return light_kinds(scene, sampling, receiver).local_probability *
            light_probability(scene, receiver, scene.point_count + area_light) *
-           area_light_pdf(area, distance * distance, cosine);
+           place_pdf(light, receiver.position, distance, cosine);
 }
 
 /// The area light that a hit on an emitting triangle is on.

@@ -58,7 +58,6 @@ struct NodeView {
 /// About the mean of the lobe of rough facets over the directions of a node: BSDF times cosine over the lobe's albedo,
 /// as a share of what Lambert's lobe has at most.
 REALCAM_INLINE float lobe_importance(const NodeView& seen, LightReceiver receiver) {
-    const auto at_least = [](float v, float least) { return select(v > least, v, least); };
     const Vec3f sum = receiver.lobe.to_eye + seen.to_middle;
     const float inverse = 1.0f / at_least(dot(sum, sum), 1e-6f), along = dot(sum, receiver.normal),
                 cosine2 = along * along * inverse;

@@ -141,13 +141,18 @@ def test_lamp_close_to_a_floor(distance: float, device: str, backend: str) -> No
         points, rays = scenes.points_on_plane(camera, 16, (0, 0, 0), (0, 1, 0))
         irradiance = scenes.polygon_irradiance(points, np.array([0.0, 1.0, 0.0]), lamp[0])
         expected = pixel_means(rays, ALBEDO / math.pi * 1e4 * irradiance)
-        measured = seen(scenes.scene_of(floor, lamp), camera, device, spp=1024)
+        scene = scenes.scene_of(floor, lamp)
         # The rows that see the floor a few gaps beside the lamp.
-        worst = max(worst, abs(float(measured[8:].mean() / expected[8:].mean()) - 1))
+        beside = slice(8, None)
+        # By samples of the lamp alone, and by rays that the floor scatters, too: neither floor nor lamp lights itself.
+        for bounces in (0, 1):
+            measured = scenes.radiance(scene, camera, spp=1024, max_bounces=bounces, device=device)[..., 0]
+            worst = max(worst, abs(float(measured[beside].mean() / expected[beside].mean()) - 1))
     what = f"lamp 0.01 and 0.001 of {distance:g} m off a floor: polygon formula"
-    # Light comes from the near edge above all: a relative standard deviation of 5 over 196608 samples is 1.1%; four.
-    tried = "192 pixels of 1024 samples each"
-    hold(Measurement("Scenes", what, tried, backend, "float32", worst, 0.045, "relative"))
+    # The lamp's halves are chosen alike, whichever is seen larger, and its edge is seen at a grazing angle: a relative
+    # standard deviation of 1.3 over 196608 samples is 0.3%; four. Drawn evenly by area, it would be 3.
+    tried = "192 pixels of 1024 samples each, direct light and a bounce"
+    hold(Measurement("Scenes", what, tried, backend, "float32", worst, 0.012, "relative"))
 
 
 def test_shade_close_to_a_lamp(device: str, backend: str) -> None:

@@ -117,8 +117,15 @@ TEST_CASE("direct light of shining triangles is the integral over them") {
         for (const LightReceiver& chooses : {receiver, glossy}) {
             Mean mean;
             Uniform uniform(seed);
-            for (int i = 0; i < kSamples; ++i) mean.add(seen(placed.view(), chooses, uniform.pair()));
+            double most = 0;
+            for (int i = 0; i < kSamples; ++i) {
+                const double sample = seen(placed.view(), chooses, uniform.pair());
+                mean.add(sample);
+                most = std::max(most, sample);
+            }
             worst.add(mean, truth);
+            // However near a lamp is, no sample brings more than it would from half of all directions.
+            if (test.lamps.size() == 1) CHECK(most < 2 * M_PI * static_cast<double>(test.lamps[0].radiance));
             seed += 100;
         }
     }

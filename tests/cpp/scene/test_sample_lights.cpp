@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include "bare_scene.hpp"
@@ -19,23 +20,24 @@ namespace {
 constexpr int kSamples = 1 << 18;
 
 // A light's points in barycentric coordinates: 4 x 4 parts of the unit square, of which the triangle has the lower left
-// half.
+// half. Expected for samples drawn with a density that is proportional to this, per share of the light's area.
 struct OnLights {
     std::vector<double> expected, counts;
 
-    OnLights(const SceneView& view, int number) {
-        {
-            const AreaLight& light = view.areas[number];
-            const double area = 0.5 * length(cross(static_cast<Vec3d>(light.edge_u), static_cast<Vec3d>(light.edge_v)));
-            for (int a = 0; a < 4; ++a)
-                for (int b = 0; b < 4; ++b)
-                    expected.push_back(2 * area / static_cast<double>(light.area) * kSamples *
-                                       integral([](double, double) { return 1.0; }, a / 4.0, (a + 1) / 4.0, b / 4.0,
-                                                (b + 1) / 4.0, 1) *
-                                       (a + b < 3    ? 1.0
-                                        : a + b == 3 ? 0.5
-                                                     : 0.0));
-        }
+    template <class Density>
+    explicit OnLights(Density&& density) {
+        double all = 0;
+        for (int a = 0; a < 4; ++a)
+            for (int b = 0; b < 4; ++b) {
+                const auto column = [&](double x, double y) {
+                    // Of a part that the long side cuts, what is below it.
+                    const double height = a + b == 3 ? 1 - x : 1;
+                    return height * density((a + x) / 4, (b + height * y) / 4);
+                };
+                expected.push_back(a + b > 3 ? 0 : integral(column, 0, 1, 0, 1, 8));
+                all += expected.back();
+            }
+        for (double& count : expected) count *= kSamples / all;
         counts.resize(expected.size());
     }
 
@@ -76,8 +78,8 @@ const std::vector<Lamp> kLamps = {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1},
 
 }  // namespace
 
-TEST_CASE("sample_area_light follows its density over every triangle") {
-    ChiSquareTests tests("sample_area_light: triangles of 1e6 : 1 in size, 1e8 : 1 in light");
+TEST_CASE("places on area lights are drawn evenly by area, and on near ones by solid angle") {
+    ChiSquareTests tests("places on triangles of 1e6 : 1 in size, by area and by solid angle");
     std::vector<Lamp> many;
     Uniform place(8);
     for (int i = 0; i < 400; ++i) {
@@ -86,37 +88,54 @@ TEST_CASE("sample_area_light follows its density over every triangle") {
         many.push_back({at, at + Vec3d{size, 0, 0}, at + Vec3d{0, 0.1 * size, 0}, i % 2 ? 1.0f : 100.0f});
     }
     const std::vector<std::vector<Lamp>> groups = {kLamps, many, {kLamps[3]}};
+    const auto evenly = [](double, double) { return 1.0; };
     unsigned seed = 1;
+    int near_count = 0;
     for (const std::vector<Lamp>& group : groups) {
         const Scene scene = with_lamps(group);
         const RenderSpaceScene placed(scene, {0, 0, 0});
         const SceneView view = placed.view();
         REQUIRE(view.area_count == static_cast<int>(group.size()));
         Uniform uniform(seed++);
-        for (int k = 0; k < view.area_count; k += std::max(1, view.area_count / 8)) {
-            OnLights bins(view, k);
+        std::vector<std::pair<int, float>> views;  // of lights, from a height
+        for (int k = 0; k < view.area_count; k += std::max(1, view.area_count / 8))
+            for (const float height : {0.5f, 0.05f}) views.emplace_back(k, height);
+        for (const auto& [k, height] : views) {
+            const AreaLight& light = view.areas[k];
+            // Straight above the origin, so that x and y keep a sliver's width.
+            const Vec3f from{0, 0, height};
+            const auto by_solid_angle = [&](double s, double t) {
+                const Vec3d way = static_cast<Vec3d>(light.corner) + s * static_cast<Vec3d>(light.edge_u) +
+                                  t * static_cast<Vec3d>(light.edge_v) - static_cast<Vec3d>(from);
+                return 1 / std::pow(length(way), 3);
+            };
+            near_count += is_near(light, from);
+            OnLights by_area(evenly), seen = is_near(light, from) ? OnLights(by_solid_angle) : OnLights(evenly);
             for (int i = 0; i < kSamples; ++i) {
-                // Straight above the origin, so that x and y keep a sliver's width.
-                const Vec3f from{0, 0, 0.5f};
-                const LightSample sample =
-                    sample_area_light<SceneKind::plain>(view, view.areas[k], from, uniform.pair());
-                bins.add(view.areas[k], static_cast<Vec3d>(from) + static_cast<double>(sample.distance) *
-                                                                       static_cast<Vec3d>(sample.direction));
+                const Vec2f u = uniform.pair();
+                const auto add = [&](const LightSample& sample, OnLights& bins) {
+                    bins.add(light, static_cast<Vec3d>(from) +
+                                        static_cast<double>(sample.distance) * static_cast<Vec3d>(sample.direction));
+                };
+                add(sample_area<SceneKind::plain>(view, light, from, u), by_area);
+                add(sample_area_light<SceneKind::plain>(view, light, from, u), seen);
             }
-            tests.add(bins.expected, bins.counts);
+            tests.add(by_area.expected, by_area.counts);
+            tests.add(seen.expected, seen.counts);
         }
     }
+    CHECK(near_count > 4);
     tests.hold();
 
     const Scene scene = with_lamps({kLamps[0]});
     const RenderSpaceScene placed(scene, {0, 0, 0});
-    OnLights bins(placed.view(), 0);
+    OnLights bins(evenly);
     Uniform uniform(1);
     for (int i = 0; i < kSamples; ++i) {
         const Vec2f u = uniform.pair();
         bins.add(placed.view().areas[0], {static_cast<double>(u.x * (1 - u.y)), static_cast<double>(u.x * u.y), 0});
     }
-    ChiSquareTests broken("sample_area_light without the square root");
+    ChiSquareTests broken("places on a triangle without the square root");
     broken.add(bins.expected, bins.counts);
     broken.breaks();
 
@@ -125,12 +144,17 @@ TEST_CASE("sample_area_light follows its density over every triangle") {
     for (int k = 0; k < lamps.view().area_count; ++k)
         for (const Vec2f u : extreme_inputs())
             for (const Vec3f from : {Vec3f{0.2f, 0.2f, 1}, Vec3f{0, 0, 1e-6f}, Vec3f{0, 0, 0}, Vec3f{0.2f, 0.2f, -1}}) {
-                const LightSample sample =
-                    sample_area_light<SceneKind::plain>(lamps.view(), lamps.view().areas[k], from, u);
+                const AreaLight& light = lamps.view().areas[k];
+                const LightSample sample = sample_area_light<SceneKind::plain>(lamps.view(), light, from, u);
                 CHECK((sample.irradiance.r >= 0 && std::isfinite(sample.irradiance.r)));
                 CHECK(std::fabs(length(sample.direction) - 1) < 1e-6f);
                 CHECK(!(sample.reach > 1));
                 if (from.z <= 0) CHECK(sample.irradiance.r == 0);  // on the lights and behind them
+                // What scattered rays that meet the place are weighted by. The cosine's rounding is in it where a light
+                // is not near.
+                const float cosine = -dot(sample.direction, light.normal);
+                if (sample.pdf < kDelta)
+                    CHECK(place_pdf(light, from, sample.distance, cosine) == doctest::Approx(sample.pdf).epsilon(1e-5));
             }
 }
 
