@@ -198,15 +198,12 @@ REALCAM_INLINE void pick_lights(const SceneView& scene, const LightKindsLanes<N>
         if (!(pick.probability > 0.0f)) continue;
         picked.u.set(i, pick.u);
         picked.probability[i] = pick.probability;
-        if (pick.kind == LightKind::area) {
-            AreaLight light = scene.areas[pick.index];
-            if constexpr (scene_kind == SceneKind::any) light = area_light_at(scene, light, receiver.time);
-            picked.set_area(i, light);
-        } else if (pick.kind == LightKind::environment && fits_lanes(scene.environment)) {
+        if (pick.kind == LightKind::area)
+            picked.set_area(i, area_light_at<scene_kind>(scene, pick.index, receiver.time));
+        else if (pick.kind == LightKind::environment && fits_lanes(scene.environment))
             picked.set_sky(i);
-        } else {
+        else
             picked.set_other(i, sample_picked<scene_kind>(scene, receiver, pick));
-        }
     }
 }
 
@@ -233,8 +230,9 @@ REALCAM_INLINE void sample_lights(const SceneView& scene, const LightKindsLanes<
         }
         REALCAM_LANES
         for (int i = 0; i < places; ++i) {
-            const bool on_both_sides = scene_kind != SceneKind::plain && picked.is_two_sided[i] != 0;
-            const WayToLight way = way_to(picked.area_light(i), on_both_sides, surfaces.position[i], drawn.at[i]);
+            const AreaLight light = picked.area_light(i);
+            const WayToLight way =
+                way_to(light, shines_on_both_sides<scene_kind>(light), surfaces.position[i], drawn.at[i]);
             const bool is_near = drawn.is_near[i] != 0;
             const float scale = select(is_near, drawn.solid_angle[i], 1.0f / way.pdf);
             samples.direction.set(i, way.direction);

@@ -39,8 +39,7 @@ REALCAM_INLINE TracedPlace place_on(const SceneView& scene, const TracedLightsVi
     }
     const CdfChoice chosen = choose_from_cdf(lights.cdfs + light.first + number, light.count, u.x);
     const std::int32_t area = lights.triangles[light.first + chosen.index];
-    AreaLight triangle = scene.areas[area];
-    if constexpr (scene_kind == SceneKind::any) triangle = area_light_at(scene, triangle, time);
+    const AreaLight triangle = area_light_at<scene_kind>(scene, area, time);
     const LightSample sample = sample_area<scene_kind>(scene, triangle, entry, {chosen.fresh, u.y});
     TracedPlace place{sample, 0, true};
     place.sample.irradiance = (1.0f / chosen.probability) * sample.irradiance;

@@ -46,11 +46,8 @@ REALCAM_INLINE float seen_light_weight(const SceneView& scene, const CameraView&
     const TracedLight light = lights.lights[number];
     const float time = time_of<scene_kind>(path, place);
     CameraPlacement placement = camera;
-    float area_m2 = scene.areas[area].area;
-    if constexpr (scene_kind == SceneKind::any) {
-        placement = camera_at(camera, time);
-        area_m2 = area_light_at(scene, scene.areas[area], time).area;
-    }
+    if constexpr (scene_kind == SceneKind::any) placement = camera_at(camera, time);
+    const float area_m2 = area_light_at<scene_kind>(scene, area, time).area;
     const EntryPlane plane = entry_plane(placement, camera.front_vertex_m, light);
     const Vec3f direction = path.rays.direction[place];
     const float entry_cosine = dot(direction, plane.from);

@@ -48,6 +48,13 @@ REALCAM_INLINE AreaLight area_light_at(const SceneView& scene, const AreaLight& 
     return light;
 }
 
+/// The same of a number among the area lights, in a scene of this kind.
+template <SceneKind scene_kind>
+REALCAM_INLINE AreaLight area_light_at(const SceneView& scene, std::int32_t number, float time) {
+    if constexpr (scene_kind == SceneKind::any) return area_light_at(scene, scene.areas[number], time);
+    return scene.areas[number];
+}
+
 /// Where a point light that may move is at a time.
 REALCAM_INLINE PointLight point_light_at(const SceneView& scene, const PointLight& stored, float time) {
     PointLight light = stored;
@@ -281,8 +288,7 @@ REALCAM_INLINE float environment_light_pdf(const SceneView& scene, SkySampling s
 template <SceneKind scene_kind>
 REALCAM_INLINE float emitter_light_pdf(const SceneView& scene, SkySampling sampling, LightReceiver receiver,
                                        std::int32_t area_light, float distance, float cosine) {
-    AreaLight light = scene.areas[area_light];
-    if constexpr (scene_kind == SceneKind::any) light = area_light_at(scene, light, receiver.time);
+    const AreaLight light = area_light_at<scene_kind>(scene, area_light, receiver.time);
     return light_kinds(scene, sampling, receiver).local_probability *
            light_probability(scene, receiver, scene.point_count + area_light) *
            place_pdf(light, receiver.position, distance, cosine);
@@ -362,10 +368,8 @@ REALCAM_INLINE LightSample sample_picked(const SceneView& scene, LightReceiver r
                                           receiver.position);
             return sample_point_light(scene.points[pick.index], receiver.position);
         case LightKind::area:
-            if constexpr (scene_kind == SceneKind::any)
-                return sample_area_light<scene_kind>(
-                    scene, area_light_at(scene, scene.areas[pick.index], receiver.time), receiver.position, pick.u);
-            return sample_area_light<scene_kind>(scene, scene.areas[pick.index], receiver.position, pick.u);
+            return sample_area_light<scene_kind>(scene, area_light_at<scene_kind>(scene, pick.index, receiver.time),
+                                                 receiver.position, pick.u);
         case LightKind::environment: return sample_environment(scene.environment, receiver.normal, pick.u);
         case LightKind::sun: break;
     }

@@ -20,24 +20,29 @@ namespace {
 constexpr int kSamples = 1 << 18;
 
 // A light's points in barycentric coordinates: 4 x 4 parts of the unit square, of which the triangle has the lower left
-// half. Expected for samples drawn with a density that is proportional to this, per share of the light's area.
+// half. Expected by pdf(distance, cosine), per steradian, from a point in front of the light.
 struct OnLights {
     std::vector<double> expected, counts;
 
-    template <class Density>
-    explicit OnLights(Density&& density) {
-        double all = 0;
+    template <class Pdf>
+    OnLights(const AreaLight& light, Vec3f from, Pdf&& pdf) {
+        const Vec3d u = static_cast<Vec3d>(light.edge_u), v = static_cast<Vec3d>(light.edge_v), n = cross(u, v),
+                    corner = static_cast<Vec3d>(light.corner) - static_cast<Vec3d>(from);
+        const auto per_share = [&](double s, double t) {
+            const Vec3d way = corner + s * u + t * v;
+            const double distance = length(way), cosine = -dot(way, n) / (distance * length(n));
+            return static_cast<double>(pdf(static_cast<float>(distance), static_cast<float>(cosine))) * cosine /
+                   (distance * distance) * length(n);
+        };
         for (int a = 0; a < 4; ++a)
             for (int b = 0; b < 4; ++b) {
-                const auto column = [&](double x, double y) {
+                const auto in_part = [&](double x, double y) {
                     // Of a part that the long side cuts, what is below it.
                     const double height = a + b == 3 ? 1 - x : 1;
-                    return height * density((a + x) / 4, (b + height * y) / 4);
+                    return height * per_share((a + x) / 4, (b + height * y) / 4) / 16;
                 };
-                expected.push_back(a + b > 3 ? 0 : integral(column, 0, 1, 0, 1, 8));
-                all += expected.back();
+                expected.push_back(a + b > 3 ? 0 : kSamples * integral(in_part, 0, 1, 0, 1, 8));
             }
-        for (double& count : expected) count *= kSamples / all;
         counts.resize(expected.size());
     }
 
@@ -78,8 +83,8 @@ const std::vector<Lamp> kLamps = {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1},
 
 }  // namespace
 
-TEST_CASE("places on area lights are drawn evenly by area, and on near ones by solid angle") {
-    ChiSquareTests tests("places on triangles of 1e6 : 1 in size, by area and by solid angle");
+TEST_CASE("sample_area_light follows its density over every triangle") {
+    ChiSquareTests tests("sample_area_light: triangles of 1e6 : 1 in size, 1e8 : 1 in light");
     std::vector<Lamp> many;
     Uniform place(8);
     for (int i = 0; i < 400; ++i) {
@@ -88,7 +93,6 @@ TEST_CASE("places on area lights are drawn evenly by area, and on near ones by s
         many.push_back({at, at + Vec3d{size, 0, 0}, at + Vec3d{0, 0.1 * size, 0}, i % 2 ? 1.0f : 100.0f});
     }
     const std::vector<std::vector<Lamp>> groups = {kLamps, many, {kLamps[3]}};
-    const auto evenly = [](double, double) { return 1.0; };
     unsigned seed = 1;
     int near_count = 0;
     for (const std::vector<Lamp>& group : groups) {
@@ -104,13 +108,12 @@ TEST_CASE("places on area lights are drawn evenly by area, and on near ones by s
             const AreaLight& light = view.areas[k];
             // Straight above the origin, so that x and y keep a sliver's width.
             const Vec3f from{0, 0, height};
-            const auto by_solid_angle = [&](double s, double t) {
-                const Vec3d way = static_cast<Vec3d>(light.corner) + s * static_cast<Vec3d>(light.edge_u) +
-                                  t * static_cast<Vec3d>(light.edge_v) - static_cast<Vec3d>(from);
-                return 1 / std::pow(length(way), 3);
-            };
             near_count += is_near(light, from);
-            OnLights by_area(evenly), seen = is_near(light, from) ? OnLights(by_solid_angle) : OnLights(evenly);
+            OnLights by_area(light, from, [&](float distance, float cosine) {
+                return area_light_pdf(light.area, distance * distance, cosine);
+            });
+            OnLights seen(light, from,
+                          [&](float distance, float cosine) { return place_pdf(light, from, distance, cosine); });
             for (int i = 0; i < kSamples; ++i) {
                 const Vec2f u = uniform.pair();
                 const auto add = [&](const LightSample& sample, OnLights& bins) {
@@ -129,13 +132,15 @@ TEST_CASE("places on area lights are drawn evenly by area, and on near ones by s
 
     const Scene scene = with_lamps({kLamps[0]});
     const RenderSpaceScene placed(scene, {0, 0, 0});
-    OnLights bins(evenly);
+    const AreaLight& lamp = placed.view().areas[0];
+    OnLights bins(lamp, {0, 0, 1},
+                  [&](float distance, float cosine) { return area_light_pdf(lamp.area, distance * distance, cosine); });
     Uniform uniform(1);
     for (int i = 0; i < kSamples; ++i) {
         const Vec2f u = uniform.pair();
-        bins.add(placed.view().areas[0], {static_cast<double>(u.x * (1 - u.y)), static_cast<double>(u.x * u.y), 0});
+        bins.add(lamp, {static_cast<double>(u.x * (1 - u.y)), static_cast<double>(u.x * u.y), 0});
     }
-    ChiSquareTests broken("places on a triangle without the square root");
+    ChiSquareTests broken("sample_area_light without the square root");
     broken.add(bins.expected, bins.counts);
     broken.breaks();
 
