@@ -2,7 +2,7 @@
 
     python benchmarks/job_units.py [--units 10000] [--folder FOLDER]
 
-Units are of 32 x 32 pixels and 16 samples, so that what each costs beside its samples shows: claiming, writing, and
+Units are of 32 x 32 pixels and 16 samples, so that what each costs beside its samples shows: writing, and
 adding up at the end. Both pictures are taken by one thread and compared bit by bit. A job's own units have 16384 pixels
 and 256 samples; theirs are measured as well, on a picture of 24 of them.
 """

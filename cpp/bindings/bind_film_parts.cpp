@@ -29,7 +29,9 @@ SplatFilm splat_film_from(const py::dict& splats) {
     const auto sums = splats["sums"].cast<InputArray<std::int64_t>>();
     if (sums.ndim() != 4 || sums.shape(3) != 3) throw InputError("sums of light must be (films, H, W, 3) numbers");
     SplatFilm film;
-    film.light = static_cast<GhostLight>(splats["light"].cast<int>());
+    const int light = splats["light"].cast<int>();
+    if (light < 0 || light >= kMostSplats) throw InputError("the splats are of an unknown light");
+    film.light = static_cast<GhostLight>(light);
     film.blocks = splats["blocks"].cast<std::vector<unsigned long long>>();
     film.units_per_lux = splats["units_per_lux"].cast<double>();
     film.height = static_cast<int>(sums.shape(1));
@@ -140,6 +142,7 @@ void bind_film_parts(py::module_& m) {
     PYBIND11_NUMPY_DTYPE(LayerSum, weight, met, normal, albedo, circle_mm);
     m.attr("_PIXEL_SUM") = py::dtype::of<PixelSum>();
     m.attr("_LAYER_SUM") = py::dtype::of<LayerSum>();
+    m.attr("_TRACED_LIGHTS") = kMostSplats;
     m.attr("_SAMPLES_PER_SUM") = kSamplesPerSum;
     m.attr("_SHARING_TILE_SIDE") = SampleSharing::kTileSide;
     py::set sampled_layers;

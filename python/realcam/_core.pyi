@@ -1713,6 +1713,7 @@ _Region: TypeAlias = tuple[int, int, int, int]  # column, row, width, height
 _PIXEL_SUM: np.dtype[np.void]
 _LAYER_SUM: np.dtype[np.void]
 _SAMPLES_PER_SUM: int
+_TRACED_LIGHTS: int
 _SHARING_TILE_SIDE: int
 _SAMPLED_LAYERS: set[str]
 

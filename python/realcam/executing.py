@@ -11,9 +11,9 @@ from typing import TypeVar
 from ._core import InputError
 
 Task = TypeVar("Task", bound=Hashable)
-# What a task's process returns: whether it was done there, and what was wrong; empty: nothing. Exceptions of this
-# package do not travel everywhere.
-Outcome = tuple[bool, str]
+# What a task's process returns: an error message, or an empty string. Exceptions of this package do not pickle in every
+# executor.
+Outcome = str
 
 _TRIES = 3  # of a task with which processes are lost
 
@@ -57,16 +57,11 @@ def do_all(
                 in_hand = set(given.values())
                 for task in islice((task for task in tasks if task not in in_hand), window - len(given)):
                     given[submit(task)] = task
-            if not given:  # others have the rest in hand
-                tell()
-                time.sleep(0.5)
-                continue
             done, _ = concurrent.futures.wait(given, 1.0, concurrent.futures.FIRST_COMPLETED)
-            is_idle = True
             for future in done:
                 task = given.pop(future)
                 try:
-                    was_done, why = future.result()
+                    why = future.result()
                 except (concurrent.futures.BrokenExecutor, concurrent.futures.CancelledError) as error:
                     raise InputError(lost(error)) from None
                 except Exception as error:
@@ -76,10 +71,7 @@ def do_all(
                     continue
                 if why:
                     raise InputError(why)
-                is_idle = is_idle and not was_done
             tell()
-            if done and is_idle:  # other processes have done these, or are at them
-                time.sleep(0.1)
     finally:
         for future in given:
             future.cancel()

@@ -2,24 +2,24 @@
 
 from __future__ import annotations
 
-import io
-import json
+import math
 import os
-import zipfile
+from collections.abc import Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from . import _core
 from ._core import InputError
-from .files import write_whole
+from .archive import packed, read_archive, write_archive
 from .pickling import same_arrays, set_checked_state
 
 if TYPE_CHECKING:
     from ._core import RenderSettings, _Region, _Splats
 
-FORMAT = 2
+FORMAT = 3
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,11 +50,16 @@ class FilmPart:
             sums = getattr(self, name)
             if sums is not None and (shape is None or sums.shape != shape or sums.dtype != dtype):
                 raise InputError(f"the {name} of a part must be sums of its region's pixels")
-        if self.first < 0 or self.spp < 0:
-            raise InputError("a part has samples from a number on, both of which are 0 or more")
+        for number in (self.first, self.spp):
+            if isinstance(number, bool) or not isinstance(number, int | np.integer) or not 0 <= number < 1 << 32:
+                raise InputError("a part has samples from a number on, both of which are 0 or more")
+        if not all(isinstance(n, float | int) and 0 <= n < math.inf for n in self.stats.values()):
+            raise InputError("the stats of a part must be finite numbers, none below 0")
+        if not all(_is_splat(light) for light in self.splats):
+            raise InputError("the splats of a part must be sums of (films, H, W, 3) whole numbers for each light")
 
     def __setstate__(self, state: Any) -> None:
-        set_checked_state(self, state, lambda made: made._written())
+        set_checked_state(self, state, lambda made: made.packed())
 
     def __eq__(self, other: object) -> bool:
         """Whether both have collected the same; what it cost does not count."""
@@ -73,40 +78,37 @@ class FilmPart:
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Writes the part, as a whole or not at all, also where the machine stops. Raises ImageFileError."""
-        write_whole(path, self._written(), is_durable=True)
+        write_archive(path, self.packed())
 
-    def _written(self) -> bytes:
-        content = io.BytesIO()
-        about = np.frombuffer(json.dumps(self._about()).encode(), np.uint8)
+    def packed(self, owner: str = "") -> bytes:
+        """The content of its file. owner: the identity of the job that it belongs to, if any."""
         # Light that is traced apart leaves most pixels dark.
-        write = np.savez_compressed if self.splats else np.savez
-        write(content, about=about, **self._arrays())  # type: ignore[arg-type]
-        return content.getvalue()
+        return packed(self._about(), self._arrays(), owner=owner, is_compressed=bool(self.splats))
 
     @classmethod
-    def load(cls, path: str | os.PathLike[str]) -> FilmPart:
-        """Raises InputError for what is no part, or damaged."""
+    def load(cls, path: str | os.PathLike[str], *, owner: str = "", limit_bytes: int = 1 << 34) -> FilmPart:
+        """Reads a part that belongs to `owner` and is unpacked not larger than limit_bytes.
+
+        Raises InputError if it is missing, damaged or not a part of a film.
+        """
+        about, arrays = read_archive(Path(path), owner=owner, limit_bytes=limit_bytes)
         try:
-            with np.load(path, allow_pickle=False) as arrays:
-                about = json.loads(arrays["about"].tobytes())
-                if about["format"] != FORMAT:
-                    raise InputError(f"its format is {about['format']!r:.20}, and this realcam reads {FORMAT}")
-                region, splats = about["region"], about["splats"]
-                kept = [{**light, "sums": arrays[f"splats{i}"]} for i, light in enumerate(splats)]
-                return cls(
-                    region=None if region is None else tuple(region),
-                    first=about["first"],
-                    spp=about["spp"],
-                    pixels=_joined(arrays, "pixels", _core._PIXEL_SUM),
-                    layers=_joined(arrays, "layers", _core._LAYER_SUM),
-                    splats=kept,  # type: ignore[arg-type]
-                    stats=about["stats"],
-                )
-        except FileNotFoundError:
-            raise InputError(f"{os.fspath(path)}: there is no such file") from None
+            if about["format"] != FORMAT:
+                raise InputError(f"its format is {about['format']!r:.20}, and this realcam reads {FORMAT}")
+            region = about["region"]
+            splats: list[Any] = [{**light, "sums": arrays[f"splats{i}"]} for i, light in enumerate(about["splats"])]
+            return cls(
+                region=None if region is None else tuple(region),
+                first=about["first"],
+                spp=about["spp"],
+                pixels=_joined(arrays, "pixels", _core._PIXEL_SUM),
+                layers=_joined(arrays, "layers", _core._LAYER_SUM),
+                splats=splats,
+                stats=about["stats"],
+            )
         except InputError as error:
             raise InputError(f"{os.fspath(path)}: {error}") from None
-        except (OSError, EOFError, KeyError, ValueError, TypeError, zipfile.BadZipFile):
+        except (KeyError, ValueError, TypeError, AttributeError, OverflowError):
             raise InputError(f"{os.fspath(path)}: this is no part of a film, or damaged") from None
 
     def _about(self) -> dict[str, Any]:
@@ -130,15 +132,40 @@ class FilmPart:
         return arrays
 
 
-def _joined(arrays: Any, name: str, dtype: np.dtype[np.void]) -> np.ndarray | None:
-    """What _arrays has divided into fields."""
-    found = [key for key in arrays.files if key.startswith(f"{name}.")]
+def _joined(arrays: Mapping[str, np.ndarray], name: str, dtype: np.dtype[np.void]) -> np.ndarray | None:
+    """Joins the fields that _arrays has divided. Raises ValueError if one is missing, or of another shape or dtype."""
+    found = {key.removeprefix(f"{name}."): array for key, array in arrays.items() if key.startswith(f"{name}.")}
     if not found:
         return None
-    sums = np.zeros(arrays[found[0]].shape[:2], dtype)
-    for key in found:
-        sums[key.removeprefix(f"{name}.")] = arrays[key]
+    if found.keys() | {"besides"} != set(dtype.names or ()) | {"besides"}:
+        raise ValueError
+    shape = next(iter(found.values())).shape[:2]
+    sums = np.zeros(shape, dtype)
+    for key, array in found.items():
+        if array.shape != sums[key].shape or array.dtype != sums[key].dtype:
+            raise ValueError
+        sums[key] = array
     return sums
+
+
+def _is_splat(light: Any) -> bool:
+    if not isinstance(light, dict) or light.keys() != {"light", "sums", "blocks", "units_per_lux"}:
+        return False
+    sums, blocks, units = light["sums"], light["blocks"], light["units_per_lux"]
+    return (
+        type(light["light"]) is int
+        and 0 <= light["light"] < _core._TRACED_LIGHTS
+        and isinstance(sums, np.ndarray)
+        and sums.dtype == np.int64
+        and sums.ndim == 4
+        and sums.shape[3] == 3
+        and isinstance(blocks, list)
+        and len(blocks) == sums.shape[0]
+        and all(type(block) is int and 0 <= block < 1 << 63 for block in blocks)
+        and isinstance(units, float)
+        and math.isfinite(units)
+        and units > 0
+    )
 
 
 class CollectedFilm:

@@ -42,6 +42,56 @@ def restored(kind: str, state_format: int, version: str, state: Any) -> Any:
     raise _core.InputError(f"this {kind} was pickled by realcam {made_by} and cannot be read: {why}")
 
 
+def described(value: Any, buffers: list[np.ndarray]) -> Any:
+    """Describes a value as JSON, by the state that its pickle has. Its arrays are added to `buffers`, as bytes.
+
+    Bytes become {"text": Latin-1}, and an array {"array": [offset, rows, bytes of a row]}, with the offset in the
+    concatenated buffers.
+    """
+    _, (kind, state_format, version, state) = value.__reduce__()
+    size = sum(buffer.size for buffer in buffers)
+
+    def plain(item: Any) -> Any:
+        nonlocal size
+        if isinstance(item, tuple):
+            return [plain(each) for each in item]
+        if isinstance(item, bytes):
+            return {"text": item.decode("latin-1")}
+        if isinstance(item, np.ndarray):
+            assert item.dtype == np.uint8 and item.ndim == 2
+            buffers.append(item.ravel())
+            size += item.size
+            return {"array": [size - item.size, *item.shape]}
+        return item
+
+    return {"kind": kind, "format": state_format, "version": version, "state": plain(state)}
+
+
+def from_description(description: Any, buffer: np.ndarray, kind: str) -> Any:
+    """The value of this kind that was described; buffer: the concatenated buffers, uint8. Raises InputError."""
+
+    def state_of(item: Any) -> Any:
+        if isinstance(item, list):
+            return tuple(state_of(each) for each in item)
+        if not isinstance(item, dict):
+            return item
+        if "text" in item:
+            return item["text"].encode("latin-1")
+        offset, rows, width = item["array"]
+        if min(offset, rows, width) < 0 or offset + rows * width > buffer.size:
+            raise ValueError
+        return buffer[offset : offset + rows * width].reshape(rows, width)
+
+    try:
+        if description["kind"] != kind or buffer.dtype != np.uint8 or buffer.ndim != 1:
+            raise ValueError
+        state = state_of(description["state"])
+        state_format, version = description["format"], description["version"]
+    except (KeyError, TypeError, ValueError, AttributeError, RecursionError):
+        raise _core.InputError(f"this {kind} cannot be read from its description: it is damaged") from None
+    return restored(kind, state_format, version, state)
+
+
 def set_checked_state(value: Any, state: Any, check: Callable[[Any], object]) -> None:
     """`__setstate__` of a frozen dataclass: its fields go through __init__ and `check`.
 

@@ -129,7 +129,7 @@ def test_a_damaged_file_is_no_part(tmp_path: Path, share: float) -> None:
     session.expose((0, 0, 8, 8), 0, 4).save(file)
     content = file.read_bytes()
     file.write_bytes(content[: int(share * len(content))])
-    with pytest.raises(rc.InputError, match=r"part\.npz: this is no part of a film, or damaged"):
+    with pytest.raises(rc.InputError, match=r"part\.npz: this file is damaged"):
         rc.FilmPart.load(file)
     with pytest.raises(rc.InputError, match="there is no such file"):
         rc.FilmPart.load(tmp_path / "other.npz")

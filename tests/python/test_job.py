@@ -3,22 +3,24 @@
 from __future__ import annotations
 
 import concurrent.futures
+import io
 import json
 import multiprocessing
 import os
 import random
 import resource
+import shutil
 import signal
-import socket
 import time
 from collections.abc import Callable
 from dataclasses import replace
+from itertools import pairwise
 from pathlib import Path
 
+import numpy as np
 import pytest
 import realcam as rc
-from realcam import cli
-from realcam.job import claims
+from realcam import archive, cli
 from realcam.job.folder import FORMAT
 
 from .job_programs import command, picture, run, shot, units
@@ -45,9 +47,7 @@ def test_several_processes_make_the_picture_of_one(tmp_path: Path) -> None:
         assert job.image(name).spp >= 8
     status = job.status()
     assert status.is_done
-    assert (status.units_done, status.shots_done, status.in_hand) == (status.units_known, 2, 0)
-    next((tmp_path / "job" / "units").rglob("*.npz")).with_suffix(".claim").touch()  # of a process killed just then
-    assert job.status() == status
+    assert (status.units_done, status.shots_done) == (status.units_known, 2)
     assert len(list((tmp_path / "job" / "rounds").rglob("*.npz"))) > 3  # the noise took several
 
 
@@ -87,7 +87,6 @@ def test_processes_that_are_killed_lose_only_what_they_have_in_hand(tmp_path: Pa
         assert (worker.returncode, errors) == (0, "")
     assert kept.items() <= units(folder).items()  # nothing that was done was done again
     assert job.image() == picture(shot(400))
-    assert not list(folder.rglob("*.claim"))
 
 
 def test_a_full_disk_stops_work_in_one_line_and_loses_nothing(tmp_path: Path) -> None:
@@ -168,8 +167,10 @@ def test_what_was_deleted_or_damaged_is_done_again(tmp_path: Path) -> None:
     job.work()
     assert job.image() == before == picture(noisy)
     # What only the sum of all looks into says what to do.
-    done[-1].write_bytes(b"nothing")
-    with pytest.raises(rc.InputError, match=r"damaged; realcam job work .* does it again"):
+    content = bytearray(done[-1].read_bytes())
+    content[len(content) // 2] ^= 1
+    done[-1].write_bytes(content)
+    with pytest.raises(rc.InputError, match=r"damaged: .* realcam job work .* takes its samples again"):
         job.image()
     job.work()
     assert job.image() == before
@@ -179,8 +180,8 @@ def test_what_was_deleted_or_damaged_is_done_again(tmp_path: Path) -> None:
     ("lost", "why"),
     [
         ("job.json", "this is no job's folder: it has no job.json"),
-        ("shots/00000.shot", "No such file or directory; the job cannot go on without it"),
-        ("scenes", "No such file or directory; the job cannot go on without it"),
+        ("shots/00000.npz", "there is no such file"),
+        ("scenes", "there is no such file"),
     ],
 )
 def test_a_folder_that_is_half_deleted_says_what_is_missing(tmp_path: Path, lost: str, why: str) -> None:
@@ -193,53 +194,202 @@ def test_a_folder_that_is_half_deleted_says_what_is_missing(tmp_path: Path, lost
     assert errors.count("\n") == 1
 
 
-def test_a_shot_that_was_changed_is_refused_and_never_runs_code(tmp_path: Path) -> None:
+def changed(folder: Path, **entries: object) -> None:
+    """Overwrites entries of job.json; those named after a shot's field are written into its first shot."""
+    about = json.loads((folder / "job.json").read_text())
+    for key, value in entries.items():
+        (about if key in about else about["shots"][0])[key] = value
+    (folder / "job.json").write_text(json.dumps(about, indent=1))
+
+
+def test_a_strangers_shot_is_data_or_one_error(tmp_path: Path) -> None:
+    """A pickle in its place, with the digest that job.json names, and descriptions of values that cannot be."""
     folder = tmp_path / "job"
     made(folder, lamp=shot(4))
-    file = folder / "shots" / "00000.shot"
+    file = folder / "shots" / "00000.npz"
+    original = file.read_bytes()
     wicked = b"cos\nsystem\n(S'touch " + os.fsencode(tmp_path / "ran") + b"'\ntR."
     file.write_bytes(wicked)
-    with pytest.raises(rc.InputError, match="not the file that the job was made with"):
+    with pytest.raises(rc.InputError, match=r"00000\.npz: this file is damaged"):
         rc.Job.load(folder).work()
-    import hashlib
-
-    about = json.loads((folder / "job.json").read_text())
-    about["shots"][0]["digest"] = hashlib.sha256(wicked).hexdigest()
-    (folder / "job.json").write_text(json.dumps(about))
-    with pytest.raises(rc.InputError, match=r"os\.system is no part of a scene or camera"):
-        rc.Job.load(folder).work()
+    with np.load(io.BytesIO(original)) as members:
+        about, buffer = json.loads(members["about"].tobytes()), members["buffer"]
+    for values, arrays, why in (
+        (about, {"buffer": np.array([{}], object)}, "malformed"),
+        (about, {"buffer": buffer[:-8]}, "this Camera cannot be read"),
+        ({**about, "Camera": {**about["Camera"], "kind": "Scene"}}, {"buffer": buffer}, "this Camera cannot be read"),
+        ({**about, "Camera": {**about["Camera"], "state": [1, 2]}}, {"buffer": buffer}, "this Camera was pickled"),
+        ({**about, "Camera": 3}, {"buffer": buffer}, "this Camera cannot be read"),
+        ({}, {"buffer": buffer}, "malformed"),
+        ([1], {"buffer": buffer}, "malformed"),
+        (about, {}, "malformed"),
+    ):
+        content = archive.packed(values, arrays)
+        file.write_bytes(content)
+        changed(folder, digest=archive.digest_of(content))
+        with pytest.raises(rc.InputError, match=why) as error:
+            rc.Job.load(folder).work()
+        assert "\n" not in str(error.value)
     assert not (tmp_path / "ran").exists()
 
 
-def test_a_claim_counts_while_its_owner_lives(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    mine, others = claims.Claims(), claims.Claims()
-    unit = tmp_path / "unit.npz"
-    with mine.claimed(unit) as is_mine:
-        assert is_mine
-        with others.claimed(unit) as is_others:
-            assert not is_others
-    with others.claimed(unit) as is_others:
-        assert is_others
-    assert list(tmp_path.iterdir()) == []
-    # Of a process that is gone, on this machine.
-    gone = multiprocessing.get_context("spawn").Process()
-    gone.start()
-    gone.join()
-    (tmp_path / "unit.claim").write_text(f"{gone.pid} {socket.gethostname()}")
-    with mine.claimed(unit) as is_mine:
-        assert is_mine
-    # Of another machine, which nobody can ask: by its silence.
-    monkeypatch.setattr(claims, "_SILENCE_S", 0.05)
-    (tmp_path / "unit.claim").write_text("1 elsewhere")
-    with mine.claimed(unit) as is_mine:
-        assert not is_mine
-    time.sleep(0.1)
-    os.utime(tmp_path / "unit.claim")
-    with mine.claimed(unit) as is_mine:
-        assert not is_mine  # it was renewed
-    time.sleep(0.1)
-    with mine.claimed(unit) as is_mine:
-        assert is_mine
+HUGE = 10**15
+
+
+@pytest.mark.parametrize(
+    "entries",
+    [
+        {"name": "../victim/holiday"},
+        {"name": "a\nb"},
+        {"name": 3},
+        {"spp": HUGE},
+        {"spp": 0},
+        {"spp": 1.5},
+        {"spp": True},
+        {"resolution": [1 << 20, 1 << 20]},
+        {"resolution": [60]},
+        {"resolution": "60x40"},
+        {"tile": [1, 1]},
+        {"tile": [32, -32]},
+        {"digest": "../../x"},
+        {"scene": "0" * 64},
+        {"has_layers": 1},
+        {"shots": []},
+        {"shots": {"a": 1}},
+        {"shots": [None]},
+        {"probes": 7},
+        {"engine": []},
+        {"engine": {"realcam": rc.__version__}},
+        {"device": ["cpu"]},
+        {"id": "x"},
+        {"format": None},
+        {"spp": 1 << 24, "tile": [32, 32], "resolution": [4096, 4096]},  # more units than a folder can hold
+    ],
+)
+def test_a_strangers_job_file_is_refused_in_one_line(tmp_path: Path, job_of_four: Path, entries: dict) -> None:
+    folder = tmp_path / "job"
+    shutil.copytree(job_of_four, folder)
+    changed(folder, **entries)
+    with pytest.raises(rc.InputError) as error:
+        rc.Job.load(folder)
+    assert str(error.value).startswith(str(folder))
+    assert "\n" not in str(error.value)
+
+
+@pytest.fixture(scope="session")
+def job_of_four(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A job of 4 samples a pixel, whose units are done."""
+    folder = tmp_path_factory.mktemp("four") / "job"
+    made(folder, lamp=shot(4)).work()
+    return folder
+
+
+def test_pipes_devices_and_links_are_refused(tmp_path: Path, job_of_four: Path) -> None:
+    """Nothing waits for a writer, and no file beyond a link is read, overwritten or deleted."""
+    folder = tmp_path / "job"
+    outside = tmp_path / "outside"
+    for name in ("job.json", "shots/00000.npz"):
+        for make in (os.mkfifo, lambda path: path.symlink_to("/dev/zero"), lambda path: path.symlink_to(outside)):
+            shutil.rmtree(folder, ignore_errors=True)
+            shutil.copytree(job_of_four, folder)
+            (folder / name).unlink()
+            make(folder / name)
+            with pytest.raises(rc.InputError, match="regular file is expected"):
+                rc.Job.load(folder).image()
+    for name in ("units", "units/00000", "rounds", "scenes"):
+        shutil.rmtree(folder)
+        shutil.copytree(job_of_four, folder)
+        (folder / "rounds").mkdir(exist_ok=True)
+        shutil.rmtree(outside, ignore_errors=True)
+        (folder / name).rename(outside)
+        precious = outside / "precious.npz"
+        precious.write_bytes(b"mine")
+        (folder / name).symlink_to(outside)
+        with pytest.raises(rc.InputError, match="not a link"):
+            rc.Job.load(folder).work()
+        assert precious.read_bytes() == b"mine"
+
+
+def test_units_of_another_job_do_not_count(tmp_path: Path) -> None:
+    """A worker of a deleted job must not fill its successor, whose folder has the same name."""
+    folder = tmp_path / "job"
+    old = made(folder, lamp=shot(4))
+    old.work()
+    kept = tmp_path / "units"
+    shutil.copytree(folder / "units", kept)
+    shutil.rmtree(folder)
+    job = made(folder, lamp=shot(4, seed=8))
+    with pytest.raises(rc.InputError, match=r"the job was replaced|not the file that the job was made with"):
+        old.work()
+    shutil.copytree(kept, folder / "units", dirs_exist_ok=True)
+    assert len(job.status().damaged) == len(list(kept.rglob("*.npz")))
+    assert job.status().units_done == 0
+    with pytest.raises(rc.InputError, match="units are missing"):
+        job.image()
+    job.work()
+    assert job.image() == picture(shot(4, seed=8))
+
+
+def test_each_changed_bit_of_a_unit_is_found(job_of_four: Path, tmp_path: Path) -> None:
+    """All bits of the archive's directory, and a sample of the others."""
+    file = next((job_of_four / "units").rglob("*pixels*.npz"))
+    content, damaged = file.read_bytes(), tmp_path / "unit.npz"
+    directory = content.rindex(b"PK\1\2")
+    bits = [*range(8 * directory, 8 * len(content), 7), *range(0, 8 * directory, 997)]
+    for bit in bits:
+        wrong = bytearray(content)
+        wrong[bit // 8] ^= 1 << bit % 8
+        damaged.write_bytes(wrong)
+        with pytest.raises(rc.InputError):
+            rc.FilmPart.load(damaged, owner=rc.Job.load(job_of_four)._folder.id)
+
+
+def test_a_unit_holds_the_samples_that_its_name_says(tmp_path: Path, job_of_four: Path) -> None:
+    """Well-formed files of this job with other samples, infinite sums, fields left out, or of another unit."""
+    folder = tmp_path / "job"
+    shutil.copytree(job_of_four, folder)
+    job = rc.Job.load(folder)
+    right = job.image()
+    files = sorted((folder / "units").rglob("*pixels*.npz"))
+    part = rc.FilmPart.load(files[0], owner=job._folder.id)
+    assert part.pixels is not None
+
+    def with_field(name: str, value: float) -> rc.FilmPart:
+        pixels = part.pixels.copy()
+        pixels[name] = value
+        return replace(part, pixels=pixels)
+
+    for wrong in (
+        with_field("samples", 3),
+        with_field("irradiance", np.inf),
+        with_field("depth", np.nan),
+        replace(part, layers=None),
+        replace(part, spp=3),
+        rc.FilmPart.load(files[1], owner=job._folder.id),
+    ):
+        files[0].write_bytes(wrong.packed(job._folder.id))
+        with pytest.raises(rc.InputError, match="these are not the samples of this unit"):
+            job.image()
+        job.work()
+        assert job.image() == right
+
+
+def test_parts_share_a_job_without_a_scheduler(tmp_path: Path) -> None:
+    """With a number of samples each takes its own units alone; with a noise goal any of them ends with the picture."""
+    counted = made(tmp_path / "counted", a=shot(40), b=shot(40, seed=4))
+    done = [0]
+    for k in (3, 1, 2):
+        counted.work(part=(k, 3))
+        done.append(counted.status().units_done)
+    assert all(after - before >= done[-1] // 4 for before, after in pairwise(done))
+    assert counted.status().is_done
+    assert counted.image("b") == picture(shot(40, seed=4))
+    noisy = shot("auto", noise_codes=1.5, max_spp=600)
+    job = made(tmp_path / "noise", lamp=noisy)
+    job.work(part=(2, 8))
+    assert job.image() == picture(noisy)
+    with pytest.raises(rc.InputError, match="part 4 of 3"):
+        job.work(part=(4, 3))
 
 
 def test_what_is_no_job_is_refused(tmp_path: Path) -> None:
@@ -299,7 +449,7 @@ def test_the_commands_make_work_tell_and_finish(tmp_path: Path) -> None:
     script = (tmp_path / "both.sbatch").read_text()
     assert "#SBATCH --array=1-5\n" in script
     words_of_script = script.splitlines()[-1].split()
-    assert words_of_script[:6] == ["exec", "realcam", "job", "work", "--here", "--quiet"]
+    assert words_of_script[:6] == ["exec", "realcam", "job", "work", "--quiet", "--part"]
     assert words_of_script[-1] == str(tmp_path / "both.job")
     template = json.loads((tmp_path / "both.json").read_text())
     assert template["specificationVersion"] == "jobtemplate-2023-09"
@@ -322,7 +472,8 @@ def test_the_commands_make_work_tell_and_finish(tmp_path: Path) -> None:
     [
         (("finish", "JOB", "-o", "one.exr"), "the job has 2 pictures; a folder is wanted for --output"),
         (("finish", "JOB", "-o", "x", "--format", "jpg"), 'unknown format "jpg"'),
-        (("work", "JOB", "--here", "--cluster", "slurm"), "exclude each other"),
+        (("work", "JOB", "--here", "--scheduler", "x"), "--scheduler and --workers exclude them"),
+        (("work", "JOB", "--part", "9/8"), "K/N is wanted, 1/8 to 8/8"),
         (("work", "JOB", "--device", "cuda:1"), "--here is wanted with it"),
         (("work", "nowhere"), "nowhere: this is no job's folder: there is no such folder"),
         (("make", "nowhere.toml", "-o", "new"), "nowhere.toml"),

@@ -8,7 +8,6 @@ import socket
 import subprocess
 import sys
 import time
-import types
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -122,44 +121,8 @@ def test_a_scheduler_that_is_not_there_is_told_in_one_line(
         clusters.dask_executor(workers=1, scheduler=address),
     ):
         pass
-    with (
-        pytest.raises(rc.InputError, match='unknown batch system "lsf"'),
-        clusters.dask_executor(workers=1, batch_system="lsf"),
-    ):
-        pass
     made(tmp_path / "job")
     code, _, errors = run("work", tmp_path / "job", "--scheduler", "nowhere.json")
     assert code == 2
     assert errors.count("\n") == 1
     assert "nowhere.json" in errors
-
-
-class BatchJob:
-    job_id = None
-
-
-class BatchCluster:
-    """A batch system that dask-jobqueue knows and that accepts no job."""
-
-    def scale(self, count: int) -> None:
-        self.workers = {number: BatchJob() for number in range(count)}
-
-    def close(self) -> None:
-        raise AssertionError  # as dask-jobqueue's does where a job was not accepted
-
-
-def without_settings() -> None:
-    raise ValueError("You must specify how much cores and memory per job you want to use, for example:\n...")
-
-
-@pytest.mark.parametrize(
-    ("cluster", "said"),
-    [(without_settings, "has to know the cores and the memory"), (BatchCluster, "no job of a worker was accepted")],
-)
-def test_a_batch_system_that_runs_no_worker_is_an_error(
-    cluster: object, said: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setitem(sys.modules, "dask_jobqueue", types.SimpleNamespace(SLURMCluster=cluster))
-    monkeypatch.setattr("realcam.job.clusters._ANSWERS_WITHIN_S", 0.3)
-    with pytest.raises(rc.InputError, match=f"^slurm: .*{said}"), dask_executor(workers=2, batch_system="slurm"):
-        pass

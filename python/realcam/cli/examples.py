@@ -57,7 +57,7 @@ EXAMPLES: dict[str, tuple[str, ...]] = {
     "job work": (
         "realcam job work terrace.job",
         "realcam job work terrace.job --scheduler tcp://head:8786",
-        "realcam job work terrace.job --cluster slurm --workers 40",
+        "realcam job work terrace.job --part 3/8",
     ),
     "job status": ("realcam job status terrace.job --json",),
     "job finish": (

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 import os
+import re
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -59,6 +60,10 @@ def make(
         Optional[Path],  # noqa: UP045
         typer.Option("--sbatch", metavar="FILE", help="Also write a script for Slurm's sbatch"),
     ] = None,
+    qsub: Annotated[
+        Optional[Path],  # noqa: UP045
+        typer.Option("--qsub", metavar="FILE", help="Also write a script for the qsub of PBS"),
+    ] = None,
     openjd: Annotated[
         Optional[Path],  # noqa: UP045
         typer.Option("--openjd", metavar="FILE", help="Also write a template of Open Job Description, .json"),
@@ -74,12 +79,12 @@ def make(
     """
     from .. import files
     from ..job import Job
-    from ..job.farm_files import openjd_template, sbatch_script
+    from ..job.farm_files import array_script, openjd_template
     from ..job.making import check_is_new
 
     check_is_new(output)
     size, numbers = _tile(tile), None if frames is None else options.frame_numbers(frames)
-    for target in filter(None, (sbatch, openjd)):
+    for target in filter(None, (sbatch, qsub, openjd)):
         files.check_target(target)
     named = _named_shots(shots, spp, device)
     if numbers is not None:
@@ -93,17 +98,23 @@ def make(
         made = job.status()
         units = "units as the noise wants them" if made.is_adaptive else _count(made.units_known, "unit")
         typer.echo(f"{output}: {_count(made.shots, 'picture')}, {units}")
-    if sbatch is not None:
-        files.write_whole(sbatch, sbatch_script(output, tasks).encode())
-        options.say_written(sbatch, quiet)
-    if openjd is not None:
-        files.write_whole(openjd, openjd_template(output, tasks).encode())
-        options.say_written(openjd, quiet)
+    for file, text in (
+        (sbatch, array_script("slurm", output, tasks)),
+        (qsub, array_script("pbs", output, tasks)),
+        (openjd, openjd_template(output, tasks)),
+    ):
+        if file is not None:
+            files.write_whole(file, text.encode())
+            options.say_written(file, quiet)
 
 
 @app.command()
 def work(
     folder: Folder,
+    part: Annotated[
+        Optional[str],  # noqa: UP045
+        typer.Option("--part", metavar="K/N", help="In this process, the K-th of N parts: 3/8"),
+    ] = None,
     workers: Annotated[
         Optional[int],  # noqa: UP045
         typer.Option("--workers", metavar="N", help="Processes [one for each 4 cores]", min=1, max=10000),
@@ -114,43 +125,39 @@ def work(
         Optional[str],  # noqa: UP045
         typer.Option("--scheduler", metavar="ADDRESS", help="Of a Dask scheduler: tcp://head:8786, or its .json file"),
     ] = None,
-    cluster: Annotated[
-        Optional[str],  # noqa: UP045
-        typer.Option("--cluster", metavar="NAME", help="slurm or pbs: workers are jobs there, by dask-jobqueue"),
-    ] = None,
     device: Annotated[
         Optional[str],  # noqa: UP045
         typer.Option("--device", metavar="DEVICE", help="cuda:1, say, where a job is for GPUs; wants --here"),
     ] = None,
     quiet: options.Quiet = False,
 ) -> None:
-    """Take samples until all units of a job are done.
+    """Take the samples of a job that are missing.
 
-    As many of these as you like may run at the same time, on any machines that see the folder. Ctrl-C, a machine that
-    stops or a disk that is full lose the units in hand and nothing else; start the command again to go on.
+    Run it again after Ctrl-C, a stopped machine or a full disk: only the units in hand are lost. To share the work
+    without a scheduler, give each of N processes its --part; all of them must see the folder.
     """
     from ..job import Job
     from ..job.clusters import dask_executor, has_dask
 
-    if sum([here, scheduler is not None, cluster is not None]) > 1:
-        raise InputError("--here, --scheduler and --cluster exclude each other; one of them is wanted")
+    is_single = here or part is not None
+    if is_single and (scheduler is not None or workers is not None):
+        raise InputError("--here and --part are for one process; --scheduler and --workers exclude them")
     logging.disable(logging.CRITICAL)  # what Dask writes of connections that end; the job says what matters
-    if device is not None and not here:
+    if device is not None and not is_single:
         raise InputError("--device is for one process; --here is wanted with it")
-    job = Job.load(folder)
-    wants_dask = not here and (has_dask() or scheduler or cluster or workers)
+    numbers, job = _part(part), Job.load(folder)
     with progress_bar(f"{folder}", is_shown=not quiet) as bar:
-        if not wants_dask:
-            job.work(threads=threads, device=device, progress=bar)
+        if is_single or not (has_dask() or scheduler or workers):
+            job.work(part=numbers, threads=threads, device=device, progress=bar)
         else:
             cores = len(os.sched_getaffinity(0))
             count = workers or max(1, cores // 4)
-            is_local = scheduler is None and cluster is None
-            with dask_executor(workers=count, scheduler=scheduler, batch_system=cluster) as executor:
-                share = threads or (max(1, cores // count) if is_local else 0)
+            with dask_executor(workers=count, scheduler=scheduler) as executor:
+                share = threads or (max(1, cores // count) if scheduler is None else 0)
                 job.work(executor, threads=share, progress=bar)
     if not quiet:
-        typer.echo(f"{folder}: all units are done; realcam job finish {folder} -o FILE makes the pictures")
+        done = f"the units of part {part}" if part and not job.status().is_done else "all units"
+        typer.echo(f"{folder}: {done} are done; realcam job finish {folder} -o FILE makes the pictures")
 
 
 @app.command()
@@ -167,7 +174,6 @@ def status(folder: Folder, as_json: options.AsJson = False) -> None:
         f"{found.units_done} of {_count(found.units_known, 'unit')}"
         + (" that are known so far" if found.is_adaptive and not found.is_done else ""),
         f"{found.shots_done} of {_count(found.shots, 'picture')}",
-        f"{found.in_hand} in hand",
     ]
     if found.damaged:
         lines.append(f"{len(found.damaged)} damaged ({found.damaged[0]}), which realcam job work does again")
@@ -271,6 +277,15 @@ def _developed(job: Job, device: str | None, bar: Callable[[float], bool]) -> It
 
 def _samples(text: str) -> int | str:
     return text if text == "auto" or not text.isdecimal() else int(text)
+
+
+def _part(text: str | None) -> tuple[int, int] | None:
+    if text is None:
+        return None
+    found = re.fullmatch(r"(\d{1,6})/(\d{1,6})", text)
+    if not found or not 1 <= int(found[1]) <= int(found[2]):
+        raise InputError(f'--part: "{text:.40}": K/N is wanted, 1/8 to 8/8')
+    return int(found[1]), int(found[2])
 
 
 def _tile(text: str | None) -> tuple[int, int] | None:

@@ -89,7 +89,7 @@ def _make_one(recipe: Recipe, folder: str, number: int, device: str, threads: in
     try:
         DatasetFolder(Path(folder), recipe).write_sample(number, make_sample(recipe, number, device, threads))
     except RealcamError as error:
-        return False, f"picture {number}: {error}"
+        return f"picture {number}: {error}"
     except OSError as error:
-        return False, f"picture {number}: {error.filename}: {error.strerror}"
-    return True, ""
+        return f"picture {number}: {error.filename}: {error.strerror}"
+    return ""

@@ -1,25 +1,31 @@
-"""Files for render farms that run command lines: an array of Slurm's, and a template of Open Job Description."""
+"""Files for render farms that run command lines: arrays of Slurm and PBS, and a template of Open Job Description."""
 
 from __future__ import annotations
 
 import json
+import re
 import shlex
 from pathlib import Path
 
-# All tasks are alike: each takes the units that nobody has in hand, until there are none.
-_WORK = ("job", "work", "--here", "--quiet")
+# Directives of an array's script; {name} and {tasks} are filled in.
+_ARRAYS = {
+    "slurm": (
+        "#SBATCH --job-name={name}\n#SBATCH --array=1-{tasks}\n#SBATCH --ntasks=1\n#SBATCH --requeue",
+        "${SLURM_ARRAY_TASK_ID}",
+        "${SLURM_CPUS_PER_TASK:-0}",
+    ),
+    "pbs": ("#PBS -N {name}\n#PBS -J 1-{tasks}\n#PBS -r y", "${PBS_ARRAY_INDEX}", "${NCPUS:-0}"),
+}
 
 
-def sbatch_script(folder: Path, tasks: int) -> str:
-    """What `sbatch` takes: so many tasks that work on the same folder."""
-    path = str(folder.absolute())
+def array_script(batch_system: str, folder: Path, tasks: int) -> str:
+    """A script for Slurm's `sbatch` or the `qsub` of PBS: an array of tasks, each with its part."""
+    directives, task, threads = _ARRAYS[batch_system]
+    name = re.sub("[^A-Za-z0-9_.-]", "_", f"realcam-{folder.name}")[:100]
     return f"""#!/bin/bash
-#SBATCH --job-name={shlex.quote("realcam-" + folder.name)}
-#SBATCH --array=1-{tasks}
-#SBATCH --ntasks=1
-# Cores, memory, GPUs and the partition are those of the command line or of the cluster: sbatch --cpus-per-task=16 ...
-#SBATCH --requeue
-exec realcam {" ".join(_WORK)} --threads "${{SLURM_CPUS_PER_TASK:-0}}" {shlex.quote(path)}
+{directives.format(name=name, tasks=tasks)}
+# Cores, memory, GPUs and the queue are those of the command line, or the cluster's defaults.
+exec realcam job work --quiet --part "{task}/{tasks}" --threads "{threads}" {shlex.quote(str(folder.absolute()))}
 """
 
 
@@ -50,7 +56,7 @@ def openjd_template(folder: Path, tasks: int) -> str:
         "steps": [
             step(
                 "Work",
-                [*_WORK, "{{Param.JobFolder}}"],
+                ["job", "work", "--quiet", "--part", f"{{{{Task.Param.Task}}}}/{tasks}", "{{Param.JobFolder}}"],
                 parameterSpace={"taskParameterDefinitions": [{"name": "Task", "type": "INT", "range": f"1-{tasks}"}]},
             ),
             step(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import concurrent.futures
 import os
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
 
@@ -84,109 +84,87 @@ class Job:
         self,
         executor: concurrent.futures.Executor | None = None,
         *,
+        part: tuple[int, int] | None = None,
         threads: int = 0,
         device: str | None = None,
         progress: ProgressCallback | None = None,
     ) -> None:
-        """Takes samples until all units are done, here or by whoever else works on them.
+        """Takes the samples that are missing.
 
-        executor: of whose processes each takes a unit at a time, on this machine or others that see the same folder;
-        None: this process. threads: of each process; 0: all cores. device: of this process, "cuda:1" say, where that of
-        the job is "cuda". progress: called with the share done, and stops where it returns False.
-        Raises InputError, DeviceError, and ImageFileError where a disk is full, say: what is done stays, and work()
-        goes on from there.
+        executor: its processes take one unit at a time, on this machine or others that see the same folder; None: this
+        process takes them all. part: (3, 8) limits this process to the third eighth of the units, so that 8 processes
+        share the work; with a noise goal it also takes units of the others that the next round needs. threads: of each
+        process; 0: all cores. device: of this process, "cuda:1" say, if that of the job is "cuda". progress: called
+        with the share done, and stops the work if it returns False.
+        Raises InputError, DeviceError, and ImageFileError if a disk is full, say: what is done stays, and work()
+        continues from there.
         """
+        if part is not None and not (1 <= part[0] <= part[1] <= 100000 and executor is None):
+            raise InputError(f"part {part[0]} of {part[1]}: a part from 1 to the number of parts is expected")
         remove_leftovers(self.path)
         for name in self.status().damaged:
-            (self.path / "units" / name).unlink(missing_ok=True)
+            self._folder.discard(name)
         report = _Report(self, progress)
         if executor is None:
-            self._work_here(Worker(self._folder, threads, device), report)
+            for _ in Worker(self._folder, threads, device).work(part):
+                report()
         else:
             self._work_with(executor, threads, report)
-        report(is_done=True)
+        report(is_last=True)
 
     def image(self, name: str | None = None, *, device: str | None = None) -> Image:
         """The picture of a shot; None: of the only one. device: for layers of single rays; None: that of the job.
 
         Raises InputError where units are missing.
         """
-        shot = self._number_of(name)
+        shot = self._index_of(name)
         worker = Worker(self._folder, device=device)
-        self._check_done(worker, shot)
-        film = worker.film(shot)
-        stored = worker.shot(shot)
+        rounds, is_all = self._folder.rounds(shot)
+        if not is_all or any(self._folder.missing(shot, round_) for round_ in rounds):
+            status = self.status()
+            missing = f"{status.units_known - status.units_done} of {status.units_known} units are missing"
+            raise InputError(f"{self.path}: {missing}; realcam job work does them")
+        film, stored = worker.film(shot), worker.shot(shot)
         image = worker.session(shot)._image_of(film.film)
-        settings = stored.settings
-        return replace(image, settings=settings, plan=stored.plan, shortfall=film.shortfall)
+        return replace(image, settings=stored.settings, plan=stored.plan, shortfall=film.shortfall)
 
     def tone(self, name: str | None = None) -> str:
         """The shot's tone curve, for Image.save."""
-        return Worker(self._folder).shot(self._number_of(name)).tone
+        return Worker(self._folder).shot(self._index_of(name)).tone
 
-    def _number_of(self, name: str | None) -> int:
+    def _index_of(self, name: str | None) -> int:
         if name is None and len(self.names) == 1:
             return 0
         if name not in self.names:
             raise InputError(f"{self.path}: the job has {len(self.names)} shots; the name of one is wanted")
         return self.names.index(name)
 
-    def _check_done(self, worker: Worker, shot: int) -> None:
-        if worker.is_done(shot):
-            return
-        status = self.status()
-        raise InputError(
-            f"{self.path}: {status.units_known - status.units_done} of {status.units_known} units are missing; realcam "
-            "job work does them"
-        )
-
-    def _missing(self, worker: Worker) -> Iterator[tuple[int, list[Unit]]]:
-        """Of each shot that is not done, the units that can be done now."""
-        for shot in range(len(self._folder.shots)):
-            if not worker.is_done(shot):
-                yield shot, worker.missing(shot)
-
-    def _work_here(self, worker: Worker, report: _Report) -> None:
-        while True:
-            is_all, is_idle = True, True
-            for _, units in self._missing(worker):
-                is_all = False
-                for unit in units:
-                    if worker.run(unit):
-                        is_idle = False
-                    report()
-            if is_all:
-                return
-            if is_idle:  # others have the rest in hand
-                time.sleep(0.5)
-
     def _work_with(self, executor: concurrent.futures.Executor, threads: int, report: _Report) -> None:
-        worker = Worker(self._folder, threads)
-        folder = str(self.path.absolute())
+        worker, folder = Worker(self._folder, threads), str(self.path.absolute())
 
         def wanted() -> list[Unit] | None:
-            shots = list(self._missing(worker))
-            return [unit for _, units in shots for unit in units] if shots else None
+            found = [worker.missing(shot) for shot in range(len(self.names))]
+            return [unit for missing in found if missing for unit in missing[1]] or None
 
-        def submit(unit: Unit) -> concurrent.futures.Future[tuple[bool, str]]:
-            return executor.submit(run_unit, folder, unit, threads)
+        def submit(unit: Unit) -> concurrent.futures.Future[str]:
+            return executor.submit(run_unit, folder, self._folder.id, unit, threads)
 
         do_all(wanted, submit, window=_WINDOW, report=report, place=str(self.path), noun="unit")
 
 
 class _Report:
-    """Tells the share that is done, about once a second."""
+    """Reports the share that is done, about once a second."""
 
     def __init__(self, job: Job, progress: ProgressCallback | None) -> None:
         self._job, self._progress, self._next, self._most = job, progress, 0.0, 0.0
 
-    def __call__(self, is_done: bool = False) -> None:
-        if self._progress is None or (time.monotonic() < self._next and not is_done):
+    def __call__(self, is_last: bool = False) -> None:
+        if self._progress is None or (time.monotonic() < self._next and not is_last):
             return
         begin = time.monotonic()
-        # What the noise still wants is an estimate, which also shrinks.
-        self._most = 1.0 if is_done else max(self._most, self._job.status().share)
+        # The number of samples that a noise goal still needs is an estimate, so the share may shrink.
+        self._most = max(self._most, self._job.status().share)
         if self._progress(self._most) is False:
             raise InputError(f"{self._job.path}: stopped; work() goes on from here")
-        # Of many units, a look at all of them takes a while.
+        # Looking at many units takes a while.
         self._next = time.monotonic() + max(1.0, 50 * (time.monotonic() - begin))

@@ -1,11 +1,11 @@
-"""What a job consists of: shots, and units of their samples."""
+"""How a job divides its pictures: rounds of samples, and units of a round."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,17 +14,20 @@ from .._core import _SAMPLES_PER_SUM, _SHARING_TILE_SIDE, InputError
 if TYPE_CHECKING:
     from .._core import _Region
 
-# Samples of a unit, about: a second of one core.
-_SAMPLES_PER_UNIT = 1 << 22
-# Films of light that is traced apart are as large as the picture.
-_MOST_SPLATS_PER_SUM = 8
+Digest = str
+Size = tuple[int, int]
+
+MOST_UNITS = 1 << 20  # of a shot
+LONGEST_SIDE = 1 << 15  # of a film, pixels
+_SAMPLES_PER_UNIT = 1 << 22  # takes one core about a second
+_MOST_SPLATS_PER_SUM = 8  # a film of light that is traced from lamps is as large as the picture
 
 
 @dataclass(frozen=True)
 class Unit:
-    """Samples that are exposed, and written, as a whole or not at all.
+    """Samples that are exposed and written together.
 
-    shot, round: their numbers in the job, and in the shot. kind: "pixels", "layers" or "light", which is traced apart.
+    shot, round: indices in the job, and in the shot. kind: "pixels", "layers", or "light" that is traced from lamps.
     """
 
     shot: int
@@ -35,120 +38,104 @@ class Unit:
     spp: int
 
     def __str__(self) -> str:
-        return self.name
-
-    @property
-    def name(self) -> str:
         return f"{self.shot:05d}/{self.file_name}"
 
     @property
     def file_name(self) -> str:
-        where = "" if self.region is None else f"-{self.region[0]:05d}-{self.region[1]:05d}"
-        return f"{self.round:03d}-{self.kind}-{self.first:08d}{where}.npz"
+        at = "" if self.region is None else f"-{self.region[0]:05d}-{self.region[1]:05d}"
+        return f"{self.round:03d}-{self.kind}-{self.first:08d}{at}.npz"
 
 
 @dataclass(frozen=True)
 class Round:
-    """Samples of which the number is known before they are taken: all of a shot, or as many as its noise called for.
+    """Samples whose number is known before they are taken: all of a shot, or those that its noise called for.
 
-    samples: taken before. spp: the most that a pixel takes. counts: (H, W), how many each takes; None: all.
-    traces_lights: whether as much light is traced from the lights as belongs to spp samples. taken, left: samples of
-    all pixels before it, and from there on as far as is known.
+    samples: taken before. spp: the most that a pixel takes. counts: (H, W) uint32, samples of each pixel; None: spp.
+    traces_lights: whether light is traced from the lamps for spp samples. taken, left: estimates for all pixels.
     """
 
     number: int
     samples: int
     spp: int
     counts: np.ndarray | None = None
-    is_of_layers: bool = False  # after the last samples of a shot whose number of samples follows its noise
+    is_of_layers: bool = False  # follows the last samples of a shot whose number of samples follows its noise
     traces_lights: bool = True
     taken: float = 0
     left: float = 0
 
+    def counts_of(self, unit: Unit) -> np.ndarray | None:
+        """(height, width) uint32: how many of the unit's samples each of its pixels takes; None: all of them."""
+        if self.counts is None or unit.region is None:
+            return None
+        column, row, width, height = unit.region
+        counts = self.counts[row : row + height, column : column + width].astype(np.int64)
+        return np.clip(counts - (unit.first - self.samples), 0, _SAMPLES_PER_SUM).astype(np.uint32)
+
 
 @dataclass(frozen=True)
 class ShotRecord:
-    """What a job's file says of a shot. spp: None where its noise decides. tile: width and height of units, pixels."""
+    """A shot's entry in job.json.
+
+    digest, scene: SHA-256 of its file and of its scene's. tile: width and height of a unit in pixels, multiples of 32.
+    spp: None if the noise decides.
+    """
 
     name: str
-    file: str
-    digest: str
-    scene: str
-    resolution: tuple[int, int]
-    tile: tuple[int, int]
+    digest: Digest
+    scene: Digest
+    resolution: Size
+    tile: Size
     spp: int | None
     has_layers: bool
     has_traced_light: bool
 
-    @classmethod
-    def read(cls, entry: Any) -> ShotRecord:
-        """Raises TypeError, KeyError or ValueError for what is no record."""
-        width, height = entry.pop("resolution")
-        across, down = entry.pop("tile")
-        numbers = (width, height, across, down)
-        if not all(isinstance(number, int) and 1 <= number <= 1 << 20 for number in numbers):
-            raise ValueError
-        return cls(**entry, resolution=(width, height), tile=(across, down))
-
     def units(self, shot: int, round_: Round) -> Iterator[Unit]:
-        """Those of a round, in the order in which their sums are added."""
+        """The units of a round, in the order in which their sums are added."""
+        kind = "layers" if round_.is_of_layers else "pixels"
         for first in range(round_.samples, round_.samples + round_.spp, _SAMPLES_PER_SUM):
             spp = min(_SAMPLES_PER_SUM, round_.samples + round_.spp - first)
-            kind = "layers" if round_.is_of_layers else "pixels"
             if self.has_traced_light and round_.traces_lights and not round_.is_of_layers:
-                for begin, end in self._pieces(first, spp):
+                for begin, end in self._ranges_of_light(first, spp):
                     yield Unit(shot, round_.number, "light", None, begin, end - begin)
             for region in self._tiles():
-                if wants_any(round_, region, first):
-                    yield Unit(shot, round_.number, kind, region, first, spp)
+                unit = Unit(shot, round_.number, kind, region, first, spp)
+                counts = round_.counts_of(unit)
+                if counts is None or counts.any():
+                    yield unit
+
+    def check_count(self) -> None:
+        """Raises InputError if the shot has more units than a folder of files can hold."""
+        (width, height), (across, down) = self.resolution, self.tile
+        count = -(-width // across) * -(-height // down) * -(-(self.spp or 1) // _SAMPLES_PER_SUM)
+        if count > MOST_UNITS:
+            raise InputError(f'shot "{self.name:.40}" has {count} units; at most {MOST_UNITS} are expected')
 
     def _tiles(self) -> Iterator[_Region]:
-        width, height = self.resolution
-        across, down = self.tile
+        (width, height), (across, down) = self.resolution, self.tile
         for row in range(0, height, down):
             for column in range(0, width, across):
                 yield (column, row, min(across, width - column), min(down, height - row))
 
-    def _pieces(self, first: int, spp: int) -> Iterator[tuple[int, int]]:
-        """Ranges of samples for light that is traced apart. As its sums are whole numbers, any would do."""
+    def _ranges_of_light(self, first: int, spp: int) -> Iterator[tuple[int, int]]:
+        """Ranges of samples for light that is traced from lamps. Its sums are integers, so any division is exact."""
         width, height = self.resolution
         count = min(_MOST_SPLATS_PER_SUM, spp, max(1, width * height * spp // (4 * _SAMPLES_PER_UNIT)))
-        ends = [first + spp * i // count for i in range(count + 1)]
-        yield from pairwise(ends)
-
-
-def counts_of(round_: Round, region: _Region, first: int) -> np.ndarray | None:
-    """(height, width) uint32: how many of the samples from number `first` on the pixels of a region take."""
-    if round_.counts is None:
-        return None
-    column, row, width, height = region
-    wanted = round_.counts[row : row + height, column : column + width].astype(np.int64)
-    return np.clip(wanted - (first - round_.samples), 0, _SAMPLES_PER_SUM).astype(np.uint32)
-
-
-def wants_any(round_: Round, region: _Region, first: int) -> bool:
-    counts = counts_of(round_, region, first)
-    return counts is None or bool(counts.any())
+        yield from pairwise(first + spp * i // count for i in range(count + 1))
 
 
 def tile_for(resolution: tuple[int, int], spp: int | None, is_cpu: bool) -> tuple[int, int]:
-    """Width and height of the units of a picture: about a second of one core, or whole rows for a GPU."""
+    """The default size of a unit: about a second of one core, or complete rows for a GPU."""
     samples = min(spp or _SAMPLES_PER_SUM, _SAMPLES_PER_SUM)
     width, height = resolution
     if not is_cpu:
-        return width, min(height, _whole_tiles(16 * _SAMPLES_PER_UNIT // (samples * width)))
-    side = min(512, max(64, _whole_tiles(int((_SAMPLES_PER_UNIT / samples) ** 0.5))))
-    return min(width, side), min(height, side)
+        return checked_tile((width, min(height, max(1, 16 * _SAMPLES_PER_UNIT // (samples * width)))))
+    side = min(512, max(64, int((_SAMPLES_PER_UNIT / samples) ** 0.5)))
+    return checked_tile((min(width, side), min(height, side)))
 
 
 def checked_tile(tile: tuple[int, int]) -> tuple[int, int]:
-    """In whole tiles. Raises InputError for what is no size of units."""
-    width, height = tile
-    if not (1 <= width <= 1 << 20 and 1 <= height <= 1 << 20):
-        raise InputError("a tile must have 1 to 1048576 pixels along each side")
-    return _whole_tiles(width), _whole_tiles(height)
-
-
-def _whole_tiles(pixels: int) -> int:
-    """As many, or some more: pixels of a tile share samples, and would miss those of another unit."""
-    return max(1, -(-pixels // _SHARING_TILE_SIDE)) * _SHARING_TILE_SIDE
+    """A size of units, rounded up to the tiles in which pixels share samples. Raises InputError."""
+    if not all(1 <= side <= LONGEST_SIDE for side in tile):
+        raise InputError(f"a tile must have 1 to {LONGEST_SIDE} pixels along each side")
+    width, height = (-(-side // _SHARING_TILE_SIDE) * _SHARING_TILE_SIDE for side in tile)
+    return width, height

@@ -1,28 +1,34 @@
-"""What a process does of a job: exposing units, and adding up rounds."""
+"""One process's work on a job: exposing units, adding up rounds, and deciding the next ones."""
 
 from __future__ import annotations
 
+import random
 import threading
 import warnings
-from contextlib import suppress
+from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any
 
 import numpy as np
 
+from .. import _core
 from .._core import Camera, InputError, RealcamError, RenderSettings, Scene
-from ..film_part import FilmPart
+from ..archive import packed, read_archive, write_archive
+from ..executing import Outcome
+from ..film_part import CollectedFilm
+from ..pickling import described, from_description
 from ..session import Session
-from .claims import Claims
 from .engine import probe_of
-from .folder import JOB_FILE, DamagedFileError, JobFolder, read_round, write_round
-from .shot_film import ShotFilm, first_round
-from .stored import read_stored
-from .units import Round, Unit, counts_of
+from .folder import DamagedFileError, JobFolder
+from .units import Round, Unit
+
+_MOST_BYTES = 1 << 36  # of a scene
 
 
-class StoredShot(NamedTuple):
-    """What a shot's file holds beside its scene."""
+@dataclass(frozen=True)
+class StoredShot:
+    """A shot's file without its scene."""
 
     camera: Camera
     settings: RenderSettings
@@ -30,179 +36,261 @@ class StoredShot(NamedTuple):
     plan: str
 
 
+def pack_values(*values: Any, **more: str) -> bytes:
+    """An archive of descriptions of realcam's values, which `read_values` reads."""
+    buffers: list[np.ndarray] = []
+    about = {type(value).__name__: described(value, buffers) for value in values}
+    return packed(about | more, {"buffer": np.concatenate([*buffers, np.empty(0, np.uint8)])})
+
+
+def read_values(path: Path, digest: str) -> dict[str, Any]:
+    """The values by the names of their types. Raises InputError if the digest is not that of the file."""
+    about, arrays = read_archive(path, limit_bytes=_MOST_BYTES, digest=digest)
+    try:
+        return {
+            key: value if isinstance(value, str) else from_description(value, arrays["buffer"], key)
+            for key, value in about.items()
+        }
+    except (RealcamError, KeyError, AttributeError) as error:
+        raise InputError(f"{path}: {error if isinstance(error, RealcamError) else 'this file is malformed'}") from None
+
+
+class ShotFilm:
+    """The accumulated film of a shot, to which rounds are added in order."""
+
+    def __init__(self, folder: JobFolder, shot: int, stored: StoredShot) -> None:
+        self._folder, self._shot, self._stored = folder, shot, stored
+        self._record = folder.shots[shot]
+        self.film = CollectedFilm(*self._record.resolution)
+        self.rounds = 0
+        self._noise: _core._Rounds | None = None
+        self._mean_spp = 0
+
+    def add(self, round_: Round) -> Round | None:
+        """Adds a round, and returns the one that follows if the shot's noise decides; None: there is none.
+
+        One session makes the same decisions from the same sums. Raises InputError if units are missing or damaged.
+        """
+        for unit in self._record.units(self._shot, round_):
+            self.film.add(self._folder.read(unit, round_))
+        self.rounds += 1
+        if round_.is_of_layers or self._record.spp is not None:
+            return None
+        counts, pixels = round_.counts, self.film.pixels.size
+        self._mean_spp += round_.spp if counts is None else -(-int(counts.sum(dtype="int64")) // pixels)
+        seconds = self._stored.camera.exposure_time_s
+        exposure = self.film.exposure(self._stored.settings, seconds)
+        traced = self.film.traced_exposure(seconds) if round_.traces_lights else np.empty(0, np.float32)
+        samples = self.film.pixels["samples"].astype("int64")
+        if self._noise is None:
+            self._noise = _core._Rounds(self._stored.settings, self._stored.camera.iso, exposure, samples, traced)
+        else:
+            assert counts is not None
+            self._noise.add(exposure, counts, traced)
+        wanted, taken = self._noise.next(), float(samples.sum())
+        if wanted.any():
+            left = max(self._noise.left(), float(wanted.sum(dtype="int64")))
+            begin = round_.samples + round_.spp
+            more = {"traces_lights": self._noise.traces_lights, "taken": taken, "left": left}
+            return Round(round_.number + 1, begin, int(wanted.max()), wanted, **more)  # type: ignore[arg-type]
+        if self._record.has_layers:
+            return Round(round_.number + 1, 0, self._mean_spp, is_of_layers=True, taken=taken)
+        return None
+
+    @property
+    def shortfall(self) -> str:
+        return self._noise.shortfall() if self._noise else ""
+
+
 class Worker:
-    """A job in one process, with the session that it needed last. All functions raise InputError, DeviceError and
-    ImageFileError; an OSError becomes an InputError that names the file."""
+    """A job in one process, with the session and the scene that it used last.
+
+    All functions raise InputError (also for an OSError, with the file's name), DeviceError and ImageFileError.
+    """
 
     def __init__(self, folder: JobFolder, threads: int = 0, device: str | None = None) -> None:
         self.folder = folder
         self._threads, self._device = threads, device or folder.device
-        self._claims = Claims()
         self._session: Session | None = None
         self._scene: tuple[str, Scene] | None = None
-        self._checked: set[str] = set()  # scenes
+        self._checked: set[str] = set()  # scenes whose probe agrees
         self._at = -1  # the session's shot
-        self._round: tuple[Path, Round] | None = None
+        self._rounds: dict[int, list[Round]] = {}
         self._films: dict[int, ShotFilm] = {}
 
-    def shot(self, number: int) -> StoredShot:
-        record = self.folder.shots[number]
-        state = read_stored(self.folder.path / "shots" / record.file, record.digest)
-        camera, settings, tone, plan = state
-        return StoredShot(camera, settings.with_(threads=self._threads), tone, plan)
+    def shot(self, index: int) -> StoredShot:
+        record = self.folder.shots[index]
+        path = self.folder.directory("shots") / f"{index:05d}.npz"
+        values = read_values(path, record.digest)
+        try:
+            camera, settings = values["Camera"], values["RenderSettings"].with_(threads=self._threads)
+            stored = StoredShot(camera, settings, values["tone"], values["plan"])
+        except KeyError:
+            raise InputError(f"{path}: this file is malformed") from None
+        spp = None if settings.spp == "auto" else settings.spp
+        if (camera.film.resolution, spp) != (record.resolution, record.spp):
+            raise InputError(f"{path}: its resolution or number of samples is not that of job.json")
+        return stored
 
     def scene(self, digest: str) -> Scene:
         if self._scene is None or self._scene[0] != digest:
-            self._scene = None  # before the next takes as much memory
-            self._scene = (digest, read_stored(self.folder.path / "scenes" / f"{digest[:16]}.scene", digest))
+            self._scene = None  # frees its memory before the next one is read
+            path = self.folder.directory("scenes") / f"{digest[:16]}.npz"
+            self._scene = (digest, read_values(path, digest)["Scene"])
         return self._scene[1]
 
-    def session(self, number: int) -> Session:
-        """On that shot."""
-        if self._session is None or self._at != number:
-            scene = self.folder.shots[number].scene
+    def session(self, index: int) -> Session:
+        """The session, set to a shot. Raises InputError if this machine computes other samples than the job's."""
+        if self._session is None or self._at != index:
+            scene = self.folder.shots[index].scene
             if scene not in self._checked:
-                self._check(scene)
-            self._session, self._at = self._set(number), number
+                first = next(i for i, shot in enumerate(self.folder.shots) if shot.scene == scene)
+                self._set(first)
+                assert self._session is not None
+                self.folder.engine.check(self._session, str(self.folder.path))
+                if probe_of(self._session) != self.folder.probes[scene]:
+                    raise InputError(
+                        f"{self.folder.path}: this machine computes other samples than the one that made the job, "
+                        "although it names itself as the same; other libraries or another processor may be why"
+                    )
+                self._checked.add(scene)
+            self._set(index)
+        assert self._session is not None
         return self._session
 
-    def _set(self, number: int) -> Session:
-        shot, scene = self.shot(number), self.scene(self.folder.shots[number].scene)
+    def _set(self, index: int) -> None:
+        shot, scene = self.shot(index), self.scene(self.folder.shots[index].scene)
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore", UserWarning)  # whoever made the job has seen them
+            warnings.simplefilter("ignore", UserWarning)  # the user who made the job has seen them
             if self._session is not None:
                 self._session.set(scene=scene, camera=shot.camera, settings=shot.settings)
-                return self._session
-            with self.folder.engine.pinned():
-                return Session(scene, shot.camera, shot.settings, device=self._device)
+            else:
+                with self.folder.engine.pinned():
+                    self._session = Session(scene, shot.camera, shot.settings, device=self._device)
+        self._at = index
 
-    def _check(self, scene: str) -> None:
-        """That the samples of this machine are those of the job."""
-        first = next(i for i, shot in enumerate(self.folder.shots) if shot.scene == scene)
-        session = self._set(first)
-        self.folder.engine.check(session, str(self.folder.path))
-        if probe_of(session) != self.folder.probes[scene]:
-            raise InputError(
-                f"{self.folder.path}: this machine computes other samples than the one that made the job, although it "
-                "names itself as the same; other libraries or another processor may be why"
-            )
-        self._session, self._at = session, first
-        self._checked.add(scene)
-
-    def run(self, unit: Unit) -> bool:
-        """Exposes a unit, unless it is done or another process has it in hand. Whether it was done here."""
-        path = self.folder.unit_path(unit)
+    def run(self, unit: Unit) -> None:
+        """Exposes a unit and writes it, unless its file is there."""
         try:
-            path.parent.mkdir(parents=True, exist_ok=True)
+            path = self.folder.unit_path(unit)
             if path.exists():
-                return False
-            with self._claims.claimed(path) as is_mine:
-                if not is_mine or path.exists():
-                    return False
-                self.expose(unit).save(path)
-                return True
+                return
+            path.parent.mkdir(parents=True, exist_ok=True)
+            content = self._expose(unit).packed(self.folder.id)
+            if not self.folder.is_current():
+                raise InputError(f"{self.folder.path}: the job was replaced while this process worked on it")
+            write_archive(path, content)
         except OSError as error:
-            raise InputError(f"{path}: {error.strerror or error}") from None
+            raise InputError(f"{self.folder.path}: {error.strerror or error}") from None
 
-    def expose(self, unit: Unit) -> FilmPart:
+    def _expose(self, unit: Unit) -> Any:
         session = self.session(unit.shot)
         if unit.region is None:
             return session.expose_traced_light(unit.first, unit.spp)
         if unit.kind == "layers":
             return session.expose_layers(unit.region, unit.first, unit.spp)
-        counts = None
-        if self.folder.shots[unit.shot].spp is None:
-            counts = counts_of(self._round_of(unit), unit.region, unit.first)
-            if counts is None:  # of the first round
-                counts = np.full(unit.region[:1:-1], unit.spp, np.uint32)
+        if self.folder.shots[unit.shot].spp is not None:
+            return session.expose(unit.region, unit.first, unit.spp)
+        if unit.round >= len(self._rounds.get(unit.shot, [])):
+            self._rounds = {unit.shot: self.folder.rounds(unit.shot)[0]}
+        if unit.round >= len(self._rounds[unit.shot]):
+            raise InputError(f"{self.folder.path}: {unit} belongs to a round that the shot does not have")
+        counts = self._rounds[unit.shot][unit.round].counts_of(unit)
+        if counts is None:
+            counts = np.full(unit.region[:1:-1], unit.spp, np.uint32)
         return session.expose(unit.region, unit.first, unit.spp, counts)
 
-    def _round_of(self, unit: Unit) -> Round:
-        path = self.folder.round_path(unit.shot, unit.round)
-        if self._round is None or self._round[0] != path:
-            found = read_round(path)
-            if found is None:
-                raise InputError(f"{path}: the shot has no such round")
-            self._round = (path, found)
-        return self._round[1]
+    def missing(self, shot: int) -> tuple[Round, list[Unit]] | None:
+        """The first incomplete round of a shot and the units that it misses; None: the shot is finished.
 
-    def missing(self, shot: int) -> list[Unit]:
-        """The units that can be done of a shot. Where a round is whole, the next one is found first, unless another
-        process does that already: then there are none."""
+        If all known rounds are complete, the next one is computed.
+        """
         while True:
             rounds, is_all = self.folder.rounds(shot)
-            for round_ in rounds:  # also of earlier ones some may have been lost
-                if missing := self.folder.missing(shot, round_):
-                    return missing
-            if is_all or not self._find_round(shot, rounds):
-                return []
-
-    def is_done(self, shot: int) -> bool:
-        rounds, is_all = self.folder.rounds(shot)
-        return is_all and not any(self.folder.missing(shot, round_) for round_ in rounds)
-
-    def _find_round(self, shot: int, known: list[Round]) -> bool:
-        """Whether it was found here or is there."""
-        path = self.folder.round_path(shot, len(known))
-        try:
-            path.parent.mkdir(parents=True, exist_ok=True)
-            with self._claims.claimed(path) as is_mine:
-                if not is_mine:
-                    return False
-                if not path.exists():
-                    with suppress(DamagedFileError):  # whose unit is missing again
-                        write_round(path, self._following(shot, known))
-                return True
-        except OSError as error:
-            raise InputError(f"{path}: {error.strerror or error}") from None
+            for round_ in rounds:
+                if units := self.folder.missing(shot, round_):
+                    return round_, units
+            if is_all:
+                return None
+            try:
+                following = self._following(shot, rounds)
+            except DamagedFileError:
+                self._films.pop(shot, None)
+                continue  # its unit is missing now
+            self.folder.write_round(shot, len(rounds), following)
 
     def _following(self, shot: int, known: list[Round]) -> Round | None:
         stored = self.shot(shot)
         if not known:
-            return first_round(stored.settings)
+            return Round(0, 0, _core._Rounds.first_samples(stored.settings))
         film = self._films.pop(shot, None)
         if film is None or film.rounds >= len(known):
-            film = ShotFilm(self.folder, shot, stored.camera, stored.settings)
+            film = ShotFilm(self.folder, shot, stored)
         following = None
         for round_ in known[film.rounds :]:
-            film.add(round_)
-            following = film.after(round_)
-        self._films = {shot: film}  # films are large, and one that is gone is read again
+            following = film.add(round_)
+        self._films = {shot: film}  # one at a time: films are large
         return following
 
     def film(self, shot: int) -> ShotFilm:
-        """All of a shot. Raises InputError where some of it is missing."""
-        stored = self.shot(shot)
-        film = ShotFilm(self.folder, shot, stored.camera, stored.settings)
+        """The complete film of a shot. Raises InputError if units are missing or damaged."""
+        film = ShotFilm(self.folder, shot, self.shot(shot))
         for round_ in self.folder.rounds(shot)[0]:
             film.add(round_)
-            if self.folder.shots[shot].spp is None:
-                film.after(round_)
         return film
+
+    def work(self, part: tuple[int, int] | None) -> Iterator[None]:
+        """Does what is missing, and yields after each unit.
+
+        A part (k, n) is the k-th contiguous n-th of each round, counted over all shots. The units of the others follow
+        only where a noise goal needs them for the next round. Work never waits: what others have in hand may be done
+        twice, with the same bits. Each process takes others' units in a random order of its own, so this is rare.
+        """
+        records = self.folder.shots
+        order = random.Random(None if part is None else part[0])
+        k, n = part or (1, 1)
+        first = len(records) * (k - 1) // n
+        indices = [*range(first, len(records)), *range(first)]
+        if part is None:
+            order.shuffle(indices)
+        for shot in indices:
+            is_counted = records[shot].spp is not None
+            while (found := self.missing(shot)) is not None:
+                units = list(records[shot].units(shot, found[0]))
+                ends = [(shot + at / len(units)) / len(records) * n for at in range(len(units))]
+                own = {unit for unit, end in zip(units, ends, strict=True) if int(end) == k - 1}
+                mine = [unit for unit in found[1] if unit in own]
+                others = [] if is_counted else [unit for unit in found[1] if unit not in own]
+                order.shuffle(others if part else mine)
+                for unit in mine + others:
+                    self.run(unit)
+                    yield
+                if is_counted:  # the rest is of other parts
+                    break
 
 
 class _Kept(threading.local):
-    """The worker that a thread needed last: the next unit is mostly of the same shot."""
+    """The worker that a thread of an executor used last."""
 
-    key: tuple[str, float, int] | None = None
+    key: tuple[str, str, int] | None = None
     worker: Worker | None = None
 
-    def worker_of(self, folder: str, threads: int) -> Worker:
-        key = (folder, (Path(folder) / JOB_FILE).stat().st_mtime, threads)
-        if self.worker is None or self.key != key:
-            self.worker, self.key = None, None
-            self.worker, self.key = Worker(JobFolder.open(folder), threads), key
+    def worker_of(self, folder: str, job: str, threads: int) -> Worker:
+        if self.worker is None or self.key != (folder, job, threads):
+            self.worker, opened = None, JobFolder.open(folder)
+            if opened.id != job:
+                raise InputError(f"{folder}: the job was replaced, or this machine has another one of this name")
+            self.worker, self.key = Worker(opened, threads), (folder, job, threads)
         return self.worker
 
 
 _KEPT = _Kept()
 
 
-def run_unit(folder: str, unit: Unit, threads: int) -> tuple[bool, str]:
-    """What an executor's process is sent: whether the unit was done here, and what was wrong; empty: nothing."""
+def run_unit(folder: str, job: str, unit: Unit, threads: int) -> Outcome:
+    """Exposes a unit in a process of an executor."""
     try:
-        return _KEPT.worker_of(folder, threads).run(unit), ""
-    except FileNotFoundError:
-        return False, f"{folder}: this machine has no such job folder; all machines of a job need the same one"
+        _KEPT.worker_of(folder, job, threads).run(unit)
     except RealcamError as error:
-        return False, str(error)
+        return str(error)
+    return ""
