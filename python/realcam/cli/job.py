@@ -8,7 +8,7 @@ import re
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Optional
+from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 import typer
@@ -34,8 +34,7 @@ def make(
     shots: Annotated[list[Path], typer.Argument(help="Shot files, .toml", metavar="SHOT")],
     output: Annotated[Path, typer.Option("--output", "-o", metavar="FOLDER", help="Of the job; it must not be there")],
     spp: Annotated[
-        Optional[str],  # noqa: UP045
-        typer.Option("--spp", metavar="N", help="Samples per pixel, or auto [those of the shots]"),
+        str | None, typer.Option("--spp", metavar="N", help="Samples per pixel, or auto [those of the shots]")
     ] = None,
     device: Annotated[
         str,
@@ -46,26 +45,24 @@ def make(
         ),
     ] = "auto",
     frames: Annotated[
-        Optional[str],  # noqa: UP045
+        str | None,
         typer.Option("--frames", metavar="A-B", help="Of a film, 1-240 or 1-240x2: what moves is where it is then"),
     ] = None,
     fps: Annotated[float, typer.Option("--fps", metavar="N", help="Frames in a second of the scene")] = 24.0,
     tile: Annotated[
-        Optional[str],  # noqa: UP045
+        str | None,
         typer.Option(
             "--tile", metavar="PIXELS", help="Of a unit: 128, or 128x64, in steps of 32 [a second of one core]"
         ),
     ] = None,
     sbatch: Annotated[
-        Optional[Path],  # noqa: UP045
-        typer.Option("--sbatch", metavar="FILE", help="Also write a script for Slurm's sbatch"),
+        Path | None, typer.Option("--sbatch", metavar="FILE", help="Also write a script for Slurm's sbatch")
     ] = None,
     qsub: Annotated[
-        Optional[Path],  # noqa: UP045
-        typer.Option("--qsub", metavar="FILE", help="Also write a script for the qsub of PBS"),
+        Path | None, typer.Option("--qsub", metavar="FILE", help="Also write a script for the qsub of PBS")
     ] = None,
     openjd: Annotated[
-        Optional[Path],  # noqa: UP045
+        Path | None,
         typer.Option("--openjd", metavar="FILE", help="Also write a template of Open Job Description, .json"),
     ] = None,
     tasks: Annotated[
@@ -112,21 +109,19 @@ def make(
 def work(
     folder: Folder,
     part: Annotated[
-        Optional[str],  # noqa: UP045
-        typer.Option("--part", metavar="K/N", help="In this process, the K-th of N parts: 3/8"),
+        str | None, typer.Option("--part", metavar="K/N", help="In this process, the K-th of N parts: 3/8")
     ] = None,
     workers: Annotated[
-        Optional[int],  # noqa: UP045
-        typer.Option("--workers", metavar="N", help="Processes [one for each 4 cores]", min=1, max=10000),
+        int | None, typer.Option("--workers", metavar="N", help="Processes [one for each 4 cores]", min=1, max=10000)
     ] = None,
     threads: Threads = 0,
     here: Annotated[bool, typer.Option("--here", help="In this process alone, without Dask")] = False,
     scheduler: Annotated[
-        Optional[str],  # noqa: UP045
+        str | None,
         typer.Option("--scheduler", metavar="ADDRESS", help="Of a Dask scheduler: tcp://head:8786, or its .json file"),
     ] = None,
     device: Annotated[
-        Optional[str],  # noqa: UP045
+        str | None,
         typer.Option("--device", metavar="DEVICE", help="cuda:1, say, where a job is for GPUs; wants --here"),
     ] = None,
     quiet: options.Quiet = False,
@@ -201,8 +196,7 @@ def finish(
     ] = "exr",
     fps: Annotated[float, typer.Option("--fps", metavar="N", help="Frames in a second of a film")] = 24.0,
     device: Annotated[
-        Optional[str],  # noqa: UP045
-        typer.Option("--device", metavar="DEVICE", help="For layers of single rays [that of the job]"),
+        str | None, typer.Option("--device", metavar="DEVICE", help="For layers of single rays [that of the job]")
     ] = None,
     quiet: options.Quiet = False,
 ) -> None:
