@@ -75,12 +75,8 @@ class JobFolder:
         except (KeyError, TypeError, ValueError, AttributeError, RecursionError) as error:
             if str(error).startswith(str(folder)):
                 raise
-            why = (
-                str(error)
-                if isinstance(error, InputError)
-                else "this is damaged; a file of realcam job make is expected"
-            )
-            raise InputError(f"{file}: {why}") from None
+            is_ours = isinstance(error, InputError)
+            raise InputError(f"{file}: {error if is_ours else 'this is damaged'}") from None
         made.directory()
         return made
 
