@@ -18,8 +18,8 @@ def read_environment(path: str | os.PathLike[str], *, layer: str = "") -> np.nda
     Values of EXR and HDR are cd/m^2; 8 and 16 bits are sRGB, with white as 1 cd/m^2. Colours of other primaries, as an
     EXR or HDR names them, become those of Rec. 709. OpenEXR's environment maps (attribute envmap) have its directions,
     and may be cube maps. layer: one of an EXR's layers, such as "albedo"; by default the channels R, G and B, or the
-    layer beauty or combined, or the only one. Negative values become 0, with a warning. Raises ImageFileError, also where they are more than
-    a twentieth of the light, or a value is none up to 1e20.
+    layer beauty or combined, or the only one. Negative values become 0, with a warning. Raises ImageFileError, also
+    where they are more than a twentieth of the light, or a value is none up to 1e20.
     """
     pixels, messages = _core._read_environment(system_name(path), layer)
     for message in messages:
