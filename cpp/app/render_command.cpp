@@ -278,13 +278,14 @@ private:
 
     Assembly read_scene(const shot::ShotRequest& request) {
         std::vector<std::string> pictures;
-        const shot::PictureReaders readers = {[&](const std::string& path, std::span<const std::uint8_t> bytes) {
-                                                  pictures.push_back(path);
-                                                  return image_io::read_image(path, bytes);
-                                              },
-                                              [](const std::string& path, const image_io::WarnOf& warn) {
-                                                  return image_io::read_environment(path, warn);
-                                              }};
+        const shot::PictureReaders readers = {
+            [&](const std::string& path, std::span<const std::uint8_t> bytes) {
+                pictures.push_back(path);
+                return image_io::read_image(path, bytes);
+            },
+            [](const std::string& path, const std::string& layer, const image_io::WarnOf& warn) {
+                return image_io::read_environment(path, layer, warn);
+            }};
         Assembly scene =
             with_memory_for("while reading " + request.scene, [&] { return shot::scene_of(request, readers); });
         check_apart(words_.outputs, pictures);

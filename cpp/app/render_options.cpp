@@ -53,6 +53,7 @@ auto named(const std::string& option, const Read& read) {
 void read_environment(shot::ShotRequest& request, const std::string& option, const std::string& word) {
     request.environment_cd_m2.reset();
     request.environment_file.clear();
+    request.environment_layer.clear();
     if (const auto value = number_in(word)) {
         const auto radiance = static_cast<float>(*value);
         request.environment_cd_m2 = {radiance, radiance, radiance};
@@ -206,6 +207,8 @@ void add_scene(const OptionAdder& option) {
            "Light from all around: cd/m^2, or a latitude-longitude picture [the scene's light; daylight if it has "
            "none]",
            "CD_M2|FILE", read_environment);
+    option("--environment-layer", "Layer of an OpenEXR environment, such as beauty, where it has several", "NAME",
+           [](Request& r, Text, Text w) { r.environment_layer = w; });
     option("--environment-scale", "By which the environment's light is multiplied [1]", "FACTOR",
            [](Request& r, Text o, Text w) { r.environment_change.scale = parse_number(o, w); });
     option("--environment-rotation",

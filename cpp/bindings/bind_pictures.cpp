@@ -18,13 +18,13 @@ using namespace py::literals;
 namespace {
 
 /// The pixels, and what the reader put up with.
-py::tuple read_environment(const std::string& path) {
+py::tuple read_environment(const std::string& path, const std::string& layer) {
     Environment environment;
     std::vector<std::string> warnings;
     {
         const Unlocked unlocked;
         environment = image_io::read_environment(
-            path, [&](const std::string& warning) { warnings.push_back(warning); }, heed_signals);
+            path, layer, [&](const std::string& warning) { warnings.push_back(warning); }, heed_signals);
     }
     py::array_t<float> pixels({environment.height, environment.width, 3});
     std::memcpy(pixels.mutable_data(), environment.pixels.data(), environment.pixels.size() * sizeof(Vec3f));
@@ -115,7 +115,7 @@ void write_codes(const std::string& path, const py::array_t<std::uint8_t, py::ar
 
 // Paths are bytes, as os.fsencode makes them.
 void bind_pictures(py::module_& m) {
-    m.def("_read_environment", &read_environment, "path"_a);
+    m.def("_read_environment", &read_environment, "path"_a, "layer"_a);
     m.def("_write_picture", &write_picture, "path"_a, "image"_a, "film_tone"_a);
     m.def("_write_codes", &write_codes, "path"_a, "codes"_a, "entries"_a);
     m.def("_read_film", &read_film, "path"_a);

@@ -42,10 +42,11 @@ Assembly with_valid_static_geometry(const Assembly& scene, Change&& change) {
 }
 
 /// `warnings` gets what the reader of a picture put up with.
-Environment environment_from(const py::object& radiance, std::vector<std::string>& warnings) {
+Environment environment_from(const py::object& radiance, const std::string& layer, std::vector<std::string>& warnings) {
     if (py::isinstance<py::str>(radiance) || py::hasattr(radiance, "__fspath__"))
-        return picture_readers().environment(path_from(radiance),
+        return picture_readers().environment(path_from(radiance), layer,
                                              [&](const std::string& warning) { warnings.push_back(warning); });
+    if (!layer.empty()) throw InputError("layer is one of an OpenEXR file, and the environment is no file");
     Environment environment;
     if (py::isinstance<py::array>(radiance) && radiance.cast<py::array>().ndim() == 3) {
         const auto pixels = radiance.cast<InputArray<float>>();
@@ -69,9 +70,11 @@ Environment environment_from(const py::object& radiance, std::vector<std::string
     return environment;
 }
 
-Assembly with_environment(const Assembly& scene, const py::object& radiance, double scale, double rotation_deg) {
+Assembly with_environment(const Assembly& scene, const py::object& radiance, double scale, double rotation_deg,
+                          const std::string& layer) {
     return with_valid_static_geometry(scene, [&](Scene& changed) {
-        changed.environment = realcam::changed(environment_from(radiance, changed.warnings), {scale, rotation_deg});
+        changed.environment =
+            realcam::changed(environment_from(radiance, layer, changed.warnings), {scale, rotation_deg});
     });
 }
 
@@ -137,9 +140,10 @@ triangle_materials: (T,) indices into materials; colors: (V, 3) or (V, 4), linea
 materials' diffuse or base colours, and a fourth number by which their opacity is multiplied.
 Raises InputError or SceneFileError.)")
         .def("with_environment", &with_environment, "radiance"_a, py::kw_only(), "scale"_a = 1.0,
-             "rotation_deg"_a = 0.0,
+             "rotation_deg"_a = 0.0, "layer"_a = "",
              R"(The scene in light from all around: a number or (r, g, b) in cd/m^2, or an (H, W, 3) latitude-longitude
-image (row 0 up, its middle column towards -z), or the path of one (see realcam.read_environment). Its light is
+image (row 0 up, its middle column towards -z), or the path of one (see realcam.read_environment; layer: of an
+OpenEXR file). Its light is
 multiplied by scale, and an image turned about the vertical by rotation_deg, counterclockwise as seen from above: at
 90 its middle column lies towards -x. Raises InputError and ImageFileError.)")
         .def("with_sun", &with_sun, "direction"_a, "illuminance"_a,

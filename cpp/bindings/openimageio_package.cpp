@@ -90,13 +90,25 @@ public:
         : file_(path.empty() ? memory_file() : open(path.c_str(), O_RDONLY | O_CLOEXEC)),
           input_("Decoder", format, with(bytes)) {
         const py::gil_scoped_acquire acquire;
-        const py::dict found = input_.attr("header");
+        for (const py::handle header : input_.attr("headers")) parts.push_back(header_of(header.cast<py::dict>()));
+    }
+
+    Outcome read(const EncodedRegion& region, std::uint8_t* pixels) override {
+        return read_as(region, "uint8", pixels);
+    }
+    Outcome read(const EncodedRegion& region, float* pixels) override { return read_as(region, "float", pixels); }
+
+private:
+    static EncodedHeader header_of(const py::dict& found) {
+        EncodedHeader header;
         const auto number = [&](const char* name) { return found[name].cast<int>(); };
         header.x = number("x"), header.y = number("y");
         header.width = number("width"), header.height = number("height"), header.depth = number("depth");
         header.full_x = number("full_x"), header.full_y = number("full_y");
         header.full_width = number("full_width"), header.full_height = number("full_height");
-        header.channels = number("nchannels"), header.alpha_channel = number("alpha_channel");
+        header.part_name = found["part_name"].cast<std::string>();
+        for (const auto& [name, is_number] : found["channels"].cast<std::vector<std::pair<std::string, bool>>>())
+            header.channel_names.push_back({name, is_number});
         header.bytes_per_value = number("bytes_per_value");
         header.tile_height = number("tile_height");
         header.is_floating_point = found["is_floating_point"].cast<bool>();
@@ -104,16 +116,9 @@ public:
         header.chromaticities = found["chromaticities"].cast<std::optional<std::array<float, 8>>>();
         header.texture_format = found["textureformat"].cast<std::string>();
         header.entries = found["entries"].cast<decltype(header.entries)>();
+        return header;
     }
 
-    Outcome read(int first, int end, int count, std::uint8_t* pixels) override {
-        return read_as(first, end, count, "uint8", pixels);
-    }
-    Outcome read(int first, int end, int count, float* pixels) override {
-        return read_as(first, end, count, "float", pixels);
-    }
-
-private:
     /// The name of the file, which has these bytes if it is one of memory.
     std::string with(std::span<const std::uint8_t> bytes) const {
         if (!write_all(file_.number(), reinterpret_cast<const char*>(bytes.data()), bytes.size()))
@@ -122,13 +127,15 @@ private:
     }
 
     template <class Value>
-    Outcome read_as(int first, int end, int count, const char* type, Value* pixels) {
+    Outcome read_as(const EncodedRegion& r, const char* type, Value* pixels) {
         const py::gil_scoped_acquire acquire;
         const auto [rows, said] =
-            input_.attr("read")(first, end, count, type).cast<std::pair<py::object, std::string>>();
+            input_.attr("read")(r.part, r.first_row, r.end_row, r.first_channel, r.end_channel, type)
+                .cast<std::pair<py::object, std::string>>();
         if (rows.is_none()) return {false, said};
         const auto values = rows.cast<py::array_t<Value, py::array::c_style>>();
-        const auto wanted = py::ssize_t{end - first} * header.width * count;
+        const auto wanted = py::ssize_t{r.end_row - r.first_row} * parts[static_cast<std::size_t>(r.part)].width *
+                            (r.end_channel - r.first_channel);
         if (values.size() != wanted) return {false, said};
         std::memcpy(pixels, values.data(), static_cast<std::size_t>(wanted) * sizeof(Value));
         return {true, said};

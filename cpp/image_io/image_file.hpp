@@ -29,9 +29,11 @@ using WarnOf = std::function<void(const std::string& message)>;
 /// A latitude-longitude picture (row 0 up, the middle column towards -z) as light from infinity. Floating-point values
 /// (EXR, HDR) are cd/m^2; 8 and 16 bits are sRGB, with white as 1 cd/m^2. Colours of other primaries, as an EXR or HDR
 /// names them, become those of Rec. 709; an EXR that says it is an environment map (attribute `envmap`) has the
-/// directions of OpenEXR, and may be a cube map. Negative numbers become 0, with a warning. Throws ImageFileError, also
-/// where these are more than a twentieth of the light, or a value is none up to 1e20, and Cancelled.
-Environment read_environment(const std::string& path, const WarnOf& warn = {}, const KeepGoing& keep_going = {});
+/// directions of OpenEXR, and may be a cube map. `layer`: one of an EXR's layers; empty: its beauty or only layer.
+/// Negative numbers become 0, with a warning. Throws ImageFileError, also where these are more than a twentieth of the
+/// light, or a value is none up to 1e20, and Cancelled.
+Environment read_environment(const std::string& path, const std::string& layer = {}, const WarnOf& warn = {},
+                             const KeepGoing& keep_going = {});
 
 /// An exposed picture in somebody else's memory.
 struct PictureView {

@@ -1,5 +1,6 @@
 #include "image_format.hpp"
 
+#include <algorithm>
 #include <string_view>
 
 #include "../io/files/file_suffix.hpp"
@@ -15,6 +16,7 @@ std::string image_format(std::span<const std::uint8_t> first_bytes, const std::s
     if (begins("\x76\x2f\x31\x01"sv)) return "openexr";
     if (begins("#?RADIANCE"sv) || begins("#?RGBE"sv)) return "hdr";
     if (begins("II*\0"sv) || begins("MM\0*"sv)) return "tiff";
+    if (begins("RIFF"sv) && bytes.substr(std::min<std::size_t>(8, bytes.size()), 4) == "WEBP"sv) return "webp";
     if (begins("BM"sv)) return "bmp";
     return io::suffix_of(path) == ".tga" ? "targa" : "";
 }

@@ -46,14 +46,15 @@ public:
 };
 
 /// Opens the file `path`, or, where it is empty, the bytes of one, which have to outlive the result. Throws Error, with
-/// the reason alone.
-std::unique_ptr<OpenPicture> open_picture(const std::string& path, std::span<const std::uint8_t> bytes);
+/// the reason alone. `layer`: of an OpenEXR file (see choose_layer); empty: the layer that holds the picture.
+std::unique_ptr<OpenPicture> open_picture(const std::string& path, std::span<const std::uint8_t> bytes,
+                                          const std::string& layer = "");
 
 /// The parts of open_picture: a PNG, a Radiance picture, and what OpenImageIO reads as `format`.
 std::unique_ptr<OpenPicture> open_png(const std::string& path, std::span<const std::uint8_t> bytes);
 std::unique_ptr<OpenPicture> open_radiance(const std::string& path, std::span<const std::uint8_t> bytes);
 std::unique_ptr<OpenPicture> open_with_openimageio(const std::string& format, const std::string& path,
-                                                   std::span<const std::uint8_t> bytes);
+                                                   std::span<const std::uint8_t> bytes, const std::string& layer);
 
 /// What a decoder says of data that it cannot decode.
 inline constexpr const char* kBroken = "is broken or incomplete";

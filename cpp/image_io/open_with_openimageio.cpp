@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "exr_layer.hpp"
 #include "open_picture.hpp"
 #include "openimageio.hpp"
 
@@ -8,22 +9,29 @@ namespace {
 
 class OpenImageIoPicture final : public OpenPicture {
 public:
-    OpenImageIoPicture(const std::string& format, const std::string& path, std::span<const std::uint8_t> bytes)
+    OpenImageIoPicture(const std::string& format, const std::string& path, std::span<const std::uint8_t> bytes,
+                       const std::string& layer)
         : is_jpeg_(format == "jpeg"), decoder_(open_decoder(format, path, bytes)) {
-        const EncodedHeader& found = decoder_->header;
-        if (found.depth > 1 || found.is_deep) return;  // no picture of flat pixels
+        const auto is_flat = [](const EncodedHeader& part) { return part.depth <= 1 && !part.is_deep; };
+        if (std::ranges::none_of(decoder_->parts, is_flat)) return;
+        if (format == "openexr") chosen_ = choose_layer(decoder_->parts, layer);
+        const EncodedHeader& found = part();
         // OpenImageIO decodes all of them, whichever are asked for: a broken file may claim more than memory holds.
-        constexpr int kMostChannels = 64;
-        if (found.channels > kMostChannels)
-            throw Error("has " + std::to_string(found.channels) + " channels; at most 64 are read");
+        constexpr std::size_t kMostChannels = 64;
+        if (found.channel_names.size() > kMostChannels)
+            throw Error("has " + std::to_string(found.channel_names.size()) + " channels; at most 64 are read");
         width = found.width;
         height = found.height;
-        if (format == "openexr") read_openexr_header(found);
-        channels = std::min(found.channels, 4);
+        if (format == "openexr")
+            read_openexr_header(found);
+        else
+            for (int c = 0; c < static_cast<int>(std::min<std::size_t>(found.channel_names.size(), 4)); ++c)
+                chosen_.channels.push_back(c);
+        channels = static_cast<int>(chosen_.channels.size());
         is_linear = found.is_floating_point;
         is_wide = found.bytes_per_value > 1;
         // OpenEXR multiplies colours by alpha, whatever a reader wishes.
-        has_associated_alpha = format == "openexr" && found.alpha_channel == 3;
+        has_associated_alpha = format == "openexr" && channels == 4;
         entries = found.entries;
     }
 
@@ -64,7 +72,9 @@ private:
     template <class Value>
     void read_as(int count, int stride, Value* pixels, const KeepGoing& keep_going) {
         constexpr std::int64_t kRows = 64;  // between two looks at keep_going
-        const EncodedHeader& s = decoder_->header;
+        const EncodedHeader& s = part();
+        const auto used = std::ranges::minmax(std::span(chosen_.channels).first(static_cast<std::size_t>(count)));
+        const int read_channels = used.max + 1 - used.min;
         const auto size = [](std::int64_t number) { return static_cast<std::size_t>(number); };
         if (is_windowed_)
             for (std::size_t i = 0; i < pixel_count(); ++i) std::fill_n(pixels + i * size(stride), count, Value(0));
@@ -72,18 +82,19 @@ private:
                            rows = std::min<std::int64_t>(tile > 0 ? (kRows + tile - 1) / tile * tile : kRows, s.height);
         const int left = is_windowed_ ? s.x - s.full_x : 0, top = is_windowed_ ? s.y - s.full_y : 0;
         const int first = std::max(0, -left), end = std::min(s.width, width - left);
-        std::vector<Value> read(size(rows) * size(s.width) * size(count));
+        std::vector<Value> read(size(rows) * size(s.width) * size(read_channels));
         for (std::int64_t y = 0; y < s.height; y += rows) {
             check(keep_going);
             const auto below = static_cast<int>(std::min<std::int64_t>(y + rows, s.height));
-            const Outcome outcome = decoder_->read(static_cast<int>(y), below, count, read.data());
+            const Outcome outcome = decoder_->read(
+                {static_cast<int>(chosen_.part), static_cast<int>(y), below, used.min, used.max + 1}, read.data());
             if (!outcome.is_good || tells_of_a_cut(outcome.said)) throw Error(kBroken + reason(outcome.said));
             for (auto row = static_cast<int>(y); row < below; ++row) {
                 if (top + row < 0 || top + row >= height) continue;
-                const Value* from = read.data() + (size(row - y) * size(s.width) + size(first)) * size(count);
+                const Value* from = read.data() + (size(row - y) * size(s.width) + size(first)) * size(read_channels);
                 Value* to = pixels + (size(top + row) * size(width) + size(left + first)) * size(stride);
-                for (int column = first; column < end; ++column, from += count, to += stride)
-                    std::copy_n(from, count, to);
+                for (int column = first; column < end; ++column, from += read_channels, to += stride)
+                    for (int c = 0; c < count; ++c) to[c] = from[chosen_.channels[size(c)] - used.min];
             }
         }
     }
@@ -94,16 +105,19 @@ private:
         return is_jpeg_ ? said.find("Premature end") != std::string::npos : !said.empty();
     }
 
+    const EncodedHeader& part() const { return decoder_->parts[chosen_.part]; }
+
     bool is_jpeg_;
     std::unique_ptr<PictureDecoder> decoder_;
+    ExrLayer chosen_;
     bool is_windowed_ = false;  // the data window is another than the display window
 };
 
 }  // namespace
 
 std::unique_ptr<OpenPicture> open_with_openimageio(const std::string& format, const std::string& path,
-                                                   std::span<const std::uint8_t> bytes) {
-    return std::make_unique<OpenImageIoPicture>(format, path, bytes);
+                                                   std::span<const std::uint8_t> bytes, const std::string& layer) {
+    return std::make_unique<OpenImageIoPicture>(format, path, bytes, layer);
 }
 
 }  // namespace realcam::image_io

@@ -23,11 +23,16 @@ struct Outcome {
     std::string said;  ///< empty: nothing
 };
 
-/// What a file says before its pixels are decoded; OpenImageIO's ImageSpec.
+/// What a file, or one part of it, says before its pixels are decoded; OpenImageIO's ImageSpec.
 struct EncodedHeader {
     int x = 0, y = 0, width = 0, height = 0, depth = 1;           ///< the data window
     int full_x = 0, full_y = 0, full_width = 0, full_height = 0;  ///< the display window
-    int channels = 0, alpha_channel = -1;
+    struct Channel {
+        std::string name;
+        bool is_number = false;  ///< whole numbers of 32 bits
+    };
+    std::string part_name;  ///< of a file of several parts (OpenEXR)
+    std::vector<Channel> channel_names;
     int bytes_per_value = 1;
     int tile_height = 0;  ///< 0: rows
     bool is_floating_point = false, is_deep = false;
@@ -36,17 +41,25 @@ struct EncodedHeader {
     std::vector<std::pair<std::string, std::string>> entries;  ///< those named "realcam:..."
 };
 
-/// A file whose header is read.
+/// Rows and channels of one part, from the first to before the end. Row 0 is the data window's first. Of a picture of
+/// tiles, rows of whole tiles are wanted.
+struct EncodedRegion {
+    int part, first_row, end_row, first_channel, end_channel;
+};
+
+/// Parts of a file that are looked at: a file of 20 kB can have thousands.
+inline constexpr int kMostParts = 256;
+
+/// A file whose headers are read.
 class PictureDecoder {
 public:
     virtual ~PictureDecoder() = default;
 
-    EncodedHeader header;
+    std::vector<EncodedHeader> parts;  ///< at least one
 
-    /// The first `count` channels of the rows from `first` to `end`, without gaps: codes from 0 to 255, or numbers of
-    /// which 1 is white. Row 0 is the data window's first. Of a picture of tiles, rows of whole tiles are wanted.
-    virtual Outcome read(int first, int end, int count, std::uint8_t* pixels) = 0;
-    virtual Outcome read(int first, int end, int count, float* pixels) = 0;
+    /// Decodes a region without gaps: codes from 0 to 255, or numbers of which 1 is white.
+    virtual Outcome read(const EncodedRegion& region, std::uint8_t* pixels) = 0;
+    virtual Outcome read(const EncodedRegion& region, float* pixels) = 0;
 };
 
 /// Opens the file `path`, or, where it is empty, the bytes of one, which have to outlive the result. `format`: as

@@ -168,10 +168,11 @@ std::optional<io::DecodedImage> read_image(const std::string& path, std::span<co
     }
 }
 
-Environment read_environment(const std::string& path, const WarnOf& warn, const KeepGoing& keep_going) {
+Environment read_environment(const std::string& path, const std::string& layer, const WarnOf& warn,
+                             const KeepGoing& keep_going) {
     Environment environment;
     try {
-        environment = decode_environment(*open_picture(path, {}), keep_going);
+        environment = decode_environment(*open_picture(path, {}, layer), keep_going);
     } catch (const Cancelled&) {
         throw;
     } catch (const Error& error) {

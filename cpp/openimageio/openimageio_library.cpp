@@ -31,12 +31,28 @@ public:
         if (!input_) throw Error("OpenImageIO cannot read " + format + reason(OIIO::geterror()));
         if (!input_->open(path.empty() ? "memory." + format : path, spec, wishes))
             throw Error(kBroken + reason(input_->geterror()));
-        const ImageSpec& s = input_->spec();
+        // The headers of further parts may be broken: the decoder says so where one of them is read.
+        const int most = format == "openexr" ? kMostParts : 1;  // WebP cannot go back
+        for (int part = 0; part < most && input_->seek_subimage(part, 0); ++part)
+            parts.push_back(header_of(input_->spec()));
+        if (parts.empty()) throw Error(kBroken + reason(input_->geterror()));
+        input_->geterror();
+    }
+
+    Outcome read(const EncodedRegion& region, std::uint8_t* pixels) override {
+        return read(region, TypeDesc::UINT8, pixels);
+    }
+    Outcome read(const EncodedRegion& region, float* pixels) override { return read(region, TypeDesc::FLOAT, pixels); }
+
+private:
+    static EncodedHeader header_of(const ImageSpec& s) {
+        EncodedHeader header;
         header.x = s.x, header.y = s.y, header.width = s.width, header.height = s.height, header.depth = s.depth;
         header.full_x = s.full_x, header.full_y = s.full_y;
         header.full_width = s.full_width, header.full_height = s.full_height;
-        header.channels = s.nchannels;
-        header.alpha_channel = s.alpha_channel;
+        header.part_name = s.get_string_attribute("oiio:subimagename");
+        for (int c = 0; c < s.nchannels; ++c)
+            header.channel_names.push_back({std::string(s.channel_name(c)), s.channelformat(c) == TypeDesc::UINT32});
         header.bytes_per_value = static_cast<int>(s.format.size());
         header.tile_height = s.tile_width > 0 ? s.tile_height : 0;
         header.is_floating_point = s.format.is_floating_point();
@@ -49,22 +65,16 @@ public:
             const std::string name = entry.name().string();
             if (name.starts_with("realcam:")) header.entries.emplace_back(name, entry.get_string());
         }
+        return header;
     }
 
-    Outcome read(int first, int end, int count, std::uint8_t* pixels) override {
-        return read(first, end, count, TypeDesc::UINT8, pixels);
-    }
-    Outcome read(int first, int end, int count, float* pixels) override {
-        return read(first, end, count, TypeDesc::FLOAT, pixels);
-    }
-
-private:
-    Outcome read(int first, int end, int count, TypeDesc type, void* pixels) {
-        const ImageSpec& s = input_->spec();
-        const bool good = s.tile_width > 0
-                              ? input_->read_tiles(0, 0, s.x, s.x + s.width, s.y + first, s.y + end, s.z, s.z + 1, 0,
-                                                   count, type, pixels)
-                              : input_->read_scanlines(0, 0, s.y + first, s.y + end, s.z, 0, count, type, pixels);
+    Outcome read(const EncodedRegion& r, TypeDesc type, void* pixels) {
+        const EncodedHeader& s = parts[static_cast<std::size_t>(r.part)];
+        const int top = s.y + r.first_row, below = s.y + r.end_row;
+        const bool good = s.tile_height > 0 ? input_->read_tiles(r.part, 0, s.x, s.x + s.width, top, below, 0, 1,
+                                                                 r.first_channel, r.end_channel, type, pixels)
+                                            : input_->read_scanlines(r.part, 0, top, below, 0, r.first_channel,
+                                                                     r.end_channel, type, pixels);
         return {good, input_->geterror()};
     }
 

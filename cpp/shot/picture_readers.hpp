@@ -9,8 +9,9 @@ namespace realcam::shot {
 /// How pictures are read: the programs give OpenImageIO's.
 struct PictureReaders {
     io::ImageReader texture;
-    /// `warn` takes what was put up with.
-    std::function<Environment(const std::string& path, const std::function<void(const std::string&)>& warn)>
+    /// `layer`: one of an OpenEXR's layers, or empty. `warn` takes what was put up with.
+    std::function<Environment(const std::string& path, const std::string& layer,
+                              const std::function<void(const std::string&)>& warn)>
         environment;
 };
 

@@ -136,8 +136,9 @@ Assembly scene_of(const ShotRequest& request, const PictureReaders& readers, con
     return with_static_geometry(std::move(scene), [&](Scene& changed) {
         if (!request.texture.empty()) add_texture(changed, request.texture, readers);
         if (!request.environment_file.empty())
-            changed.environment = readers.environment(
-                request.environment_file, [&](const std::string& warning) { changed.warnings.push_back(warning); });
+            changed.environment =
+                readers.environment(request.environment_file, request.environment_layer,
+                                    [&](const std::string& warning) { changed.warnings.push_back(warning); });
         if (request.environment_cd_m2) {
             changed.environment = {};
             const Vec3f rgb = *request.environment_cd_m2;

@@ -36,6 +36,7 @@ public:
                       "texture",
                       "environment",
                       "environment_cd_m2",
+                      "environment_layer",
                       "environment_scale",
                       "environment_rotation_deg",
                       "lens",
@@ -96,6 +97,10 @@ private:
     void read_light(ShotRequest& shot) const {
         shot.texture = table_.path("texture");
         shot.environment_file = table_.path("environment");
+        shot.environment_layer = table_.text("environment_layer");
+        if (!shot.environment_layer.empty() && shot.environment_file.empty())
+            table_.fail("\"environment_layer\" chooses a layer of \"environment\", and there is none",
+                        table_.find("environment_layer"));
         read_environment_change(shot);
         const std::optional<Vec3d> constant = table_.number_or_three("environment_cd_m2");
         if (!constant) return;
@@ -238,6 +243,8 @@ private:
 
 void check_environment_change(const ShotRequest& request) {
     realcam::check_environment_change(request.environment_change);
+    if (!request.environment_layer.empty() && request.environment_file.empty())
+        throw InputError("the environment's layer is one of an environment's file, and none was asked for");
     if (!request.environment_change.says_nothing() && !request.chooses_environment())
         throw InputError("environment scale and rotation change an environment, and none was asked for");
 }

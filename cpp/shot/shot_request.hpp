@@ -34,6 +34,7 @@ struct ShotRequest {
     std::string texture;  ///< a picture for every material; empty: the scene's own
     std::optional<Vec3f> environment_cd_m2;
     std::string environment_file;
+    std::string environment_layer;  ///< of an OpenEXR file; empty: the layer that holds the picture
     EnvironmentChange environment_change;  ///< of the environment that was asked for
     SceneRequest additions;
 

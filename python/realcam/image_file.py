@@ -12,15 +12,16 @@ from . import _core
 from .files import system_name
 
 
-def read_environment(path: str | os.PathLike[str]) -> np.ndarray:
+def read_environment(path: str | os.PathLike[str], *, layer: str = "") -> np.ndarray:
     """A latitude-longitude picture as (H, W, 3) float32, linear, row 0 up: what Scene.with_environment takes.
 
     Values of EXR and HDR are cd/m^2; 8 and 16 bits are sRGB, with white as 1 cd/m^2. Colours of other primaries, as an
     EXR or HDR names them, become those of Rec. 709. OpenEXR's environment maps (attribute envmap) have its directions,
-    and may be cube maps. Negative values become 0, with a warning. Raises ImageFileError, also where they are more than
-    a twentieth of the light, or a value is none up to 1e20.
+    and may be cube maps. layer: one of an EXR's layers, such as "albedo"; by default the channels R, G and B, or the
+    layer beauty or combined, or the only one. Negative values become 0, with a warning. Raises ImageFileError, also
+    where they are more than a twentieth of the light, or a value is none up to 1e20.
     """
-    pixels, messages = _core._read_environment(system_name(path))
+    pixels, messages = _core._read_environment(system_name(path), layer)
     for message in messages:
         warnings.warn(message, stacklevel=2)
     return pixels

@@ -21,8 +21,9 @@ except ImportError as error:
     ) from None
 
 
-_SUFFIXES = {"jpeg": ".jpg", "openexr": ".exr", "tiff": ".tif", "bmp": ".bmp", "targa": ".tga"}
+_SUFFIXES = {"jpeg": ".jpg", "openexr": ".exr", "tiff": ".tif", "bmp": ".bmp", "targa": ".tga", "webp": ".webp"}
 _LARGEST_NUMBER = 2**24
+_MOST_PARTS = 256
 _opening = threading.Lock()
 
 
@@ -61,20 +62,34 @@ def _opened(format: str, name: str) -> Any:
 
 
 class Decoder:
-    """A picture file whose header is read. Raises ValueError, with what OpenImageIO says, where it is none."""
+    """A picture file whose headers are read. Raises ValueError, with what OpenImageIO says, where it is none."""
 
     def __init__(self, format: str, name: str) -> None:
         self._input = _opened(format, name)
-        self._spec = self._input.spec()
+        self._specs = []
+        most = _MOST_PARTS if format == "openexr" else 1  # WebP cannot go back
+        while len(self._specs) < most and self._input.seek_subimage(len(self._specs), 0):
+            self._specs.append(self._input.spec())
+        reason = _text(self._input.geterror)
+        if not self._specs:
+            raise ValueError(reason)
 
     @property
-    def header(self) -> dict[str, Any]:
-        """The members of EncodedHeader."""
-        spec = self._spec
+    def headers(self) -> list[dict[str, Any]]:
+        """The members of EncodedHeader, for each part of the file."""
+        return [self._header(spec) for spec in self._specs]
+
+    @staticmethod
+    def _header(spec: Any) -> dict[str, Any]:
         names = ("x", "y", "width", "height", "depth", "full_x", "full_y", "full_width", "full_height")
         entries = [name for name in map(_name_of, spec.extra_attribs) if name.startswith("realcam:")]
         return {
-            **{name: getattr(spec, name) for name in (*names, "nchannels", "alpha_channel", "deep")},
+            **{name: getattr(spec, name) for name in (*names, "deep")},
+            "part_name": _text(lambda: spec.get_string_attribute("oiio:subimagename")),
+            "channels": [
+                (_text(lambda c=c: str(spec.channel_name(c))), spec.channelformat(c).basetype == oiio.UINT32)
+                for c in range(spec.nchannels)
+            ],
             "bytes_per_value": spec.format.size(),
             "is_floating_point": spec.format.basetype in (oiio.HALF, oiio.FLOAT, oiio.DOUBLE),
             "tile_height": spec.tile_height if spec.tile_width > 0 else 0,
@@ -83,15 +98,17 @@ class Decoder:
             "entries": [(name, spec.get_bytes_attribute(name)) for name in entries],
         }
 
-    def read(self, first: int, end: int, count: int, format: str) -> tuple[np.ndarray | None, str]:
-        """Channels of rows of the data window, or None, and what OpenImageIO says."""
-        spec = self._spec
+    def read(
+        self, part: int, first: int, end: int, first_channel: int, end_channel: int, format: str
+    ) -> tuple[np.ndarray | None, str]:
+        """Channels of rows of a part's data window, or None, and what OpenImageIO says."""
+        spec, channels = self._specs[part], (first_channel, end_channel)
         begin, below = spec.y + first, spec.y + end
         if spec.tile_width > 0:
             columns = (spec.x, spec.x + spec.width)
-            pixels = self._input.read_tiles(0, 0, *columns, begin, below, spec.z, spec.z + 1, 0, count, format)
+            pixels = self._input.read_tiles(part, 0, *columns, begin, below, spec.z, spec.z + 1, *channels, format)
         else:
-            pixels = self._input.read_scanlines(0, 0, begin, below, spec.z, 0, count, format)
+            pixels = self._input.read_scanlines(part, 0, begin, below, spec.z, *channels, format)
         return pixels, _text(self._input.geterror)
 
 

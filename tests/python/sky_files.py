@@ -103,3 +103,26 @@ def write_exr(
     ]
     offsets = np.cumsum([len(begin) + 8 * height] + [len(row) for row in rows[:-1]])
     path.write_bytes(begin + offsets.astype("<u8").tobytes() + b"".join(rows))
+
+
+def write_exr_parts(path: Path, parts: Sequence[tuple[str, dict[str, np.ndarray]]]) -> None:
+    """Parts of a name and channels, each an (H, W) array of float32 or uint32, through OpenImageIO; one part without a
+    name is a file of a single part.
+    """
+    import OpenImageIO as oiio
+
+    specs = []
+    for name, channels in parts:
+        first = next(iter(channels.values()))
+        spec = oiio.ImageSpec(first.shape[1], first.shape[0], len(channels), str(first.dtype).replace("32", ""))
+        spec.channelnames = tuple(channels)
+        if name:
+            spec.attribute("oiio:subimagename", name)
+        specs.append(spec)
+    output = oiio.ImageOutput.create(str(path))
+    assert output.open(str(path), tuple(specs)) if len(specs) > 1 else output.open(str(path), specs[0])
+    for i, (spec, (_, channels)) in enumerate(zip(specs, parts, strict=True)):
+        if i > 0:
+            assert output.open(str(path), spec, "AppendSubimage")
+        assert output.write_image(np.stack(list(channels.values()), axis=-1))
+    assert output.close()

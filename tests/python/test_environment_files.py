@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import struct
 import warnings
 from pathlib import Path
 
@@ -11,7 +12,7 @@ import pytest
 import realcam as rc
 
 from . import scenes
-from .sky_files import rgbe, write_exr, write_radiance
+from .sky_files import rgbe, write_exr, write_exr_parts, write_radiance
 
 # Powers of two, which mantissas of 8 bits hold exactly; each row and column differs.
 SKY = (2.0 ** np.random.default_rng(7).integers(-3, 4, (8, 16, 1))) * np.array([1.0, 0.5, 0.25])
@@ -289,3 +290,96 @@ def test_films_with_metadata_that_is_no_text(tmp_path: Path) -> None:
 
     with pytest.raises(rc.ImageFileError, match=r'film.exr: its metadata "realcam:lens" is no valid UTF-8'):
         read_film(tmp_path / "film.exr")
+
+
+def layer(prefix: str, light: np.ndarray) -> dict[str, np.ndarray]:
+    return {prefix + name: np.float32(light[..., i]) for i, name in enumerate("RGB")}
+
+
+OTHER = np.full(SKY.shape, 7.0)
+GREY = {"Z": np.float32(OTHER[..., 0])}
+CRYPTO = {f"crypto00.{name}": np.float32(OTHER[..., 0]) for name in "rgba"}
+
+
+@pytest.mark.parametrize(
+    "parts",
+    [
+        [("depth", GREY), ("beauty", layer("", SKY))],
+        [("crypto", CRYPTO), ("light", layer("", SKY))],
+        [("albedo", layer("", OTHER)), ("rgba", layer("", SKY))],
+        [("", {**layer("albedo.", OTHER), **layer("beauty.", SKY)})],
+        [("", {**layer("ViewLayer.AO.", OTHER), **layer("ViewLayer.Combined.", SKY)})],
+        [("", {**layer("beauty.", OTHER), **layer("", SKY)})],
+        [("", {"Id.R": np.uint32(OTHER[..., 0]), **GREY}), ("only", layer("only.", SKY))],
+    ],
+    ids=["depth", "crypto", "albedo part", "albedo layer", "blender", "root", "one"],
+)
+def test_the_light_of_several_parts_and_layers(tmp_path: Path, parts: list[tuple[str, dict[str, np.ndarray]]]) -> None:
+    write_exr_parts(tmp_path / "sky.exr", parts)
+    np.testing.assert_array_equal(read(tmp_path / "sky.exr"), SKY)
+
+
+def test_a_layer_is_chosen_where_several_could_be_the_light(tmp_path: Path) -> None:
+    path = tmp_path / "sky.exr"
+    write_exr_parts(path, [("", {**layer("left.", OTHER), **layer("right.", SKY)})])
+    with pytest.raises(rc.ImageFileError, match=r'several layers: "left", "right"; .*environment_layer'):
+        rc.read_environment(path)
+    np.testing.assert_array_equal(rc.read_environment(path, layer="RIGHT"), SKY)
+    triangle = rc.Scene.from_arrays([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
+    assert triangle.with_environment(path, layer="right") == triangle.with_environment(SKY)
+    with pytest.raises(rc.ImageFileError, match=r'no layer "up"; its layers are "left", "right"'):
+        rc.read_environment(path, layer="up")
+    with pytest.raises(rc.InputError, match="no file"):
+        triangle.with_environment(1, layer="right")
+    (tmp_path / "a.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+    text = 'format = 1\nscene = "a.obj"\nexposure_time_s = 1\nenvironment_layer = "right"\n'
+    (tmp_path / "shot.toml").write_text(text + 'environment = "sky.exr"\n')
+    assert rc.Shot.load(tmp_path / "shot.toml").scene == rc.Scene.load(tmp_path / "a.obj").with_environment(SKY)
+    (tmp_path / "shot.toml").write_text(text)
+    with pytest.raises(rc.InputError, match=':4: "environment_layer" chooses'):
+        rc.Shot.load(tmp_path / "shot.toml")
+
+
+def test_whole_numbers_are_no_light(tmp_path: Path) -> None:
+    write_exr_parts(tmp_path / "sky.exr", [("", {name: np.full((2, 4), 3, np.uint32) for name in "RGB"})])
+    with pytest.raises(rc.ImageFileError, match="whole numbers"):
+        rc.read_environment(tmp_path / "sky.exr")
+
+
+def test_webp_textures_and_zeros_behind_a_glb_s_json(tmp_path: Path) -> None:
+    """Green of 16 x 8 texels in lossless WebP, by EXT_texture_webp without a fallback, in a padded GLB."""
+    import json
+
+    import OpenImageIO as oiio
+
+    spec = oiio.ImageSpec(16, 8, 3, "uint8")
+    spec.attribute("compression", "lossless")
+    output = oiio.ImageOutput.create("webp")
+    assert output.open(str(tmp_path / "a.webp"), spec)
+    assert output.write_image(np.full((8, 16, 3), (0, 255, 0), np.uint8))
+    output.close()
+    corners = (
+        np.float32([[-1, -1, 0], [1, -1, 0], [1, 1, 0]]).tobytes() + np.float32([[0, 0], [1, 0], [1, 1]]).tobytes()
+    )
+    document = {
+        "asset": {"version": "2.0"},
+        "extensionsRequired": ["EXT_texture_webp"],
+        "nodes": [{"mesh": 0}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0, "TEXCOORD_0": 1}, "material": 0}]}],
+        "materials": [{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}],
+        "textures": [{"extensions": {"EXT_texture_webp": {"source": 0}}}],
+        "images": [{"uri": "a.webp"}],
+        "accessors": [
+            {"bufferView": 0, "componentType": 5126, "type": kind, "count": 3, "byteOffset": begin}
+            for kind, begin in (("VEC3", 0), ("VEC2", 36))
+        ],
+        "bufferViews": [{"buffer": 0, "byteLength": len(corners)}],
+        "buffers": [{"byteLength": len(corners)}],
+    }
+    text = json.dumps(document).encode()
+    text += b"\0" * (4 + -len(text) % 4)
+    chunks = struct.pack("<I4s", len(text), b"JSON") + text + struct.pack("<I4s", len(corners), b"BIN\0") + corners
+    (tmp_path / "a.glb").write_bytes(struct.pack("<4sII", b"glTF", 2, 12 + len(chunks)) + chunks)
+    scene = rc.Scene.load(tmp_path / "a.glb")
+    assert not scene.warnings
+    np.testing.assert_array_equal(next(iter(scene.materials.values())).texture[..., :3], np.full((8, 16, 3), (0, 1, 0)))

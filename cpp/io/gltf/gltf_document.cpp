@@ -15,7 +15,7 @@ constexpr std::size_t kGlbHeader = 12, kChunkHeader = 8;
 bool may_be_required(std::string_view extension) {
     return extension == "KHR_lights_punctual" || extension == "KHR_texture_transform" ||
            extension == "KHR_mesh_quantization" || extension == "EXT_mesh_gpu_instancing" ||
-           extension.starts_with("KHR_materials_");
+           extension == "EXT_texture_webp" || extension.starts_with("KHR_materials_");
 }
 
 /// What helps where an extension is required that is not read.
@@ -61,7 +61,9 @@ std::string_view GltfDocument::json_text() {
         binary_size_ = word_at(file, end);
         room(binary_begin_ + binary_size_);
     }
-    return file.substr(begin, size);
+    // The specification wants spaces as padding, and many writers use zeros.
+    const std::string_view json = file.substr(begin, size);
+    return json.substr(0, json.find_last_not_of('\0') + 1);
 }
 
 GltfDocument::GltfDocument(const std::string& path, Checkpoint& checkpoint)

@@ -12,9 +12,10 @@ namespace realcam::io {
 namespace {
 
 constexpr std::array kRead = std::to_array<std::string_view>(
-    {"EXT_mesh_gpu_instancing", "KHR_lights_punctual", "KHR_materials_clearcoat", "KHR_materials_emissive_strength",
-     "KHR_materials_ior", "KHR_materials_pbrSpecularGlossiness", "KHR_materials_specular", "KHR_materials_transmission",
-     "KHR_materials_unlit", "KHR_materials_volume", "KHR_mesh_quantization", "KHR_texture_transform"});
+    {"EXT_mesh_gpu_instancing", "EXT_texture_webp", "KHR_lights_punctual", "KHR_materials_clearcoat",
+     "KHR_materials_emissive_strength", "KHR_materials_ior", "KHR_materials_pbrSpecularGlossiness",
+     "KHR_materials_specular", "KHR_materials_transmission", "KHR_materials_unlit", "KHR_materials_volume",
+     "KHR_mesh_quantization", "KHR_texture_transform"});
 
 /// Those that materials have even where a file forgets to list them.
 constexpr std::array kOfMaterials =

@@ -192,7 +192,9 @@ private:
 
     /// A texture that names no picture gets one without bytes, which stands out in the picture and is warned of.
     std::int32_t picture_of(const Json& texture) {
-        const Json& source = root_["textures"][texture.index(root_["textures"].size())]["source"];
+        const Json& found = root_["textures"][texture.index(root_["textures"].size())];
+        const Json& source =
+            found["source"].is_null() ? found["extensions"]["EXT_texture_webp"]["source"] : found["source"];
         const std::size_t images = root_["images"].size(), number = source.index(images);
         if (number < images) return first_alike(number);
         if (missing_ < 0) {

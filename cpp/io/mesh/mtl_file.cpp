@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -54,19 +55,28 @@ constexpr PictureKey kPictures[] = {
     {"map_Kd", &MtlMaterial::map_Kd},       {"map_Ks", &MtlMaterial::map_Ks}, {"map_Ke", &MtlMaterial::map_Ke},
     {"map_emissive", &MtlMaterial::map_Ke}, {"map_d", &MtlMaterial::map_d},   {"map_Ns", &MtlMaterial::map_Ns},
     {"map_Pr", &MtlMaterial::map_Pr},       {"map_Pm", &MtlMaterial::map_Pm}, {"bump", &MtlMaterial::bump},
-    {"map_bump", &MtlMaterial::bump},       {"map_Bump", &MtlMaterial::bump}, {"norm", &MtlMaterial::norm}};
+    {"map_bump", &MtlMaterial::bump},       {"norm", &MtlMaterial::norm}};
 
 /// What changes how a surface looks, and is not read. Where a number follows that is 0, it says nothing.
 struct OtherKey {
     std::string_view name;
 };
-constexpr OtherKey kNotModelled[] = {{"refl"}, {"map_refl"}, {"disp"},  {"map_disp"},  {"map_Disp"},   {"decal"},
-                                     {"Ps"},   {"map_Ps"},   {"aniso"}, {"map_aniso"}, {"map_anisor"}, {"map_Tr"}};
+constexpr OtherKey kNotModelled[] = {{"refl"},   {"map_refl"}, {"disp"},      {"map_disp"},   {"decal"}, {"Ps"},
+                                     {"map_Ps"}, {"aniso"},    {"map_aniso"}, {"map_anisor"}, {"map_Tr"}};
 
+/// Statements that a path tracer has no use for.
+constexpr OtherKey kNotNeeded[] = {{"map_Ka"}, {"map_aat"}, {"sharpness"}};
+
+bool equal_without_case(std::string_view a, std::string_view b) {
+    const auto lower = [](unsigned char c) { return std::tolower(c); };
+    return std::ranges::equal(a, b, {}, lower, lower);
+}
+
+/// Writers do not agree on the case of keywords.
 template <class Keys>
 auto find_key(const Keys& keys, std::string_view name) -> decltype(&keys[0]) {
     for (const auto& key : keys)
-        if (key.name == name) return &key;
+        if (equal_without_case(key.name, name)) return &key;
     return nullptr;
 }
 
@@ -90,7 +100,8 @@ struct LineCount {
     }
 };
 
-std::string joined(const std::set<std::string_view>& names) {
+template <class Text>
+std::string joined(const std::set<Text>& names) {
     std::string out;
     for (const std::string_view name : names) out += (out.empty() ? "" : ", ") + std::string(name);
     return out;
@@ -102,6 +113,7 @@ public:
         : scene_(scene), path_(path), checkpoint_(checkpoint), lines_(path, checkpoint) {}
 
     void read() {
+        const std::size_t first = scene_.materials.size();
         std::string_view line;
         while (lines_.next(line)) {
             checkpoint_.pass();
@@ -109,6 +121,8 @@ public:
             if (!line.empty() && line[0] != '#') read_statement(line);
         }
         tell();
+        settle_dissolves();
+        settle_textured_colours(first);
     }
 
 private:
@@ -123,20 +137,27 @@ private:
             warn(std::to_string(homeless_) + " lines stand before the first \"newmtl\"; they are left out");
         if (!not_modelled_.empty())
             warn(joined(not_modelled_) + (not_modelled_.size() > 1 ? " are" : " is") + " not modelled");
+        if (!unknown_.empty()) warn(joined(unknown_) + (unknown_.size() > 1 ? " are" : " is") + " no known statement");
         if (skipped_options_ > 0)
             warn(std::to_string(skipped_options_) + " options of pictures are skipped (" + joined(option_names_) + ")");
     }
 
-    /// What else an MTL may say is left out.
+    /// Unknown statements are named in one warning.
     void read_statement(std::string_view rest) {
         const std::string_view keyword = take_word(rest);
-        if (keyword == "newmtl") return begin_material(rest);
+        if (equal_without_case(keyword, "newmtl")) return begin_material(rest);
         const ColourKey* colour = find_key(kColours, keyword);
         const NumberKey* number = find_key(kNumbers, keyword);
         const PictureKey* picture = find_key(kPictures, keyword);
         const OtherKey* other = find_key(kNotModelled, keyword);
-        const bool is_dissolve = keyword == "d" || keyword == "Tr", is_illum = keyword == "illum";
-        if (!colour && !number && !picture && !other && !is_dissolve && !is_illum) return;
+        const bool is_d = equal_without_case(keyword, "d"), is_dissolve = is_d || equal_without_case(keyword, "Tr"),
+                   is_illum = equal_without_case(keyword, "illum");
+        if (!colour && !number && !picture && !other && !is_dissolve && !is_illum) {
+            constexpr std::size_t kShown = 10, kLength = 40;
+            if (!find_key(kNotNeeded, keyword) && unknown_.size() < kShown)
+                unknown_.insert(in_quotes(std::string(keyword.substr(0, kLength))));
+            return;
+        }
         if (!material_) {
             ++homeless_;
             return;
@@ -145,8 +166,37 @@ private:
         if (number) read_number(*number, rest);
         if (picture) read_picture(*picture, rest);
         if (other && take_whole_number(rest) != 0) not_modelled_.insert(other->name);
-        if (is_dissolve) read_dissolve(keyword, rest);
+        if (is_dissolve) read_dissolve(is_d, keyword, rest);
         if (is_illum) read_illum(rest);
+    }
+
+    /// As a transparency, a Tr near 1 is a surface that nobody would see: in a file that has one, Tr is an opacity. A
+    /// Tr of 0 stays opaque for the same reason.
+    void settle_dissolves() {
+        constexpr float kInvisible = 0.95f;
+        const bool is_opacity =
+            std::ranges::any_of(transparencies_, [](const auto& t) { return t.second > kInvisible; });
+        if (!is_opacity) return;
+        for (const auto& [material, value] : transparencies_)
+            if (value > 0) std::get<MtlMaterial>(scene_.materials[material].content).d = value;
+        scene_.warnings.push_back(
+            printable(path_) +
+            ": Tr without d is near 1, which as a transparency would be invisible; Tr is taken for "
+            "an opacity, as MeshLab writes it");
+    }
+
+    /// Maya and others write a black Kd beside its texture.
+    void settle_textured_colours(std::size_t first) {
+        std::size_t count = 0;
+        for (std::size_t i = first; i < scene_.materials.size(); ++i) {
+            auto& material = std::get<MtlMaterial>(scene_.materials[i].content);
+            if (!material.map_Kd || material.Kd != Vec3f{0, 0, 0}) continue;
+            material.Kd = {1, 1, 1};
+            ++count;
+        }
+        if (count > 0)
+            scene_.warnings.push_back(printable(path_) + ": Kd is 0 0 0 beside a map_Kd in " + std::to_string(count) +
+                                      (count == 1 ? " material" : " materials") + "; the texture's colours are taken");
     }
 
     void begin_material(std::string_view name) {
@@ -176,19 +226,24 @@ private:
         if (value) std::visit([&](auto member) { material_->*member = *value; }, key.member);
     }
 
-    /// Programs do not agree on Tr: with a `d` it may be anything, and alone it is what the format's name says.
-    void read_dissolve(std::string_view keyword, std::string_view rest) {
+    /// Programs do not agree on Tr: with a `d` it may be anything. Alone it is a transparency by the format's name, and
+    /// an opacity as MeshLab and others write it (see settle_dissolves).
+    void read_dissolve(bool is_d, std::string_view keyword, std::string_view rest) {
         if (rest.starts_with("-halo")) {
             take_word(rest);
             not_modelled_.insert("d -halo");
         }
+        const std::size_t out_of_range = out_of_range_.count;
         const std::optional<float> value = number_of(keyword, rest, kUnit);
         if (!value) return;
-        if (keyword == "d")
+        if (is_d) {
             material_->d = *value;
-        else if (!has_d_)
+            transparencies_.erase(scene_.materials.size() - 1);
+        } else if (!has_d_) {
             material_->d = 1 - *value;
-        has_d_ |= keyword == "d";
+            if (out_of_range == out_of_range_.count) transparencies_[scene_.materials.size() - 1] = *value;
+        }
+        has_d_ |= is_d;
     }
 
     void read_illum(std::string_view rest) {
@@ -257,6 +312,8 @@ private:
     bool has_illum_ = false, has_d_ = false;  // whether it says so itself
     std::map<std::string, std::int32_t> pictures_;
     LineCount unread_, out_of_range_;
+    std::set<std::string> unknown_;
+    std::map<std::size_t, float> transparencies_;  // Tr of the materials that have no d, by index
     std::size_t homeless_ = 0, skipped_options_ = 0;
     std::set<std::string_view> not_modelled_, option_names_;  // of the tables, which outlive it
 };

@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "printable.hpp"
 #include "text_number.hpp"
 #include "utf8.hpp"
 
@@ -30,8 +31,12 @@ public:
 
 private:
     [[noreturn]] void fail(const std::string& wanted) const {
-        const auto line = 1 + std::count(text_.begin(), text_.begin() + static_cast<std::ptrdiff_t>(at_), '\n');
-        throw std::runtime_error("line " + std::to_string(line) + ": " + wanted + " is wanted");
+        const std::string_view before = text_.substr(0, at_);
+        const auto line = 1 + std::ranges::count(before, '\n');
+        const std::size_t column = at_ - (before.rfind('\n') + 1) + 1;  // npos + 1 is 0
+        const std::string found = at_ < text_.size() ? in_quotes(std::string(text_.substr(at_, 1))) : "the end";
+        throw std::runtime_error("line " + std::to_string(line) + ", column " + std::to_string(column) + ": " + wanted +
+                                 " is wanted, and there is " + found);
     }
 
     void skip_space() { at_ = std::min(text_.find_first_not_of(" \t\r\n", at_), text_.size()); }

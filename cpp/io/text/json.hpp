@@ -28,8 +28,8 @@ public:
     Json(Array value) : value_(std::move(value)) {}
     Json(Object value) : value_(std::move(value)) {}
 
-    /// Throws std::runtime_error, with the line, if the text is no JSON, is nested more than 200 deep, or holds more
-    /// than eight million values (some 600 MB). Of members with one name the last counts.
+    /// Throws std::runtime_error, with line and column (in bytes), if the text is no JSON, is nested more than 200
+    /// deep, or holds more than eight million values (some 600 MB). Of members with one name the last counts.
     /// `with_infinity` reads Infinity, -Infinity and NaN too.
     static Json parse(std::string_view text, Checkpoint& checkpoint, JsonNumbers numbers = JsonNumbers::finite);
 

@@ -122,6 +122,42 @@ TEST_CASE("MTL: the illumination model is what it says, or follows from Ks") {
     }
 }
 
+TEST_CASE("MTL: Tr near 1 without d is the opacity of the whole file, and a warning tells of it") {
+    Mtl mtl;
+    CHECK(mtl.material("Tr 1\nillum 2\n").d == 1.0f);
+    CHECK(mtl.warned("taken for an opacity"));
+    CHECK(mtl.material("Tr 0.996078\nnewmtl glass\nTr 0.25\nnewmtl wall\nTr 0\nnewmtl leaf\nTr 0.25\nd 0.5\n").d ==
+          0.996078f);
+    CHECK(std::get<MtlMaterial>(mtl.scene.materials[1].content).d == 0.25f);
+    CHECK(std::get<MtlMaterial>(mtl.scene.materials[2].content).d == 1.0f);
+    CHECK(std::get<MtlMaterial>(mtl.scene.materials[3].content).d == 0.5f);
+    CHECK(mtl.material("Tr 1\nd 0.75\n").d == 0.75f);
+    CHECK(mtl.scene.warnings.empty());
+}
+
+TEST_CASE("MTL: a black Kd beside its texture is white, and a warning tells of it") {
+    Mtl mtl;
+    check_vec(mtl.material("Kd 0 0 0\nmap_Kd a.png\n").Kd, 1, 1, 1);
+    CHECK(mtl.warned("the texture's colours are taken"));
+    check_vec(mtl.material("map_Kd a.png\nKd 0 0 0.5\nnewmtl black\nKd 0 0 0\n").Kd, 0, 0, 0.5);
+    check_vec(std::get<MtlMaterial>(mtl.scene.materials[1].content).Kd, 0, 0, 0);
+    CHECK(mtl.scene.warnings.empty());
+}
+
+TEST_CASE("MTL: keywords do not depend on case, and unknown ones are named once") {
+    Mtl mtl;
+    const MtlMaterial m = mtl.material("kd 0.5 0.25 0.125\nMAP_KD a.png\nmap_D b.png\nNS 8\nnewMTL b\ntr 0.25\n");
+    check_vec(m.Kd, 0.5, 0.25, 0.125);
+    CHECK(mtl.picture(m.map_Kd) == "a.png");
+    CHECK(mtl.picture(m.map_d) == "b.png");
+    CHECK(m.Ns == 8);
+    CHECK(std::get<MtlMaterial>(mtl.scene.materials[1].content).d == 0.75f);
+    CHECK(mtl.scene.warnings.empty());
+    mtl.material("shine 3\nshine 4\nmap_Kd2 a.png\n");
+    REQUIRE(mtl.scene.warnings.size() == 1);
+    CHECK(mtl.warned("\"map_Kd2\", \"shine\" are no known statement"));
+}
+
 TEST_CASE("MTL: Tr alone is one less d, and d wins where both are given") {
     Mtl mtl;
     CHECK(mtl.material("Tr 0.25\n").d == 0.75f);

@@ -1,0 +1,152 @@
+#include "exr_layer.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <string_view>
+
+#include "../error.hpp"
+#include "../io/text/printable.hpp"
+
+namespace realcam::image_io {
+namespace {
+
+/// Names of the layer that holds the light of all others together, in lower case: of the part, or behind the last dot.
+constexpr std::string_view kBeauty[] = {"beauty", "combined", "rgba", "rgb", "color", "colour", "main", "final"};
+
+/// Channel names, in lower case, of red, green and blue, or of a picture in grey.
+constexpr std::array<std::string_view, 3> kColours[] = {{"r", "g", "b"}, {"red", "green", "blue"}, {"x", "y", "z"}};
+constexpr std::size_t kTristimulus = 2;
+
+std::string lower(std::string text) {
+    std::ranges::transform(text, text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return text;
+}
+
+std::string last_component(const std::string& name) {
+    return name.substr(name.rfind('.') + 1);  // npos + 1 is 0
+}
+
+struct Layer {
+    std::string name;  // empty: channels without a prefix in a file of one part
+    std::size_t part;
+    std::vector<std::pair<std::string, int>> channels = {};  // names in lower case without the prefix
+    bool has_whole_numbers = false;
+
+    int find(std::string_view channel) const {
+        for (const auto& [name, index] : channels)
+            if (name == channel) return index;
+        return -1;
+    }
+    int alpha() const { return std::max(find("a"), find("alpha")); }
+
+    /// Empty if the layer has no red, green and blue. X, Y and Z are tristimulus values only without a prefix: behind
+    /// one they are vectors.
+    std::vector<int> colours() const {
+        for (const auto& names : kColours) {
+            if (&names == &kColours[kTristimulus] && !name.empty()) continue;
+            std::vector<int> found;
+            for (const std::string_view colour : names) found.push_back(find(colour));
+            if (std::ranges::find(found, -1) == found.end()) return found;
+        }
+        return {};
+    }
+
+    /// A luminance, or the only channel beside alpha, unless it is a depth.
+    std::vector<int> grey() const {
+        if (const int y = find("y"); y >= 0) return {y};
+        std::vector<int> others;
+        for (const auto& [channel, index] : channels)
+            if (index != alpha() && channel != "z" && channel != "depth") others.push_back(index);
+        return others.size() == 1 ? others : std::vector<int>{};
+    }
+
+    std::vector<int> picture() const {
+        std::vector<int> found = colours().empty() ? grey() : colours();
+        if (!found.empty() && alpha() >= 0) found.push_back(alpha());
+        return found;
+    }
+};
+
+/// Flat layers, in the order of the file.
+std::vector<Layer> layers_of(const std::vector<EncodedHeader>& parts) {
+    std::vector<Layer> layers;
+    for (std::size_t p = 0; p < parts.size(); ++p) {
+        if (parts[p].is_deep || parts[p].depth > 1) continue;
+        const std::string part_name = parts.size() > 1 ? parts[p].part_name : "";
+        for (std::size_t c = 0; c < parts[p].channel_names.size(); ++c) {
+            const std::string& channel = parts[p].channel_names[c].name;
+            const std::size_t dot = channel.rfind('.');
+            std::string prefix = dot == std::string::npos ? "" : channel.substr(0, dot);
+            const bool repeats = prefix == part_name || prefix.starts_with(part_name + ".");
+            std::string name = prefix.empty()                 ? part_name
+                               : part_name.empty() || repeats ? prefix
+                                                              : part_name + "." + prefix;
+            auto layer = std::ranges::find_if(layers, [&](const Layer& l) { return l.part == p && l.name == name; });
+            if (layer == layers.end()) layer = layers.insert(layers.end(), Layer{std::move(name), p});
+            layer->channels.emplace_back(lower(last_component(channel)), static_cast<int>(c));
+            layer->has_whole_numbers |= parts[p].channel_names[c].is_number;
+        }
+    }
+    return layers;
+}
+
+std::string names_of(const std::vector<const Layer*>& layers) {
+    constexpr std::size_t kShown = 12;
+    std::string out;
+    for (std::size_t i = 0; i < std::min(kShown, layers.size()); ++i)
+        out += (i > 0 ? ", " : "") + (layers[i]->name.empty() ? "R, G and B" : io::in_quotes(layers[i]->name));
+    return out + (layers.size() > kShown ? " and " + std::to_string(layers.size() - kShown) + " more" : "");
+}
+
+template <class Predicate>
+std::vector<const Layer*> those(const std::vector<const Layer*>& layers, Predicate predicate) {
+    std::vector<const Layer*> out;
+    std::ranges::copy_if(layers, std::back_inserter(out), [&](const Layer* layer) { return predicate(*layer); });
+    return out;
+}
+
+bool is_beauty(const Layer& layer) {
+    return std::ranges::find(kBeauty, lower(last_component(layer.name))) != std::end(kBeauty);
+}
+
+const Layer& chosen(const std::vector<const Layer*>& pictures, const std::string& wanted) {
+    if (!wanted.empty()) {
+        const auto named = those(pictures, [&](const Layer& l) { return lower(l.name) == lower(wanted); });
+        if (named.size() == 1) return *named[0];
+        throw Error((named.empty() ? "has no layer " : "has several layers ") + io::in_quotes(wanted) +
+                    "; its layers are " + names_of(pictures));
+    }
+    // Cryptomatte stores hashes as red, green and blue.
+    const auto light = those(pictures, [](const Layer& l) {
+        return !lower(l.name).starts_with("crypto") && !lower(last_component(l.name)).starts_with("crypto");
+    });
+    const auto coloured = those(light, [](const Layer& l) { return !l.colours().empty(); });
+    for (const auto& candidates : {those(coloured, [](const Layer& l) { return l.name.empty(); }),
+                                   those(coloured, is_beauty), coloured, those(light, is_beauty), light}) {
+        if (candidates.size() == 1) return *candidates[0];
+        if (candidates.size() > 1)
+            throw Error("has several layers: " + names_of(candidates) +
+                        "; the environment's layer is to be chosen among them (environment_layer)");
+    }
+    throw Error("has no layer with R, G and B");
+}
+
+}  // namespace
+
+ExrLayer choose_layer(const std::vector<EncodedHeader>& parts, const std::string& name) {
+    const std::vector<Layer> layers = layers_of(parts);
+    std::vector<const Layer*> pictures;
+    for (const Layer& layer : layers)
+        if (!layer.picture().empty()) pictures.push_back(&layer);
+    // Ids beside the light have whole numbers; where nothing else is there, the message names the reason.
+    const auto light = those(pictures, [](const Layer& l) { return !l.has_whole_numbers; });
+    const Layer& layer = chosen(!name.empty() || light.empty() ? pictures : light, name);
+    std::vector<int> channels = layer.picture();
+    for (const int channel : channels)
+        if (parts[layer.part].channel_names[static_cast<std::size_t>(channel)].is_number)
+            throw Error("has whole numbers (UINT) in its channels, which are no light; HALF or FLOAT is wanted");
+    return {layer.part, std::move(channels)};
+}
+
+}  // namespace realcam::image_io
