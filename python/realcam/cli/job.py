@@ -79,9 +79,12 @@ def make(
 
     check_is_new(output)
     size, numbers = _tile(tile), None if frames is None else options.frame_numbers(frames)
-    for target in filter(None, (sbatch, openjd)):
-        files.check_target(target)
+    scripts = {sbatch: sbatch_script, openjd: openjd_template}
+    written = {path: os.fsencode(script(output, tasks)) for path, script in scripts.items() if path is not None}
+    if sbatch is not None and openjd is not None and len(files.check_targets([sbatch, openjd])) < 2:
+        raise InputError(f"{openjd}: is given twice; one file each is wanted for --sbatch and --openjd")
     named = _named_shots(shots, spp, device)
+    files.check_targets(written)
     if numbers is not None:
         named = {
             frame: shot
@@ -93,12 +96,9 @@ def make(
         made = job.status()
         units = "units as the noise wants them" if made.is_adaptive else _count(made.units_known, "unit")
         typer.echo(f"{output}: {_count(made.shots, 'picture')}, {units}")
-    if sbatch is not None:
-        files.write_whole(sbatch, sbatch_script(output, tasks).encode())
-        options.say_written(sbatch, quiet)
-    if openjd is not None:
-        files.write_whole(openjd, openjd_template(output, tasks).encode())
-        options.say_written(openjd, quiet)
+    for path, content in written.items():
+        files.write_whole(path, content)
+        options.say_written(path, quiet)
 
 
 @app.command()
@@ -214,8 +214,10 @@ def finish(
 
 
 def _write_film(job: Job, path: Path, fps: float, device: str | None, quiet: bool) -> None:
+    from .. import files
     from ..video import write_video
 
+    files.check_targets([path], outside=job.path)
     with progress_bar("adding up", is_shown=not quiet) as bar:
         write_video(path, _developed(job, device, bar), fps)
     options.say_written(path, quiet)
@@ -235,8 +237,7 @@ def _picture_files(job: Job, output: list[Path], format: str) -> dict[str, list[
             raise InputError("one folder is wanted for --output, or files .exr and .png")
         files.make_folder(output[0])
         targets = {name: [output[0] / f"{name}.{format}"] for name in job.names}
-    for path in (path for paths in targets.values() for path in paths):
-        files.check_target(path)
+    files.check_targets([path for paths in targets.values() for path in paths], outside=job.path)
     return targets
 
 
