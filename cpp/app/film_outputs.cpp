@@ -49,6 +49,13 @@ void FilmOutputs::begin() const {
     }
 }
 
+std::vector<std::string> FilmOutputs::all_files(const std::vector<int>& frames) const {
+    std::vector<std::string> all = films_;
+    for (const int frame : frames)
+        for (std::string& file : files_of(frame)) all.push_back(std::move(file));
+    return all;
+}
+
 std::vector<std::string> FilmOutputs::files_of(int frame) const {
     std::vector<std::string> files;
     for (const std::string& picture : pictures_) files.push_back(frame_file(picture, frame));

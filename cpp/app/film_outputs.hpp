@@ -20,6 +20,9 @@ public:
     /// Makes the folders of films. Throws ImageFileError.
     void begin() const;
 
+    /// All pictures and films of these frames.
+    std::vector<std::string> all_files(const std::vector<int>& frames) const;
+
     /// The pictures of a frame.
     std::vector<std::string> files_of(int frame) const;
 

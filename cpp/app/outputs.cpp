@@ -4,11 +4,15 @@
 #include <cstdio>
 #include <filesystem>
 #include <regex>
+#include <sstream>
 #include <system_error>
+#include <utility>
 
 #include "../error.hpp"
 #include "../image_io/image_file.hpp"
 #include "../io/files/file_suffix.hpp"
+#include "../io/files/readable_file.hpp"
+#include "../io/files/regular_file.hpp"
 
 namespace realcam::app {
 namespace {
@@ -36,12 +40,44 @@ void check_outputs(const std::vector<std::string>& outputs) {
     }
 }
 
-void check_apart(const std::vector<std::string>& outputs, const std::vector<std::string>& inputs) {
-    for (const std::string& output : outputs)
-        for (const std::string& input : inputs)
-            if (!input.empty() && same_file(output, input))
-                throw InputError("--output: \"" + output + "\" is a file that the picture is made from (" + input +
-                                 "); another name is wanted");
+std::string film_digest(const shot::ShotRequest& request, const Camera& camera, const std::string& more) {
+    std::ostringstream text;
+    text.precision(17);
+    for (const auto& [name, value] : io::metadata_of(camera, request.settings).entries())
+        if (name != "realcam:version") text << name << '=' << value << '\n';
+    const RenderSettings& s = request.settings;
+    const Vec3f light = request.environment_cd_m2.value_or(Vec3f{-1, -1, -1});
+    text << camera.film.width << ' ' << camera.film.height << ' ' << request.scale << ' ' << light.x << ' ' << light.y
+         << ' ' << light.z << ' ' << request.environment_change.scale << ' ' << request.environment_change.rotation_deg
+         << ' ' << s.max_bounces << ' ' << s.thresholds.pixels << ' ' << s.thresholds.codes << ' '
+         << s.effects.is_automatic << ' ' << s.effects.named << ' ' << s.effects.ghost_share << ' '
+         << s.effects.film_reflectance << ' ' << static_cast<int>(s.pupil_sampling) << ' '
+         << static_cast<int>(s.light_tracing) << ' ' << static_cast<int>(request.tone) << ' ' << request.denoises << ' '
+         << request.meters_exposure_time() << ' ' << request.iso_follows_s.value_or(-1);
+    for (std::size_t i = 0; i < kLayers.size(); ++i) text << ' ' << s.layers.has(static_cast<Layer>(i));
+    if (s.noise)
+        text << ' ' << s.noise->noise << ' ' << static_cast<int>(s.noise->unit) << ' ' << s.noise->most_samples << ' '
+             << s.noise->seconds;
+    text << '\n' << more;
+    std::uint64_t digest = 0xcbf29ce484222325;  // FNV-1a
+    const auto add = [&](std::string_view bytes) {
+        for (const char c : bytes) digest = (digest ^ static_cast<unsigned char>(c)) * 0x100000001b3;
+    };
+    add(text.str());
+    // By contents alone, in an order that does not depend on names: a film's folder may be renamed.
+    std::vector<std::string> contents;
+    for (const std::string& path : io::recorded_inputs()) {
+        io::RegularFile file(path);
+        const std::uint64_t before = std::exchange(digest, 0xcbf29ce484222325);
+        std::string piece(1 << 20, '\0');
+        while (const std::size_t n = file.read(piece.data(), piece.size())) add(std::string_view(piece).substr(0, n));
+        contents.push_back(std::to_string(std::exchange(digest, before)));
+    }
+    std::sort(contents.begin(), contents.end());
+    for (const std::string& content : contents) add(content + '\n');
+    char digits[20];
+    std::snprintf(digits, sizeof digits, "%016llx", static_cast<unsigned long long>(digest));
+    return digits;
 }
 
 std::vector<int> frame_numbers(const std::string& text) {

@@ -2,6 +2,8 @@
 #include <string>
 #include <vector>
 
+#include "../shot/shot_request.hpp"
+
 namespace realcam::app {
 
 /// Whether an output is a film (see film_outputs.hpp), and no picture.
@@ -11,8 +13,9 @@ bool is_film(const std::string& output);
 /// file: before the work, not after it.
 void check_outputs(const std::vector<std::string>& outputs);
 
-/// Throws InputError where a picture would take the place of a file that it is made from.
-void check_apart(const std::vector<std::string>& outputs, const std::vector<std::string>& inputs);
+/// Digest of a picture's settings for the entry "realcam:film" of a frame: of the settings of a request, of the placed
+/// but not yet metered camera, of the contents of all recorded inputs, and of `more`. Throws FileError.
+std::string film_digest(const shot::ShotRequest& request, const Camera& camera, const std::string& more);
 
 /// The numbers of frames that a user names: "7", "1-240" or "1-240x10". Throws InputError.
 std::vector<int> frame_numbers(const std::string& text);

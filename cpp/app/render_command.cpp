@@ -14,6 +14,7 @@
 #include "../embree/fast_pupil_tracer.hpp"
 #include "../image_io/image_file.hpp"
 #include "../io/files/free_memory.hpp"
+#include "../io/files/readable_file.hpp"
 #include "../io/text/one_line.hpp"
 #include "../plan/plan_film.hpp"
 #include "../plan/plan_text.hpp"
@@ -99,8 +100,6 @@ public:
         if (!(words_.frames_per_second > 0 && std::isfinite(words_.frames_per_second)))
             throw InputError("--fps: more than 0 frames in a second are wanted");
         outputs_.check(frames);
-        check_apart(words_.outputs,
-                    {words_.scene, request.scene, request.lens, request.texture, request.environment_file});
         settle_keys(request);
         Camera camera = camera_of(request);
         const LayerSet written_layers = request.settings.layers;
@@ -112,6 +111,9 @@ public:
         std::optional<Denoiser> denoiser;
         if (request.denoises) denoiser.emplace(words_.device, request.settings.threads);
         shot::Shot shot = set_up_shot(request, std::move(camera));
+        for (const std::string& file : frames.empty() ? words_.outputs : outputs_.all_files(frames))
+            io::check_no_input(file);
+        if (!frames.empty()) film_digest_ = film_digest(request, shot.camera, std::to_string(words_.frames_per_second));
         const Darkroom darkroom{*session, denoiser ? &*denoiser : nullptr, written_layers};
         // Until here nothing is on disk, and a signal may simply end the program.
         const Interrupt interrupt;
@@ -210,7 +212,14 @@ private:
                                shot::frame_opens_s(camera, frame, words_.frames_per_second));
     }
 
-    /// Frames that are there as files stay: files are written as a whole or not at all.
+    /// True if a file is a whole picture of the current frame, taken with the settings of this film.
+    bool is_done(const std::string& file) const {
+        return is_file(file) && until_interrupted([&] {
+                                    return image_io::entry_of_whole_file(file, "realcam:film", is_wanted);
+                                }) == frame_digest_;
+    }
+
+    /// Frames that are done stay.
     void film(const Darkroom& darkroom, shot::Shot& shot, shot::ShotRequest& request, const std::vector<int>& frames) {
         std::string decisions;
         if (request.settings.effects.is_automatic)
@@ -230,13 +239,17 @@ private:
         if (request.iso_follows_s)
             followed.emplace(darkroom.session, shot.scene, camera, request.keys, request.settings,
                              words_.frames_per_second, *request.iso_follows_s);
-        std::size_t there = 0;
+        std::size_t there = 0, unfit = 0;
         std::string all_figures;
         for (const int frame : frames) {
             const std::vector<std::string> files = outputs_.files_of(frame);
-            if (!words_.takes_again && std::all_of(files.begin(), files.end(), is_file)) {
-                ++there;
-                continue;
+            frame_digest_ = film_digest_ + '-' + std::to_string(frame);
+            if (!words_.takes_again) {
+                if (std::all_of(files.begin(), files.end(), [&](const auto& file) { return is_done(file); })) {
+                    ++there;
+                    continue;
+                }
+                unfit += std::any_of(files.begin(), files.end(), is_file);
             }
             start_ = std::chrono::steady_clock::now();
             shot.camera = camera_of_frame(camera, request, frame);
@@ -254,6 +267,9 @@ private:
         if (there > 0)
             inform(std::to_string(there) + " of " + std::to_string(frames.size()) +
                    " frames were there already; --again takes them, too");
+        if (unfit > 0)
+            inform(std::to_string(unfit) + " of " + std::to_string(frames.size()) +
+                   " frames were there, but damaged or taken with other settings, and were taken again");
         const auto films =
             until_interrupted([&] { return outputs_.finish(frames, words_.frames_per_second, is_wanted); });
         for (const std::string& film : films)
@@ -277,18 +293,16 @@ private:
     }
 
     Assembly read_scene(const shot::ShotRequest& request) {
-        std::vector<std::string> pictures;
-        const shot::PictureReaders readers = {
-            [&](const std::string& path, std::span<const std::uint8_t> bytes) {
-                pictures.push_back(path);
-                return image_io::read_image(path, bytes);
-            },
-            [](const std::string& path, const std::string& layer, const image_io::WarnOf& warn) {
-                return image_io::read_environment(path, layer, warn);
-            }};
+        const shot::PictureReaders readers = {[](const std::string& path, std::span<const std::uint8_t> bytes) {
+                                                  return image_io::read_image(path, bytes);
+                                              },
+                                              [](const std::string& path, const std::string& layer,
+                                                 const image_io::WarnOf& warn) {
+                                                  return image_io::read_environment(path, layer, warn);
+                                              }};
         Assembly scene =
             with_memory_for("while reading " + request.scene, [&] { return shot::scene_of(request, readers); });
-        check_apart(words_.outputs, pictures);
+        inputs_.end();
         const std::vector<std::string>& warnings = scene.static_geometry->warnings;
         constexpr std::size_t kShown = 10;
         for (std::size_t i = 0; i < std::min(kShown, warnings.size()); ++i) warn(warnings[i]);
@@ -334,6 +348,7 @@ private:
         io::ImageMetadata metadata = io::metadata_of(shot.camera, request.settings);
         metadata.plan = decisions;
         metadata.denoiser = denoiser;
+        metadata.film = frame_digest_;
         metadata.spp = static_cast<int>(image.spp);
         std::string written;
         for (const std::string& path : files) {
@@ -350,6 +365,8 @@ private:
     FilmOutputs outputs_;
     std::chrono::steady_clock::time_point start_;
     std::vector<std::string> warnings_;  ///< that were told
+    io::InputRecording inputs_;
+    std::string film_digest_, frame_digest_;  ///< empty: a still
 };
 
 }  // namespace

@@ -1,5 +1,8 @@
+#include <optional>
 #include "../error.hpp"
 #include "../io/lens/lens_error.hpp"
+
+#include "../io/files/readable_file.hpp"
 #include "../io/text/one_line.hpp"
 #include "../plan/plan.hpp"
 
@@ -59,9 +62,20 @@ void raise(const LensFileError& error) {
     PyErr_SetObject(type_of<LensFileError>().ptr(), instance.ptr());
 }
 
+/// Starts or ends the recording of the inputs of a command in Python.
+void record_inputs(bool is_on) {
+    static std::optional<io::InputRecording> recording;
+    if (!is_on)
+        recording.reset();
+    else if (!recording)
+        recording.emplace();
+}
+
 }  // namespace
 
 void bind_errors(py::module_& m) {
+    m.def("_record_inputs", &record_inputs, "is_on"_a);
+    m.def("_check_no_input", &io::check_no_input, "output"_a);
     m.def(
         "one_line", [](const std::string& message) { return text_from(io::one_line(message)); }, "message"_a,
         "A message as one line: without control characters, and what is too long for a message without its middle.");

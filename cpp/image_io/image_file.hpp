@@ -86,6 +86,11 @@ struct FilmFile {
 /// Reads such a file. Throws ImageFileError and Cancelled.
 FilmFile read_film(const std::string& path, const KeepGoing& keep_going = {});
 
+/// The value of an entry of a picture file whose pixels can all be decoded; std::nullopt if it has no entry of this
+/// name, or is no whole picture. Throws Cancelled.
+std::optional<std::string> entry_of_whole_file(const std::string& path, const std::string& name,
+                                               const KeepGoing& keep_going = {});
+
 /// Throws ImageFileError where write_image could not write this path: to be told before rendering, not after.
 void check_image_path(const std::string& path);
 

@@ -6,6 +6,8 @@
 #include <csetjmp>
 #include <cstring>
 #include <fstream>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "open_picture.hpp"
@@ -21,14 +23,20 @@ public:
         info_ = png_ ? png_create_info_struct(png_) : nullptr;
         if (!info_) throw std::bad_alloc();
         png_set_read_fn(png_, this, read_bytes);
-        // Colour profiles, texts and times are not looked at: the pixels are taken for sRGB.
+        // Colour profiles and times are not looked at: the pixels are taken for sRGB. Compressed texts are not read.
         png_set_keep_unknown_chunks(png_, PNG_HANDLE_CHUNK_NEVER, nullptr, -1);
+        png_set_keep_unknown_chunks(png_, PNG_HANDLE_CHUNK_AS_DEFAULT, reinterpret_cast<png_const_bytep>("tEXt"), 1);
         require(guarded([this] { read_header(); }));
         width = static_cast<int>(png_get_image_width(png_, info_));
         height = static_cast<int>(png_get_image_height(png_, info_));
         channels = png_get_channels(png_, info_);
         bytes_per_value_ = png_get_bit_depth(png_, info_) == 16 ? 2 : 1;
         is_wide = bytes_per_value_ == 2;
+        png_textp texts = nullptr;
+        const int count = png_get_text(png_, info_, &texts, nullptr);
+        for (int i = 0; i < count; ++i)
+            if (const std::string_view name = texts[i].key; name.starts_with("realcam:"))
+                entries.emplace_back(name, std::string(texts[i].text, texts[i].text_length));
     }
 
     void read(int count, int stride, std::uint8_t* pixels, const KeepGoing& keep_going) override {
@@ -75,7 +83,7 @@ private:
     void read_header() {
         png_read_info(png_, info_);
         png_set_expand(png_);  // palettes, fewer than 8 bits, and a colour that stands for transparency
-        png_set_swap(png_);    // 16 bits as this machine has them
+        png_set_swap(png_);  // 16 bits as this machine has them
         passes_ = png_set_interlace_handling(png_);
         png_read_update_info(png_, info_);
     }

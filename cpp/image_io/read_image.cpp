@@ -1,10 +1,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <fstream>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "../error.hpp"
+#include "../io/files/file_suffix.hpp"
 #include "../io/files/free_memory.hpp"
 #include "../io/scene/decoded_image.hpp"
 #include "../io/text/printable.hpp"
@@ -180,6 +183,43 @@ Environment read_environment(const std::string& path, const std::string& layer, 
     }
     settle_light(environment, path, warn);
     return environment;
+}
+
+namespace {
+
+/// False for a PNG without its last chunk, whose pixels may be decodable all the same.
+bool has_its_end(const std::string& path) {
+    constexpr std::string_view kLastChunk("\0\0\0\0IEND\xae\x42\x60\x82", 12);
+    if (io::suffix_of(path) != ".png") return true;
+    std::string end(kLastChunk.size(), '\0');
+    std::ifstream file(path, std::ios::binary);
+    file.seekg(-static_cast<std::streamoff>(end.size()), std::ios::end);
+    return file.read(end.data(), static_cast<std::streamsize>(end.size())) && end == kLastChunk;
+}
+
+}  // namespace
+
+std::optional<std::string> entry_of_whole_file(const std::string& path, const std::string& name,
+                                               const KeepGoing& keep_going) {
+    try {
+        const auto picture = open_picture(path, {});
+        const auto entry = std::find_if(picture->entries.begin(), picture->entries.end(),
+                                        [&](const auto& candidate) { return candidate.first == name; });
+        if (entry == picture->entries.end() || !has_its_end(path)) return std::nullopt;
+        const bool is_film = picture->is_linear;
+        check_size(*picture, kMostTexturePixels, is_film ? 3 * sizeof(float) : 4);
+        if (is_film) {
+            std::vector<float> pixels(3 * picture->pixel_count());
+            picture->read(std::min(picture->channels, 3), 3, pixels.data(), keep_going);
+        } else {
+            decode_codes(*picture, keep_going);
+        }
+        return entry->second;
+    } catch (const Cancelled&) {
+        throw;
+    } catch (const Error&) {
+        return std::nullopt;
+    }
 }
 
 FilmFile read_film(const std::string& path, const KeepGoing& keep_going) {

@@ -10,6 +10,7 @@
 #include <system_error>
 
 #include "../error.hpp"
+#include "../io/files/readable_file.hpp"
 
 namespace realcam::image_io {
 namespace {
@@ -86,6 +87,7 @@ void UnfinishedFile::check_target() const {
     if (S_ISDIR(status.st_mode)) throw ImageFileError(path_ + ": is a folder; the name of a file is wanted");
     if (!S_ISREG(status.st_mode)) throw ImageFileError(path_ + ": is a pipe or a device; the name of a file is wanted");
     if (access(target_.c_str(), W_OK) != 0) fail(errno);
+    io::check_no_input(path_);
 }
 
 void UnfinishedFile::fail(int error) const {

@@ -9,6 +9,7 @@ from typing import Any
 
 import matplotlib
 from matplotlib.figure import Figure
+from matplotlib.text import Text
 from matplotlib.transforms import Bbox
 
 from . import files
@@ -37,6 +38,9 @@ def figure_bytes(
     """What a file of that suffix holds. salt: another one for each drawing of one page, where ids have to differ.
     crop: the part that is kept, in inches; None is all."""
     kind = suffix.lower()
+    for text in figure.findobj(Text):
+        assert isinstance(text, Text)
+        text.set_text(_without_controls(text.get_text()))
     drawing = io.BytesIO()
     with matplotlib.rc_context({**_SETTINGS, "svg.hashsalt": salt}):
         figure.savefig(
@@ -48,6 +52,11 @@ def figure_bytes(
             metadata=_WITHOUT_DATE[kind],
         )
     return drawing.getvalue()
+
+
+def _without_controls(text: str) -> str:
+    """XML, and so SVG, has no spelling of most characters that cannot be printed."""
+    return text if text.isprintable() else "".join(c if c.isprintable() or c == "\n" else " " for c in text)
 
 
 def save_figure(figure: Figure, path: str | os.PathLike[str], dpi: float = 160) -> None:

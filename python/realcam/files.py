@@ -5,11 +5,11 @@ from __future__ import annotations
 import os
 import secrets
 import stat
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-from ._core import ImageFileError, InputError
+from ._core import ImageFileError, InputError, _check_no_input
 
 
 def system_name(path: str | os.PathLike[str]) -> bytes:
@@ -22,7 +22,7 @@ def system_name(path: str | os.PathLike[str]) -> bytes:
 
 def check_target(path: str | os.PathLike[str], suffixes: Sequence[str] = ()) -> Path:
     """The path. Raises ImageFileError where no file of this name can be made or its suffix, in any case, is none of
-    these, and InputError where it is no name."""
+    these, and InputError where it is no name, or a file that the command has read."""
     system_name(path)
     if suffixes and Path(path).suffix.lower() not in suffixes:
         known = ", ".join(suffixes[:-1]) + (" or " if suffixes[1:] else "") + suffixes[-1]
@@ -31,7 +31,18 @@ def check_target(path: str | os.PathLike[str], suffixes: Sequence[str] = ()) -> 
         why = _why_no_file(_followed(path))
     if why:
         raise ImageFileError(f"{os.fspath(path)}: {why}")
+    _check_no_input(os.fsencode(path))
     return Path(path)
+
+
+def check_targets(paths: Iterable[Path], *, outside: Path | None = None) -> set[Path]:
+    """The files that the paths lead to. Raises what check_target does, and InputError where one of them lies in the
+    folder `outside`, which the command reads."""
+    followed = {check_target(path).resolve() for path in paths}
+    for path in followed:
+        if outside is not None and path.is_relative_to(outside.resolve()):
+            raise InputError(f"{path}: lies in the folder {outside}, which the output is made from; another is wanted")
+    return followed
 
 
 def make_folder(path: Path) -> None:

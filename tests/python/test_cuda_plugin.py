@@ -106,3 +106,23 @@ def test_a_gpu_without_code_is_told_and_passed_over() -> None:
     listed = run(PYTHON, NO_CODE, "devices")
     assert "GPU of the tests (compute capability 6.1" in listed.stdout
     assert listed.stderr == ""
+
+
+@pytest.mark.parametrize("beginning", ["", "import sys; sys.path.insert(0, '')\n"])
+@pytest.mark.parametrize("is_namespace", [True, False])
+def test_libraries_in_the_current_folder_are_not_loaded(tmp_path: Path, is_namespace: bool, beginning: str) -> None:
+    """Nor by a notebook, whose path begins with its folder."""
+    for package, library in (("realcam_cuda13", "librealcam_cuda13.so"), ("pyoidn", "libOpenImageDenoise.so.2")):
+        (tmp_path / package).mkdir()
+        (tmp_path / package / library).write_bytes(b"")
+        if not is_namespace:
+            (tmp_path / package / "__init__.py").write_text("")
+    script = (
+        f"{beginning}import realcam_command, realcam.cuda_plugin as plugin\n"
+        "print([realcam_command.denoiser_library(), plugin.path_of_plugin()])"
+    )
+    environment = {name: value for name, value in os.environ.items() if name != "REALCAM_OIDN"}
+    done = subprocess.run(
+        [sys.executable, "-c", script], cwd=tmp_path, capture_output=True, text=True, env=environment, check=True
+    )
+    assert str(tmp_path) not in done.stdout

@@ -22,6 +22,7 @@ from realcam.dataset import Recipe, make, samples
 from realcam.dataset.pictures import codes_of, png_bytes
 from realcam.dataset.sample import _run_lengths
 from realcam.dataset.scenes import random_camera, random_scene
+from realcam.dataset.shards import DatasetFolder
 
 pytestmark = pytest.mark.picture_files
 
@@ -227,3 +228,39 @@ def test_a_picture_that_fails_names_itself(tmp_path: Path) -> None:
 def test_a_folder_without_shards_says_so(tmp_path: Path) -> None:
     with pytest.raises(rc.InputError, match="this has no shards"):
         list(samples(tmp_path))
+
+
+@pytest.mark.parametrize(
+    ("name", "content"),
+    [
+        ("dataset.json", b'{"mine": 1}'),
+        ("shard-000000.tar", None),
+        ("samples/000001.tar", None),
+        ("recipe.json", b'{"count": 3}'),
+        ("recipe.json", b"[1]"),
+    ],
+)
+@pytest.mark.parametrize("is_begun", [False, True])
+def test_files_of_other_programs_stay(tmp_path: Path, name: str, content: bytes | None, is_begun: bool) -> None:
+    """Also a file of another data set in a folder of this one."""
+    file = tmp_path / name
+    if is_begun:
+        if name == "dataset.json":
+            pytest.skip("an index beside a recipe is the data set's own")
+        DatasetFolder.open(tmp_path, SMALL)
+    file.parent.mkdir(exist_ok=True)
+    if content is None:
+        (tmp_path / "7.jpg").write_bytes(b"precious")
+        with tarfile.open(file, "w") as tar:
+            tar.add(tmp_path / "7.jpg", "7.jpg")
+    else:
+        file.write_bytes(content)
+    before = file.read_bytes()
+    made_one = {"png": b"", "json": b"{}"}
+    with pytest.raises(rc.InputError, match="another folder is wanted") as error:
+        folder = DatasetFolder.open(tmp_path, SMALL)
+        for number in folder.missing():
+            folder.write_sample(number, made_one)
+        folder.write_shard(0)
+    assert "\n" not in str(error.value)
+    assert file.read_bytes() == before

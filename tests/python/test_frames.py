@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import signal
 import subprocess
 from dataclasses import replace
@@ -278,3 +279,42 @@ def test_frames_that_are_no_range_are_refused(
     )
     with pytest.raises(rc.InputError, match="a film wants frames with numbers from 0 on"):
         rc.Shot.load("pan.toml", device="cpu").frames([-1])
+
+
+@pytest.mark.parametrize("suffix", [".png", ".exr"])
+def test_only_whole_frames_of_the_same_film_count_as_done(folder: Path, suffix: str) -> None:
+    words = ["render", "pan.toml", "-o", f"f.#{suffix}", "--frames", "1-7", "--device", "cpu"]
+    subprocess.run([*PROGRAM, *words, "--quiet"], check=True)
+    files = [folder / f"f.{n}{suffix}" for n in range(1, 8)]
+    good = [path.read_bytes() for path in files]
+    files[0].write_bytes(b"")
+    files[1].write_bytes(good[1][:-1])
+    files[2].write_bytes(good[2][: len(good[2]) // 2])
+    middle = good[3].rindex(b"IDAT") + 20 if suffix == ".png" else len(good[3]) - 200
+    files[3].write_bytes(good[3][:middle] + bytes(20) + good[3][middle + 20 :])
+    files[4].write_bytes(good[5])  # another frame
+    subprocess.run([*PROGRAM, "render", "wall.obj", "-o", f"f.6{suffix}", "--resolution", "31x21", "--spp", "1",
+                    "--device", "cpu", "--quiet"], check=True)  # fmt: skip
+    before = files[6].stat().st_mtime_ns
+    done = subprocess.run([*PROGRAM, *words], capture_output=True, text=True, check=True)
+    assert "1 of 7 frames were there already" in done.stderr
+    assert "6 of 7 frames were there, but damaged or taken with other settings" in done.stderr
+    undated = [re.sub(rb"(?s)capDate.{12}.{19}", b"", content) for content in good]
+    assert [re.sub(rb"(?s)capDate.{12}.{19}", b"", path.read_bytes()) for path in files] == undated
+    assert files[6].stat().st_mtime_ns == before
+    # Other settings, and another scene under the same name, make another film.
+    for more, change in ((["--max-bounces", "3"], ""), ([], "v 9 9 9\n")):
+        (folder / "wall.obj").write_text((folder / "wall.obj").read_text() + change)
+        done = subprocess.run([*PROGRAM, *words, *more], capture_output=True, text=True, check=True)
+        assert "7 of 7 frames were there, but damaged" in done.stderr
+
+
+def test_no_frame_replaces_a_file_that_the_film_is_made_from(folder: Path) -> None:
+    subprocess.run([*PROGRAM, "render", "pan.toml", "-o", "sky.0002.png", "--device", "cpu", "--quiet"], check=True)
+    (folder / "lit.toml").write_text(SHOT.replace("environment_cd_m2 = 2000", 'environment = "sky.0002.png"'))
+    before = (folder / "sky.0002.png").read_bytes()
+    words = ["render", "lit.toml", "-o", "sky.png", "--frames", "1-3", "--again", "--device", "cpu"]
+    done = subprocess.run([*PROGRAM, *words], capture_output=True, text=True)
+    assert done.returncode == 2
+    assert '"sky.0002.png" is a file that the output is made from' in done.stderr
+    assert (folder / "sky.0002.png").read_bytes() == before

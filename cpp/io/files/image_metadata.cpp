@@ -117,6 +117,7 @@ std::vector<std::pair<std::string, std::string>> ImageMetadata::entries() const 
     if (!illuminant.empty()) entries.emplace_back("realcam:illuminant", illuminant);
     if (!coatings.empty()) entries.emplace_back("realcam:coatings", coatings);
     if (!plan.empty()) entries.emplace_back("realcam:plan", plan);
+    if (!film.empty()) entries.emplace_back("realcam:film", film);
     if (!denoiser.empty()) entries.emplace_back("realcam:denoiser", denoiser);
     return entries;
 }

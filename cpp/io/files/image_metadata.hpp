@@ -32,6 +32,7 @@ struct ImageMetadata {
     std::string effects, illuminant;  ///< names with commas, and as it was written; empty: none
     std::string coatings;  ///< of the effects coatings and ghosts: coating_summary; empty: without
     std::string plan;  ///< what a planner has decided, and by which sizes; empty: there was none
+    std::string film;      ///< of a frame: digest of all settings of its film and of its number; empty: a still
     std::string denoiser;  ///< what has changed the exposure since it was taken; empty: nothing
 
     /// Names "realcam:..." and values, as they go into every format.

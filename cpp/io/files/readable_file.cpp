@@ -4,9 +4,59 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <filesystem>
+#include <mutex>
+#include <set>
 #include <system_error>
 
+#include "../../error.hpp"
+#include "../text/printable.hpp"
+
 namespace realcam::io {
+namespace {
+
+struct Inputs {
+    std::mutex mutex;
+    bool is_on = false;
+    std::set<std::string> paths;
+};
+
+Inputs& inputs() {
+    static Inputs inputs;
+    return inputs;
+}
+
+}  // namespace
+
+InputRecording::InputRecording() {
+    const std::lock_guard lock(inputs().mutex);
+    inputs().is_on = true;
+}
+
+InputRecording::~InputRecording() {
+    const std::lock_guard lock(inputs().mutex);
+    inputs().is_on = false;
+    inputs().paths.clear();
+}
+
+void InputRecording::end() {
+    const std::lock_guard lock(inputs().mutex);
+    inputs().is_on = false;
+}
+
+std::vector<std::string> recorded_inputs() {
+    const std::lock_guard lock(inputs().mutex);
+    return {inputs().paths.begin(), inputs().paths.end()};
+}
+
+void check_no_input(const std::string& output) {
+    std::error_code error;
+    if (!std::filesystem::exists(output, error)) return;
+    for (const std::string& input : recorded_inputs())
+        if (std::filesystem::equivalent(output, input, error))
+            throw InputError(in_quotes(output) + " is a file that the output is made from (" + printable(input) +
+                             "); another name is wanted");
+}
 
 std::string why_unreadable(const std::string& path) {
     const auto reason = [](int error) { return "cannot be read: " + std::generic_category().message(error); };
@@ -15,7 +65,10 @@ std::string why_unreadable(const std::string& path) {
     if (stat(path.c_str(), &status) != 0) return errno == ENOENT ? "no such file" : reason(errno);
     if (S_ISDIR(status.st_mode)) return "is a folder, not a file";
     if (!S_ISREG(status.st_mode)) return "is a pipe or a device; an ordinary file is wanted";
-    return access(path.c_str(), R_OK) == 0 ? "" : reason(errno);
+    if (access(path.c_str(), R_OK) != 0) return reason(errno);
+    const std::lock_guard lock(inputs().mutex);
+    if (inputs().is_on) inputs().paths.insert(path);
+    return "";
 }
 
 }  // namespace realcam::io

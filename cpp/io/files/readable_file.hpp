@@ -1,10 +1,29 @@
 #pragma once
 #include <string>
+#include <vector>
 
 namespace realcam::io {
 
 /// Why a path is no file that can be read, as a message continues: "no such file", "is a folder", ...; empty where it
 /// is one. Pipes and devices are none: opening them may wait for ever, and reading them may never end.
 std::string why_unreadable(const std::string& path);
+
+/// Records the inputs of a command during its lifetime: all files that why_unreadable finds readable. The library
+/// records none, as its user may well replace a file that was read. At most one object exists at a time.
+class InputRecording {
+public:
+    InputRecording();
+    InputRecording(const InputRecording&) = delete;
+    InputRecording& operator=(const InputRecording&) = delete;
+    ~InputRecording();
+
+    /// Ends the recording: files that are read later, such as earlier outputs, are not inputs.
+    void end();
+};
+
+std::vector<std::string> recorded_inputs();
+
+/// Throws InputError if an output is the same file as a recorded input.
+void check_no_input(const std::string& output);
 
 }  // namespace realcam::io

@@ -6,6 +6,7 @@ import io
 import json
 import math
 import os
+import re
 import zipfile
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
@@ -66,12 +67,14 @@ def write_extension(
 _PRESET = """\
 import bpy
 bpy.context.camera.realcam.film = 'lens'
-bpy.context.camera.realcam.lens = '{key}'
+bpy.context.camera.realcam.lens = {key!r}
 """
 
 
 def _key(lens: Lens) -> str:
-    return f"{lens.name}-at-{lens.zoom_position}" if lens.zoom_position else lens.name
+    """Also the name of the lens's file in the extension: one component of a path on any system."""
+    name = f"{lens.name}-at-{lens.zoom_position}" if lens.zoom_position else lens.name
+    return re.sub(r"[^\w. -]", "_", name)[:80].strip(". ") or "lens"
 
 
 def _figures(lens: Lens, text: str) -> dict[str, Any]:
@@ -90,7 +93,7 @@ def _figures(lens: Lens, text: str) -> dict[str, Any]:
 
 
 def _file_name(title: str) -> str:
-    return "realcam_" + "".join(c if c.isalnum() or c in "-." else "_" for c in title)
+    return "realcam_" + "".join(c if c.isalnum() or c in "-." else "_" for c in title[:80])
 
 
 def _zipped(files: dict[str, str]) -> bytes:

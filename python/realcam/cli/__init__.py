@@ -9,7 +9,7 @@ from typing import NoReturn
 import typer
 
 from .. import __version__
-from .._core import LensFileError, RealcamError, one_line
+from .._core import LensFileError, RealcamError, _record_inputs, one_line
 from . import bench, compare, cost, dataset, demo, job, lens, sensor, view
 from .commands_in_cpp import add_command_in_cpp
 from .help_texts import finish
@@ -56,6 +56,7 @@ def run() -> None:
     warnings.simplefilter("always", UserWarning)
     command = typer.main.get_command(app)
     finish(command)
+    _record_inputs(sys.argv[1:2] != ["view"])  # the bench saves what its user has asked for, also over a lens
     try:
         sys.exit(command(sys.argv[1:] or ["--help"], prog_name="realcam", standalone_mode=False))
     except UsageError as error:
@@ -71,6 +72,8 @@ def run() -> None:
     except (KeyboardInterrupt, typer.Abort):
         print("realcam: stopped", file=sys.stderr)
         sys.exit(130)
+    finally:
+        _record_inputs(False)
 
 
 def _show_warning(message: Warning | str, *_: object, **__: object) -> None:

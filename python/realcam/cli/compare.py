@@ -55,7 +55,9 @@ def compare(
     if denoise:
         settings = settings.with_(layers=("albedo", "normal"))
     pictures = []
-    for variation in variations(described, name, values.split(",")):
+    varied = variations(described, name, values.split(","))
+    check_figure_target(output)  # again: now the files are known that the pictures are made from
+    for variation in varied:
         taken = Shot(described.scene, sized(variation, size), settings, described.tone)
         with warnings.catch_warnings(record=True) as caught, progress_bar(variation.label, is_shown=not quiet) as bar:
             warnings.simplefilter("always")

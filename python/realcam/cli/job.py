@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import logging
 import os
 import re
@@ -81,9 +82,17 @@ def make(
 
     check_is_new(output)
     size, numbers = _tile(tile), None if frames is None else options.frame_numbers(frames)
-    for target in filter(None, (sbatch, qsub, openjd)):
-        files.check_target(target)
+    scripts = [
+        (sbatch, "--sbatch", functools.partial(array_script, "slurm")),
+        (qsub, "--qsub", functools.partial(array_script, "pbs")),
+        (openjd, "--openjd", openjd_template),
+    ]
+    asked = [(path, option, script) for path, option, script in scripts if path is not None]
+    if len(files.check_targets([path for path, _, _ in asked])) < len(asked):
+        raise InputError(f"one file each is wanted for {' and '.join(option for _, option, _ in asked)}")
+    written = {path: os.fsencode(script(output, tasks)) for path, _, script in asked}
     named = _named_shots(shots, spp, device)
+    files.check_targets(written)
     if numbers is not None:
         named = {
             frame: shot
@@ -95,14 +104,9 @@ def make(
         made = job.status()
         units = "units as the noise wants them" if made.is_adaptive else _count(made.units_known, "unit")
         typer.echo(f"{output}: {_count(made.shots, 'picture')}, {units}")
-    for file, text in (
-        (sbatch, array_script("slurm", output, tasks)),
-        (qsub, array_script("pbs", output, tasks)),
-        (openjd, openjd_template(output, tasks)),
-    ):
-        if file is not None:
-            files.write_whole(file, text.encode())
-            options.say_written(file, quiet)
+    for path, content in written.items():
+        files.write_whole(path, content)
+        options.say_written(path, quiet)
 
 
 @app.command()
@@ -214,8 +218,10 @@ def finish(
 
 
 def _write_film(job: Job, path: Path, fps: float, device: str | None, quiet: bool) -> None:
+    from .. import files
     from ..video import write_video
 
+    files.check_targets([path], outside=job.path)
     with progress_bar("adding up", is_shown=not quiet) as bar:
         write_video(path, _developed(job, device, bar), fps)
     options.say_written(path, quiet)
@@ -235,8 +241,7 @@ def _picture_files(job: Job, output: list[Path], format: str) -> dict[str, list[
             raise InputError("one folder is wanted for --output, or files .exr and .png")
         files.make_folder(output[0])
         targets = {name: [output[0] / f"{name}.{format}"] for name in job.names}
-    for path in (path for paths in targets.values() for path in paths):
-        files.check_target(path)
+    files.check_targets([path for paths in targets.values() for path in paths], outside=job.path)
     return targets
 
 

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from .._core import InputError, __version__
-from ..files import write_whole
+from ..files import make_folder, write_whole
 from .recipe import Recipe
 
 RECIPE_FILE = "recipe.json"
@@ -27,22 +27,33 @@ class DatasetFolder:
 
     @classmethod
     def open(cls, path: str | os.PathLike[str], recipe: Recipe) -> DatasetFolder:
-        """Makes the folder, or goes on with one of the same recipe, whose count may be larger now."""
+        """Makes the folder, or goes on with one of the same recipe, whose count may be larger now.
+
+        Raises InputError for a folder in which another program has files of the names of a data set.
+        """
         folder = cls(Path(path), recipe)
         about = {"realcam": __version__, **json.loads(json.dumps(dataclasses.asdict(recipe)))}
         file = folder.path / RECIPE_FILE
         try:
-            (folder.path / "samples").mkdir(parents=True, exist_ok=True)
-            before = json.loads(file.read_bytes()) if file.exists() else about
+            before = json.loads(file.read_bytes()) if file.exists() else None
+            foreign = folder._first_file() if before is None else None
         except OSError as error:
             raise InputError(f"{error.filename}: {error.strerror}; a folder that can be written to is wanted") from None
         except ValueError as error:
             raise InputError(f"{file}: this is damaged ({error}); another folder is wanted") from None
+        if foreign:
+            raise InputError(
+                f"{foreign}: is not of this data set, as {RECIPE_FILE} is missing; another folder is wanted"
+            )
+        before = about if before is None else before
+        if not isinstance(before, dict) or "realcam" not in before or type(before.get("count")) is not int:
+            raise InputError(f"{file}: is not of a data set of realcam; another folder is wanted")
         changed = [key for key in about if key != "count" and before.get(key) != about[key]]
         if changed:
             raise InputError(f"{folder.path}: made by another recipe ({', '.join(changed)}); another folder is wanted")
         if before["count"] > recipe.count:
             raise InputError(f"{folder.path}: this has {before['count']} pictures already; as many or more are wanted")
+        make_folder(folder.path / "samples")
         write_whole(file, json.dumps(about, indent=1).encode() + b"\n")
         return folder
 
@@ -94,7 +105,7 @@ class DatasetFolder:
         content = io.BytesIO()
         with tarfile.open(fileobj=content, mode="w") as tar:
             for number in numbers:
-                for _, files in read_samples(self.sample_path(number)):
+                for files in self._samples_of(self.sample_path(number), [number]).values():
                     _add(tar, number, files)
         write_whole(self.shard_path(shard), content.getvalue(), is_durable=True)
         for number in numbers:
@@ -117,9 +128,25 @@ class DatasetFolder:
         index = {"images": images, "annotations": annotations, "categories": categories}
         write_whole(self.path / INDEX_FILE, json.dumps(index).encode())
 
+    def _first_file(self) -> Path | None:
+        names = [RECIPE_FILE, INDEX_FILE, "samples/*", "shard-*.tar"]
+        return next((path for name in names for path in sorted(self.path.glob(name))), None)
+
     def _held_by(self, shard: int) -> dict[int, dict[str, bytes]]:
         path = self.shard_path(shard)
-        return {int(key): files for key, files in read_samples(path)} if path.exists() else {}
+        return self._samples_of(path, self.numbers_of(shard)) if os.path.lexists(path) else {}
+
+    def _samples_of(self, path: Path, numbers: Iterable[int]) -> dict[int, dict[str, bytes]]:
+        """Raises InputError where a file holds anything else than pictures of these numbers with their labels."""
+        keys = {f"{number:06d}": number for number in numbers}
+        samples: dict[int, dict[str, bytes]] = {}
+        for key, files in read_samples(path):
+            if key not in keys or not {"png", "json"} <= files.keys():
+                raise InputError(
+                    f"{path}: holds {key!a:.40}, and no picture of this data set; another folder is wanted"
+                )
+            samples[keys[key]] = files
+        return samples
 
 
 def _add(tar: tarfile.TarFile, number: int, files: Mapping[str, bytes]) -> None:

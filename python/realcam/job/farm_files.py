@@ -7,6 +7,8 @@ import re
 import shlex
 from pathlib import Path
 
+from .._core import InputError
+
 # Directives of an array's script; {name} and {tasks} are filled in.
 _ARRAYS = {
     "slurm": (
@@ -21,29 +23,38 @@ _ARRAYS = {
 def array_script(batch_system: str, folder: Path, tasks: int) -> str:
     """A script for Slurm's `sbatch` or the `qsub` of PBS: an array of tasks, each with its part."""
     directives, task, threads = _ARRAYS[batch_system]
-    name = re.sub("[^A-Za-z0-9_.-]", "_", f"realcam-{folder.name}")[:100]
+    # A directive is a comment of bash, which ends with its line whatever is quoted in it.
     return f"""#!/bin/bash
-{directives.format(name=name, tasks=tasks)}
+{directives.format(name=_job_name(folder), tasks=tasks)}
 # Cores, memory, GPUs and the queue are those of the command line, or the cluster's defaults.
 exec realcam job work --quiet --part "{task}/{tasks}" --threads "{threads}" {shlex.quote(str(folder.absolute()))}
 """
 
 
 def openjd_template(folder: Path, tasks: int) -> str:
-    """A job template of Open Job Description 2023-09 as JSON: work, then finish."""
+    """A job template of Open Job Description 2023-09 as JSON: work, then finish.
+
+    Raises InputError for a path that the format cannot hold: it has no escape for the brackets of its expressions.
+    """
+    path = str(folder.absolute())
+    if "{{" in path or "}}" in path or not path.isprintable():
+        raise InputError(
+            f"{path!a:.100}: Open Job Description takes no path with double braces or control characters; another "
+            "folder is wanted"
+        )
     output = {
         "name": "Output",
         "type": "PATH",
         "objectType": "DIRECTORY",
         "dataFlow": "OUT",
-        "default": str(folder.absolute() / "pictures"),
+        "default": str(Path(path, "pictures")),
     }
     job = {
         "name": "JobFolder",
         "type": "PATH",
         "objectType": "DIRECTORY",
         "dataFlow": "INOUT",
-        "default": str(folder.absolute()),
+        "default": path,
     }
 
     def step(name: str, arguments: list[str], **more: object) -> dict[str, object]:
@@ -51,7 +62,7 @@ def openjd_template(folder: Path, tasks: int) -> str:
 
     template = {
         "specificationVersion": "jobtemplate-2023-09",
-        "name": f"realcam {folder.name}",
+        "name": _job_name(folder),
         "parameterDefinitions": [job, output],
         "steps": [
             step(
@@ -67,3 +78,8 @@ def openjd_template(folder: Path, tasks: int) -> str:
         ],
     }
     return json.dumps(template, indent=2) + "\n"
+
+
+def _job_name(folder: Path) -> str:
+    """A name without characters that shells, Slurm or Open Job Description give a meaning."""
+    return "realcam-" + re.sub(r"[^A-Za-z0-9._-]+", "_", folder.name)[:80]

@@ -128,9 +128,14 @@ _END = """\
 
 
 def _heading(lens: Lens) -> str:
-    lines = [f"// {line}" for line in (lens.title or lens.name, lens.source) if line]
+    lines = [f"// {_comment_text(line)}" for line in (lens.title or lens.name, lens.source) if line]
     lines += ["// A camera for Blender 5 (Cycles), written by realcam from the lens's prescription.", ""]
-    return "\n".join(line.replace("\n", " ") for line in lines)
+    return "\n".join(lines)
+
+
+def _comment_text(text: str) -> str:
+    """One line, which no backslash at its end joins with the next one."""
+    return "".join(c if c.isprintable() and c != "\\" else " " for c in text)
 
 
 def _name(lens: Lens) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 from pathlib import Path
 
@@ -56,13 +57,13 @@ def shot_text(scene: bpy.types.Scene, scene_file: str) -> str:
     focus_m = max(_focus_m(scene), figures["nearest_m"])
     lines = [
         "format = 1",
-        f'scene = "{scene_file}"',
+        f"scene = {_toml_text(scene_file)}",
         # The pose in place of glTF's camera, which realcam takes for the entrance pupil: here it is the film's.
         f"position_m = {_triple(place.translation)}",
         f"look_at_m = {_triple(place.translation - place.col[2].xyz)}",
         f"up = {_triple(place.col[1].xyz)}",
-        f'lens = "{figures["name"]}"',
-        *([f'zoom = "{figures["zoom"]}"'] if figures["zoom"] else []),
+        f"lens = {_toml_text(figures['name'])}",
+        *([f"zoom = {_toml_text(figures['zoom'])}"] if figures["zoom"] else []),
         f"film_mm = [{film[0]:.6g}, {film[1]:.6g}]",
         f"resolution = [{columns}, {rows}]",
         f"focus_m = {focus_m:.9g}",
@@ -75,6 +76,11 @@ def shot_text(scene: bpy.types.Scene, scene_file: str) -> str:
             f"blade_rotation_deg = {rings.rotation_deg:.6g}",
         ]
     return "\n".join(lines) + "\n"
+
+
+def _toml_text(text: str) -> str:
+    """A basic string of TOML: the escapes of JSON are among its own, and it also excludes the character DEL."""
+    return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
 
 
 def _triple(vector: Vector) -> str:
