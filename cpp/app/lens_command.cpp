@@ -5,6 +5,7 @@
 
 #include "../io/lens/lens_file.hpp"
 #include "../io/text/json_writer.hpp"
+#include "../io/text/printable.hpp"
 #include "../optics/lens/focus.hpp"
 #include "../optics/lens/zoom.hpp"
 #include "help.hpp"
@@ -29,7 +30,8 @@ void run_info(const InfoOptions& options) {
     std::fputs((options.as_json ? lens_as_json(lens) : lens_as_text(lens)).c_str(), stdout);
 }
 
-void run_list(bool as_json) {
+void run_list(bool as_json, const std::vector<std::string>& folders) {
+    set_lens_path(folders);
     io::JsonWriter json;
     json.begin_array();
     for (const std::string& name : io::lens_names()) {
@@ -39,6 +41,13 @@ void run_list(bool as_json) {
         } else {
             std::printf("%-32s %s\n", name.c_str(), lens.title.c_str());
         }
+    }
+    for (const auto& [name, path] : io::lens_files_on_path()) {
+        const std::string shown = io::printable(name), file = io::printable(path);
+        if (as_json)
+            json.begin_object().key("name").text(shown).key("title").text(file).end();
+        else
+            std::printf("%-32s %s\n", shown.c_str(), file.c_str());
     }
     if (as_json) std::puts(json.end().finish().c_str());
 }
@@ -67,11 +76,13 @@ void add_lens_command(CLI::App& app) {
                         });
     info->callback([options] { run_info(*options); });
 
-    CLI::App* list = lens->add_subcommand("list", "List the bundled lenses.");
+    CLI::App* list = lens->add_subcommand("list", "List the bundled lenses, and those of the lens path.");
     const auto list_as_json = std::make_shared<bool>(false);
     list->add_flag("--json", *list_as_json, "Print JSON");
     set_examples(*list, {"realcam lens list", "realcam lens list --json"});
-    list->callback([list_as_json] { run_list(*list_as_json); });
+    const auto folders = std::make_shared<std::vector<std::string>>();
+    add_lens_path_option(*list, *folders);
+    list->callback([list_as_json, folders] { run_list(*list_as_json, *folders); });
 }
 
 }  // namespace realcam::app

@@ -1,11 +1,32 @@
 #include "lens_words.hpp"
 
 #include <cstdio>
+#include <cstdlib>
+#include <filesystem>
 
 #include "../io/lens/lens_format.hpp"
 #include "../io/text/one_line.hpp"
 
 namespace realcam::app {
+
+void add_lens_path_option(CLI::App& command, std::vector<std::string>& folders) {
+    command
+        .add_option("--lens-path", folders,
+                    "A folder whose lens files are known by their names; may be repeated [REALCAM_LENS_PATH]")
+        ->type_name("DIR")
+        ->allow_extra_args(false);
+}
+
+void set_lens_path(const std::vector<std::string>& folders) {
+    if (folders.empty()) return;
+    std::string path;
+    for (const std::string& folder : folders) {
+        if (!std::filesystem::is_directory(folder)) throw InputError("--lens-path: " + folder + " is no folder");
+        path += folder + ':';
+    }
+    if (const char* before = std::getenv("REALCAM_LENS_PATH")) path += before;
+    setenv("REALCAM_LENS_PATH", path.c_str(), 1);
+}
 
 void add_lens_options(CLI::App& command, LensWords& words) {
     command
@@ -18,6 +39,12 @@ void add_lens_options(CLI::App& command, LensWords& words) {
                     "NAME=schott:F4; may be repeated")
         ->type_name("NAME=N,V")
         ->allow_extra_args(false);
+    command
+        .add_option("--glass-catalogue", words.catalogues,
+                    "A catalogue of glasses (.agf) for those that the lens's file names; may be repeated")
+        ->type_name("FILE")
+        ->allow_extra_args(false);
+    add_lens_path_option(command, words.folders);
     command.add_flag("--force", words.force,
                      "Leave out what the lens's file has that there is no model of, and name it");
     command
@@ -46,6 +73,8 @@ io::LensReadOptions lens_options_of(const LensWords& words) {
         if (!options.glasses.emplace(name, glass).second)
             throw InputError("--glass: the glass \"" + name + "\" is given twice");
     }
+    set_lens_path(words.folders);
+    for (const std::string& file : words.catalogues) io::read_glass_catalogue(file, options.catalogue);
     options.force = words.force;
     if (!words.pbrt_thickness.empty()) options.pbrt_thickness = io::pbrt_thickness_named(words.pbrt_thickness);
     options.warn = [](const std::string& message) {

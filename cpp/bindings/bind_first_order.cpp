@@ -10,7 +10,8 @@ using namespace py::literals;
 void bind_first_order(py::module_& m) {
     py::class_<FirstOrder> data(
         m, "FirstOrder",
-        R"(First-order data at one wavelength. mm; positions from the front vertex. Of an afocal lens the focal length,
+        R"(First-order data at one wavelength. mm; positions from the front vertex. The effective focal length is 1 / power;
+in an image space of another index than air the rear one is image_index times that. Of an afocal lens the focal length,
 the focal distances and the f-number are infinite.)");
     def_hashable_value(data);
     data.def_readonly("effective_focal_length_mm", &FirstOrder::effective_focal_length)
@@ -21,6 +22,7 @@ the focal distances and the f-number are infinite.)");
         .def_readonly("entrance_pupil_diameter_mm", &FirstOrder::entrance_pupil_diameter)
         .def_readonly("exit_pupil_position_mm", &FirstOrder::exit_pupil_position)
         .def_readonly("exit_pupil_diameter_mm", &FirstOrder::exit_pupil_diameter)
+        .def_readonly("image_index", &FirstOrder::image_index, "Refractive index of the medium before the film.")
         .def("__repr__", [](const FirstOrder& d) {
             return "<realcam.FirstOrder focal length " + digits(d.effective_focal_length) + " mm, f/" +
                    digits(d.f_number) + ", back focal distance " + digits(d.back_focal_distance) + " mm>";

@@ -28,8 +28,13 @@ std::pair<LensSystem, std::vector<std::string>> read_unlocked(const std::string&
 }
 
 LensSystem load_lens(const py::object& name, const std::optional<std::map<std::string, py::object>>& glass, bool force,
-                     const std::optional<std::string>& pbrt_thickness) {
+                     const std::optional<std::string>& pbrt_thickness, const py::object& glass_catalogue) {
     io::LensReadOptions options;
+    if (py::isinstance<py::list>(glass_catalogue) || py::isinstance<py::tuple>(glass_catalogue))
+        for (const py::handle file : glass_catalogue)
+            io::read_glass_catalogue(path_from(py::reinterpret_borrow<py::object>(file)), options.catalogue);
+    else if (!glass_catalogue.is_none())
+        io::read_glass_catalogue(path_from(glass_catalogue), options.catalogue);
     options.force = force;
     if (glass)
         for (const auto& [called, material] : *glass) options.glasses.insert_or_assign(called, glass_from(material));
@@ -67,11 +72,12 @@ void bind_lens_file(py::module_& m) {
     py::reinterpret_borrow<py::class_<LensSystem>>(m.attr("Lens"))
         .def_static(
             "load", &load_lens, "name_or_path"_a, py::kw_only(), "glass"_a = py::none(), "force"_a = false,
-            "pbrt_thickness"_a = py::none(),
-            R"(A bundled lens by name, or a lens file by path. The suffix says of which program: .zmx (Zemax), .seq
+            "pbrt_thickness"_a = py::none(), "glass_catalogue"_a = py::none(),
+            R"(A bundled lens or one in the folders of REALCAM_LENS_PATH by name, or a lens file by path. The suffix says of which program: .zmx (Zemax), .seq
 (CODE V), .len (OSLO), .dat (pbrt), .json (Optiland), .roa (ray-optics); else it is realcam's own, TOML.
 glass: {name in the file: (n_d, V_d), "schott:F4", or what else Surface() takes}, for glasses that no
 catalogue has, or several. force: leaves out what realcam has no model of, with a UserWarning.
+glass_catalogue: a path of a catalogue (.agf), or several; its glasses come before the bundled ones.
 pbrt_thickness: "after" or "before" the surface of its row; None: the first row tells.
 Raises LensFileError with file, line and surface, and InputError where glass names one that the
 file does not have. What a file leaves out and is computed or assumed is a UserWarning.)")

@@ -117,7 +117,7 @@ IdealLens ideal_lens_of(const LensSystem& lens, const FirstOrder& data) {
         const double to_pupil = object + data.entrance_pupil_position;
         const ParaxialRay end =
             trace_paraxial(lens, lens.wavelength_nm, {object, 1}, 0, static_cast<int>(lens.surfaces.size()));
-        ideal.image_distance = std::fabs(to_pupil / end.slope);
+        ideal.image_distance = std::fabs(to_pupil / (data.image_index * end.slope));
         ideal.inverse_object_distance = 1 / to_pupil;
     }
     return ideal;
@@ -134,10 +134,11 @@ ThickLens thick_lens_of(const LensSystem& lens, const FirstOrder& data) {
     const ParaxialRay height = trace_paraxial(lens, lens.wavelength_nm, {1, 0}, 0, count);
     const ParaxialRay slope = trace_paraxial(lens, lens.wavelength_nm, {0, 1}, 0, count);
     ThickLens thick{};
-    thick.A = static_cast<float>(height.height);
-    thick.B = static_cast<float>(slope.height);
-    thick.C = static_cast<float>(height.slope);
-    thick.D = static_cast<float>(slope.slope);
+    // The determinant of the matrix is 1 / image_index.
+    thick.A = static_cast<float>(data.image_index * height.height);
+    thick.B = static_cast<float>(data.image_index * slope.height);
+    thick.C = static_cast<float>(data.image_index * height.slope);
+    thick.D = static_cast<float>(data.image_index * slope.slope);
     // A pupil at infinity is replaced by one 1 km away under the same angle.
     constexpr double kFar = 1e6;
     const double distance = lens.film_position() - data.exit_pupil_position;

@@ -283,6 +283,8 @@ class FirstOrder(_Value):
     def exit_pupil_position_mm(self) -> float: ...
     @property
     def exit_pupil_diameter_mm(self) -> float: ...
+    @property
+    def image_index(self) -> float: ...
 
 @final
 class Meridian(_Value):
@@ -549,6 +551,7 @@ class Lens(_Value):
         glass: Mapping[str, _Material] | None = None,
         force: bool = False,
         pbrt_thickness: str | None = None,
+        glass_catalogue: _Path | Sequence[_Path] | None = None,
     ) -> Lens: ...
     def save(self, path: _Path) -> None: ...
     @staticmethod

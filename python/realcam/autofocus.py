@@ -175,16 +175,22 @@ def _between_foci_mm(lens: Lens) -> float:
     return float(back - data.front_focal_distance_mm)
 
 
+def _square_mm2(lens: Lens) -> float:
+    """Front times rear focal length, n' f^2."""
+    data = lens.first_order()
+    return float(data.image_index * data.effective_focal_length_mm**2)
+
+
 def _extension_mm(camera: Camera) -> float:
     """From the back focal point to the film, for which object and film are as far apart as the focus says.
 
-    By Newton's x x' = f^2; of the two solutions that of the smaller image.
+    By Newton's x x' = n' f^2; of the two solutions that of the smaller image.
     """
-    lens, focal = camera.lens, camera.lens.first_order().effective_focal_length_mm
+    lens = camera.lens
     if math.isinf(lens.focus_distance_m):
         return 0.0
     both = 1000 * lens.focus_distance_m - _between_foci_mm(lens)
-    return 0.5 * (both - math.sqrt(max(0.0, both * both - 4 * focal * focal)))
+    return 0.5 * (both - math.sqrt(max(0.0, both * both - 4 * _square_mm2(lens))))
 
 
 def _refocused(camera: Camera, extension_mm: float) -> Camera:
@@ -193,5 +199,5 @@ def _refocused(camera: Camera, extension_mm: float) -> Camera:
     if extension_mm <= 0:
         return camera.replace(lens=lens.focused(math.inf))
     extension_mm = min(extension_mm, MOST_MAGNIFICATION * focal)
-    distance_m = 0.001 * (_between_foci_mm(lens) + extension_mm + focal * focal / extension_mm)
+    distance_m = 0.001 * (_between_foci_mm(lens) + extension_mm + _square_mm2(lens) / extension_mm)
     return camera.replace(lens=lens.focused(max(distance_m, lens.nearest_focus_m)))

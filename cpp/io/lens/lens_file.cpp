@@ -16,7 +16,9 @@
 #include "lens_zoom.hpp"
 
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
+#include <set>
 #include <system_error>
 
 namespace realcam::io {
@@ -45,7 +47,8 @@ std::vector<double> read_aspheric_coefficients(const TomlTable& table) {
         const int largest = 2 * kMaxAsphericTerms + 2;
         if (power < 4 || power > largest || power % 2)
             coefficients->fail("aspheric coefficients have even powers from 4 to " + std::to_string(largest) +
-                                   " as keys; this one is \"" + power_text + '"',
+                                   " as keys (\"radial_terms\" go up to r^" + std::to_string(kMaxRadialTerms) +
+                                   "); this one is \"" + power_text + '"',
                                &node);
         const auto term = static_cast<std::size_t>(power / 2 - 2);
         if (values.size() <= term) values.resize(term + 1, 0.0);
@@ -207,11 +210,12 @@ double film_radius(const TomlTable& file) {
 
 void set_film_distance(const TomlTable& file, LensSystem& lens) {
     const auto distance = file.number("film_distance_mm");
+    if (distance == 0.0) lens.film_distance = kFilmContact;
     const bool zooms = !lens.zoom.positions.empty();
     if (!distance && zooms)
         lens.film_distance = lens.zoom.positions[static_cast<std::size_t>(lens.zoom.current)].film_distance;
-    if (distance && !(*distance > 0) && lens.is_rotational())
-        file.fail("\"film_distance_mm\" must be positive: the film lies behind the last surface",
+    if (distance && !(*distance >= 0) && lens.is_rotational())
+        file.fail("\"film_distance_mm\" must be 0 or more: the film lies behind the last surface",
                   file.find("film_distance_mm"));
     if (!distance && !zooms) {
         const std::optional<double> found = film_distance_at_infinity(lens);
@@ -339,10 +343,33 @@ std::vector<std::string> lens_names() {
     return names;
 }
 
+std::map<std::string, std::string> lens_files_on_path() {
+    std::map<std::string, std::string> files;
+    const char* variable = std::getenv("REALCAM_LENS_PATH");
+    std::string_view rest = variable ? variable : "";
+    while (!rest.empty()) {
+        const std::size_t colon = std::min(rest.find(':'), rest.size());
+        const std::filesystem::path folder(rest.substr(0, colon));
+        rest.remove_prefix(std::min(colon + 1, rest.size()));
+        std::error_code error;
+        std::set<std::filesystem::path> sorted;
+        for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end;
+             entry.increment(error))
+            if (entry->is_regular_file(error)) sorted.insert(entry->path());
+        for (const std::filesystem::path& path : sorted)
+            if (suffix_of(path.string()) == ".toml" || foreign_format_of(path.string()))
+                files.emplace(path.stem().string(), path.string());
+    }
+    for (const BundledFile& file : bundled_lens_files()) files.erase(std::string(file.name));
+    return files;
+}
+
 std::string_view bundled_lens_text(const std::string& name) {
     for (const BundledFile& file : bundled_lens_files())
         if (file.name == name) return file.text;
-    throw LensFileError("unknown lens " + in_quotes(name) + did_you_mean(name, lens_names()) +
+    std::vector<std::string> known = lens_names();
+    for (const auto& [found, path] : lens_files_on_path()) known.push_back(found);
+    throw LensFileError("unknown lens " + in_quotes(name) + did_you_mean(name, known) +
                         "; a bundled lens or the path of a lens file is wanted");
 }
 
@@ -380,13 +407,15 @@ LensSystem parse_lens_file(std::string_view bytes, const std::string& file, cons
         return lens;
     }
     const std::string text = decoded_lens_text(bytes, file);
-    const Prescription prescription = format->read(text, file, glasses, options);
+    Prescription prescription = format->read(text, file, glasses, options);
     glasses.check_all_used();
-    return lens_from(prescription, options);
+    return lens_from(std::move(prescription), options);
 }
 
 LensSystem read_lens(const std::string& name_or_path, const LensReadOptions& options) {
     if (!is_lens_path(name_or_path, name_or_path)) {
+        const auto files = lens_files_on_path();
+        if (const auto found = files.find(name_or_path); found != files.end()) return read_lens(found->second, options);
         LensSystem lens = parse_lens(bundled_lens_text(name_or_path), name_or_path);
         LensGlasses(options).check_all_used();
         return lens;

@@ -13,6 +13,10 @@ namespace realcam::io {
 /// Names of the bundled lenses, sorted.
 std::vector<std::string> lens_names();
 
+/// Lens files in the folders of the environment variable REALCAM_LENS_PATH, separated by colons, by name: the file's
+/// without its suffix. A bundled lens, and the first of the folders, come before others of the same name.
+std::map<std::string, std::string> lens_files_on_path();
+
 /// The text of a bundled lens file. Throws LensFileError, with the nearest names, where there is none.
 std::string_view bundled_lens_text(const std::string& name);
 
@@ -23,6 +27,8 @@ enum class PbrtThickness { by_first_row, after, before };
 struct LensReadOptions {
     /// Glasses by the names that the file gives them: for those that no catalogue has, or several.
     std::map<std::string, Glass> glasses;
+    /// Glasses of the user's catalogues (see read_glass_catalogue), which come before the bundled ones.
+    std::map<std::string, Glass> catalogue;
     /// Leaves out what realcam has no model of, with a warning, where else the file is refused.
     bool force = false;
     PbrtThickness pbrt_thickness = PbrtThickness::by_first_row;
@@ -36,11 +42,11 @@ struct LensReadOptions {
 /// file exists at `path`. This is the name itself, or the name relative to another file's folder.
 bool is_lens_path(const std::string& name, const std::string& path);
 
-/// Reads a lens: a bundled one by name, or a file by its path (see is_lens_path). The suffix says how to read it: .zmx
-/// (Zemax), .seq (CODE V), .len (OSLO), .dat (pbrt), .json (Optiland) or .roa (ray-optics), in any case; anything else
-/// is a lens file of realcam, TOML. The lens is focused at infinity, or as its file says, and wide open. Throws
-/// LensFileError, naming file, line and surface, and InputError where the options name a glass that the file does not
-/// have.
+/// Reads a lens: a bundled one or one of the lens path by name, or a file by its path (see is_lens_path). The suffix
+/// says how to read it: .zmx (Zemax), .seq (CODE V), .len (OSLO), .dat (pbrt), .json (Optiland) or .roa (ray-optics),
+/// in any case; anything else is a lens file of realcam, TOML. The lens is focused at infinity, or as its file says,
+/// and wide open. Throws LensFileError, naming file, line and surface, and InputError where the options name a glass
+/// that the file does not have.
 LensSystem read_lens(const std::string& name_or_path, const LensReadOptions& options = {});
 
 /// Reads a lens from the text of a lens file of realcam (format 1, described in lenses/README.md).
@@ -53,6 +59,9 @@ LensSystem parse_lens_file(std::string_view bytes, const std::string& file, cons
 /// A glass of the catalogue: "N-BK7", or "schott:F4" where makers share a name.
 /// Throws InputError where the name is unknown (with the nearest names) or stands for several glasses.
 Glass catalogue_glass(const std::string& name);
+
+/// Adds the glasses of a catalogue of Zemax (.agf), by bare name. Throws InputError naming file and line.
+void read_glass_catalogue(const std::string& path, std::map<std::string, Glass>& catalogue);
 
 /// A glass as the command line names it, "NAME=n_d,V_d" or "NAME=schott:F4": the name, and the glass. Throws
 /// InputError.

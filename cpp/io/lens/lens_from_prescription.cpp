@@ -11,6 +11,7 @@
 #include "../../optics/lens/paraxial.hpp"
 #include "../../optics/prescription/clearance.hpp"
 #include "../../optics/prescription/lens_checks.hpp"
+#include "../../optics/prescription/lens_limits.hpp"
 #include "../text/printable.hpp"
 #include "lens_asphere_terms.hpp"
 #include "lens_error.hpp"
@@ -90,9 +91,7 @@ private:
                  " are supported");
         const auto stops =
             std::count_if(kept_.begin(), kept_.end(), [](const KeptRow& k) { return k.type == SurfaceType::stop; });
-        if (stops != 1)
-            fail(stops == 0 ? "no surface is the aperture stop; one has to be"
-                            : "several surfaces are aperture stops; one has to be");
+        if (stops > 1) fail("several surfaces are aperture stops; one has to be");
     }
 
     /// Whether a row became a face of the lens, perhaps beside a stop.
@@ -269,6 +268,8 @@ private:
 
     void finish() {
         for (const std::string& remark : p_.remarks) warn(remark);
+        if (std::ranges::any_of(states_, [](const LensState& s) { return s.lens.film_distance == kFilmContact; }))
+            warn("the film touches the last face: 0.001 mm of air are put between them");
         if (stop_on_surface_ > 0)
             warn("the aperture stop on surface " + std::to_string(stop_on_surface_) +
                  ", which bends light, becomes a plane at its vertex");
@@ -297,6 +298,7 @@ private:
     /// Whether faces cross inside their clear semi-diameters, which is refused unless it is forced.
     bool crosses() {
         const int count = std::max(1, static_cast<int>(lens_.zoom.positions.size()));
+        bool is_crossed = false;
         for (int i = 0; i < count; ++i) {
             checkpoint_.pass(kWorkOfLens);
             const LensSystem lens = lens_.zoom.positions.empty() ? lens_ : at_zoom_position(lens_, i);
@@ -314,15 +316,28 @@ private:
             if (!row) continue;
             if (!lens_.zoom.positions.empty())
                 what += " in zoom position \"" + lens.zoom.positions[static_cast<std::size_t>(i)].name + '"';
-            if (!options_.force) {
+            if (!options_.force && !passes_inside_crossings(lens, static_cast<std::size_t>(i))) {
                 LensReadError error(what + "; nobody can make such a lens", p_.file, row->line, row->number);
                 error.can_be_forced = true;
                 throw error;
             }
-            warn("surface " + std::to_string(row->number) + ' ' + what);
-            return true;
+            warn("surface " + std::to_string(row->number) + ' ' + what +
+                 (options_.force ? "" : "; no ray of the file's fields that passes the lens reaches that far"));
+            is_crossed = true;
         }
-        return false;
+        return is_crossed;
+    }
+
+    /// True if no ray of the fields that passes the lens meets two faces where they cross.
+    bool passes_inside_crossings(LensSystem lens, std::size_t state) {
+        if (!lens_.is_rotational() || film_crosses_lens(lens)) return false;
+        const RayRims reach =
+            reach_of_rays(lens, states_[state].object_distance, p_.field_kind, p_.fields, checkpoint_);
+        for (std::size_t i = 0; i < kept_.size(); ++i)
+            if (reach.semi_diameters[i] > 0)
+                lens.surfaces[i].clear_semi_diameter =
+                    std::min(lens.surfaces[i].clear_semi_diameter, reach.semi_diameters[i]);
+        return !find_crossing(lens);
     }
 
     const Prescription& p_;
@@ -340,7 +355,13 @@ private:
 
 }  // namespace
 
-LensSystem lens_from(const Prescription& prescription, const LensReadOptions& options) {
+LensSystem lens_from(Prescription prescription, const LensReadOptions& options) {
+    std::vector<PrescriptionSurface>& rows = prescription.surfaces;
+    if (!rows.empty() && std::ranges::none_of(rows, [](const PrescriptionSurface& row) { return row.is_stop; })) {
+        rows.front().is_stop = true;
+        prescription.remarks.push_back("it names no aperture stop: surface " + std::to_string(rows.front().number) +
+                                       " is taken");
+    }
     try {
         return Builder(prescription, options).build();
     } catch (const InputError& error) {  // a glass without an index, a field that no ray reaches

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "../text/nearest_names.hpp"
 #include "../text/printable.hpp"
@@ -67,7 +68,7 @@ bool LensGlasses::is_given(const std::string& name) const {
 
 std::optional<Glass> LensGlasses::in_catalogue(const std::string& name,
                                                const std::vector<std::string>& catalogues) const {
-    if (is_given(name) || own_.contains(name)) return {};
+    if (is_given(name) || own_.contains(name) || options_.catalogue.contains(bare_glass_name(name))) return {};
     const std::vector<CatalogueName> found = allowed(catalogue_names_like(name), catalogues);
     if (found.empty()) return {};
     Glass first = catalogued(found.front());
@@ -85,6 +86,8 @@ Glass LensGlasses::find(const std::string& name, const std::vector<std::string>&
             return found;
         }
     if (const auto own = own_.find(name); own != own_.end()) return own->second;
+    if (const auto found = options_.catalogue.find(bare_glass_name(name)); found != options_.catalogue.end())
+        return found->second;
     const std::string quoted = in_quotes(name);
     if (bare_glass_name(name).empty()) throw InputError("a glass has no name");
     const std::vector<CatalogueName> all = catalogue_names_like(name), found = allowed(all, catalogues);
@@ -112,6 +115,48 @@ Glass LensGlasses::find(const std::string& name, const std::vector<std::string>&
         message += did_you_mean(name, catalogue_plain_names());
     throw UnknownGlass(message + (hint.empty() ? "" : "; the file says of it " + hint) + "; its n_d and V_d are wanted",
                        name);
+}
+
+Glass LensGlasses::substance(const std::string& book, const std::string& page, std::vector<std::string>& remarks) {
+    struct Page {
+        const char *book, *page, *name;  ///< name in the catalogue
+    };
+    // The first page of a book stands for those that are not known.
+    static constexpr Page kPages[] = {
+        {"Al2O3", "Malitson-o", "SAPPHIRE"},
+        {"BaF2", "Malitson", "BAF2-MALITSON"},
+        {"BaF2", "Li", "BAF2-LI"},
+        {"CaF2", "Malitson", "CAF2"},
+        {"CaF2", "Daimon-20", "CAF2-DAIMON-20"},
+        {"CaF2", "Daimon-25", "CAF2-DAIMON-25"},
+        {"CaF2", "Li", "CAF2-LI"},
+        {"LiF", "Li", "LIF"},
+        {"MgF2", "Dodge-o", "MGF2"},
+        {"MgF2", "Li-o", "MGF2-LI-O"},
+        {"SiO2", "Malitson", "SILICA"},
+        {"ZnS", "Debenham", "ZNS"},
+        {"ZnS", "Querry", "ZNS-QUERRY"},
+        {"ZnSe", "Marple", "ZNSE"},
+        {"ZnSe", "Connolly", "ZNSE-CONNOLLY"},
+    };
+    if (is_given(book)) return find(book, {});
+    asked_.insert(book);
+    const Page* found = nullptr;
+    for (const Page& one : kPages)
+        if (upper_case(one.book) == upper_case(book) && (!found || upper_case(one.page) == upper_case(page)))
+            found = &one;
+    if (!found)
+        throw UnknownGlass(
+            "unknown substance " + in_quotes(book) + " of refractiveindex.info; its n_d and V_d are wanted", book);
+    if (upper_case(found->page) != upper_case(page)) {
+        char n_d[32];
+        std::snprintf(n_d, sizeof n_d, "%.5f", catalogue_glass("misc:" + std::string(found->name)).index(kLineD_nm));
+        remarks.push_back("the page " + in_quotes(page) + " of " + found->book +
+                          " of refractiveindex.info is not known: that of " + found->page + " is taken, n_d = " + n_d +
+                          "; their difference is not known");
+    }
+    Glass glass = catalogue_glass("misc:" + std::string(found->name));
+    return glass;
 }
 
 void LensGlasses::check_all_used() const {

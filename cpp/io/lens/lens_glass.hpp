@@ -46,6 +46,10 @@ public:
     /// the glass of that number (see glass_of_number). `hint`: what the file says of it besides.
     /// Throws UnknownGlass with the candidates.
     Glass find(const std::string& name, const std::vector<std::string>& catalogues, const std::string& hint = {});
+    /// A substance of the shelf "main" of refractiveindex.info by book and page, "CaF2", "Daimon-20". No maker's glass
+    /// is meant by such a name. Where the page is not known, another one of the book is taken, with a line in
+    /// `remarks`. Throws UnknownGlass.
+    Glass substance(const std::string& book, const std::string& page, std::vector<std::string>& remarks);
     /// Whether one of the catalogues has exactly one glass of that name, and nobody has named another one for it.
     std::optional<Glass> in_catalogue(const std::string& name, const std::vector<std::string>& catalogues) const;
     /// Whether the options say what glass that is.

@@ -1,9 +1,9 @@
 #include "lens_rims.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "../../math/hypotenuse.hpp"
 #include "../../optics/analysis/field_rays.hpp"
@@ -28,10 +28,10 @@ double angle_of(const LensSystem& lens, double object_distance, FieldKind kind, 
     const double to_pupil = object_distance + data.entrance_pupil_position;
     if (kind == FieldKind::object_height) return std::atan(size / to_pupil);
     if (std::isinf(object_distance)) return std::atan(size / std::fabs(data.effective_focal_length));
-    // The magnification of the object plane: slope of the marginal ray in front of the lens over that behind it.
+    // The magnification of the object plane: n u of the marginal ray in front of the lens over that behind it.
     const ParaxialRay end =
         trace_paraxial(lens, lens.wavelength_nm, {object_distance, 1}, 0, static_cast<int>(lens.surfaces.size()));
-    return std::atan(std::fabs(size * end.slope / to_pupil));
+    return std::atan(std::fabs(size * data.image_index * end.slope / to_pupil));
 }
 
 /// With rims that stop no ray which the surfaces allow: an asphere is searched for its rays within its rim.
@@ -57,60 +57,111 @@ LensSystem with_wide_rims(LensSystem lens, double largest_angle) {
     return lens;
 }
 
+/// Rays of one field after the other through points of the stop, and where they meet each surface.
+class FieldBundles {
+public:
+    /// `passing`: only rays that pass the rims of the lens count.
+    FieldBundles(const LensSystem& lens, double object_distance, FieldKind kind, double largest, bool passing,
+                 Checkpoint& checkpoint)
+        : lens_(lens),
+          open_(with_wide_rims(lens, angle_of(lens, object_distance, kind, largest))),
+          object_distance_(object_distance),
+          kind_(kind),
+          checkpoint_(checkpoint),
+          result_{std::vector<double>(lens.surfaces.size(), 0.0)} {
+        for (int i = 0; i < count(); ++i)
+            paths_.emplace_back(open_, LightDirection::to_film, lens.wavelength_nm, i + 1);
+        if (passing) whole_.emplace(lens, LightDirection::to_film, lens.wavelength_nm, count());
+    }
+
+    void add(double field, const std::vector<Vec2<double>>& places) {
+        try {
+            const RayAimer aim(open_, lens_.wavelength_nm,
+                               {angle_of(lens_, object_distance_, kind_, field), object_distance_});
+            for (const Vec2<double> place : places) {
+                checkpoint_.pass(1000 * lens_.surfaces.size());
+                const AimedRay ray = aim(place);
+                if (ray.status == RayStatus::ok)
+                    add(aim.object.at(ray.entry), aim.object.direction(ray.entry));
+                else
+                    result_.all_rays_pass = false;
+            }
+        } catch (const InputError&) {  // no chief ray
+            result_.all_rays_pass = false;
+        }
+    }
+
+    const RayRims& result() const { return result_; }
+
+private:
+    int count() const { return static_cast<int>(lens_.surfaces.size()); }
+
+    void add(Vec3d from, Vec3d to) {
+        const double origin[3] = {from.x, from.y, from.z}, direction[3] = {to.x, to.y, to.z};
+        double at[3], out[3], length;
+        int status, surface;
+        const auto passes = [&](const TracePath<double>& path) {
+            trace_rays_of<1>(path.request(1, origin, direction, {at, out, &length, &status, &surface}), 0);
+            return status == 0;
+        };
+        if (whole_ && !passes(*whole_)) return;
+        for (std::size_t i = 0; i < paths_.size() && passes(paths_[i]); ++i)
+            result_.semi_diameters[i] = std::max(result_.semi_diameters[i], kMargin * hypotenuse(at[0], at[1]));
+    }
+
+    const LensSystem& lens_;
+    LensSystem open_;
+    double object_distance_;
+    FieldKind kind_;
+    Checkpoint& checkpoint_;
+    RayRims result_;
+    std::vector<TracePath<double>> paths_;
+    std::optional<TracePath<double>> whole_;
+};
+
+double largest_of(const std::vector<PrescriptionField>& fields) {
+    double largest = 0;
+    for (const PrescriptionField& field : fields) largest = std::max(largest, size_of(field));
+    return largest;
+}
+
 }  // namespace
 
 RayRims rims_of_rays(const LensSystem& lens, double object_distance, FieldKind kind,
                      const std::vector<PrescriptionField>& fields, Checkpoint& checkpoint) {
-    const std::size_t count = lens.surfaces.size();
-    RayRims result{std::vector<double>(count, 0.0)};
+    FieldBundles bundles(lens, object_distance, kind, largest_of(fields), false, checkpoint);
     std::vector<PrescriptionField> all{{}};
     all.insert(all.end(), fields.begin(), fields.end());
-    double largest = 0;
-    for (const PrescriptionField& field : all)
-        largest = std::max(largest, angle_of(lens, object_distance, kind, size_of(field)));
-    const LensSystem open = with_wide_rims(lens, largest);
-    std::vector<TracePath<double>> paths;
-    for (std::size_t i = 0; i < count; ++i)
-        paths.emplace_back(open, LightDirection::to_film, lens.wavelength_nm, static_cast<int>(i) + 1);
     for (const PrescriptionField& field : all) {
-        const double angle = angle_of(lens, object_distance, kind, size_of(field));
         // The field's own direction is that of y here.
         const bool along_x = std::fabs(field.x) > std::fabs(field.y);
         const double across = along_x ? field.upper_y : field.upper_x;
         const double up = along_x ? field.upper_x : field.upper_y, down = along_x ? field.lower_x : field.lower_y;
         const double r = lens.stop_semi_diameter;
-        const std::array<Vec2<double>, 5> places{
-            {{0, 0}, {r * (1 - across), 0}, {0, r * (1 - up)}, {0, -r * (1 - down)}, {-r * (1 - across), 0}}};
-        try {
-            const RayAimer aim(open, lens.wavelength_nm, {angle, object_distance});
-            for (const Vec2<double> place : places) {
-                checkpoint.pass(1000 * count);
-                const AimedRay ray = aim(place);
-                if (ray.status != RayStatus::ok) {
-                    result.all_rays_pass = false;
-                    continue;
-                }
-                const Vec3d from = aim.object.at(ray.entry), to = aim.object.direction(ray.entry);
-                const double origin[3] = {from.x, from.y, from.z}, direction[3] = {to.x, to.y, to.z};
-                for (std::size_t i = 0; i < count; ++i) {
-                    double at[3], out[3], length;
-                    int status, surface;
-                    trace_rays_of<1>(paths[i].request(1, origin, direction, {at, out, &length, &status, &surface}), 0);
-                    if (status != 0) break;
-                    result.semi_diameters[i] = std::max(result.semi_diameters[i], kMargin * hypotenuse(at[0], at[1]));
-                }
-            }
-        } catch (const InputError&) {  // no chief ray
-            result.all_rays_pass = false;
-        }
+        bundles.add(size_of(field),
+                    {{0, 0}, {r * (1 - across), 0}, {0, r * (1 - up)}, {0, -r * (1 - down)}, {-r * (1 - across), 0}});
     }
-    return result;
+    return bundles.result();
+}
+
+RayRims reach_of_rays(const LensSystem& lens, double object_distance, FieldKind kind,
+                      const std::vector<PrescriptionField>& fields, Checkpoint& checkpoint) {
+    constexpr int kFields = 12, kPlaces = 24;  // rims cut bundles between the axis and the edge of the stop
+    const double largest = largest_of(fields);
+    FieldBundles bundles(lens, object_distance, kind, largest, true, checkpoint);
+    std::vector<Vec2<double>> places;
+    for (int i = -kPlaces; i <= kPlaces; ++i) {
+        const double at = lens.stop_semi_diameter * i / kPlaces;
+        places.push_back({0, at});
+        if (i > 0) places.push_back({at, 0});
+    }
+    for (int k = 0; k <= kFields; ++k) bundles.add(largest * k / kFields, places);
+    return bundles.result();
 }
 
 double largest_image_height(const LensSystem& lens, double object_distance, FieldKind kind,
                             const std::vector<PrescriptionField>& fields) {
-    double largest = 0;
-    for (const PrescriptionField& field : fields) largest = std::max(largest, size_of(field));
+    const double largest = largest_of(fields);
     if (largest == 0 || kind == FieldKind::image_height) return largest;
     const double angle = angle_of(lens, object_distance, kind, largest);
     try {

@@ -18,6 +18,10 @@ struct RayRims {
 RayRims rims_of_rays(const LensSystem& lens, double object_distance, FieldKind kind,
                      const std::vector<PrescriptionField>& fields, Checkpoint& checkpoint);
 
+/// How far from the axis rays of the fields meet each surface if they pass all rims of the lens, mm.
+RayRims reach_of_rays(const LensSystem& lens, double object_distance, FieldKind kind,
+                      const std::vector<PrescriptionField>& fields, Checkpoint& checkpoint);
+
 /// The largest image height of the fields, mm, by real chief rays. Where there is no such ray, first-order optics is
 /// used.
 double largest_image_height(const LensSystem& lens, double object_distance, FieldKind kind,

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "../../optics/lens/paraxial.hpp"
+#include "../../optics/prescription/lens_limits.hpp"
 #include "../text/printable.hpp"
 
 namespace realcam::io {
@@ -31,6 +32,7 @@ void set_stop(const Prescription& p, const std::vector<KeptRow>& kept, LensSyste
     const ParaxialRay start = std::isinf(object) ? ParaxialRay{1, 0} : ParaxialRay{object, 1};
     const double at_stop = std::fabs(trace(start, stop + 1).height);
     const double pupil = std::fabs(trace({1, 0}, stop + 1).height);  // height at the stop over that in the pupil
+    const double behind = lens.indices(lens.wavelength_nm).back();
     const auto slope_of = [&](double numerical) {
         if (!(numerical > 0 && numerical < 1)) fail(p, "the numerical aperture must lie between 0 and 1");
         return std::tan(std::asin(numerical));
@@ -39,12 +41,14 @@ void set_stop(const Prescription& p, const std::vector<KeptRow>& kept, LensSyste
     switch (p.aperture_kind) {
         case ApertureKind::stop_size: radius = aperture > 0 ? aperture : surface.clear_semi_diameter; break;
         case ApertureKind::entrance_pupil_diameter: radius = 0.5 * aperture * pupil; break;
-        case ApertureKind::f_number: radius = 0.5 / (aperture * std::fabs(trace({1, 0}, count).slope)) * pupil; break;
+        case ApertureKind::f_number:
+            radius = 0.5 / (aperture * behind * std::fabs(trace({1, 0}, count).slope)) * pupil;
+            break;
         case ApertureKind::working_f_number:
-            radius = 0.5 / (aperture * std::fabs(trace(start, count).slope)) * at_stop;
+            radius = 0.5 / (aperture * behind * std::fabs(trace(start, count).slope)) * at_stop;
             break;
         case ApertureKind::image_aperture:
-            radius = slope_of(aperture) / std::fabs(trace(start, count).slope) * at_stop;
+            radius = slope_of(aperture / behind) / std::fabs(trace(start, count).slope) * at_stop;
             break;
         case ApertureKind::object_aperture:
             if (std::isinf(object))
@@ -86,6 +90,7 @@ LensState lens_state(const Prescription& p, const std::vector<KeptRow>& kept, Le
     set_stop(p, kept, lens, object, state);
     if (p.paraxial_image && lens.film_distance == p.defocus)
         lens.film_distance = p.defocus + paraxial_image_distance(lens, lens.wavelength_nm, object);
+    if (p.has_film_distance && lens.film_distance == 0) lens.film_distance = kFilmContact;
     if (std::isfinite(object)) lens.focus_distance = object + lens.film_position();
     return {std::move(lens), object};
 }

@@ -5,6 +5,7 @@
 #include "../../checkpoint.hpp"
 #include "../../optics/lens/best_focus.hpp"
 #include "../../optics/prescription/lens_checks.hpp"
+#include "../../optics/prescription/lens_limits.hpp"
 #include "lens_text.hpp"
 
 namespace realcam::io {
@@ -109,6 +110,7 @@ void LensZoom::apply(LensSystem& lens, const std::vector<bool>& given, const Kee
                 found == from.thicknesses.end() ? lens.surfaces[static_cast<std::size_t>(i)].thickness : found->second);
         }
         to.film_distance = from.table.number("film_distance_mm").value_or(0);
+        if (to.film_distance == 0 && from.table.find("film_distance_mm")) to.film_distance = kFilmContact;
         to.focus_distance = from.table.number("focus_distance_mm").value_or(kInfinity);
         const auto stop = from.table.number("stop_semi_diameter_mm");
         if (stop && !(*stop > 0))

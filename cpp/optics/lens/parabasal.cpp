@@ -156,9 +156,7 @@ ParabasalData parabasal_data(const LensSystem& lens, double wavelength_nm) {
     const bool is_round = power.larger - std::fabs(power.smaller) < 1e-9 * power.larger;
     const bool is_turned_over = power.smaller < 0;
     const double sign = !is_turned_over && std::cos(power.left - power.right) > 0 ? -1 : 1;
-    const auto focal_length_of = [&](double p) {
-        return std::fabs(p) < none ? kInfinity : sign * behind / std::fabs(p);
-    };
+    const auto focal_length_of = [&](double p) { return std::fabs(p) < none ? kInfinity : sign / std::fabs(p); };
     const Matrix2 pupil = rays.stop_by_place.inverse();  // where parallel light enters, by its place on the stop
 
     const auto meridian = [&](double angle, double image_angle, double p) {
@@ -205,6 +203,7 @@ ParabasalData parabasal_data(const LensSystem& lens, double wavelength_nm) {
             : front + rays.chief.scene_direction.z * before * 0.5 *
                           (rays.direction_by_place.inverse() * rays.direction_by_direction).trace();
     mean.film_distance = lens.film_distance;
+    mean.image_index = behind;
     return {{first, second}, second.focal_length / first.focal_length, mean};
 }
 

@@ -40,7 +40,8 @@ FirstOrder first_order(const LensSystem& lens, double wavelength_nm) {
     const ParaxialRay inclined = trace_paraxial(lens, wavelength_nm, {0, 1}, 0, count);
     FirstOrder data{};
     const bool afocal = marginal.slope == 0;
-    data.effective_focal_length = afocal ? kInfinity : -1 / marginal.slope;
+    data.image_index = lens.indices(wavelength_nm).back();
+    data.effective_focal_length = afocal ? kInfinity : -1 / (data.image_index * marginal.slope);
     data.back_focal_distance = afocal ? kInfinity : -marginal.height / marginal.slope;
     // A ray through the front focal point, in front of the vertex by -ffd, leaves parallel to the axis.
     data.front_focal_distance = afocal ? -kInfinity : inclined.slope / marginal.slope;

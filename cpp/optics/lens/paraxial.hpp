@@ -29,13 +29,14 @@ ParaxialRay trace_paraxial(const LensSystem& lens, double wavelength_nm, Paraxia
 /// An afocal system has an infinite focal length, distances and f-number; a stop in a focal plane has a pupil of
 /// infinite size at infinity, and a closed one a pupil of size 0.
 struct FirstOrder {
-    double effective_focal_length;
+    double effective_focal_length;  ///< 1 / power, the front focal length: of an image space in air also the rear one
     double back_focal_distance;  ///< last vertex to the rear focal point
     double front_focal_distance;  ///< front vertex to the front focal point, negative in front of it
     double f_number;  ///< focal length over entrance pupil diameter, object at infinity
     double entrance_pupil_position, entrance_pupil_diameter;
     double exit_pupil_position, exit_pupil_diameter;
     double film_distance;
+    double image_index;  ///< of the medium before the film; the rear focal length is that times the effective one
 
     bool is_afocal() const { return std::isinf(effective_focal_length); }
 };

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any
@@ -64,6 +65,22 @@ class File:
             metavar="NAME=N,V",
         ),
     ] = None
+    glass_catalogue: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--glass-catalogue",
+            help="A catalogue of glasses (.agf) for those that the lens's file names; may be repeated",
+            metavar="FILE",
+        ),
+    ] = None
+    lens_path: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--lens-path",
+            help="A folder whose lens files are known by their names; may be repeated [REALCAM_LENS_PATH]",
+            metavar="DIR",
+        ),
+    ] = None
     force: Annotated[
         bool, typer.Option("--force", help="Leave out what the lens's file has that there is no model of, and name it")
     ] = False
@@ -77,8 +94,15 @@ class File:
     ] = None
 
     def lens(self, name: str) -> Lens:
+        if self.lens_path:
+            before = os.environ.get("REALCAM_LENS_PATH")
+            os.environ["REALCAM_LENS_PATH"] = ":".join([*self.lens_path, *([before] if before else [])])
         return Lens.load(
-            name, glass=options.glasses(self.glass or ()), force=self.force, pbrt_thickness=self.pbrt_thickness
+            name,
+            glass=options.glasses(self.glass or ()),
+            force=self.force,
+            pbrt_thickness=self.pbrt_thickness,
+            glass_catalogue=self.glass_catalogue,
         )
 
 

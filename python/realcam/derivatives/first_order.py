@@ -76,7 +76,8 @@ def first_order_duals(lens: Lens, variables: Sequence[Variable], wavelength_nm: 
     stop, end = lens.stop_index, len(surfaces)
     (y, u), (_, inclined) = traced(1, 0, 0, end), traced(0, 1, 0, end)
     level_at_stop, inclined_at_stop = traced(1, 0, 0, stop + 1)[0], traced(0, 1, 0, stop + 1)[0]
-    focal_length = -1.0 / u
+    behind = indices[-1] if indices[-1].value > 0 else -indices[-1]
+    focal_length = -1.0 / (behind * u)
     radius = 0.5 * lens.first_order(wavelength_nm).entrance_pupil_diameter_mm * abs(float(level_at_stop.value))
     pupil = inclined_at_stop / level_at_stop
     diameter = 2 * radius / level_at_stop
@@ -99,5 +100,5 @@ def first_order_duals(lens: Lens, variables: Sequence[Variable], wavelength_nm: 
         at_end_y + film * at_end_u,
         last_vertex,
         film,
-        indices[-1] if indices[-1].value > 0 else -indices[-1],
+        behind,
     )

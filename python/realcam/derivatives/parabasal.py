@@ -56,7 +56,7 @@ def focal_length_and_f_number(
         lens, variables, wavelength_nm, np.hstack([chief.origins_mm[0], towards]), across, start_by
     )
     behind = DualArray(numbers, by + by_start @ start_by)
-    film, index = at_film(rays, behind[:3], behind[3:])
+    film, _ = at_film(rays, behind[:3], behind[3:])
     power, stop = film[2:, :2], rays.stop[:, :2]
 
     def grows(matrix: DualArray) -> Doubles:
@@ -64,14 +64,14 @@ def focal_length_and_f_number(
         return np.asarray(0.5 * np.einsum("ij,jiv->v", np.linalg.inv(matrix.value), matrix.by))
 
     first_order = lens.first_order(wavelength_nm)
-    size = float(index.value) / np.sqrt(abs(np.linalg.det(power.value)))
+    size = 1 / np.sqrt(abs(np.linalg.det(power.value)))
     if abs(size / abs(first_order.effective_focal_length_mm) - 1) > 1e-6:
         # Lens.first_order takes the move back.
         raise InputError(
             "a lens that was shifted or tilted before its film has the focal length and f-number that it had before: "
             "differentiate it without the move"
         )
-    growth = index.by / index.value - grows(power)
+    growth = -grows(power)
     length = float(np.copysign(size, first_order.effective_focal_length_mm))
     f_number = first_order.f_number
     f_growth = growth + grows(stop)

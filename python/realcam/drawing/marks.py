@@ -38,7 +38,7 @@ def marks_of(lens: Lens) -> tuple[Mark, ...]:
         Mark("pupil", "EP", data.entrance_pupil_position_mm, 0.5 * data.entrance_pupil_diameter_mm),
         Mark("pupil", "XP", data.exit_pupil_position_mm, 0.5 * data.exit_pupil_diameter_mm),
         Mark("principal plane", "H", front + focal_length, 0.0),
-        Mark("principal plane", "H'", rear - focal_length, 0.0),
+        Mark("principal plane", "H'", rear - data.image_index * focal_length, 0.0),
         Mark("focal point", "F", front, 0.0),
         Mark("focal point", "F'", rear, 0.0),
     )

@@ -49,7 +49,7 @@ class PhotographicFigures:
     focal_length_at_infinity_mm: float
     f_number: float  #: engraved: of the lens focused at infinity
     t_stop: float
-    working_f_number: float  #: 1 / (2 sin u') of the outermost axial ray at the film
+    working_f_number: float  #: 1 / (2 n' sin u') of the outermost axial ray at the film
     working_f_number_by_formula: float  #: N (1 + m / p), p the pupil magnification
     focus_distance_m: float
     magnification: float  #: image over object, positive; 0 at infinity
@@ -80,7 +80,7 @@ def breathing(lens: Lens, nearest_focus_m: float | None = None) -> Breathing:
         data = far.first_order()
         # Newton's equation: f / m from the front focal point to the object, m f from the rear one to the film.
         f, m = data.effective_focal_length_mm, 0.1
-        nearest = (f / m - data.front_focal_distance_mm + far.film_position_mm + m * f) / 1000
+        nearest = (f / m - data.front_focal_distance_mm + far.film_position_mm + m * f * data.image_index) / 1000
     return Breathing(nearest, assumed, angle_of_view_deg(far), angle_of_view_deg(lens.focused(nearest)))
 
 
@@ -98,14 +98,14 @@ def exposure_value(lens: Lens, exposure_time_s: float, iso: float = 100.0) -> Ex
 
 
 def working_f_number(lens: Lens) -> float:
-    """1 / (2 sin u') with the outermost ray from the plane in focus that passes the lens, on the axis."""
+    """1 / (2 n' sin u') with the outermost ray from the plane in focus that passes the lens, on the axis."""
     rays = lens.aim(np.column_stack([np.zeros_like(_RADII), _RADII]), 0.0)
     passing = rays.status == RayStatus.OK
     if not np.any(passing):
         raise InputError(f'no light passes lens "{lens.name}"')
     out = lens.trace(rays.origins_mm[passing], rays.directions[passing], start="scene")
     steepest = float(np.max(np.abs(out.directions[:, 1])))
-    return 0.5 / steepest if steepest > 0 else math.inf
+    return 0.5 / (lens.first_order().image_index * steepest) if steepest > 0 else math.inf
 
 
 def magnification(lens: Lens) -> float:

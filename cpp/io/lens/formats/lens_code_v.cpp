@@ -171,10 +171,6 @@ void CodeVReader::finish() {
         if (std::isinf(rows_[i].thickness))
             throw LensFileError("the thickness is infinite; only the object may be as far away", p_.file, rows_[i].line,
                                 rows_[i].number);
-    if (std::none_of(rows_.begin(), rows_.end(), [](const auto& row) { return row.is_stop; }) && rows_.size() > 2) {
-        rows_[1].is_stop = true;
-        p_.remarks.push_back("it names no aperture stop (STO): surface 1 is taken");
-    }
     for (PrescriptionSurface& row : rows_) {
         finish_aperture(row);
         finish_shape(row);

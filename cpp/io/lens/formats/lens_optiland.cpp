@@ -9,6 +9,7 @@
 #include "../../../math/hypotenuse.hpp"
 #include "../../../optics/prescription/lens_limits.hpp"
 #include "../../text/printable.hpp"
+#include "../lens_material.hpp"
 #include "../lens_readers.hpp"
 #include "../lens_text.hpp"
 #include "lens_json.hpp"
@@ -240,6 +241,50 @@ private:
         }
     }
 
+    std::vector<double> list_of(const Json& list, const char* what) const {
+        std::vector<double> values;
+        for (std::size_t i = 0; i < list.size() && i < kMostFileIndices; ++i)
+            values.push_back(json_.number(list[i], what));
+        return values;
+    }
+
+    /// A glass by the data in the file: a table, or formula 2 or 5 of refractiveindex.info, Sellmeier's and Cauchy's.
+    Glass data_material(const Json& material) {
+        const Json& dispersion = material["definition"]["dispersion"];
+        const std::string formula = dispersion["formula"].text();
+        const std::vector<double> c = list_of(dispersion["coefficients"], "a coefficient");
+        Glass glass = Glass::air();
+        if (dispersion["kind"].text() == "tabulated") {
+            const std::vector<double> waves = list_of(dispersion["wavelengths_um"], "a wavelength"),
+                                      indices = list_of(dispersion["indices"], "an index");
+            if (waves.size() != indices.size()) throw InputError("its table needs as many indices as wavelengths");
+            std::vector<Glass::TablePoint> points;
+            for (std::size_t i = 0; i < waves.size(); ++i) points.push_back({1000 * waves[i], indices[i]});
+            glass = Glass::table(std::move(points));
+        } else if (formula == "formula 2" && c.size() % 2 == 1 && c.size() >= 3) {
+            std::vector<Glass::SellmeierTerm> terms;
+            if (c[0] != 0) terms.push_back({c[0], 0});
+            for (std::size_t i = 1; i < c.size(); i += 2) terms.push_back({c[i], c[i + 1]});
+            glass = Glass::sellmeier(terms);
+        } else if (formula == "formula 5" && c.size() % 2 == 1) {
+            std::vector<double> cauchy{c[0]};
+            for (std::size_t i = 1; i < c.size(); i += 2) {
+                const double term = -0.5 * c[i + 1];
+                if (!(term >= 1 && term <= 20 && term == std::floor(term)))
+                    throw InputError("its formula 5 has the power " + number_label(c[i + 1]) +
+                                     "; -2, -4, ... are wanted");
+                cauchy.resize(std::max(cauchy.size(), static_cast<std::size_t>(term) + 1), 0.0);
+                cauchy[static_cast<std::size_t>(term)] += c[i];
+            }
+            glass = Glass::cauchy(cauchy);
+        } else {
+            throw InputError("its dispersion is " + in_quotes(printable(formula).substr(0, 40)) +
+                             "; a table, formula 2 or formula 5 is wanted");
+        }
+        glass.label = printable(material["name"].text()).substr(0, 100);
+        return glass;
+    }
+
     Glass material_of(const Json& material) {
         const std::string type = material["type"].text();
         if (json_.number_or(material["absorp"], "the absorption", 0) != 0)
@@ -256,6 +301,7 @@ private:
                 return glass_of_pair(json_.number(first(index), "the index"),
                                      json_.number(first(abbe), "the Abbe number"));
             }
+            if (type == "DataMaterial") return data_material(material);
             if (type == "Material") {
                 // The file of the glass lies in the folder of its maker, or of what is no glass.
                 std::string maker = material["reference"].text();
@@ -265,7 +311,11 @@ private:
                     const std::size_t folder = path.find_last_of("/\\", slash - 1);
                     maker = path.substr(folder == path.npos ? 0 : folder + 1,
                                         slash - (folder == path.npos ? 0 : folder + 1));
-                    for (const char* shelf : {"/main/", "/organic/", "/other/", "/3d/"})
+                    if (path.find("/main/") != path.npos) {
+                        const std::string page = path.substr(slash + 1, path.find_last_of('.') - slash - 1);
+                        return glasses_.substance(printable(maker), printable(page), p_.remarks);
+                    }
+                    for (const char* shelf : {"/organic/", "/other/", "/3d/"})
                         if (path.find(shelf) != path.npos) maker = "misc";
                 }
                 return glass_named(material["name"].text(), maker);

@@ -35,6 +35,12 @@ Prescription read_pbrt(std::string_view text, const std::string& file, const Len
         if (remark != line.npos && p.title.empty()) p.title = without_blanks(line.substr(remark + 1));
         const std::vector<LensWord> words = lines.words(line.substr(0, remark));
         if (words.empty()) continue;
+        if (words.size() == 1 && p.surfaces.empty()) {  // ISETCam's files begin with it
+            p.remarks.push_back("the focal length before the rows, " +
+                                number_label(lines.number_of(words[0].text, "the focal length")) +
+                                " mm, is left out: it follows from the surfaces");
+            continue;
+        }
         if (p.surfaces.size() >= kMostFileSurfaces)
             lines.fail("the file has more than " + std::to_string(kMostFileSurfaces) + " surfaces");
         const int number = static_cast<int>(p.surfaces.size()) + 1;

@@ -46,12 +46,7 @@ public:
         p_.title = system["title"].text();
         set_unit(system);
         profiles_ = &model["profile_dict"];
-        const Json& stop = sequence["stop_surface"];
-        std::size_t stop_index = stop.index(0);
-        if (stop.is_null()) {
-            stop_index = 1;
-            p_.remarks.push_back("it names no aperture stop: surface 1 is taken");
-        }
+        const std::size_t stop_index = sequence["stop_surface"].index(0);
         const Json& gap = attributes(gaps[std::size_t{0}])["thi"];
         const bool is_infinite = gap.is_number() && std::isinf(gap.number(0));
         const double object = is_infinite ? kInfinity : json_.number(gap, "the distance of the object");
@@ -268,7 +263,7 @@ private:
         const auto [side, kind] = key_of(a);
         const bool angle = kind == "angle" && side == "object";
         if (!angle && kind.find("height") == kind.npos) {
-            p_.remarks.push_back("its fields are of a kind that is not known");
+            p_.remarks.emplace_back("its fields are of a kind that is not known");
             return;
         }
         p_.field_kind = angle              ? FieldKind::angle_deg

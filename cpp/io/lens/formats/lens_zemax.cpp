@@ -18,7 +18,7 @@ public:
         : file_(std::move(file)), p_(std::move(file_.prescription)), glasses_(glasses) {}
 
     Prescription prescription() {
-        check_image();
+        complete_ends();
         glasses_are_stated_ = find_out_whether_glasses_are_stated();
         for (std::size_t i = 0; i < file_.surfaces.size(); ++i) convert(file_.surfaces[i], i);
         set_object();
@@ -31,6 +31,27 @@ public:
     }
 
 private:
+    /// Exporters of bare lists give surface 0 the glass of the first element, and let the list end at its last face.
+    void complete_ends() {
+        const bool begins_in_glass = !file_.surfaces.front().glass.empty() && !file_.surfaces.front().at_infinity;
+        const ZemaxSurface& end = file_.surfaces.back();
+        const bool ends_in_glass = !file_.surfaces[file_.surfaces.size() - 2].glass.empty() && end.glass.empty();
+        if (begins_in_glass && ends_in_glass) {
+            ZemaxSurface object;
+            object.has_thickness = object.at_infinity = true;
+            file_.surfaces.insert(file_.surfaces.begin(), object);
+            file_.has_faces_alone = true;
+        }
+        if (!file_.has_faces_alone) return check_image();
+        ZemaxSurface image;
+        image.row.number = end.row.number + 1;
+        image.has_thickness = true;
+        file_.surfaces.push_back(image);
+        p_.has_film_distance = false;
+        p_.remarks.push_back(
+            "lists faces alone: the object is taken to be distant, and the film to lie where its image is sharpest");
+    }
+
     /// The image is the last surface. One that has a glass or a thickness is the last of a file that ends too early.
     void check_image() const {
         const ZemaxSurface& image = file_.surfaces.back();
@@ -74,7 +95,8 @@ private:
     template <class Fail, class Foreign>
     void convert_glass(ZemaxSurface& s, const Fail& fail, const Foreign& add_foreign) {
         if (s.glass_kind == 2 && !s.glass.empty() && pick_up_glass(s, fail)) return;
-        s.row.is_mirror = upper_case(s.glass) == "MIRROR";
+        // A medium of index -1 is a mirror by Snell's law.
+        s.row.is_mirror = upper_case(s.glass) == "MIRROR" || (s.glass_kind == 1 && s.n_d == -1);
         if (s.row.is_mirror) return;
         if (s.glass.empty()) {
             // A coordinate break is no surface: the medium goes on behind it.
@@ -149,9 +171,32 @@ private:
         p_.object_distance = object.at_infinity || object.row.thickness >= kLongest ? kInfinity : object.row.thickness;
         if (object.row.curvature != 0 && !object.at_infinity)
             p_.foreign.push_back({"a curved object", object.row.line, 0});
-        if (!object.glass.empty()) p_.foreign.push_back({"an object inside a glass", object.glass_line, 0});
+        if (!object.glass.empty() && object.at_infinity)
+            add_window(object);
+        else if (!object.glass.empty())
+            p_.foreign.push_back({"an object inside a glass", object.glass_line, 0});
         if (object.row.is_stop) throw LensFileError("the object is the aperture stop", p_.file, object.row.line, 0);
         if (!file_.coatings.empty()) p_.remarks.push_back("coatings are left out: " + short_list(file_.coatings));
+    }
+
+    /// Light comes from air into the medium of the object by a plane that touches the first face, as behind the pane of
+    /// an aquarium: a plane has no power, so that focal length and f-number are those in the medium.
+    void add_window(const ZemaxSurface& object) {
+        ZemaxSurface medium = object;
+        const auto fail = [&](const std::string& message, int line = 0) {
+            throw LensFileError(message, p_.file, line, 0);
+        };
+        convert_glass(medium, fail, [](const std::string&) {});
+        PrescriptionSurface window;
+        window.line = object.glass_line;
+        window.material = medium.row.material;
+        const PrescriptionSurface& first = p_.surfaces.front();
+        const double c = first.curvature, r = first.clear_semi_diameter;
+        if (c < 0)
+            window.thickness = -c * r * r / (1 + std::sqrt(std::max(0.0, 1 - (1 + first.conic) * c * c * r * r)));
+        p_.surfaces.insert(p_.surfaces.begin(), window);
+        p_.remarks.push_back("its object lies in a medium, " + window.material.label +
+                             ": a plane window in front of the lens stands between it and the air of scenes");
     }
 
     void set_fields() {
@@ -195,27 +240,59 @@ private:
         };
         for (std::size_t i = 0; i < count; ++i) p_.zoom_names.push_back(std::to_string(i + 1));
         p_.zoom_current = std::min(file_.current, file_.positions) - 1;
-        const int last = static_cast<int>(p_.surfaces.size());
         for (const auto& [surface, values] : file_.zoom) {
-            if (surface > last)
-                throw LensFileError("a configuration changes the thickness of surface " + std::to_string(surface) +
-                                        ", which the lens does not have",
-                                    p_.file);
+            if (surface == file_.surfaces.back().row.number) {
+                p_.remarks.push_back("the thickness behind the image, which configurations change, is left out");
+                continue;
+            }
+            const int row = row_of_number(surface);
             std::vector<double> list = values;
             for (double& value : list) value = file_.unit * value >= kLongest ? kInfinity : file_.unit * value;
             const double otherwise =
-                surface == 0 ? p_.object_distance : p_.surfaces[static_cast<std::size_t>(surface) - 1].thickness;
-            p_.zoom_thicknesses[surface - 1] = filled(list, otherwise);
-            for (const double value : p_.zoom_thicknesses[surface - 1])
-                if (surface > 0 && !std::isfinite(value))
+                row < 0 ? p_.object_distance : p_.surfaces[static_cast<std::size_t>(row)].thickness;
+            p_.zoom_thicknesses[row] = filled(list, otherwise);
+            for (const double value : p_.zoom_thicknesses[row])
+                if (row >= 0 && !std::isfinite(value))
                     throw LensFileError(
                         "a configuration makes the thickness of surface " + std::to_string(surface) + " infinite",
                         p_.file);
         }
+        set_zoom_sizes(filled);
         if (!file_.zoom_apertures.empty()) {
             const bool is_length = p_.aperture_kind == ApertureKind::entrance_pupil_diameter;
             for (double& value : file_.zoom_apertures) value *= is_length ? file_.unit : 1;
             p_.zoom_apertures = filled(file_.zoom_apertures, p_.aperture);
+        }
+    }
+
+    /// The index of a surface's row; -1: the object.
+    int row_of_number(int surface) const {
+        if (surface == 0 && !file_.has_faces_alone) return -1;
+        const auto found =
+            std::ranges::find_if(p_.surfaces, [&](const PrescriptionSurface& s) { return s.number == surface; });
+        if (found == p_.surfaces.end())
+            throw LensFileError(
+                "a configuration changes surface " + std::to_string(surface) + ", which the lens does not have",
+                p_.file);
+        return static_cast<int>(found - p_.surfaces.begin());
+    }
+
+    /// The semi-diameter of the stop is its size where the file states none by another measure. Other surfaces have one
+    /// rim for all configurations, which is the largest.
+    template <class Filled>
+    void set_zoom_sizes(const Filled& filled) {
+        for (const auto& [surface, values] : file_.zoom_sizes) {
+            if (surface == 0 || surface == file_.surfaces.back().row.number) continue;
+            PrescriptionSurface& row = p_.surfaces[static_cast<std::size_t>(row_of_number(surface))];
+            std::vector<double> sizes = filled(values, row.clear_semi_diameter / file_.unit);
+            for (double& size : sizes) size *= file_.unit;
+            if (row.is_stop && p_.aperture_kind == ApertureKind::stop_size) {
+                p_.zoom_apertures = sizes;
+            } else {
+                row.clear_semi_diameter = *std::ranges::max_element(sizes);
+                p_.remarks.push_back("the largest of the semi-diameters that configurations give surface " +
+                                     std::to_string(surface) + " is taken for all of them");
+            }
         }
     }
 

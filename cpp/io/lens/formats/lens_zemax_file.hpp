@@ -35,6 +35,8 @@ bool states_a_glass(const ZemaxSurface& s);
 struct ZemaxFile {
     Prescription prescription;  ///< title, aperture, remarks and what is foreign; the rest is made of what follows
     std::vector<ZemaxSurface> surfaces;  ///< object and image too
+    /// The file lists faces alone: no surface is the object, and none has to be the image.
+    bool has_faces_alone = false;
     double unit = 1;  ///< mm
     std::vector<std::string> catalogues;
     int field_type = 0;
@@ -43,6 +45,7 @@ struct ZemaxFile {
     std::map<int, double> wavelengths;  ///< um, by number
     int primary = 1, positions = 1, current = 1;
     std::map<int, std::vector<double>> zoom;  ///< thicknesses by surface, nan where none is stated
+    std::map<int, std::vector<double>> zoom_sizes;  ///< the same of semi-diameters
     std::vector<double> zoom_apertures;
     std::set<std::string> coatings, unknown;
 };

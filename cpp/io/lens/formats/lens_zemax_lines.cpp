@@ -30,7 +30,7 @@ ZemaxReader::ZemaxReader(std::string_view text, const std::string& file, const L
 ZemaxFile ZemaxReader::read() {
     std::string_view line;
     while (lines_.next(line)) read_line(line);
-    if (out_.surfaces.size() < 3)
+    if (out_.surfaces.size() < (out_.has_faces_alone ? 2 : 3))
         throw LensFileError("has " + std::to_string(out_.surfaces.size()) +
                                 " surfaces (SURF); an object, a lens and an image are wanted",
                             lines_.file());
@@ -100,14 +100,24 @@ void ZemaxReader::read_line(std::string_view line) {
 
 void ZemaxReader::begin_surface(const Words& words) {
     if (words.empty()) lines_.fail("SURF needs the surface's number");
-    const int number = lines_.whole_number_of(words[0].text, "the number of the surface", 0, 1 << 30);
+    // Exporters that put a stop between two numbered faces label it "5AS".
+    const std::string_view digits = words[0].text.substr(0, words[0].text.find_first_of("ASas"));
+    const bool is_between = digits.size() < words[0].text.size() && !out_.surfaces.empty();
+    const int number =
+        lines_.whole_number_of(is_between ? digits : words[0].text, "the number of the surface", 0, 1 << 30);
     if (out_.surfaces.size() >= kMostFileSurfaces)
         lines_.fail("the file has more than " + std::to_string(kMostFileSurfaces) + " surfaces");
-    if (number != static_cast<int>(out_.surfaces.size()))
+    if (number == 1 && out_.surfaces.empty()) {  // and exporters that list faces alone begin with the first of them
+        out_.has_faces_alone = true;
+        out_.surfaces.emplace_back();
+        out_.surfaces.back().has_thickness = out_.surfaces.back().at_infinity = true;
+    }
+    const int expected = out_.surfaces.empty() ? 0 : out_.surfaces.back().row.number + (is_between ? 0 : 1);
+    if (number != expected)
         lines_.fail("surface " + std::to_string(number) + " follows " +
                     (out_.surfaces.empty() ? std::string("nothing; surface 0, the object,")
-                                           : "surface " + std::to_string(out_.surfaces.size() - 1) + "; surface " +
-                                                 std::to_string(out_.surfaces.size())) +
+                                           : "surface " + std::to_string(out_.surfaces.back().row.number) +
+                                                 "; surface " + std::to_string(expected)) +
                     " is wanted");
     out_.surfaces.emplace_back();
     out_.surfaces.back().row.number = number;

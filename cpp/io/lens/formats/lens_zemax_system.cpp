@@ -99,11 +99,11 @@ bool ZemaxReader::read_zoom_line(const std::string& word, std::string_view rest)
     static const std::set<std::string> left_out{"FVCX", "FVCY", "FVDX", "FVDY", "FVAN", "YFIE", "XFIE",
                                                 "FLWT", "WLWT", "FLTP", "MCOM", "LTTL", "HOLD", "RAIM"};
     static const std::set<std::string> others{"CRVT", "CONN", "PRAM", "PAR1", "PAR2", "PAR3", "PAR4", "GLSS",
-                                              "STPS", "SDIA", "CSP1", "IGNR", "IGNM", "WAVE", "PRWV", "TEMP",
-                                              "PRES", "MIND", "MABB", "MDPG", "NPAR", "NPOS", "CATN", "APDX",
-                                              "APDY", "APMN", "APMX", "APTP", "AFOC", "EDVA", "PSCX", "PSCY"};
-    const bool thickness = word == "THIC", aperture = word == "APER";
-    if (!thickness && !aperture) {
+                                              "STPS", "CSP1", "IGNR", "IGNM", "WAVE", "PRWV", "TEMP", "PRES",
+                                              "MIND", "MABB", "MDPG", "NPAR", "NPOS", "CATN", "APDX", "APDY",
+                                              "APMN", "APMX", "APTP", "AFOC", "EDVA", "PSCX", "PSCY"};
+    const bool thickness = word == "THIC", aperture = word == "APER", size = word == "SDIA";
+    if (!thickness && !aperture && !size) {
         if (others.contains(word) && zoom_foreign_.insert(word).second)
             foreign("configurations that change more than thicknesses (" + word + ")");
         else if (left_out.contains(word) && zoom_foreign_.insert(word).second)
@@ -119,11 +119,10 @@ bool ZemaxReader::read_zoom_line(const std::string& word, std::string_view rest)
         values.resize(static_cast<std::size_t>(out_.positions), std::nan(""));
         values[static_cast<std::size_t>(position) - 1] = value;
     };
-    if (aperture) {
+    if (aperture)
         set(out_.zoom_apertures);
-    } else {
-        set(out_.zoom[lines_.whole_number_of(words[0].text, "the surface", 0, 1 << 20)]);
-    }
+    else
+        set((size ? out_.zoom_sizes : out_.zoom)[lines_.whole_number_of(words[0].text, "the surface", 0, 1 << 20)]);
     return true;
 }
 }  // namespace realcam::io

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -126,7 +127,7 @@ private:
     }
 
     std::string glass(const Glass& glass) {
-        if (const auto known = catalogue_name_of(glass)) {
+        if (const auto known = catalogue_name_of(glass); known && is_unique(*known)) {
             std::string maker = known->maker;
             for (char& c : maker) c = static_cast<char>(c - 'a' + 'A');
             makers_.insert(maker);
@@ -135,11 +136,25 @@ private:
         }
         const AbbePair pair = abbe_pair(glass);
         Glass model = glass_of_pair(pair.n_d, pair.v_d);
+        if (const auto shared = catalogue_name_of(glass); shared && told_.insert(glass.label).second)
+            result_.warnings.push_back("that the glass " + in_quotes(glass.label) +
+                                       " is that maker's, as another maker in the file has the name too: it is written "
+                                       "by n_d and V_d");
         if (told_.insert(glass.label).second &&
             std::fabs(model.index(lens_.wavelength_nm) - glass.index(lens_.wavelength_nm)) > 1e-9)
             result_.warnings.push_back("the glass " + in_quotes(glass.label) +
                                        " is written by n_d and V_d, which at other wavelengths is not exact");
         return "___BLANK 1 0 " + exact_number(pair.n_d) + ' ' + exact_number(pair.v_d) + " 0 0 0 0 0 0";
+    }
+
+    /// A file lists the makers of all of its glasses. True if no other of them has another glass of this name.
+    bool is_unique(const CatalogueName& known) const {
+        std::set<std::string> makers;
+        for (const Surface& s : lens_.surfaces)
+            if (const auto other = catalogue_name_of(s.material)) makers.insert(other->maker);
+        return std::ranges::none_of(catalogue_names_like(known.name), [&](const CatalogueName& other) {
+            return other.maker != known.maker && makers.contains(other.maker);
+        });
     }
 
     void write_zoom() {

@@ -149,9 +149,9 @@ TEST_CASE("object and image distances obey Newton's equation") {
         const FirstOrder data = first_order(lens, lens.wavelength_nm);
         const double f = data.effective_focal_length;
         for (const double magnification : {0.01, 0.3, 1.0, 4.0}) {
-            // x x' = -f^2, x and x' from the focal points.
+            // x x' = -n' f^2, x and x' from the focal points.
             const double object = -data.front_focal_distance + std::fabs(f) / magnification;
-            const double image = data.back_focal_distance + std::fabs(f) * magnification;
+            const double image = data.back_focal_distance + data.image_index * std::fabs(f) * magnification;
             // The image distance is a difference of terms that may be a hundred times larger (far front
             // focus).
             const double found = paraxial_image_distance(lens, lens.wavelength_nm, object);
