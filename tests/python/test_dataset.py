@@ -227,3 +227,13 @@ def test_a_picture_that_fails_names_itself(tmp_path: Path) -> None:
 def test_a_folder_without_shards_says_so(tmp_path: Path) -> None:
     with pytest.raises(rc.InputError, match="this has no shards"):
         list(samples(tmp_path))
+
+
+@pytest.mark.parametrize(
+    "words",
+    [{"count": 10**12}, {"size": (10**6, 10)}, {"objects": (1, 10**9)}, {"board": (10**6, 5)}, {"spp": 10**12}],
+    ids=str,
+)
+def test_recipes_that_no_machine_can_make_are_refused(words: dict[str, Any]) -> None:
+    with pytest.raises(rc.InputError, match=rf"^{next(iter(words))} must be \d+ or less$"):
+        Recipe(**words)
