@@ -293,13 +293,13 @@ private:
     }
 
     Assembly read_scene(const shot::ShotRequest& request) {
-        const shot::PictureReaders readers = {[](const std::string& path, std::span<const std::uint8_t> bytes) {
-                                                  return image_io::read_image(path, bytes);
-                                              },
-                                              [](const std::string& path, const std::string& layer,
-                                                 const image_io::WarnOf& warn) {
-                                                  return image_io::read_environment(path, layer, warn);
-                                              }};
+        const shot::PictureReaders readers = {
+            [](const std::string& path, std::span<const std::uint8_t> bytes) {
+                return image_io::read_image(path, bytes);
+            },
+            [](const std::string& path, const std::string& layer, const image_io::WarnOf& warn) {
+                return image_io::read_environment(path, layer, warn);
+            }};
         Assembly scene =
             with_memory_for("while reading " + request.scene, [&] { return shot::scene_of(request, readers); });
         inputs_.end();

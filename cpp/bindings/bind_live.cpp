@@ -2,16 +2,14 @@
 #include <pybind11/stl.h>
 
 #include <memory>
-#include <mutex>
-#include <set>
+#include <optional>
 #include <string>
-#include <vector>
 
 #include "../cuda/cuda_session.hpp"
-#include "../devices/devices.hpp"
 #include "../render/live_view.hpp"
 #include "arrays.hpp"
 #include "bindings.hpp"
+#include "owned_session.hpp"
 #include "picture.hpp"
 
 namespace realcam::bindings {
@@ -24,81 +22,47 @@ using FramePointer = std::shared_ptr<const LiveFrame>;
 
 class PythonLiveView {
 public:
-    PythonLiveView(const Assembly& scene, const std::string& device) {
-        const Unlocked unlocked;
-        view_ = std::make_unique<LiveView>(make_live_session(device, warn_of_device), scene);
-        const std::lock_guard lock(mutex());
-        all().insert(view_.get());
+    PythonLiveView(const Assembly& scene, const std::string& device) : session_(device, &make_live_session) {
+        session_.use([&](const auto& session) { view_.emplace(session, scene); });
     }
-    ~PythonLiveView() {
-        if (has_lost_threads()) {
-            static_cast<void>(view_.release());
-            return;
-        }
-        const std::lock_guard lock(mutex());
-        all().erase(view_.get());
-    }
-    PythonLiveView(const PythonLiveView&) = delete;
-    PythonLiveView& operator=(const PythonLiveView&) = delete;
 
     FramePointer shoot(const Camera& camera, const RenderSettings& settings, const std::string& tone) {
         const ToneCurve curve = tone_curve_from(tone);
         if (settings.noise) throw InputError("spp of a frame must be a whole number");
-        const Unlocked unlocked;
-        return view_->shoot(camera, settings, curve, heed_signals, std::make_shared<WorkUnderWay>());
+        return session_.use([&](const auto&) {
+            return view_->shoot(camera, settings, curve, heed_signals, std::make_shared<WorkUnderWay>());
+        });
     }
 
     /// Of the last frame's camera and settings, but with layers.
-    py::dict image(const Camera& camera, const RenderSettings& settings) const {
-        Image image = [&] {
-            const Unlocked unlocked;
-            return view_->picture(camera, settings, heed_signals);
-        }();
+    py::dict image(const Camera& camera, const RenderSettings& settings) {
+        Image image = session_.use([&](const auto&) { return view_->picture(camera, settings, heed_signals); });
         return picture_from(std::move(image), settings.layers);
     }
 
-    py::tuple picture() const {
-        Session& session = view_->collected();
-        if (auto* const on_gpu = dynamic_cast<DevicePictures*>(&session)) {
-            const DevicePicture picture = [&] {
-                const Unlocked unlocked;
-                return on_gpu->device_picture(heed_signals);
-            }();
-            return py::make_tuple(picture.exposure, picture.depth);
-        }
-        Image image = [&] {
-            const Unlocked unlocked;
-            return session.picture(heed_signals);
-        }();
-        return py::make_tuple(array_from(std::move(image.exposure), {image.height, image.width, 3}),
-                              array_from(std::move(image.depth), {image.height, image.width}));
+    py::tuple picture() {
+        std::optional<DevicePicture> on_gpu;
+        std::optional<Image> image;
+        session_.use([&](const auto&) {
+            Session& session = view_->collected();
+            if (auto* const gpu = dynamic_cast<DevicePictures*>(&session))
+                on_gpu = gpu->device_picture(heed_signals);
+            else
+                image = session.picture(heed_signals);
+        });
+        if (!image) return py::make_tuple(on_gpu->exposure, on_gpu->depth);
+        return py::make_tuple(array_from(std::move(image->exposure), {image->height, image->width, 3}),
+                              array_from(std::move(image->depth), {image->height, image->width}));
     }
 
-    void show(const Assembly& scene) { view_->show(scene); }
-    void cancel() { view_->cancel(); }
-
-    static void cancel_all() {
-        const std::lock_guard lock(mutex());
-        for (LiveView* const view : all()) {
-            try {
-                view->cancel();
-            } catch (const DeviceError&) {
-                // A GPU that is lost has nothing to be stopped.
-            }
-        }
+    void show(const Assembly& scene) {
+        session_.use([&](const auto&) { view_->show(scene); });
     }
+    void cancel() { session_.cancel(Collected::drop); }
 
 private:
-    static std::mutex& mutex() {
-        static auto* const one = new std::mutex;
-        return *one;
-    }
-    static std::set<LiveView*>& all() {
-        static auto* const set = new std::set<LiveView*>;
-        return *set;
-    }
-
-    std::unique_ptr<LiveView> view_;
+    OwnedSession session_;
+    std::optional<LiveView> view_;
 };
 
 /// Without a copy: the array keeps the frame alive, which keeps the memory from being used again.
@@ -118,7 +82,6 @@ py::array_t<std::uint8_t> codes_of(const FramePointer& frame) {
 }  // namespace
 
 void bind_live(py::module_& m) {
-    stop_too_at_exit(&PythonLiveView::cancel_all);
     py::class_<LiveFrame, std::shared_ptr<LiveFrame>>(m, "LiveFrame",
                                                       "A picture of a LiveView, on its way from the device.")
         .def_property_readonly(
@@ -137,10 +100,10 @@ KeyboardInterrupt on Ctrl-C.)")
                 return std::const_pointer_cast<LiveFrame>(live.shoot(camera, settings, tone));
             },
             "camera"_a, "settings"_a, "tone"_a)
-        .def("show", &PythonLiveView::show, "scene"_a, py::call_guard<Unlocked>())
+        .def("show", &PythonLiveView::show, "scene"_a)
         .def("picture", &PythonLiveView::picture)
         .def("image", &PythonLiveView::image, "camera"_a, "settings"_a)
-        .def("cancel", &PythonLiveView::cancel, py::call_guard<Unlocked>());
+        .def("cancel", &PythonLiveView::cancel);
 }
 
 }  // namespace realcam::bindings

@@ -6,7 +6,7 @@
 #include "../io/files/image_metadata.hpp"
 #include "../plan/plan_film.hpp"
 #include "bindings.hpp"
-#include "render_turn.hpp"
+#include "owned_session.hpp"
 #include "short_text.hpp"
 #include "value_methods.hpp"
 
@@ -42,11 +42,10 @@ Planned planned_of(const Plan& plan) {
 
 Planned plan(const Assembly& scene, const Camera& camera, const RenderSettings& settings, const std::string& device,
              bool times) {
-    Session& session = session_for(device);
-    const Unlocked unlocked;
-    const RenderTurn turn;
-    return planned_of(
-        make_plan(session, scene, camera, settings, times, fast_pupil_tracer(), [](double) { return heed_signals(); }));
+    return OwnedSession::shared(device).use([&](const auto& session) {
+        return planned_of(make_plan(*session, scene, camera, settings, times, fast_pupil_tracer(),
+                                    [](double) { return heed_signals(); }));
+    });
 }
 
 /// Model, effects and what was decided.
@@ -54,11 +53,10 @@ std::tuple<std::string, std::vector<std::string>, std::string> plan_of_film(cons
                                                                             const std::vector<Camera>& cameras,
                                                                             const RenderSettings& settings,
                                                                             const std::string& device) {
-    Session& session = session_for(device);
-    const Unlocked unlocked;
-    const RenderTurn turn;
-    const FilmPlan plan =
-        plan_film(session, scene, cameras, settings, fast_pupil_tracer(), [](double) { return heed_signals(); });
+    const FilmPlan plan = OwnedSession::shared(device).use([&](const auto& session) {
+        return plan_film(*session, scene, cameras, settings, fast_pupil_tracer(),
+                         [](double) { return heed_signals(); });
+    });
     return {io::name_of(plan.model), names_of(plan.effects), plan.summary};
 }
 

@@ -3,9 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <memory>
-#include <mutex>
 
 #include "../camera/code_table.hpp"
 #include "../devices/cuda_plugin.hpp"
@@ -16,32 +13,14 @@
 #include "../shot/names.hpp"
 #include "arrays.hpp"
 #include "bindings.hpp"
+#include "owned_session.hpp"
 #include "picture.hpp"
-#include "render_turn.hpp"
 #include "short_text.hpp"
 #include "value_methods.hpp"
 
 namespace realcam::bindings {
 
 using namespace py::literals;
-
-namespace {
-
-/// One for each device name that was asked for, kept for the next picture. Never torn down under running threads.
-std::map<std::string, std::unique_ptr<Session>>& sessions() {
-    static auto* map = new std::map<std::string, std::unique_ptr<Session>>;
-    return *map;
-}
-
-}  // namespace
-
-Session& session_for(const std::string& device) {
-    static std::mutex mutex;
-    const std::lock_guard lock(mutex);
-    std::unique_ptr<Session>& session = sessions()[device];
-    if (!session) session = make_session(device, warn_of_device);
-    return *session;
-}
 
 void warn_of_device(const std::string& text) {
     const py::gil_scoped_acquire acquire;
@@ -87,14 +66,9 @@ namespace {
 
 py::dict render(const Assembly& scene, const Camera& camera, const RenderSettings& settings, const std::string& device,
                 const py::object& progress) {
-    Session& session = session_for(device);
     const Progress report = progress_of(progress);
-    Image image;
-    {
-        const Unlocked unlocked;
-        const RenderTurn turn;
-        image = take_picture(session, scene, camera, settings, report);
-    }
+    Image image = OwnedSession::shared(device).use(
+        [&](const auto& session) { return take_picture(*session, scene, camera, settings, report); });
     return picture_from(std::move(image), settings.layers);
 }
 

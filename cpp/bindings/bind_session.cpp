@@ -1,13 +1,10 @@
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
-#include <memory>
-
-#include "../devices/devices.hpp"
-#include "../render/session.hpp"
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "film_parts.hpp"
+#include "owned_session.hpp"
 #include "picture.hpp"
 
 namespace realcam::bindings {
@@ -19,59 +16,52 @@ namespace {
 /// What realcam.Session has of the core.
 class PythonSession {
 public:
-    PythonSession(const Assembly& scene, const Camera& camera, RenderSettings settings, const std::string& device)
-        : settings_(std::move(settings)) {
-        {
-            const Unlocked unlocked;
-            session_ = make_session(device, warn_of_device);
-        }
-        set(scene, camera, settings_);
+    PythonSession(const Assembly& scene, const Camera& camera, const RenderSettings& settings,
+                  const std::string& device)
+        : session_(device, &make_session) {
+        device_ = session_.use([](const auto& session) { return session->name(); });
+        set(scene, camera, settings);
     }
-    ~PythonSession() {
-        if (has_lost_threads()) static_cast<void>(session_.release());
-    }
-    PythonSession(const PythonSession&) = delete;
-    PythonSession& operator=(const PythonSession&) = delete;
 
     void set(const Assembly& scene, const Camera& camera, const RenderSettings& settings) {
-        {
-            const Unlocked unlocked;
-            session_->set(scene, camera, settings, heed_signals);
-        }
-        scene_ = scene;
-        camera_ = camera;
-        settings_ = settings;
+        session_.use([&](const auto& session) {
+            session->set(scene, camera, settings, heed_signals);
+            const py::gil_scoped_acquire acquire;
+            scene_ = scene;
+            camera_ = camera;
+            settings_ = settings;
+        });
     }
 
-    /// take(progress), of what was set last.
+    /// Returns take(session, progress) for the scene, camera and settings that were set last, in one turn.
     template <class Take>
     auto taken(Take&& take) {
-        const Assembly scene = scene_;
-        const Camera camera = camera_;
-        const Unlocked unlocked;
-        session_->set(scene, camera, settings_, heed_signals);  // anew, after what failed
-        return take([](double) { return heed_signals(); });
+        return session_.use([&](const auto& session) {
+            session->set(scene_, camera_, settings_, heed_signals);  // prepares everything again after an error
+            return take(*session, [](double) { return heed_signals(); });
+        });
     }
 
     void add(int spp) {
-        taken([&](const Progress& progress) { session_->add(spp, progress); });
+        taken([&](Session& session, const Progress& progress) { session.add(spp, progress); });
     }
 
     /// `wanted`: the settings of which the goal of the noise counts.
     py::dict add_until(const RenderSettings& wanted) {
         const NoiseGoal goal = wanted.noise.value_or(NoiseGoal());
         const ReachedNoise reached =
-            taken([&](const Progress& progress) { return session_->add_until(goal, progress); });
+            taken([&](Session& session, const Progress& progress) { return session.add_until(goal, progress); });
         return py::dict("noise"_a = reached.noise, "is_reached"_a = reached.is_reached,
                         "spp_wanted"_a = reached.samples_wanted);
     }
 
     py::dict picture() {
-        const Image image = [&] {
-            const Unlocked unlocked;
-            return session_->picture(heed_signals);
-        }();
-        return picture_from(std::move(image), settings_.layers);
+        LayerSet layers;
+        Image image = session_.use([&](const auto& session) {
+            layers = settings_.layers;
+            return session->picture(heed_signals);
+        });
+        return picture_from(std::move(image), layers);
     }
 
     py::dict expose_region(const RegionNumbers& numbers, std::int64_t first, int count,
@@ -79,53 +69,55 @@ public:
         const FilmRegion region = region_from(numbers);
         std::vector<std::uint32_t> of_pixels;
         if (counts) of_pixels.assign(counts->data(), counts->data() + counts->size());
-        return region_sums_to(taken([&](const Progress& progress) {
-                                  return session_->expose_region(region, first, count, of_pixels, progress);
+        return region_sums_to(taken([&](Session& session, const Progress& progress) {
+                                  return session.expose_region(region, first, count, of_pixels, progress);
                               }),
                               region);
     }
 
     py::array see_region(const RegionNumbers& numbers, std::int64_t first, int count) {
         const FilmRegion region = region_from(numbers);
-        return layer_sums_to(
-            taken([&](const Progress& progress) { return session_->see_region(region, first, count, progress); }),
-            region);
+        return layer_sums_to(taken([&](Session& session, const Progress& progress) {
+                                 return session.see_region(region, first, count, progress);
+                             }),
+                             region);
     }
 
     py::list expose_splats(std::int64_t first, int count) {
-        return splats_to(
-            taken([&](const Progress& progress) { return session_->expose_splats(first, count, progress); }));
+        return splats_to(taken(
+            [&](Session& session, const Progress& progress) { return session.expose_splats(first, count, progress); }));
     }
 
     py::dict picture_of(const FilmArrays& arrays, const StatNumbers& stats) {
         CollectedFilm film = arrays.film();
         film.stats = stats_from(stats);
-        film.stats.device = session_->name();
-        Image image =
-            taken([&](const Progress& progress) { return session_->picture_of(film, [&] { return progress(0.0); }); });
-        return picture_from(std::move(image), settings_.layers);
+        film.stats.device = device_;
+        LayerSet layers;
+        Image image = taken([&](Session& session, const Progress&) {
+            layers = settings_.layers;
+            return session.picture_of(film, heed_signals);
+        });
+        return picture_from(std::move(image), layers);
     }
 
-    std::string device() const { return session_->name(); }
+    const std::string& device() const { return device_; }
 
     py::array_t<std::int64_t> samples() {
-        SampleCounts samples = [&] {
-            const Unlocked unlocked;
-            return session_->sample_counts(heed_signals);
-        }();
+        SampleCounts samples = session_.use([](const auto& session) { return session->sample_counts(heed_signals); });
         return array_from(std::move(samples.counts), {samples.height, samples.width});
     }
 
-    void cancel() { session_->cancel(); }
+    void cancel() { session_.cancel(Collected::keep); }
 
     const Assembly& scene() const { return scene_; }
     const Camera& camera() const { return camera_; }
 
 private:
-    RenderSettings settings_;
-    std::unique_ptr<Session> session_;
-    Assembly scene_;  ///< those that were set last, and make a picture
+    OwnedSession session_;
+    std::string device_;
+    Assembly scene_;  ///< the scene, camera and settings that were set last, which make a picture
     Camera camera_;
+    RenderSettings settings_;
 };
 
 }  // namespace
@@ -147,7 +139,7 @@ void bind_session(py::module_& m) {
                const std::optional<InputArray<LayerSum>>& layers, const py::list& splats,
                const StatNumbers& stats) { return self.picture_of({pixels, layers, splats}, stats); },
             "pixels"_a, "layers"_a, "splats"_a, "stats"_a)
-        .def("cancel", &PythonSession::cancel, py::call_guard<Unlocked>())
+        .def("cancel", &PythonSession::cancel)
         .def_property_readonly("device", &PythonSession::device)
         .def_property_readonly("samples", &PythonSession::samples)
         .def_property_readonly("scene", &PythonSession::scene)

@@ -12,8 +12,8 @@
 #include "../shot/shake_curve.hpp"
 #include "../shot/shot_file.hpp"
 #include "bindings.hpp"
+#include "owned_session.hpp"
 #include "picture_readers.hpp"
-#include "render_turn.hpp"
 #include "short_text.hpp"
 #include "triples.hpp"
 #include "value_methods.hpp"
@@ -135,15 +135,14 @@ Camera camera_at_time(const Camera& camera, const std::vector<CameraKey>& keys, 
 std::vector<double> followed_isos(const Assembly& scene, const Camera& camera, const std::vector<CameraKey>& keys,
                                   const RenderSettings& settings, const std::vector<int>& numbers,
                                   double frames_per_second, double smoothing_s, const std::string& device) {
-    Session& session = session_for(device);
     const py::none no_callback;
     const Progress report = progress_of(no_callback);
-    const Unlocked unlocked;
-    const RenderTurn turn;
-    shot::FollowedIso followed(session, scene, camera, keys, settings, frames_per_second, smoothing_s);
-    std::vector<double> isos;
-    for (const int number : numbers) isos.push_back(followed.at(number, report));
-    return isos;
+    return OwnedSession::shared(device).use([&](const auto& session) {
+        shot::FollowedIso followed(*session, scene, camera, keys, settings, frames_per_second, smoothing_s);
+        std::vector<double> isos;
+        for (const int number : numbers) isos.push_back(followed.at(number, report));
+        return isos;
+    });
 }
 
 void bind_key(py::module_& m) {
@@ -235,11 +234,8 @@ py::dict read_shot(const py::object& path, const std::string& device, const py::
         if (PyErr_WarnEx(PyExc_UserWarning, note.c_str(), 1) < 0) throw py::error_already_set();
     shot::Shot shot = shot::set_up(request, std::move(camera), std::move(scene));
     if (request.meters_exposure_time()) {
-        Session& session = session_for(device);
         const Progress report = progress_of(progress);
-        const Unlocked unlocked;
-        const RenderTurn turn;
-        meter(shot, request, session, report);
+        OwnedSession::shared(device).use([&](const auto& session) { meter(shot, request, *session, report); });
     }
     return py::dict("scene"_a = shot.scene, "camera"_a = shot.camera, "settings"_a = request.settings,
                     "tone"_a = request.tone == ToneCurve::film ? "film" : "linear",

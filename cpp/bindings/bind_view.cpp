@@ -9,7 +9,7 @@
 #include "../render/default_view.hpp"
 #include "../render/metering.hpp"
 #include "bindings.hpp"
-#include "render_turn.hpp"
+#include "owned_session.hpp"
 #include "triples.hpp"
 
 namespace realcam::bindings {
@@ -31,12 +31,10 @@ Camera framed(Camera camera, const Assembly& scene, const std::optional<Triple>&
 
 Camera metered(Camera camera, const Assembly& scene, const std::string& device, int max_bounces,
                const py::object& progress) {
-    Session& session = session_for(device);
     const Progress report = progress_of(progress);
-    const Unlocked unlocked;
-    const RenderTurn turn;
-    camera.exposure_time_s =
-        metered_exposure_time(session, scene, camera, {.max_bounces = max_bounces, .effects = {}}, report);
+    camera.exposure_time_s = OwnedSession::shared(device).use([&](const auto& session) {
+        return metered_exposure_time(*session, scene, camera, {.max_bounces = max_bounces, .effects = {}}, report);
+    });
     return camera;
 }
 

@@ -15,10 +15,6 @@
 #include "../scene/assembly.hpp"
 #include "unlocked.hpp"
 
-namespace realcam {
-class Session;
-}
-
 namespace realcam::bindings {
 
 namespace py = pybind11;
@@ -68,9 +64,6 @@ void bind_command(py::module_& m);
 
 /// What all functions and classes of the module have in common; the last of all.
 void finish_module(py::module_& m);
-
-/// The session on the device of that name. One for the process, so that it keeps the last scene. Throws DeviceError.
-Session& session_for(const std::string& device);
 
 /// A DeviceNotice: a UserWarning on the line of the user's call. Called with or without the interpreter's lock.
 void warn_of_device(const std::string& text);

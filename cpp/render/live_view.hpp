@@ -10,7 +10,7 @@ namespace REALCAM_NAMESPACE {
 /// what those of Session throw.
 class LiveView {
 public:
-    LiveView(std::unique_ptr<Session> session, Assembly scene) : session_(std::move(session)) {
+    LiveView(std::shared_ptr<Session> session, Assembly scene) : session_(std::move(session)) {
         show(std::move(scene));
     }
 
@@ -32,7 +32,7 @@ public:
     void cancel() { session_->cancel(Collected::drop); }
 
 private:
-    std::unique_ptr<Session> session_;
+    std::shared_ptr<Session> session_;
     Assembly scene_;
     bool has_frame_ = false;  ///< of the scene
 };

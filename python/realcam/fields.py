@@ -14,6 +14,7 @@ from .roots import root_between
 
 FieldPlace = float | tuple[float, float]  #: an angle in degrees, or a film point (x, y) in mm from the film's middle
 _LARGEST_STEP_DEG = 5.0
+_STEPS_INWARDS = 160  # of 5%: to 0.03% of the film
 _PROBES = np.column_stack([np.zeros(21), np.linspace(-1, 1, 21)])  # rays of the meridional plane, over the stop
 
 
@@ -70,7 +71,7 @@ def fields_along(lens: Lens, shares: Sequence[float], axis: int) -> tuple[Field,
     fields = []
     for share in shares:
         height = share * 0.5 * lens.film_mm[axis]
-        for _ in range(20):  # the light may end before the film's edge
+        for _ in range(_STEPS_INWARDS):  # the light may end before the film's edge
             place = (height, 0.0) if axis == 0 else (0.0, height)
             try:
                 rays = lens.aim(probes, film_mm=place)
@@ -84,8 +85,11 @@ def fields_along(lens: Lens, shares: Sequence[float], axis: int) -> tuple[Field,
                 fields.append(Field(round(angle, 9) + 0.0, height, share))  # an axis of -1e-23 is one of 0
                 break
             height *= 0.95
-    if not fields:
-        raise InputError(f'no light passes lens "{lens.name}"')
+        else:
+            raise InputError(
+                f'no light of lens "{lens.name}" reaches the film between its middle and {share:.3g} of its '
+                f"half side along {'xy'[axis]}"
+            )
     return tuple(fields)
 
 

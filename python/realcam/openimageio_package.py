@@ -8,6 +8,7 @@ from __future__ import annotations
 import tempfile
 import threading
 from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -61,12 +62,16 @@ def _opened(format: str, name: str) -> Any:
     return opened
 
 
+def _channel_name(spec: Any, channel: int) -> str:
+    return str(spec.channel_name(channel))
+
+
 class Decoder:
     """A picture file whose headers are read. Raises ValueError, with what OpenImageIO says, where it is none."""
 
     def __init__(self, format: str, name: str) -> None:
         self._input = _opened(format, name)
-        self._specs = []
+        self._specs: list[Any] = []
         most = _MOST_PARTS if format == "openexr" else 1  # WebP cannot go back
         while len(self._specs) < most and self._input.seek_subimage(len(self._specs), 0):
             self._specs.append(self._input.spec())
@@ -87,7 +92,7 @@ class Decoder:
             **{name: getattr(spec, name) for name in (*names, "deep")},
             "part_name": _text(lambda: spec.get_string_attribute("oiio:subimagename")),
             "channels": [
-                (_text(lambda c=c: str(spec.channel_name(c))), spec.channelformat(c).basetype == oiio.UINT32)
+                (_text(partial(_channel_name, spec, c)), spec.channelformat(c).basetype == oiio.UINT32)
                 for c in range(spec.nchannels)
             ],
             "bytes_per_value": spec.format.size(),

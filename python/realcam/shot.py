@@ -101,7 +101,13 @@ class Shot:
         with the shake of its exposure. Raises InputError where the lens cannot be so."""
         return _core._camera_at(self.camera, self.keys, self.shake, time_s)
 
-    def render(self, *, device: str = "auto", threads: int = 0, progress: bool | ProgressCallback = False) -> Image:
-        """Takes the photograph: realcam.render with the shot's own settings, when its shutter opens."""
+    def render(
+        self, *, device: str = "auto", threads: int | None = None, progress: bool | ProgressCallback = False
+    ) -> Image:
+        """Takes the photograph: realcam.render with the shot's own settings, when its shutter opens.
+
+        threads: None is settings.threads.
+        """
         camera = self.camera if self.shake is None else self.camera_at(self.camera.shutter_opens_s)
-        return render(self.scene, camera, self.settings, device=device, threads=threads, progress=progress)
+        settings = self.settings if threads is None else self.settings.with_(threads=threads)
+        return render(self.scene, camera, settings, device=device, progress=progress)

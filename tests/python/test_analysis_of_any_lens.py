@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import realcam as rc
 from realcam import analysis
+from realcam.fields import fields_along
 
 from .test_first_order_of_any_lens import anamorphic
 
@@ -121,3 +122,13 @@ def test_fields_that_are_none() -> None:
     with pytest.raises(rc.InputError, match='unknown quantity "sharpness"'):
         analysis.field_map(LENS, "sharpness")
     assert LENS.film_pupil((0, 500)).irradiance == 0
+
+
+def test_no_field_is_lost_beyond_a_small_image_circle() -> None:
+    """The light ends at the same film point, however much larger the film is."""
+    lens = rc.Lens.load("tessar-50mm").with_film(80.0, 80.0)
+    large = rc.Lens.load("tessar-50mm").with_film(400.0, 400.0)
+    for axis in (0, 1):
+        assert [field.share for field in fields_along(large, (-1, 0, 1), axis)] == [-1, 0, 1]
+        last = [fields_along(one, (1,), axis)[0].film_height_mm for one in (lens, large)]
+        assert last[1] == pytest.approx(last[0], rel=0.06)  # steps of 5%

@@ -264,3 +264,13 @@ def test_files_of_other_programs_stay(tmp_path: Path, name: str, content: bytes 
         folder.write_shard(0)
     assert "\n" not in str(error.value)
     assert file.read_bytes() == before
+
+
+@pytest.mark.parametrize(
+    "words",
+    [{"count": 10**12}, {"size": (10**6, 10)}, {"objects": (1, 10**9)}, {"board": (10**6, 5)}, {"spp": 10**12}],
+    ids=str,
+)
+def test_recipes_that_no_machine_can_make_are_refused(words: dict[str, Any]) -> None:
+    with pytest.raises(rc.InputError, match=rf"^{next(iter(words))} must be \d+ or less$"):
+        Recipe(**words)

@@ -9,6 +9,8 @@ import numpy as np
 import pytest
 import realcam as rc
 
+from .scenes import quad, scene_of
+
 pytestmark = pytest.mark.picture_files
 ROOT = Path(__file__).resolve().parents[2]
 QUAD = "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nf 1 2 3 4\n"
@@ -319,3 +321,12 @@ def test_what_is_no_shot_file(tmp_path: Path) -> None:
     (tmp_path / "large.toml").write_bytes(b"#" * 2**21)
     with pytest.raises(rc.InputError, match="too large"):
         rc.Shot.load(tmp_path / "large.toml")
+
+
+def test_a_shot_is_rendered_with_all_its_settings() -> None:
+    scene = scene_of(quad((0, 0, -3), 3, diffuse=0.6)).with_environment(1.0)
+    view = rc.Camera(rc.Lens.load("tessar-50mm"), film=rc.Film(36, 24, (6, 4)), exposure_time_s=1)
+    settings = rc.RenderSettings(effects=(), spp=1, threads=1, seed=3)
+    shot = rc.Shot(scene, view, settings)
+    assert shot.render(device="cpu").settings == settings
+    assert shot.render(device="cpu", threads=2).settings == settings.with_(threads=2)

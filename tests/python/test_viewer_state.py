@@ -5,6 +5,8 @@ from __future__ import annotations
 import json
 import math
 from dataclasses import replace
+from types import SimpleNamespace
+from typing import cast
 
 import pytest
 import realcam as rc
@@ -12,6 +14,7 @@ from realcam.viewer.bench_state import restored, state_of
 from realcam.viewer.camera_controls import CameraControls
 from realcam.viewer.effect_switches import Switches
 from realcam.viewer.pose import Pose
+from realcam.viewer.ring_scales import zoom_ring
 
 CAMERA = rc.Camera(rc.Lens.load("tessar-50mm").focused(2.0), film=rc.Film(36, 24, (90, 60)))
 FRESH = CameraControls.of(CAMERA)
@@ -97,3 +100,21 @@ def test_a_model_without_surfaces_has_none_of_their_effects() -> None:
         assert of_model.named(None) == ("diffraction", "-motion_blur")
         assert not {"dispersion", "ghosts=1e-8", "auto"} & set(of_model.as_words())
     assert switches.named(None) == ("dispersion", "ghosts=1e-8", "diffraction", "-motion_blur")
+
+
+def test_a_film_of_any_resolution_comes_back() -> None:
+    film = rc.Film(36, 24, (6000, 4000))
+    controls = CameraControls.of(rc.Camera(rc.Lens.load("tessar-50mm"), film=film))
+    state = json.loads(json.dumps(state_of(controls, {})))
+    assert restored(controls, state).film == film
+    for resolution in ((32769, 10), (0, 10), (1e300, 10), (10.5, 10)):
+        with pytest.raises(rc.InputError):
+            restored(controls, {**state, "film": [36, 24, *resolution]})
+
+
+def test_a_zoom_ring_of_one_focal_length_is_none() -> None:
+    zoom = SimpleNamespace(zoom_focal_lengths_mm=[50.0, 50.0])
+    assert zoom_ring(cast(rc.Lens, zoom)) is None
+    three = zoom_ring(cast(rc.Lens, SimpleNamespace(zoom_focal_lengths_mm=[50.0, 50.0, 100.0])))
+    assert three is not None
+    assert three.values[0] == 50.0

@@ -82,7 +82,7 @@ def make(
 
     check_is_new(output)
     size, numbers = _tile(tile), None if frames is None else options.frame_numbers(frames)
-    scripts = [
+    scripts: list[tuple[Path | None, str, Callable[[Path, int], str]]] = [
         (sbatch, "--sbatch", functools.partial(array_script, "slurm")),
         (qsub, "--qsub", functools.partial(array_script, "pbs")),
         (openjd, "--openjd", openjd_template),

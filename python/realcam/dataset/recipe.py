@@ -10,10 +10,14 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from .._core import InputError, Sensor, _did_you_mean, _read_toml
 
 MOVES_FOR_S = 1.0  # what moves in a scene; no exposure and no next picture comes later
 LABELS = ("depth", "mask", "motion", "flow")
+# Numbers of pictures have six digits; beyond the other limits a picture takes hours.
+_MOST = {"count": 10**6, "size": 32768, "objects": 1000, "board": 1000, "spp": 1 << 24, "shard_size": 10**6}
 
 
 @dataclass(frozen=True)
@@ -56,6 +60,9 @@ class Recipe:
         for name in ("count", "spp", "shard_size", "square_m", "next_after_s"):
             if not getattr(self, name) > 0:
                 raise InputError(f"{name} must be above 0")
+        for name, most in _MOST.items():
+            if max(np.atleast_1d(getattr(self, name)), default=0) > most:
+                raise InputError(f"{name} must be {most} or less")
         if min(self.size) < 1 or min(self.objects) < 1 or self.seed < 0 or self.readout_time_s < 0:
             raise InputError("size and objects must be 1 or more, seed and readout_time_s 0 or more")
         for name in ("f_stops", "objects", "speed_m_s", "camera_speed_m_s", "camera_turn_deg_s", "iso"):

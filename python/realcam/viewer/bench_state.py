@@ -11,8 +11,6 @@ from .camera_controls import CameraControls
 from .lens_reading import lens_from
 from .pose import Pose
 
-_MOST_PIXELS = 4096  # each way
-
 
 def state_of(controls: CameraControls, switches: dict[str, str]) -> dict[str, Any]:
     """As JSON can say it. The lens is the text of its file."""
@@ -40,8 +38,8 @@ def restored(before: CameraControls, state: dict[str, Any]) -> CameraControls:
     name = "".join(c for c in _text(state, "name") if c.isalnum() or c in "-_. ")[:60] or "lens"
     lens, _ = lens_from(f"{name}.toml", _text(state, "lens").encode(errors="replace"))
     width_mm, height_mm, columns, rows = _numbers(state, "film", 4)
-    if not (1 <= columns <= _MOST_PIXELS and 1 <= rows <= _MOST_PIXELS):
-        raise InputError("the state that the page has kept has no film of so many pixels")
+    if not (columns.is_integer() and rows.is_integer()):
+        raise InputError("the state that the page has kept has a film of no whole number of pixels")
     right_mm, up_mm = _numbers(state, "film_shift_mm", 2) if "film_shift_mm" in state else (0.0, 0.0)
     x, y, z, u, v, w, *up = _numbers(state, "pose", 9)
     controls = replace(

@@ -79,7 +79,9 @@ def zoom_ring(lens: Lens) -> Ring | None:
     None: the lens has no focal lengths between positions (see Lens.zoomed).
     """
     known = lens.zoom_focal_lengths_mm
-    if len(known) < 2 or known not in (sorted(known), sorted(known, reverse=True)) or not min(known) > 0:
+    if len(known) < 2 or known not in (sorted(known), sorted(known, reverse=True)):
+        return None
+    if not 0 < min(known) < max(known):
         return None
     ratio = (max(known) / min(known)) ** (1 / _ZOOM_STEPS)
     values = [min(known) * ratio**step for step in range(_ZOOM_STEPS + 1)]
