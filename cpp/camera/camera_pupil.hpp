@@ -36,6 +36,17 @@ REALCAM_INLINE Vec2f landing_on_film(const CameraView& camera, Vec3f origin, Vec
     return crossing_at(camera.film_distance, origin, direction);
 }
 
+/// Irradiance of a pixel for unit flux that arrives at a film point, 1/mm^2. A pixel's irradiance is the mean over x
+/// and y, in which film samples are uniform, of the irradiance on the film's surface. On a slope, the surface is larger
+/// than the pixel.
+template <LensKind lens_kind>
+REALCAM_INLINE float irradiance_of_flux(const CameraView& camera, Vec2f film) {
+    const float pixel_area = 4.0f * camera.film_half_width * camera.film_half_height /
+                             (static_cast<float>(camera.width) * static_cast<float>(camera.height));
+    if constexpr (lens_kind == LensKind::any) return film_surface(camera).cosine(film) / pixel_area;
+    return 1.0f / pixel_area;
+}
+
 /// Density of such a direction, per unit of area of direction cosines.
 REALCAM_INLINE float camera_pupil_pdf(const CameraView& camera, Vec2f film, Vec3f direction) {
     if (camera.pupil_grid.nodes) return pupil_pdf(camera.pupil_grid, film.x, film.y, direction.x, direction.y);

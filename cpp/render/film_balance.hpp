@@ -41,7 +41,9 @@ struct PixelNeighbourhood {
     double pixels = 0;
     double share = 0, share_squared = 0;  ///< of a pixel's samples, those that pass
     double chance = 0;  ///< variance of that share, over that of a single sample
-    double excess[3] = {0, 0, 0}, samples = 0;
+    double excess[3] = {0, 0, 0};  ///< of a sample, by channel
+    /// Irradiance of a channel, and the sums of excess and of its square that are weighted with it.
+    double light[3] = {0, 0, 0}, lit_excess[3] = {0, 0, 0}, lit_square[3] = {0, 0, 0};
 
     /// How far it reaches from a row or column, one of so many. As far to one side as to the other, so that what
     /// changes evenly over the film has its value in the middle as the mean.
@@ -75,16 +77,25 @@ struct PixelNeighbourhood {
         share_squared += passing * passing;
         chance += std::min(1.0, kEvenSamples / n) / n;
         if (!has_wavelengths) return;
-        for (int c = 0; c < 3; ++c) excess[c] += pixel.besides[c];
-        samples += n;
+        for (int c = 0; c < 3; ++c) {
+            const double e = excess_of(pixel, c), lit = pixel.irradiance[c] / n;
+            excess[c] += e;
+            light[c] += lit;
+            lit_excess[c] += lit * e;
+            lit_square[c] += lit * e * e;
+        }
     }
     REALCAM_HD PixelNeighbourhood& operator+=(const PixelNeighbourhood& other) {
         pixels += other.pixels;
         share += other.share;
         share_squared += other.share_squared;
         chance += other.chance;
-        for (int c = 0; c < 3; ++c) excess[c] += other.excess[c];
-        samples += other.samples;
+        for (int c = 0; c < 3; ++c) {
+            excess[c] += other.excess[c];
+            light[c] += other.light[c];
+            lit_excess[c] += other.lit_excess[c];
+            lit_square[c] += other.lit_square[c];
+        }
         return *this;
     }
     /// The mean share, and by how much it varies between the pixels.
@@ -92,7 +103,24 @@ struct PixelNeighbourhood {
     REALCAM_HD double share_variance() const { return share_squared / pixels - mean_share() * mean_share(); }
     REALCAM_HD double mean_chance() const { return mean_share() * (1 - mean_share()) * chance / pixels; }
 
-    REALCAM_HD double mean_excess(int channel) const { return samples > 0 ? excess[channel] / samples : 0; }
+    /// Excess of a sample in a pixel. Few samples are by chance so much too coloured that less is taken out of them.
+    REALCAM_HD static double excess_of(const PixelSum& pixel, int channel) {
+        constexpr double kMost = 0.5;
+        return std::clamp(pixel.besides[channel] / static_cast<double>(pixel.samples), -kMost, kMost);
+    }
+    REALCAM_HD double mean_excess(int channel) const { return excess[channel] / pixels; }
+    /// Mean of d (1 - d), d being the excess over the mean, weighted with the light of a channel, of which some pixels
+    /// have less than 0.
+    REALCAM_HD double lit_chance(int channel) const {
+        const double mean = mean_excess(channel), e = lit_excess[channel] / light[channel],
+                     square = lit_square[channel] / light[channel];
+        return std::clamp(e - mean - (square - 2 * mean * e + mean * mean), -1.0, 1.0);
+    }
+    /// True if a channel has enough of the light that its weights are positive and their sum is not chance.
+    REALCAM_HD bool is_lit(int channel) const {
+        constexpr double kLeastShare = 0.2;
+        return light[channel] > kLeastShare * std::max({light[0], light[1], light[2]}) && light[channel] > 0;
+    }
 };
 
 /// By what a pixel's light is multiplied, so that it is that of as many passing samples as its neighbours have. The
@@ -113,14 +141,16 @@ REALCAM_HD inline double pass_balance(const PixelSum& pixel, const PixelNeighbou
 /// By what a pixel's light is multiplied in a channel, so that it counts as much there as its neighbours do: a control
 /// variate, whose factor is the light itself (Owen, Monte Carlo theory, methods and examples, 2013, section 8.9).
 ///
-/// With d, the excess by chance, the light of an evenly white scene is 1 + d. 1 / (1 + d) would be too small in the
-/// mean, by as much as d varies, where not all of d is taken out. 1 - s d (1 - d) is right to the second order for any
-/// share s. Few samples are by chance so much too coloured that less is taken out of them.
+/// With d, the excess by chance, the light of an evenly white scene is 1 + d. 1 - s d (1 - d) is near 1 / (1 + d) for
+/// any share s. Light and d come from the same samples, so that their product has a mean of its own, which depends on
+/// the light's colour. The mean of the pixels around, weighted with their light, is that mean. With it taken out, the
+/// sum over even light stays, whatever its colour and the number of samples are.
 REALCAM_HD inline double wavelength_balance(const PixelSum& pixel, int channel, const PixelNeighbourhood& around) {
-    constexpr double kFew = 1, kMost = 0.5;
+    constexpr double kFew = 1;
+    if (!around.is_lit(channel)) return 1;
     const double n = static_cast<double>(pixel.samples);
-    const double d = std::clamp(pixel.besides[channel] / n - around.mean_excess(channel), -kMost, kMost);
-    return 1 - n / (n + kFew) * d * (1 - d);
+    const double d = PixelNeighbourhood::excess_of(pixel, channel) - around.mean_excess(channel);
+    return 1 - n / (n + kFew) * (d * (1 - d) - around.lit_chance(channel));
 }
 
 }  // namespace REALCAM_NAMESPACE

@@ -10,11 +10,23 @@
 namespace realcam {
 namespace {
 
-/// Of the pupil's rays from one film point, spread over the distance of a lamp: the share that meet it. Where more do,
-/// samples of pixels have less noise than samples from the lamp would.
+/// Largest share of a pixel's samples that hit a lamp which is traced. If more hit it, samples of pixels have less
+/// noise than samples from the lamp would.
 constexpr double kLargestShare = 0.8;
-/// Size of a group over the circle that one film point sees at its distance.
-constexpr double kLargestSize = 1.0;
+/// Share of the band between neighbouring groups that emits, from which they are one surface in focus. A pixel that is
+/// partly beside one group sees the next.
+constexpr double kSurfaceShare = 0.25;
+
+/// Region that the samples of one pixel see at a distance: the blur's disc, swept over the pixel. m.
+struct Footprint {
+    double blur;   ///< radius of the disc
+    double pixel;  ///< side of a square of the pixel's area
+
+    /// Area of the sum of a disc and a square.
+    double area() const { return std::numbers::pi * blur * blur + 4 * blur * pixel + pixel * pixel; }
+    /// Largest size of a group. The diagonal of a bounding box is up to 1.73 times as long as a round lamp is wide.
+    double size() const { return 2 * (blur + pixel); }
+};
 
 class Grouping {
 public:
@@ -22,17 +34,23 @@ public:
         : scene_(scene), camera_(camera), front_(front_vertex(camera, camera.front_vertex_m)) {}
 
     std::vector<LightGroup> all() && {
-        if (scene_.light_node_count > 0) look_at(0);
+        if (scene_.light_node_count > 0) look_at(0, -1);
         for (std::int32_t i = 0; i < scene_.sun_count; ++i) groups_.push_back({TracedLightKind::sun, {i}});
         return std::move(groups_);
     }
 
 private:
-    /// Radius of what a point in the middle of the film sees at the distance of a place, m.
-    double blur_m(Vec3f place) const {
-        const double distance = static_cast<double>(length(place - front_)), mm = 1000 * distance;
-        return 1e-3 *
-               std::fabs(static_cast<double>(camera_.circle.rim) + mm * static_cast<double>(camera_.circle.rim_slope));
+    /// Footprint of a pixel in the middle of the film, at the distance of a point.
+    Footprint footprint(Vec3f point) const {
+        const float mm = 1000 * length(point - front_);
+        const auto at_distance = [&](float value, float slope) {
+            return 1e-3 * std::fabs(static_cast<double>(value) + static_cast<double>(mm) * static_cast<double>(slope));
+        };
+        const CircleOfConfusion& circle = camera_.circle;
+        const double pixel_mm2 = 4 * static_cast<double>(camera_.film_half_width) *
+                                 static_cast<double>(camera_.film_half_height) / camera_.width / camera_.height;
+        return {at_distance(circle.rim, circle.rim_slope),
+                std::sqrt(pixel_mm2) * at_distance(circle.middle, circle.middle_slope)};
     }
 
     /// Whether light leaves the triangle towards some place of the lens's front.
@@ -83,23 +101,17 @@ private:
         return is_one ? box.diagonal() : swept;
     }
 
-    void look_at(std::int32_t at) {
+    void look_at(std::int32_t at, std::int32_t parent) {
         const LightNode& node = scene_.light_nodes[at];
-        const double blur = blur_m(node.middle);
-        const bool is_small = size_m(at) < 2 * kLargestSize * blur;
-        if (!is_small && node.second_child > 0) {
-            look_at(at + 1);
-            look_at(node.second_child);
+        const Footprint seen = footprint(node.middle);
+        const double size = size_m(at);
+        if (size >= seen.size() && node.second_child > 0) {
+            look_at(at + 1, at);
+            look_at(node.second_child, at);
             return;
         }
         LightGroup group{TracedLightKind::triangles, {}};
         double area = 0;  // as the lens sees it, m^2
-        collect(at, group, area);
-        if (is_small && area < kLargestShare * std::numbers::pi * blur * blur && !group.lights.empty())
-            groups_.push_back(std::move(group));
-    }
-
-    void collect(std::int32_t at, LightGroup& group, double& area) {
         for_lights(at, [&](std::int32_t light) {
             if (light < scene_.point_count) {
                 groups_.push_back({TracedLightKind::point, {light}});
@@ -112,6 +124,22 @@ private:
             area += static_cast<double>(triangle.area *
                                         (triangle.is_two_sided ? std::fabs(cosine) : std::max(cosine, 0.0f)));
         });
+        // A lamp that is longer than the footprint lies in several footprints, as the tube of a neon sign does.
+        const double share = area / (seen.area() * std::max(1.0, size / seen.size()));
+        if (share < kLargestShare && !group.lights.empty() && !(parent >= 0 && is_surface(parent, seen)))
+            groups_.push_back(std::move(group));
+    }
+
+    /// True if the emitters of a node larger than a footprint are parts of one surface in focus.
+    bool is_surface(std::int32_t at, const Footprint& seen) const {
+        if (seen.blur > seen.pixel) return false;
+        double area = 0;
+        for_lights(at, [&](std::int32_t light) {
+            if (light < scene_.point_count) return;
+            const AreaLight& triangle = scene_.areas[light - scene_.point_count];
+            if (shines(triangle)) area += static_cast<double>(triangle.area);
+        });
+        return area > kSurfaceShare * std::numbers::pi / 4 * size_m(at) * seen.size();
     }
 
     const SceneView& scene_;

@@ -13,8 +13,9 @@ struct LightGroup {
     std::vector<std::int32_t> lights;  ///< numbers among those of their kind
 };
 
-/// All points and suns, and those emitters that are so small, or so far out of focus, that a ray from the film meets
-/// them seldom. Emitters near each other, as those of a lamp, are together.
+/// All points and suns, and those emitters that fill little of the region which the samples of a pixel see at their
+/// distance, because they are out of focus or smaller than the pixel. Emitters near each other, as those of a lamp, are
+/// together.
 std::vector<LightGroup> light_groups(const SceneView& scene, const CameraView& camera);
 
 }  // namespace REALCAM_NAMESPACE

@@ -72,15 +72,9 @@ struct GhostSamples {
     Lanes<float, N> density;  ///< of the place where it enters, per mm^2
     Lanes<float, N> light_density;  ///< of its place on the lights, per steradian; kDelta:
                                     ///< no ray meets it
-    ColorLanes<N> color;  ///< irradiance that its pixel would have if all samples were like it
+    ColorLanes<N> color;  ///< flux, then irradiance that its pixel would have if all samples were like it
     SceneRays<N> shadow;
 };
-
-/// mm^2.
-REALCAM_INLINE float pixel_area(const CameraView& camera) {
-    return 4.0f * camera.film_half_width * camera.film_half_height /
-           (static_cast<float>(camera.width) * static_cast<float>(camera.height));
-}
 
 /// Sets the ray from a place to the light that a sample has found there.
 template <int N>
@@ -170,7 +164,7 @@ REALCAM_INLINE void choose_entries(const GhostView& ghosts, const GhostBlock& bl
     }
 }
 
-/// Sends the light from where it really comes to that place. `scale`: of the irradiance there, mm^2.
+/// Sends the light from where it really comes to that place. `scale`: of the flux.
 template <SceneKind scene_kind, int N>
 REALCAM_INLINE void send_light(const SceneView& view, const CameraView& camera, float scale, GhostSamples<N>& samples) {
     LensRays<float, N>& rays = samples.rays;
@@ -227,6 +221,7 @@ REALCAM_INLINE void reach_film(const CameraView& camera, const GhostView& ghosts
         pixel[i] = -1;
         if (samples.rays.status[i] != 0) continue;
         Vec2f film = landing_on_film<lens_kind>(camera, samples.rays.origin[i], samples.rays.direction[i]);
+        const float irradiance = irradiance_of_flux<lens_kind>(camera, film);
         if constexpr (has_wavelengths) {
             if (ghosts.light != GhostLight::of_lights && camera.effects.diffraction) {
                 const std::uint32_t sample = first + static_cast<std::uint32_t>(i);
@@ -236,7 +231,7 @@ REALCAM_INLINE void reach_film(const CameraView& camera, const GhostView& ghosts
         }
         pixel[i] = pixel_at(camera, film.x, film.y);
         if (pixel[i] < 0) continue;
-        Color c = passed.of_unpolarised(i) * samples.color[i];
+        Color c = (irradiance * passed.of_unpolarised(i)) * samples.color[i];
         if constexpr (has_wavelengths) c = film_color(camera.dispersion, samples.place[i], c);
         if constexpr (scene_kind == SceneKind::any) {
             c = exposure_weight(camera, pixel[i] / camera.width, samples.time[i]) * c;
@@ -276,7 +271,7 @@ REALCAM_HD inline void splat_ghosts(const SceneView& view, const CameraView& cam
     }
     choose_lights<scene_kind>(view, camera, stream, first_sample, samples);
     choose_entries<lens_kind>(ghosts, block, first_sample, samples);
-    send_light<scene_kind>(view, camera, 1.0f / (pixel_area(camera) * block.way.probability), samples);
+    send_light<scene_kind>(view, camera, 1.0f / block.way.probability, samples);
     PassedPower<N> passed;
     pass_ghost_way<lens_kind, has_wavelengths>(ghosts, block.way, samples.rays, samples.variable, passed);
     Lanes<std::int32_t, N> pixel, hidden;

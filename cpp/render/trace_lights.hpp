@@ -53,8 +53,7 @@ REALCAM_INLINE TracedPlace place_on(const SceneView& scene, const TracedLightsVi
 /// the place of its first one among the cells.
 template <SceneKind scene_kind, bool has_wavelengths, int N>
 REALCAM_INLINE void send_traced_light(const SceneView& view, const CameraView& camera, std::uint32_t round,
-                                      std::uint32_t first, float pixel_area, GhostSamples<N>& samples,
-                                      Lanes<float, N>& wavelength) {
+                                      std::uint32_t first, GhostSamples<N>& samples, Lanes<float, N>& wavelength) {
     const TracedLightsView& lights = camera.traced_lights;
     for (int i = 0; i < N; ++i) {
         const std::uint32_t number = first + static_cast<std::uint32_t>(i);
@@ -82,7 +81,7 @@ REALCAM_INLINE void send_traced_light(const SceneView& view, const CameraView& c
         samples.rays.status[i] = 0;
         // Of 1 / (1 + 1 / r^2), for any r.
         const float weight = place.is_met ? 1.0f - mis_weight(1.0f, place.traced / cosine) : 1.0f;
-        const float scale = weight * cosine * light.entries.area() / (pixel_area * light.probability);
+        const float scale = weight * cosine * light.entries.area() / light.probability;
         samples.color.set(i, bounded_light(scale * place.sample.irradiance));
         const splat_ghosts_detail::LensFrame frame{placement, camera.front_vertex_m};
         samples.rays.origin.set(i, frame.direction(enters.x * plane.along + enters.y * plane.across));
@@ -116,8 +115,7 @@ REALCAM_HD inline void trace_lights(const SceneView& view, const CameraView& cam
     const std::uint32_t first_sample = block * kGhostBlock + first;
     GhostSamples<N> samples;
     [[maybe_unused]] Lanes<float, N> wavelength;
-    send_traced_light<scene_kind, has_wavelengths>(view, camera, round, first_sample, pixel_area(camera), samples,
-                                                   wavelength);
+    send_traced_light<scene_kind, has_wavelengths>(view, camera, round, first_sample, samples, wavelength);
     // Light of a sample enters at one place, and each of its wavelengths goes its own way from there.
     constexpr int kMostSteps = has_wavelengths ? kSharedWavelengths : 1;
     const int steps = has_wavelengths && camera.dispersion.cell_count > 1 ? kMostSteps : 1;

@@ -181,6 +181,38 @@ def test_colours_of_the_scene_stay_under_d65() -> None:
         assert seen == pytest.approx(plain, abs=2e-3 * plain.max())
 
 
+@pytest.mark.parametrize("spp", [2, 4, 8, 16])
+@pytest.mark.parametrize(
+    ("illuminant", "color"),
+    [
+        ("A", (1, 1, 1)),
+        ("A", (0.05, 0.05, 1)),
+        ("A", (1, 0.05, 0.05)),
+        ("FL2", (0.02, 1, 0.02)),
+        ("D65", (1, 0.5, 0.1)),
+    ],
+)
+def test_balanced_colours_are_right_in_the_mean(illuminant: str, color: tuple[float, float, float], spp: int) -> None:
+    """Against the same samples with nothing taken out of their chance."""
+    camera = rc.Camera(rc.Lens.load("double-gauss-50mm").stopped_down(4), film=rc.Film(24, 16, (72, 48)))
+    scene = scenes.sky().with_environment(color)
+    differences, means = [], []
+    for seed in range(20):
+        session = rc.Session(
+            scene, camera, effects=("dispersion",), illuminant=illuminant, max_bounces=0, seed=seed, device="cpu"
+        )
+        session.add(spp)
+        inner = np.s_[8:-8, 8:-8]  # at the border, the mean is over other pixels
+        sums = session.expose((0, 0, 72, 48), 0, spp).pixels
+        plain = camera.exposure_time_s * sums["irradiance"] / sums["samples"][..., None]
+        pixels = session.image().pixels.astype(np.float64)
+        differences.append((pixels - plain)[inner].mean(axis=(0, 1)))
+        means.append(plain[inner].mean(axis=(0, 1)))
+    # The chance of stopped samples, which is taken out from 8 samples on, is a thousandth of the light.
+    error = np.std(differences, axis=0, ddof=1) / math.sqrt(len(differences))
+    assert np.abs(np.mean(differences, axis=0)).max() < 1e-3 * np.mean(means, axis=0).max() + 4 * error.max()
+
+
 def test_other_light_changes_colours_but_not_white() -> None:
     """Under a line in the red, blue is black and red is white: the film is balanced to what light there is."""
     camera = rc.Camera(rc.Lens.load("singlet-100mm"), film=rc.Film(3.6, 2.4, (12, 8)), exposure_time_s=1)

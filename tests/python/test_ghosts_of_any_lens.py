@@ -154,9 +154,10 @@ def test_an_anamorphic_lens_that_is_turned_turns_its_ghosts() -> None:
     assert np.abs(squares_of(across) - quarter).sum() < 0.1 * quarter.sum()
 
 
-def test_what_reflects_light_has_the_ghosts_of_what_emits_it() -> None:
-    """Those are traced from the film, these from the light. The film is tilted and curved."""
-    lens = singlet(tilt_deg=1.5, stop_mm=6.0).tilted(x_deg=2, y_deg=-1).with_film_radius(-150)
+@pytest.mark.parametrize("film_radius_mm", [-150, -22])
+def test_what_reflects_light_has_the_ghosts_of_what_emits_it(film_radius_mm: float) -> None:
+    """Those are traced from the film, these from the light. The film is tilted and curved, at most by 50 degrees."""
+    lens = singlet(tilt_deg=1.5, stop_mm=6.0).tilted(x_deg=2, y_deg=-1).with_film_radius(film_radius_mm)
     camera = rc.Camera(lens, film=FILM, exposure_time_s=1)
     seen = []
     for emits in (True, False):
@@ -196,3 +197,21 @@ def test_lamps_are_traced_from_their_own_side_too() -> None:
     assert by_pixels.sum() > 0
     assert by_lamp.sum() == pytest.approx(by_pixels.sum(), rel=0.02)
     assert np.abs(squares_of(by_lamp) - squares_of(by_pixels)).sum() < 0.1 * squares_of(by_pixels).sum()
+
+
+def steep() -> rc.Camera:
+    """The normal of the film is turned by 42 to 49 degrees from the axis."""
+    lens = rc.Lens.load("double-gauss-50mm").stopped_down(4).focused(0.6).with_film_radius(-22)
+    return rc.Camera(lens, film=rc.Film(3, 3, (12, 12), shift_mm=(-13, -8)), position=(0, 0, 0), exposure_time_s=1)
+
+
+def test_light_that_is_traced_from_a_lamp_has_the_area_of_a_steep_film() -> None:
+    """Samples of pixels know the irradiance of the tangent plane, which another test has from the lens's pupil."""
+    at = steep()
+    (origin,), (direction,) = at.ray([[6.0, 6.0]])
+    scene = scenes.scene_of(scenes.quad(origin + 2.0 * direction, 0.02, emission=1e6))
+    common = {"effects": (), "max_bounces": 0, "device": "cpu", "spp": 2048}
+    by_pixels, by_lamp = (
+        rc.render(scene, at, light_tracing=how, **common).pixels.astype(float).sum() for how in ("off", "alone")
+    )
+    assert by_lamp == pytest.approx(by_pixels, rel=0.02)

@@ -165,6 +165,14 @@ CASES: dict[str, tuple[Callable[[], rc.Scene], dict[str, object], dict[str, obje
     "at the frame's edge": (lambda: lamps((0.88, 0.58, -4), (-0.89, 0, -4)), {}, {}),
     "in the near field": (lambda: lamps((0.01, 0.005, -0.3), radius=0.0006), {}, {}),
     "in focus": (lambda: lamps((0.05, 0, -1), radius=0.002), {}, {}),
+    "in focus, larger than pixels": (lambda: lamps((0.05, 0, -1), radius=0.03), {}, {}),
+    "a thin tube in focus": (
+        lambda: scenes.scene_of(
+            scenes.quad((0.05, 0, -1), 0.2, 0.0005, emission=1e5, right=(0.8, 0.6, 0), up=(-0.6, 0.8, 0))
+        ),
+        {},
+        {},
+    ),
     "a large one": (lambda: lamps((0.05, 0, -4), radius=0.3), {}, {}),
     "1e8 brighter": (lambda: lamps((0, 0, -4), radiance=1e13), {}, {}),
     "a hundred": (
@@ -193,7 +201,7 @@ CASES: dict[str, tuple[Callable[[], rc.Scene], dict[str, object], dict[str, obje
 
 
 # Left to samples of pixels, or found by these alone.
-NOT_FROM_LIGHTS = ("in focus", "a large one", "behind glass")
+NOT_FROM_LIGHTS = ("in focus, larger than pixels", "a large one", "behind glass")
 
 
 @pytest.mark.parametrize("case", CASES)
@@ -233,7 +241,16 @@ def test_all_techniques_see_the_same(case: str, device: str) -> None:
 @pytest.mark.parametrize(
     ("case", "share"),
     # Out of focus each film sample meets the lamp one time in some hundred, while each sample from the lamp counts.
-    [("on the axis", 0.05), ("a hundred", 0.1), ("behind an edge", 0.1), ("in focus", 1.05), ("a large one", 1.05)],
+    [
+        ("on the axis", 0.05),
+        ("a hundred", 0.1),
+        ("behind an edge", 0.1),
+        # Of the lamp's pixel, a sixth of the samples meet it.
+        ("in focus", 0.1),
+        ("a thin tube in focus", 0.1),
+        ("in focus, larger than pixels", 1.05),
+        ("a large one", 1.05),
+    ],
 )
 def test_noise_falls_where_lamps_are_out_of_focus_and_nowhere_rises(case: str, share: float, device: str) -> None:
     scene, at = CASES[case][0](), camera(position=(0, 0, 0))
@@ -242,6 +259,53 @@ def test_noise_falls_where_lamps_are_out_of_focus_and_nowhere_rises(case: str, s
         return float(np.var([photograph(scene, at, tracing, device, spp=16, seed=s) for s in range(24)], axis=0).sum())
 
     assert variance("weighted") <= share * variance("off")
+
+
+PIXEL_MM = 0.1
+
+
+def grid_of_lamps(lens: rc.Lens, share: float) -> rc.Scene:
+    """Square lamps at 5 m, which fill a share of a pixel, one in each block of 6 x 6 pixels of a film of 72 x 48."""
+    step = 5.0 * PIXEL_MM / lens.first_order().effective_focal_length_mm  # of one pixel there, but for 0.2%
+    return lamps(
+        *(
+            (step * (6 * x + 3.1 + 0.2 * y - 36), step * (6 * y + 2.9 + 0.1 * x - 24), -5.0)
+            for x in range(12)
+            for y in range(8)
+        ),
+        radius=0.5 * step * math.sqrt(share),
+    )
+
+
+@pytest.mark.parametrize("share", [0.006, 1e-4, 0.3])
+def test_no_lamp_in_focus_is_missed(share: float, device: str) -> None:
+    """96 lamps smaller than a pixel in each picture, of which samples of pixels miss up to all."""
+    lens = rc.Lens.load("machine-vision-10mm").focused(5.0)
+    at = camera(lens, rc.Film(7.2, 4.8, (72, 48)), position=(0, 0, 0))
+    scene = grid_of_lamps(lens, share)
+    pictures = [photograph(scene, at, "weighted", device, seed=seed)[..., 1] for seed in range(11)]
+    light = np.stack([p.reshape(8, 6, 12, 6).sum(axis=(1, 3)) for p in pictures])
+    mean = light.mean(axis=0)
+    assert light.min() > 0.5 * mean.min()
+    # 11 seeds know the deviation of one lamp within a fifth, and that of all within 3%.
+    assert np.sqrt((light.var(axis=0, ddof=1) / mean**2).mean()) < 0.1
+    # On the axis, a lamp of radiance L and area A brings the light of a point of intensity L A; there, a lens that is
+    # free of vignetting has the same illuminance for all lamps, but for the fourth power of the cosine.
+    assert mean.min() > 0.5 * mean.max()
+
+
+@pytest.mark.parametrize("half_width_m", [2e-4, 2e-3])
+def test_a_lamp_in_focus_has_all_its_light(half_width_m: float, device: str) -> None:
+    """Its radiance times its area and the solid angle of the stop: closed form."""
+    bare = stop_in_front(2.0, 0.0)
+    lens = rc.Lens(surfaces=bare.surfaces, film_distance_mm=bare.film_distance_mm).focused(5.0)
+    film = rc.Film(3.6, 2.4, (36, 24))
+    at = camera(lens, film, position=(0, 0, 1e-3 * lens.film_position_mm))
+    scene = lamps((0.0013, 0.0021, -5.0), radius=half_width_m)
+    got = [flux(photograph(scene, at, "weighted", device, seed=seed), film) for seed in range(4)]
+    want = 1e5 * (2 * half_width_m) ** 2 * math.pi * 2e-3**2 / 5.0**2
+    assert np.mean(got) == pytest.approx(want, rel=0.01)
+    assert np.std(got) < 0.1 * want
 
 
 def test_a_stop_ends_the_samples_of_lamps_too(device: str) -> None:

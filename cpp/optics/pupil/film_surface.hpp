@@ -19,7 +19,7 @@ struct FilmSurface {
     /// Of a direction of the tangent frame at a point, in the film's.
     REALCAM_INLINE Vec3<T> direction(Vec2<T> at, Vec3<T> local) const {
         // With n the normal: x becomes (1 - nx nx / (1 + nz), -nx ny / (1 + nz), -nx), and y likewise.
-        const T nx = -curvature * at.x, ny = -curvature * at.y, nz = cosine(at.x * at.x + at.y * at.y);
+        const T nx = -curvature * at.x, ny = -curvature * at.y, nz = cosine(at);
         const T along = (nx * local.x + ny * local.y) / (T(1) + nz);
         return {local.x - along * nx + local.z * nx, local.y - along * ny + local.z * ny,
                 local.z * nz - nx * local.x - ny * local.y};
@@ -36,8 +36,10 @@ struct FilmSurface {
         return {o.x + t * direction.x, o.y + t * direction.y};
     }
 
+    /// Cosine of the angle between the normal and z: an area in x and y over the area of the film above it.
+    REALCAM_INLINE T cosine(Vec2<T> at) const { return cosine(at.x * at.x + at.y * at.y); }
+
 private:
-    /// Of the angle between the normal and z.
     REALCAM_INLINE T cosine(T squared_radius) const {
         return sqrt_or_zero(T(1) - curvature * curvature * squared_radius);
     }
