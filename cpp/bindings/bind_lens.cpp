@@ -61,6 +61,8 @@ LensSystem make_lens(std::vector<Surface> surfaces, const std::string& name, std
         lens.focusing.group_first = focus_group->first;
         lens.focusing.group_last = focus_group->second;
     }
+    // Its sign decides whether a lens with mirrors is a centred one of revolution, which the checks depend on.
+    lens.film_distance = film_distance.value_or(0);
     validate(lens);
     lens.stop_semi_diameter = lens.stop().clear_semi_diameter;
     if (!film_distance) film_distance = film_distance_at_infinity(lens);
@@ -158,6 +160,10 @@ of the focal length, which is that of the lens at rest. Raises InputError.)")
 chief ray of the film's middle, the means of both meridians, so that the f-number is that of the exposure.
 How the whole lens is tilted or shifted before the film changes nothing. Raises InputError where the film's
 middle gets no light.)")
+        .def_property_readonly(
+            "f_number", &f_number_at_infinity,
+            R"(As engraved: of the lens focused at infinity, with its diaphragm as it stands. A lens that cannot be
+focused at infinity has that of first_order().)")
         .def(
             "meridians",
             [](const LensSystem& lens, std::optional<double> nm) {

@@ -2,6 +2,7 @@
 
 #include <pybind11/numpy.h>
 
+#include "../io/files/regular_file.hpp"
 #include "arrays.hpp"
 #include "value_compare.hpp"
 
@@ -99,12 +100,21 @@ std::shared_ptr<const Texture> texture_from(const py::object& object, io::Textur
     }
     const py::ssize_t channels = pixels.ndim() == 3 ? pixels.shape(2) : pixels.ndim() == 2 ? 1 : 0;
     if ((channels != 1 && channels != 3 && channels != 4) || pixels.size() == 0) throw InputError(kShapes);
+    const auto texels = static_cast<std::size_t>(pixels.size() / channels);
+    const bool is_float = holds_fractions(pixels);
+    const std::string size =
+        "a texture of " + std::to_string(pixels.shape(1)) + " x " + std::to_string(pixels.shape(0)) + " pixels ";
+    if (texels > io::kMostTexturePixels)
+        throw InputError(size + "is too large; at most " + std::to_string(io::kMostTexturePixels >> 20) +
+                         " million pixels are wanted");
+    const std::size_t count = 4 * texels;
+    if (const std::string why = io::too_much_memory(count * (is_float ? sizeof(float) : 1)); !why.empty())
+        throw InputError(size + "takes " + why);
     auto texture = std::make_shared<Texture>();
     texture->encoding = use == io::TextureUse::colour ? TextureEncoding::srgb : TextureEncoding::linear;
     texture->width = static_cast<std::int32_t>(pixels.shape(1));
     texture->height = static_cast<std::int32_t>(pixels.shape(0));
-    const bool is_float = holds_fractions(pixels), is_encoded = is_float && use == io::TextureUse::colour;
-    const auto count = static_cast<std::size_t>(4 * pixels.size() / channels);
+    const bool is_encoded = is_float && use == io::TextureUse::colour;
     if (is_float)
         texture->linear_rgba.reserve(count);
     else

@@ -19,9 +19,10 @@ namespace realcam::image_io {
 
 /// An io::ImageReader: the file `path`, or, where `path` is empty, the bytes of one. Alpha is not multiplied in, and
 /// where the file has it multiplied in it is taken out. Of floating-point numbers, negative ones and NaN become 0, and
-/// infinite ones the largest that a half float holds. Nothing where it cannot be decoded. Throws Cancelled.
-std::optional<io::DecodedImage> read_image(const std::string& path, std::span<const std::uint8_t> encoded_bytes,
-                                           const KeepGoing& keep_going = {});
+/// infinite ones the largest that a half float holds. Throws Error with the reason if it cannot be decoded, and
+/// Cancelled.
+io::DecodedImage read_image(const std::string& path, std::span<const std::uint8_t> encoded_bytes,
+                            const KeepGoing& keep_going = {});
 
 /// What a reader put up with, in one line.
 using WarnOf = std::function<void(const std::string& message)>;

@@ -19,8 +19,6 @@
 namespace realcam::image_io {
 namespace {
 
-/// 16384 x 16384: what a texture of a GPU has at most. A file of a megabyte can claim 40000 x 40000.
-constexpr std::size_t kMostTexturePixels = std::size_t{1} << 28;
 /// 16384 x 8192, the largest environments that are sold.
 constexpr std::size_t kMostEnvironmentPixels = std::size_t{1} << 27;
 
@@ -83,7 +81,7 @@ std::vector<float> decode_floats(OpenPicture& picture, const KeepGoing& keep_goi
 io::DecodedImage decode(OpenPicture& picture, const KeepGoing& keep_going) {
     // Floats become the 8 bits of a Texture beside them.
     constexpr std::size_t of_codes = 4, of_floats = 4 * sizeof(float) + of_codes;
-    check_size(picture, kMostTexturePixels, picture.is_wide ? of_floats : of_codes);
+    check_size(picture, io::kMostTexturePixels, picture.is_wide ? of_floats : of_codes);
     if (!picture.is_wide) return {picture.width, picture.height, decode_codes(picture, keep_going)};
     return {picture.width, picture.height, decode_floats(picture, keep_going), picture.is_linear,
             picture.channels < 3 ? std::nullopt : picture.rec709};
@@ -160,15 +158,9 @@ void settle_light(Environment& environment, const std::string& path, const WarnO
 
 }  // namespace
 
-std::optional<io::DecodedImage> read_image(const std::string& path, std::span<const std::uint8_t> encoded_bytes,
-                                           const KeepGoing& keep_going) {
-    try {
-        return decode(*open_picture(path, encoded_bytes), keep_going);
-    } catch (const Cancelled&) {
-        throw;
-    } catch (const Error&) {
-        return std::nullopt;  // the caller names the picture, and puts another in its stead
-    }
+io::DecodedImage read_image(const std::string& path, std::span<const std::uint8_t> encoded_bytes,
+                            const KeepGoing& keep_going) {
+    return decode(*open_picture(path, encoded_bytes), keep_going);
 }
 
 Environment read_environment(const std::string& path, const std::string& layer, const WarnOf& warn,
@@ -227,7 +219,7 @@ FilmFile read_film(const std::string& path, const KeepGoing& keep_going) {
         const auto picture = open_picture(path, {});
         if (!picture->is_linear || picture->channels < 3)
             throw Error("holds no exposure; an .exr that realcam has written is wanted");
-        check_size(*picture, kMostTexturePixels, 3 * sizeof(float));
+        check_size(*picture, io::kMostTexturePixels, 3 * sizeof(float));
         for (const auto& [name, value] : picture->entries)
             if (!io::is_utf8(name) || !io::is_utf8(value))
                 throw Error("its metadata " + io::in_quotes(name) + " is no valid UTF-8 text: " + io::in_quotes(value));

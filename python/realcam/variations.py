@@ -35,14 +35,10 @@ def variations(shot: Shot, name: str, values: Sequence[str]) -> list[Variation]:
     result = []
     for value in values:
         camera = make(shot.camera, value)
-        was, now = f_number_of(shot.camera.lens), f_number_of(camera.lens)
+        was, now = shot.camera.lens.f_number, camera.lens.f_number
         camera = camera.replace(exposure_time_s=shot.camera.exposure_time_s * (now / was) ** 2)
         result.append(Variation(_label_of(camera, name), replace(shot, camera=camera)))
     return result
-
-
-def f_number_of(lens: Lens) -> float:
-    return float(lens.focused(math.inf).first_order().f_number)
 
 
 def _at_f_number(camera: Camera, value: str) -> Camera:
@@ -57,7 +53,7 @@ def _at_f_number(camera: Camera, value: str) -> Camera:
 
 def _with_lens(camera: Camera, value: str) -> Camera:
     lens = Lens.load(value)
-    return _framed_alike(camera, lens.stopped_down(max(f_number_of(camera.lens), f_number_of(lens))))
+    return _framed_alike(camera, lens.stopped_down(max(camera.lens.f_number, lens.f_number)))
 
 
 def _zoomed(camera: Camera, value: str) -> Camera:
@@ -97,7 +93,7 @@ def _behind_pupil_m(lens: Lens) -> float:
 
 def _label_of(camera: Camera, name: str) -> str:
     lens = camera.lens
-    words = [f"f/{f_number_of(lens):.3g}"]
+    words = [f"f/{lens.f_number:.3g}"]
     if name != "f_number":
         focal_length_mm = lens.focused(math.inf).first_order().effective_focal_length_mm
         words = [f"{focal_length_mm:.3g} mm", *words, f"from {lens.focus_distance_m:.3g} m"]

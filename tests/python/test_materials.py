@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pickle
+import time
 from pathlib import Path
 
 import numpy as np
@@ -171,3 +172,12 @@ def test_a_texture_needs_coordinates() -> None:
     bare = rc.Scene.from_arrays([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)])
     with pytest.raises(rc.InputError, match="no texture coordinates"):
         bare.with_texture(0, [[1]])
+
+
+def test_a_texture_that_is_too_large_is_refused_before_it_is_copied() -> None:
+    """The array is one number, seen as 40000 x 40000."""
+    pixels = np.broadcast_to(np.uint8(3), (40000, 40000, 3))
+    begin = time.monotonic()
+    with pytest.raises(rc.InputError, match=r"a texture of 40000 x 40000 pixels is too large; at most 256 million"):
+        wall([WOOD]).with_texture(0, pixels)
+    assert time.monotonic() - begin < 0.5

@@ -271,3 +271,13 @@ def test_what_cannot_be_is_said(arguments: dict[str, object], message: str) -> N
     lens = TABULATED if arguments.get("wavelength_nm") == 700 else rc.Lens.load("double-gauss-50mm")
     with pytest.raises(rc.InputError, match=message):
         lens.psf(**{"object_distance_m": FAR, **arguments})
+
+
+def test_light_far_out_of_focus_takes_no_minutes_unasked() -> None:
+    lens = rc.Lens.load("double-gauss-50mm").focused(1.5)
+    with pytest.raises(rc.InputError, match="too many for a sum of rays"):
+        lens.psf(3, size=16, film_distance_mm=lens.film_distance_mm + 22)
+    with pytest.raises(rc.InputError, match="rays must be a positive number, at most 16777216"):
+        lens.psf(rays=10**12)
+    with pytest.raises(rc.InputError, match="at most 16777216"):
+        lens.psf(method="geometric", rays=10**12)

@@ -225,3 +225,12 @@ def test_a_periscope_sees_past_what_stands_before_its_lens() -> None:
     assert made.first_order().effective_focal_length_mm == pytest.approx(
         rc.Lens.load("tessar-50mm").first_order().effective_focal_length_mm, rel=1e-9
     )
+
+
+def test_a_lens_of_one_mirror_is_made_with_its_film_before_it() -> None:
+    stop = rc.Stop(clear_semi_diameter_mm=20, thickness_mm=400)
+    mirror = rc.Surface(radius_of_curvature_mm=-400, type="mirror", clear_semi_diameter_mm=30, conic=-1)
+    lens = rc.Lens(surfaces=[stop, mirror], film_distance_mm=-200)
+    assert lens.film_distance_mm == -200
+    # The focus of a parabola is half its radius from the vertex.
+    assert lens.first_order().effective_focal_length_mm == pytest.approx(200)

@@ -109,3 +109,15 @@ def test_focal_lengths_that_it_has_not_are_refused() -> None:
         lens.zoomed(100)
     with pytest.raises(rc.InputError, match="has no focal lengths between zoom positions; it has fewer than two"):
         rc.Lens.load("tessar-50mm").zoomed(50.0)
+
+
+@pytest.mark.parametrize("focus_m", [2.0, 3.0])
+@pytest.mark.parametrize("position", ["80mm", "200mm"])
+def test_a_focusing_group_finds_its_way_back_to_infinity(position: str, focus_m: float) -> None:
+    """The first group images infinity at a second position, too, 0.1 m further out, where the lens has f/108."""
+    rest = rc.Lens.load("zoom-80-200mm").zoomed(position)
+    near = rest.focused(focus_m)
+    back = near.focused(math.inf)
+    for surface, there in zip(rest.surfaces, back.surfaces, strict=True):
+        assert there.thickness_mm == pytest.approx(surface.thickness_mm, abs=1e-3)
+    assert near.f_number == back.f_number == pytest.approx(rest.first_order().f_number, rel=1e-4)

@@ -27,8 +27,11 @@ struct DecodedImage {
     std::optional<std::array<double, 9>> rec709 = std::nullopt;
 };
 
+/// 16384 x 16384, the largest texture of a GPU. A file of a megabyte can claim 40000 x 40000.
+inline constexpr std::size_t kMostTexturePixels = std::size_t{1} << 28;
+
 /// Decodes one picture: from the file `path`, or, where `path` is empty, from the bytes of a PNG or JPEG that the
-/// scene file carries inside. Returns nothing if it cannot; the scene then gets a stand-in and a warning.
+/// scene file carries inside. If it throws Error or returns nothing, the scene gets a stand-in and a warning.
 using ImageReader =
     std::function<std::optional<DecodedImage>(const std::string& path, std::span<const std::uint8_t> encoded_bytes)>;
 

@@ -7,6 +7,7 @@
 #include "../../error.hpp"
 #include "../files/file_beside.hpp"
 #include "../files/regular_file.hpp"
+#include "../text/one_line.hpp"
 #include "../text/printable.hpp"
 #include "made_textures.hpp"
 
@@ -40,18 +41,28 @@ std::optional<DecodedImage> SceneTextures::decode(std::int32_t number) {
     const FilePicture& picture = file_.pictures[static_cast<std::size_t>(number)];
     const std::string label = file_.path + ": texture " + shown(picture);
     std::optional<DecodedImage> image;
+    std::string reason;
     checkpoint_.pass();
+    const auto read = [&](const std::string& path, std::span<const std::uint8_t> bytes) {
+        try {
+            image = read_image_(path, bytes);
+        } catch (const Cancelled&) {
+            throw;
+        } catch (const Error& error) {
+            reason = ": " + one_line(error.what());
+        }
+    };
     if (picture.is_inside) {
         const auto* bytes = reinterpret_cast<const std::uint8_t*>(picture.bytes.data());
-        if (read_image_ && !picture.bytes.empty()) image = read_image_({}, {bytes, picture.bytes.size()});
+        if (read_image_ && !picture.bytes.empty()) read({}, {bytes, picture.bytes.size()});
     } else if (const std::optional<std::string> path = find_beside(file_.path, picture.name)) {
-        if (read_image_) image = read_image_(*path, {});
+        if (read_image_) read(*path, {});
     } else {
         scene_.warnings.push_back(label + ": no such file beside the scene");
         return std::nullopt;
     }
     if (image && is_whole(*image)) return image;
-    scene_.warnings.push_back(label + ": cannot be read as a picture");
+    scene_.warnings.push_back(label + ": cannot be read as a picture" + reason);
     return std::nullopt;
 }
 

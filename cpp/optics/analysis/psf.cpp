@@ -12,7 +12,8 @@ namespace psf_detail {
 
 namespace {
 
-constexpr double kMostWaves = 1 << 24;
+/// Some seconds; only a caller who names the number of rays waits for more.
+constexpr double kMostWavesUnasked = 1 << 20, kMostWaves = 1 << 24;
 
 /// um: a quarter of wavelength x f-number, of the finest detail of an image half; for a spot that is larger than the
 /// window, up to twice that, which all of the detail still needs.
@@ -100,10 +101,10 @@ void add_rays(const Part& part, Psf& psf, std::int64_t rays, const RayLoop& loop
 BundleSampling checked_sampling(const Part& part, const Psf& psf, std::int64_t rays) {
     const double half = 0.5e-3 * psf.size * psf.pitch_um, phase = largest_phase(part.bundle, part.centre, half);
     const auto count = [](BundleSampling s) { return static_cast<double>(s.spokes) * s.nodes; };
-    if (!(phase < 1e5) || count(sampling_for(phase)) > kMostWaves)
+    if (!(phase < 1e5) || count(sampling_for(phase)) > (rays ? kMostWaves : kMostWavesUnasked))
         throw InputError("psf: the light's phase differs by " + std::to_string(std::lround(phase / std::numbers::pi)) +
                          " waves on the array, too many for a sum of rays; give a smaller array, another "
-                         "film_distance_mm or the method \"geometric\"");
+                         "film_distance_mm, the number of rays (at most 16777216) or the method \"geometric\"");
     BundleSampling sampling = sampling_for(phase);
     if (rays == 0) return sampling;
     const double least = phase * (0.25 * phase + 1);
@@ -137,7 +138,8 @@ Start start(const LensSystem& lens, const PsfRequest& request, const RayLoop& lo
     if (request.colours.empty()) throw InputError("psf: no wavelength is given");
     if (!(request.size >= 2 && request.size <= 4096)) throw InputError("psf: size must lie between 2 and 4096");
     if (!(request.pitch_um >= 0 && request.pitch_um < 1e6)) throw InputError("psf: pitch_um must be a positive length");
-    if (request.rays < 0) throw InputError("psf: rays must be a positive number");
+    if (!(request.rays >= 0 && static_cast<double>(request.rays) <= kMostWaves))
+        throw InputError("psf: rays must be a positive number, at most 16777216");
     double sum = 0;
     for (const PsfColour& colour : request.colours) {
         if (!(colour.weight > 0 && colour.weight < kInfinity))

@@ -142,24 +142,30 @@ LensSystem moved_by_group(const LensSystem& lens, double focus_distance) {
     const double start = error(0), tolerance = kFocusTolerance * std::fabs(lens.film_position());
     if (start == 0) return lens;
     std::optional<FaceCrossing> crossing;
-    // The search goes from the resting place outwards, to the first change of sign on either side that is a root. A
-    // change where the image goes through infinity, or where the last ray ends, is none.
+    // The nearest root is wanted, as some groups image a plane at a second, far position, where the lens is quite
+    // another one. So the search goes outwards on both sides at once, by distance. A change of sign where the image
+    // goes through infinity, or where the last ray ends, is no root.
     constexpr int kSteps = 200;
-    double inner[2] = {start, start};
-    for (int i = 1; i <= kSteps; ++i)
-        for (const int side : {0, 1}) {
-            const double reach = (side == 0 ? -back : forth) / kSteps, outer = error(reach * i);
-            const bool bracket = std::isfinite(inner[side]) && std::isfinite(outer) && (inner[side] > 0) != (outer > 0);
-            if (bracket) {
-                const Root shift = find_root(error, reach * (i - 1), inner[side], reach * i, outer, 1e-5 * tolerance);
-                if (std::fabs(shift.value) <= tolerance) {
-                    LensSystem moved = with_group_moved(lens, shift.at);
-                    if (!lens.allow_crossing) crossing = find_crossing(moved);
-                    if (!crossing) return moved;
-                }
+    struct Side {
+        double step, inner;
+        int next = 1;
+        double distance() const { return next > kSteps ? kInfinity : std::fabs(step * next); }
+    };
+    Side sides[2] = {{-back / kSteps, start}, {forth / kSteps, start}};
+    for (int i = 0; i < 2 * kSteps; ++i) {
+        Side& side = sides[sides[1].distance() < sides[0].distance()];
+        const double from = side.step * (side.next - 1), to = side.step * side.next, outer = error(to);
+        ++side.next;
+        if (std::isfinite(side.inner) && std::isfinite(outer) && (side.inner > 0) != (outer > 0)) {
+            const Root shift = find_root(error, from, side.inner, to, outer, 1e-5 * tolerance);
+            if (std::fabs(shift.value) <= tolerance) {
+                LensSystem moved = with_group_moved(lens, shift.at);
+                if (!lens.allow_crossing) crossing = find_crossing(moved);
+                if (!crossing) return moved;
             }
-            inner[side] = outer;
         }
+        side.inner = outer;
+    }
     if (crossing)
         fail(lens, focus_distance,
              "would have to move its focusing group so far that surfaces " + std::to_string(crossing->first + 1) +
@@ -211,17 +217,13 @@ std::optional<double> film_distance_at_infinity(LensSystem lens) {
 }
 
 double f_number_at_infinity(const LensSystem& lens) {
-    const double as_it_stands = first_order(lens, lens.wavelength_nm).f_number;
     if (lens.focusing.moves_group() && std::isfinite(lens.focus_distance)) {
         try {
-            const double far = first_order(focused(lens, kInfinity), lens.wavelength_nm).f_number;
-            // Some groups image infinity at a second place, nearer than the one that they came from, where the lens is
-            // quite another one (zoom-80-200mm: f/108). Focusing changes an f-number by less than two stops.
-            if (std::fabs(std::log2(far / as_it_stands)) <= 2) return far;
+            return first_order(focused(lens, kInfinity), lens.wavelength_nm).f_number;
         } catch (const InputError&) {  // no position of the group images infinity on the film
         }
     }
-    return as_it_stands;
+    return first_order(lens, lens.wavelength_nm).f_number;
 }
 
 LensSystem stopped_down(LensSystem lens, double f_number) {

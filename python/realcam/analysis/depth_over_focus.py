@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from .._core import InputError, Lens
 from ..photography.depth import blur_diameter_mm, sharp_ranges
-from ..photography.formulas import ThinLens, at_infinity
+from ..photography.formulas import ThinLens
 from ..short_text import ShortText
 from . import style
 from .fields import Doubles, numbers_of
@@ -57,7 +57,7 @@ def depth_over_focus(
     circle_of_confusion_mm: None is the film's diagonal / 1500. Raises InputError, also where the lens can be focused at
     none of the distances.
     """
-    open_f_number = float(at_infinity(lens).first_order().f_number)
+    open_f_number = lens.f_number
     stops = open_f_number * np.array([1.0, 2.0, 4.0]) if f_numbers is None else numbers_of(f_numbers, "f_numbers")
     lenses = [lens if stop == open_f_number else lens.stopped_down(float(stop)) for stop in stops]
     circle = math.hypot(*lens.film_mm) / 1500 if circle_of_confusion_mm is None else circle_of_confusion_mm

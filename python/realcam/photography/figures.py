@@ -90,8 +90,7 @@ def exposure_value(lens: Lens, exposure_time_s: float, iso: float = 100.0) -> Ex
         raise InputError("the exposure time must be a positive number of seconds")
     if not (iso > 0 and math.isfinite(iso)):
         raise InputError("the ISO must be a positive number")
-    f_number = at_infinity(lens).first_order().f_number
-    ev = math.log2(f_number**2 / exposure_time_s)
+    ev = math.log2(lens.f_number**2 / exposure_time_s)
     film_side = lens.t_stop * working_f_number(lens) / working_f_number(at_infinity(lens))
     by_iso = math.log2(100 / iso)
     return ExposureValue(exposure_time_s, iso, ev, ev + by_iso, math.log2(film_side**2 / exposure_time_s) + by_iso)
