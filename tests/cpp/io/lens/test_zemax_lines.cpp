@@ -190,15 +190,18 @@ TEST_CASE("messages about faces that cross name surfaces and lines of the file")
         "SURF 6\n  STOP\n  CURV 0\n  DISZ 5\n"
         "SURF 7\n  CURV 0.02\n  DISZ 3\n  GLAS ___BLANK 1 0 1.6 50\n  DIAM 10\n"
         "SURF 8\n  CURV 0\n  DISZ 50\n  DIAM 10\nSURF 9\n  CURV 0\n  DISZ 0\n";
-    const Reading dummy = read(text, "a.zmx");
+    // No ray that passes reaches the crossing, 15 mm from the axis, before the aperture is wide enough.
+    CHECK(read(text, "a.zmx").warns_of("surface 3 crosses surface 4"));
+    const std::string wide = replaced(replaced(text, "ENPD 4", "ENPD 36"), "DIAM 10", "DIAM 25");
+    const Reading dummy = read(wide, "a.zmx");
     CHECK(dummy.says("a.zmx:19: surface 3: crosses surface 4, by"));
     CHECK(dummy.can_be_forced);
     io::LensReadOptions force;
     force.force = true;
-    CHECK(read(text, "a.zmx", force).warns_of("surface 3 crosses surface 4"));
+    CHECK(read(wide, "a.zmx", force).warns_of("surface 3 crosses surface 4"));
     // A stop on a face becomes a plane of its own, which the file does not count.
     const std::string on_face =
-        replaced(replaced(text, "SURF 6\n  STOP\n", "SURF 6\n"), "SURF 2\n", "SURF 2\n  STOP\n");
+        replaced(replaced(wide, "SURF 6\n  STOP\n", "SURF 6\n"), "SURF 2\n", "SURF 2\n  STOP\n");
     CHECK(read(on_face, "a.zmx").says("a.zmx:20: surface 3: crosses surface 4, by"));
     // A glass that has no index at the lens's wavelength, behind a dummy.
     const std::string glass = replaced(replaced(text, "0.5875618", "10.17"), "___BLANK 1 0 1.6 50", "N-BK7 0 0");

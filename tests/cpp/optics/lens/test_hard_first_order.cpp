@@ -55,7 +55,7 @@ std::vector<Figure> figures(const LensSystem& lens) {
                      behind = matrix_of(lens, stop, count);
     const std::vector<double> n = lens.indices(lens.wavelength_nm);
     const Real last_index = n.back(), radius = std::min(lens.stop_semi_diameter, lens.stop().clear_semi_diameter);
-    const Real f = -last_index / all.C, to_exit = -behind.B * last_index / behind.D;
+    const Real f = -1 / all.C, to_exit = -behind.B * last_index / behind.D;
     Real last = 0;
     for (std::size_t i = 0; i + 1 < lens.surfaces.size(); ++i) last += lens.surfaces[i].thickness;
     const Real entrance = 2 * radius / abs(to_stop.A);
@@ -66,8 +66,8 @@ std::vector<Figure> figures(const LensSystem& lens) {
         {"its diameter", data.exit_pupil_diameter, 2 * radius * abs(behind.A + behind.C * to_exit / last_index)}};
     if (all.C == 0) return list;
     list.push_back({"focal length", data.effective_focal_length, f});
-    list.push_back({"back focal distance", data.back_focal_distance, all.A * f});
-    list.push_back({"front focal distance", data.front_focal_distance, -all.D * f / last_index});
+    list.push_back({"back focal distance", data.back_focal_distance, all.A * f * last_index});
+    list.push_back({"front focal distance", data.front_focal_distance, -all.D * f});
     list.push_back({"f-number", data.f_number * scale_of(lens), abs(f) / entrance * scale_of(lens)});
     return list;
 }

@@ -124,7 +124,9 @@ TEST_CASE("every glass of the catalogue is a glass, with normal dispersion over 
         ++glasses;
         double before = 10;
         bool falling = true;
-        for (double wavelength = 380; wavelength <= 780; wavelength += 20) {
+        // Connolly measured zinc selenide from 540 nm on; its first pole lies at 391 nm.
+        const double shortest = name == "misc:ZNSE-CONNOLLY" ? 540 : 380;
+        for (double wavelength = shortest; wavelength <= 780; wavelength += 20) {
             const double n = glass.index(wavelength);
             falling = falling && n < before && n > 1.3 && n < (maker == "misc" ? 4 : 2.4);  // false for NaN too
             before = n;

@@ -73,7 +73,7 @@ TEST_CASE("a perfect image has the contrast that diffraction leaves, and no spot
     CHECK(found.fields[0].rms_spot < 1e-12);
     CHECK(found.fields[0].light == about(1, 1e-14));
     CHECK(found.fields[0].distortion == 0);
-    CHECK(found.focal_length == about(kFocus, 1e-12));
+    CHECK(found.focal_length == about(kFocus / kIndex, 1e-12));  // 1 / power: the image lies in glass
     // At the rim n sin u = n r / sqrt(r^2 + l^2); the disc is even in that to its square.
     const double along = kFocus - perfect().surfaces[1].sag(kRim);
     const double aperture = kIndex * kRim / std::hypot(kRim, along);
@@ -121,7 +121,7 @@ TEST_CASE("a copy with another radius is refocused to its own focus") {
     const double size = 0.5;
     const CopyFigures found = judge(with_errors(perfect(), {{ErrorKind::radius, 1, 1}}, &size));
     CHECK(found.settings.film_shift == about(kIndex * size / (kIndex - 1), 1e-9));
-    CHECK(found.focal_length == about(kFocus + kIndex * size / (kIndex - 1), 1e-7));
+    CHECK(found.focal_length == about(kFocus / kIndex + size / (kIndex - 1), 1e-7));
     CHECK(found.fields[0].rms_spot < 1e-7 * kIndex * size / (kIndex - 1) * kSlope);
     // The film that was set is that of a lens that can be had.
     const LensSystem set =
