@@ -199,7 +199,7 @@ std::optional<std::string> entry_of_whole_file(const std::string& path, const st
                                         [&](const auto& candidate) { return candidate.first == name; });
         if (entry == picture->entries.end() || !has_its_end(path)) return std::nullopt;
         const bool is_film = picture->is_linear;
-        check_size(*picture, kMostTexturePixels, is_film ? 3 * sizeof(float) : 4);
+        check_size(*picture, io::kMostTexturePixels, is_film ? 3 * sizeof(float) : 4);
         if (is_film) {
             std::vector<float> pixels(3 * picture->pixel_count());
             picture->read(std::min(picture->channels, 3), 3, pixels.data(), keep_going);

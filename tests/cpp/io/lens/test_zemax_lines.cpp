@@ -192,7 +192,8 @@ TEST_CASE("messages about faces that cross name surfaces and lines of the file")
         "SURF 8\n  CURV 0\n  DISZ 50\n  DIAM 10\nSURF 9\n  CURV 0\n  DISZ 0\n";
     // No ray that passes reaches the crossing, 15 mm from the axis, before the aperture is wide enough.
     CHECK(read(text, "a.zmx").warns_of("surface 3 crosses surface 4"));
-    const std::string wide = replaced(replaced(text, "ENPD 4", "ENPD 36"), "DIAM 10", "DIAM 25");
+    const std::string wide =
+        replaced(replaced(replaced(text, "ENPD 4", "ENPD 36"), "DIAM 10", "DIAM 25"), "DIAM 10", "DIAM 25");
     const Reading dummy = read(wide, "a.zmx");
     CHECK(dummy.says("a.zmx:19: surface 3: crosses surface 4, by"));
     CHECK(dummy.can_be_forced);
