@@ -13,6 +13,7 @@
 #include "../devices/devices.hpp"
 #include "../embree/fast_pupil_tracer.hpp"
 #include "../image_io/image_file.hpp"
+#include "../image_io/unfinished_file.hpp"
 #include "../io/files/free_memory.hpp"
 #include "../io/files/readable_file.hpp"
 #include "../io/text/one_line.hpp"
@@ -112,7 +113,7 @@ public:
         if (request.denoises) denoiser.emplace(words_.device, request.settings.threads);
         shot::Shot shot = set_up_shot(request, std::move(camera));
         for (const std::string& file : frames.empty() ? words_.outputs : outputs_.all_files(frames))
-            io::check_no_input(file);
+            image_io::check_no_input(file);
         if (!frames.empty()) film_digest_ = film_digest(request, shot.camera, std::to_string(words_.frames_per_second));
         const Darkroom darkroom{*session, denoiser ? &*denoiser : nullptr, written_layers};
         // Until here nothing is on disk, and a signal may simply end the program.

@@ -11,6 +11,7 @@
 
 #include "../error.hpp"
 #include "../io/files/readable_file.hpp"
+#include "../io/text/printable.hpp"
 
 namespace realcam::image_io {
 namespace {
@@ -78,6 +79,15 @@ void UnfinishedFile::remember_failure(int error) {
     if (failure_ == 0) failure_ = error != 0 ? error : EIO;
 }
 
+void check_no_input(const std::string& output) {
+    std::error_code error;
+    if (!fs::exists(output, error)) return;
+    for (const std::string& input : io::recorded_inputs())
+        if (fs::equivalent(output, input, error))
+            throw InputError(io::in_quotes(output) + " is a file that the output is made from (" +
+                             io::printable(input) + "); another name is wanted");
+}
+
 void UnfinishedFile::check_target() const {
     struct stat status{};
     if (stat(target_.c_str(), &status) != 0) {
@@ -87,7 +97,7 @@ void UnfinishedFile::check_target() const {
     if (S_ISDIR(status.st_mode)) throw ImageFileError(path_ + ": is a folder; the name of a file is wanted");
     if (!S_ISREG(status.st_mode)) throw ImageFileError(path_ + ": is a pipe or a device; the name of a file is wanted");
     if (access(target_.c_str(), W_OK) != 0) fail(errno);
-    io::check_no_input(path_);
+    check_no_input(path_);
 }
 
 void UnfinishedFile::fail(int error) const {

@@ -34,4 +34,7 @@ private:
     int failure_ = 0;  ///< errno of the first write that failed
 };
 
+/// Throws InputError if an output is the same file as an input that was recorded (io::InputRecording).
+void check_no_input(const std::string& output);
+
 }  // namespace realcam::image_io

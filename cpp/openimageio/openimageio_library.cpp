@@ -33,10 +33,11 @@ public:
             throw Error(kBroken + reason(input_->geterror()));
         // The headers of further parts may be broken: the decoder says so where one of them is read.
         const int most = format == "openexr" ? kMostParts : 1;  // WebP cannot go back
+        opening_ = input_->geterror();
         for (int part = 0; part < most && input_->seek_subimage(part, 0); ++part)
             parts.push_back(header_of(input_->spec()));
-        if (parts.empty()) throw Error(kBroken + reason(input_->geterror()));
-        input_->geterror();
+        if (parts.empty()) throw Error(kBroken + reason(opening_ + input_->geterror()));
+        input_->geterror();  // that there is no further part
     }
 
     Outcome read(const EncodedRegion& region, std::uint8_t* pixels) override {
@@ -75,11 +76,12 @@ private:
                                                                  r.first_channel, r.end_channel, type, pixels)
                                             : input_->read_scanlines(r.part, 0, top, below, 0, r.first_channel,
                                                                      r.end_channel, type, pixels);
-        return {good, input_->geterror()};
+        return {good, opening_ + input_->geterror()};
     }
 
     std::unique_ptr<OIIO::Filesystem::IOMemReader> memory_;  // outlives the input
     std::unique_ptr<ImageInput> input_;
+    std::string opening_;  ///< what OpenImageIO said of the header: a broken file that it opened all the same
 };
 
 /// Encoders that notice a failed write print lines of their own, or let it pass: the file remembers it instead.

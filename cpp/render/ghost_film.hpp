@@ -14,8 +14,10 @@ struct GhostSum {
     std::int64_t units[3];
 };
 
-/// The unit is one 2^36th of the irradiance that all light would bring to a pixel which passed through the whole front
-/// of the lens to it alone: ghosts are 1e4 to 1e8 times dimmer.
+/// The unit is a small part of the irradiance that all light would bring to a pixel which passed through the whole
+/// front of the lens to it alone. Ghosts are 1e4 to 1e8 times dimmer: 2^-36. The image of a lamp in focus does bring
+/// all of it to one pixel, with all samples of the film: 2^-28, so that 2^35 samples do not overflow the sum, and a
+/// lamp 1e8 times dimmer than another one still counts units in each sample.
 inline double ghost_units_per_lux(const SceneView& scene, const CameraView& camera, const GhostView& ghosts) {
     const LightReceiver middle{front_vertex(camera, camera.front_vertex_m), {0, 0, 0}};
     double light = scene.has_environment ? 4 * static_cast<double>(environment_importance(scene)) : 0.0;
@@ -24,7 +26,9 @@ inline double ghost_units_per_lux(const SceneView& scene, const CameraView& came
     const double pixel_mm2 = 4.0 * static_cast<double>(camera.film_half_width) *
                              static_cast<double>(camera.film_half_height) / camera.width / camera.height;
     const double side_mm = 2 * static_cast<double>(ghosts.reach), most = light * side_mm * side_mm / pixel_mm2;
-    return most > 1e-30 ? 0x1p36 / most : 0x1p36;
+    const bool is_image = ghosts.light == GhostLight::direct || ghosts.light == GhostLight::starbursts;
+    const double units = is_image ? 0x1p28 : 0x1p36;
+    return most > 1e-30 ? units / most : units;
 }
 
 /// To which of so many films (GhostFilmView) a block's samples are added.

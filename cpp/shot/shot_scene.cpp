@@ -134,9 +134,17 @@ private:
 }  // namespace
 
 Texture read_texture(const std::string& path, io::TextureUse use, const PictureReaders& readers) {
-    auto image = readers.texture(path, {});
-    if (!image) throw InputError(path + ": cannot be read as a texture");
-    return io::texture_of(std::move(*image), use, path);
+    std::string reason;
+    try {
+        if (auto image = readers.texture(path, {})) return io::texture_of(std::move(*image), use, path);
+    } catch (const Cancelled&) {
+        throw;
+    } catch (const InputError&) {
+        throw;
+    } catch (const Error& error) {
+        reason = std::string(": ") + error.what();
+    }
+    throw InputError(path + ": cannot be read as a texture" + reason);
 }
 
 Assembly with_request(Assembly scene, const SceneRequest& request, const PictureReaders& readers,

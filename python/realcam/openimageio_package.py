@@ -71,13 +71,14 @@ class Decoder:
 
     def __init__(self, format: str, name: str) -> None:
         self._input = _opened(format, name)
+        self._opening = _text(self._input.geterror)  # of a broken header that it opened all the same
         self._specs: list[Any] = []
         most = _MOST_PARTS if format == "openexr" else 1  # WebP cannot go back
         while len(self._specs) < most and self._input.seek_subimage(len(self._specs), 0):
             self._specs.append(self._input.spec())
-        reason = _text(self._input.geterror)
+        end = _text(self._input.geterror)  # that there is no further part
         if not self._specs:
-            raise ValueError(reason)
+            raise ValueError(self._opening + end)
 
     @property
     def headers(self) -> list[dict[str, Any]]:
@@ -114,7 +115,7 @@ class Decoder:
             pixels = self._input.read_tiles(part, 0, *columns, begin, below, spec.z, spec.z + 1, *channels, format)
         else:
             pixels = self._input.read_scanlines(part, 0, begin, below, spec.z, *channels, format)
-        return pixels, _text(self._input.geterror)
+        return pixels, self._opening + _text(self._input.geterror)
 
 
 class Encoder:

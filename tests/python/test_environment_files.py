@@ -382,4 +382,6 @@ def test_webp_textures_and_zeros_behind_a_glb_s_json(tmp_path: Path) -> None:
     (tmp_path / "a.glb").write_bytes(struct.pack("<4sII", b"glTF", 2, 12 + len(chunks)) + chunks)
     scene = rc.Scene.load(tmp_path / "a.glb")
     assert not scene.warnings
-    np.testing.assert_array_equal(next(iter(scene.materials.values())).texture[..., :3], np.full((8, 16, 3), (0, 1, 0)))
+    np.testing.assert_array_equal(
+        next(iter(scene.materials.values())).texture[..., :3], np.full((8, 16, 3), (0, 255, 0))
+    )

@@ -9,9 +9,6 @@
 #include <set>
 #include <system_error>
 
-#include "../../error.hpp"
-#include "../text/printable.hpp"
-
 namespace realcam::io {
 namespace {
 
@@ -47,15 +44,6 @@ void InputRecording::end() {
 std::vector<std::string> recorded_inputs() {
     const std::lock_guard lock(inputs().mutex);
     return {inputs().paths.begin(), inputs().paths.end()};
-}
-
-void check_no_input(const std::string& output) {
-    std::error_code error;
-    if (!std::filesystem::exists(output, error)) return;
-    for (const std::string& input : recorded_inputs())
-        if (std::filesystem::equivalent(output, input, error))
-            throw InputError(in_quotes(output) + " is a file that the output is made from (" + printable(input) +
-                             "); another name is wanted");
 }
 
 std::string why_unreadable(const std::string& path) {

@@ -23,7 +23,4 @@ public:
 
 std::vector<std::string> recorded_inputs();
 
-/// Throws InputError if an output is the same file as a recorded input.
-void check_no_input(const std::string& output);
-
 }  // namespace realcam::io

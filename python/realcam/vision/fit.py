@@ -159,7 +159,7 @@ def fit_camera_model(
     is not of revolution both focal lengths and the principal point are fitted too; what no function of the angle can
     say stays in the residuals. distance_m: radius of the sphere about the centre of projection on which the matched
     points lie, infinity allowed; None: that of the plane in focus on the axis. Points of a plane lie further away to
-    the side, which lenses whose pupil moves with the angle, as fisheyes, see differently (0.1 pixels at close
+    the side, which lenses whose pupil moves with the angle, as fisheyes, view differently (0.1 pixels at close
     range). through: as Camera.project has it. Where the film gets less than a
     tenth of the light in its middle does not count.
     Of all coefficients of "opencv8" that fit the film to a hundredth of a pixel of the best, those are taken that come

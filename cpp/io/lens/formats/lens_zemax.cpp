@@ -34,7 +34,7 @@ private:
     /// Exporters of bare lists give surface 0 the glass of the first element, and let the list end at its last face.
     void complete_ends() {
         const bool begins_in_glass = !file_.surfaces.front().glass.empty() && !file_.surfaces.front().at_infinity;
-        const ZemaxSurface& end = file_.surfaces.back();
+        const ZemaxSurface end = file_.surfaces.back();  // a copy: surfaces are inserted below
         const bool ends_in_glass = !file_.surfaces[file_.surfaces.size() - 2].glass.empty() && end.glass.empty();
         if (begins_in_glass && ends_in_glass) {
             ZemaxSurface object;

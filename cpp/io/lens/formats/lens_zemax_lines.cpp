@@ -30,7 +30,9 @@ ZemaxReader::ZemaxReader(std::string_view text, const std::string& file, const L
 ZemaxFile ZemaxReader::read() {
     std::string_view line;
     while (lines_.next(line)) read_line(line);
-    if (out_.surfaces.size() < (out_.has_faces_alone ? 2 : 3))
+    const bool begins_with_face =
+        out_.has_faces_alone || (!out_.surfaces.empty() && !out_.surfaces.front().glass.empty());
+    if (out_.surfaces.size() < (begins_with_face ? 2 : 3))
         throw LensFileError("has " + std::to_string(out_.surfaces.size()) +
                                 " surfaces (SURF); an object, a lens and an image are wanted",
                             lines_.file());
