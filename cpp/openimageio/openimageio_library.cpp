@@ -81,7 +81,7 @@ private:
 
     std::unique_ptr<OIIO::Filesystem::IOMemReader> memory_;  // outlives the input
     std::unique_ptr<ImageInput> input_;
-    std::string opening_;  ///< what OpenImageIO said of the header: a broken file that it opened all the same
+    std::string opening_;  ///< message about the header of a broken file that was opened all the same
 };
 
 /// Encoders that notice a failed write print lines of their own, or let it pass: the file remembers it instead.

@@ -11,7 +11,7 @@ from typing import TypeVar
 from ._core import InputError
 
 Task = TypeVar("Task", bound=Hashable)
-# What a task's process returns: an error message, or an empty string. Exceptions of this package do not pickle in every
+# Result of a task: an error message, or an empty string. Exceptions of this package do not pickle in every
 # executor.
 Outcome = str
 

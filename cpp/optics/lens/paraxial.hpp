@@ -36,7 +36,7 @@ struct FirstOrder {
     double entrance_pupil_position, entrance_pupil_diameter;
     double exit_pupil_position, exit_pupil_diameter;
     double film_distance;
-    double image_index;  ///< of the medium before the film; the rear focal length is that times the effective one
+    double image_index;  ///< index of image space; the rear focal length is this times the effective one
 
     bool is_afocal() const { return std::isinf(effective_focal_length); }
 };

@@ -162,7 +162,7 @@ class JobFolder:
         return known, False
 
     def write_round(self, shot: int, number: int, round_: Round | None) -> None:
-        """None: the shot has no further round. Raises ImageFileError."""
+        """Writes a round, or, for None, that the shot has no further one. Raises ImageFileError."""
         about, arrays = (None, {}) if round_ is None else (dict(vars(round_)), {"counts": round_.counts})
         if about is not None:
             del about["counts"]
