@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -96,6 +97,18 @@ const std::vector<Seed>& seeds() {
     return all;
 }
 
+bool is_read(const Seed& seed, const std::string& path, std::span<const std::uint8_t> encoded_bytes) {
+    try {
+        image_io::read_image(path, encoded_bytes);
+        return true;
+    } catch (const ImageFileError& error) {
+        if (std::strchr(error.what(), '\n')) report("a message of several lines", "%s", error.what());
+    } catch (const std::exception& error) {
+        report("a picture raises something else", "%s: %s", seed.suffix.c_str(), error.what());
+    }
+    return false;
+}
+
 }  // namespace
 
 int fuzz_picture(const std::uint8_t* data, std::size_t size) {
@@ -105,14 +118,10 @@ int fuzz_picture(const std::uint8_t* data, std::size_t size) {
     for (int i = in.below(8); i >= 0; --i) mutate_bytes(in, bytes);
     const std::string path = FuzzFolder::get().write("seed." + seed.suffix, bytes);
     ++findings().files;
-    try {
-        const auto* first = reinterpret_cast<const std::uint8_t*>(bytes.data());
-        const bool in_memory = image_io::read_image("", {first, bytes.size()}).has_value();
-        const bool in_file = image_io::read_image(path, {}).has_value();
-        findings().files_read += in_memory || in_file;
-    } catch (const std::exception& error) {
-        report("a picture raises something", "%s: %s", seed.suffix.c_str(), error.what());
-    }
+    const auto* first = reinterpret_cast<const std::uint8_t*>(bytes.data());
+    const bool in_memory = is_read(seed, "", {first, bytes.size()});
+    const bool in_file = is_read(seed, path, {});
+    findings().files_read += in_memory || in_file;
     try {
         const Environment light = image_io::read_environment(path);
         for (const Color& p : light.pixels)
