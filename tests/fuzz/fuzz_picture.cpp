@@ -101,7 +101,7 @@ bool is_read(const Seed& seed, const std::string& path, std::span<const std::uin
     try {
         image_io::read_image(path, encoded_bytes);
         return true;
-    } catch (const ImageFileError& error) {
+    } catch (const Error& error) {
         if (std::strchr(error.what(), '\n')) report("a message of several lines", "%s", error.what());
     } catch (const std::exception& error) {
         report("a picture raises something else", "%s: %s", seed.suffix.c_str(), error.what());
