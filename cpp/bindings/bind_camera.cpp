@@ -145,7 +145,7 @@ void bind_film(py::module_& m) {
              "shift_mm"_a = std::pair(0.0, 0.0),
              R"(resolution: (columns, rows). shift_mm: of the film's middle from the lens's axis, right and up as the
 picture shows it: a shift lens's, or the principal point of a sensor, whose pixel is principal_point.
-Raises InputError.)")
+The lens, and Camera.position, stay where they are. Raises InputError.)")
         .def_readonly("width_mm", &Film::width_mm)
         .def_readonly("height_mm", &Film::height_mm)
         .def_property_readonly("resolution", [](const Film& f) { return std::pair(f.width, f.height); })
@@ -173,7 +173,9 @@ void bind_camera(py::module_& m) {
     py::class_<Camera> camera_class(
         m, "Camera",
         R"(Lens, film, pose and exposure. position is the middle of the film (the sensor), in front of which the whole
-lens is: entrance_pupil_position_m says from where the scene is seen.)");
+lens is: entrance_pupil_position_m says from where the scene is seen. Film(shift_mm=...) moves the film
+from there, and nothing else: film_centre_m is its middle then, and position and look_at stay on the
+lens's axis.)");
     def_hashable_value(camera_class);
     camera_class
         .def(py::init(&make_camera), "lens"_a, py::kw_only(), "film"_a = py::none(), "position"_a = Triple{0, 0, 0},
@@ -202,6 +204,9 @@ place for its lens.)")
         .def_property_readonly("entrance_pupil_position_m", &pupil_position,
                                R"((x, y, z), scene: the middle of the paraxial entrance pupil, from where the camera
 sees the scene; turning about it shows no parallax. None where it lies at infinity.)")
+        .def_property_readonly(
+            "film_centre_m", [](const Camera& c) { return triple_of(film_centre_m(c)); },
+            "(x, y, z), scene: the middle of the film, which is position but for Film(shift_mm=...).")
         .def_readonly("lens", &Camera::lens)
         .def_readonly("film", &Camera::film)
         .def_property_readonly("position", [](const Camera& c) { return triple_of(c.pose.position_m); })

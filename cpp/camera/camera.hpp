@@ -16,7 +16,8 @@ inline constexpr int kMaxResolution = 32768;
 struct Film {
     double width_mm = 36, height_mm = 24;
     int width = 960, height = 640;
-    Vec2<double> shift_mm = {0, 0};  ///< of its middle from the lens's axis, right and up as the picture shows it
+    /// Of its middle from the place that the camera's pose names, right and up as the picture shows it.
+    Vec2<double> shift_mm = {0, 0};
 
     bool operator==(const Film&) const = default;
 
@@ -34,9 +35,9 @@ struct Film {
     }
 };
 
-/// Where the camera is: the middle of its film, and its axes, in the scene (metres, right-handed, y up).
+/// Where the camera is, and its axes, in the scene (metres, right-handed, y up).
 struct Pose {
-    Vec3d position_m = {0, 0, 0};
+    Vec3d position_m = {0, 0, 0};  ///< of the middle of the film, as if Film::shift_mm were 0
     Vec3d look_at_m = {0, 0, -1};
     Vec3d up = {0, 1, 0};
 
@@ -134,7 +135,7 @@ void validate_ideal(const LensSystem& lens, CameraModel model);
 /// Where a camera is at a time.
 Pose pose_at(const Camera& camera, double time_s);
 
-/// The middle of its film when the shutter opens, m.
+/// Pose::position_m when the shutter opens.
 inline Vec3d position_when_open(const Camera& camera) {
     return pose_at(camera, camera.exposure().begin_s).position_m;
 }

@@ -48,4 +48,11 @@ std::optional<Vec3d> entrance_pupil_position_m(const Camera& camera) {
     return camera.pose.position_m - (0.001 * (lens.film_position() - pupil_mm)) * backward;
 }
 
+Vec3d film_centre_m(const Camera& camera) {
+    const camera_detail::Axes axes = camera_detail::axes_of(camera.pose);
+    const Vec2<double> shift = camera.film.shift_mm;
+    // The picture on the film is upside down, and right and left are exchanged.
+    return camera.pose.position_m - (0.001 * shift.x) * axes.right - (0.001 * shift.y) * axes.up;
+}
+
 }  // namespace realcam

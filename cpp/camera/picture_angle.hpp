@@ -23,4 +23,7 @@ FieldOfView field_of_view(const Camera& camera);
 /// where it lies at infinity.
 std::optional<Vec3d> entrance_pupil_position_m(const Camera& camera);
 
+/// The middle of the film in the scene, metres: Pose::position_m but for Film::shift_mm.
+Vec3d film_centre_m(const Camera& camera);
+
 }  // namespace REALCAM_NAMESPACE

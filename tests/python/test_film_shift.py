@@ -112,6 +112,25 @@ def test_films_say_their_shift_and_keep_it(tmp_path: Path) -> None:
     assert rc.vision.camera_json(camera_with(PART))["film_shift_mm"] == [12, 7]
 
 
+def test_the_shift_moves_the_film_and_not_the_lens() -> None:
+    # A camera on its side: the picture's right is up in the scene, and its top points to the left. Light from the
+    # right falls on the left half of the film, so that a film shifted to the picture's right lies below.
+    turned = {"position": (1, 2, 3), "look_at": (1, 2, 2), "up": (-1, 0, 0)}
+    lens = rc.Lens.load("double-gauss-50mm")
+    unshifted = rc.Camera(lens, film=rc.Film(10, 6, (100, 60)), **turned)
+    shifted = unshifted.replace(film=rc.Film(10, 6, (100, 60), shift_mm=(12, 7)))
+    assert unshifted.film_centre_m == unshifted.position == shifted.position == (1, 2, 3)
+    assert shifted.entrance_pupil_position_m == unshifted.entrance_pupil_position_m
+    np.testing.assert_allclose(shifted.film_centre_m, (1.007, 1.988, 3), rtol=0, atol=1e-12)
+    pose = rc.camera_json(shifted)["pose"]
+    assert pose["position_m"] == [1, 2, 3]
+    assert pose["film_centre_m"] == list(shifted.film_centre_m)
+    # The line from there through the entrance pupil goes on, but for the lens's distortion, to the picture's middle.
+    through = np.subtract(shifted.entrance_pupil_position_m, shifted.film_centre_m)
+    far = np.array([shifted.entrance_pupil_position_m + 1000 * through / np.linalg.norm(through)])
+    assert np.abs(shifted.project(far)[0] - (50, 30)).max() < 10
+
+
 @pytest.mark.picture_files
 def test_shot_files_and_the_command_line_shift_the_film(tmp_path: Path) -> None:
     shot = tmp_path / "shot.toml"

@@ -40,7 +40,8 @@ def camera_json(camera: Camera, fits: Iterable[CameraModelFit] = ()) -> dict[str
         "exposure_time_s": camera.exposure_time_s,
         "iso": camera.iso,
         "pose": {
-            "film_centre_m": list(camera.position),
+            "position_m": list(camera.position),
+            "film_centre_m": list(camera.film_centre_m),
             "entrance_pupil_m": list(camera.entrance_pupil_position_m or ()),
             "world_to_camera": {"rotation": rotation.tolist(), "translation_m": translation.tolist()},
             "camera_to_world_opengl": conventions.opengl_pose(rotation, translation).tolist(),
