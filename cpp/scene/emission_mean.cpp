@@ -58,7 +58,7 @@ std::vector<float> emission_means(const MeshView& mesh, Checkpoint& checkpoint) 
                 const Hit hit{0.0f, number, step * (static_cast<float>(column / 2) + off),
                               step * (static_cast<float>(row) + off)};
                 const Color colors = has_colors ? vertex_color(mesh, triangle, hit) : Color{1, 1, 1};
-                sum += colors * texture_color(mesh, map, surface_uv(mesh, triangle, hit).at);
+                sum += colors * texture_color(mesh, map, surface_uv(mesh, triangle, hit, map).at);
             }
         // Colours between black vertices are black, whatever the map.
         if (has_colors) all *= vertex_color(mesh, triangle, {0.0f, number, 1.0f / 3.0f, 1.0f / 3.0f});

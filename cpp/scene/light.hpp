@@ -23,7 +23,7 @@ REALCAM_INLINE Color emitted_radiance(const SceneView& scene, const AreaLight& l
     Color radiance = light.radiance;
     const TextureReference& map = mesh.materials[triangle.material].emission_texture;
     if (mesh.materials[triangle.material].vertex_emission) radiance *= vertex_color(mesh, triangle, place);
-    if (map.texture >= 0) radiance *= texture_color(mesh, map, surface_uv(mesh, triangle, place).at);
+    if (map.texture >= 0) radiance *= texture_color(mesh, map, surface_uv(mesh, triangle, place, map).at);
     if constexpr (scene_kind == SceneKind::any) radiance = opacity_at(mesh, triangle, place) * radiance;
     return radiance;
 }

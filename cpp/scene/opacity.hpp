@@ -13,9 +13,7 @@ REALCAM_INLINE float opacity_at(const MeshView& mesh, const Triangle& triangle, 
     const Material& material = mesh.materials[triangle.material];
     float opacity = material.opacity;
     const TextureReference& map = material.opacity_texture;
-    if (map.texture >= 0 && mesh.uvs)
-        opacity *= sample_texture_alpha(mesh.textures[map.texture],
-                                        transformed(map, surface_uv(mesh, triangle, hit).at), map.sampler);
+    if (map.texture >= 0 && mesh.uvs) opacity *= texture_alpha(mesh, triangle, hit, map);
     if (material.vertex_opacity) opacity *= vertex_alpha(mesh, triangle, hit);
     if (material.opacity_cutoff > 0.0f) return opacity >= material.opacity_cutoff ? 1.0f : 0.0f;
     return opacity;

@@ -33,6 +33,7 @@ MeshView RenderSpaceMesh::view() const {
     const std::vector<Vec3f>& normals = turned_normals_.empty() ? split_.normals() : turned_normals_;
     view.normals = normals.empty() ? nullptr : normals.data();
     view.uvs = split_.uvs().empty() ? nullptr : split_.uvs().data();
+    view.second_uvs = split_.second_uvs().empty() ? nullptr : split_.second_uvs().data();
     view.colors = split_.colors().empty() ? nullptr : split_.colors().data();
     view.materials = scene_.materials.data();
     view.textures = textures_.data();

@@ -39,6 +39,7 @@ struct Scene {
     std::vector<Vec3d> positions_m;
     std::vector<Vec3f> normals;  ///< empty, or one per position; (0, 0, 0): flat
     std::vector<Vec2f> uvs;      ///< empty, or one per position
+    std::vector<Vec2f> second_uvs;  ///< the same, of textures that lie by others (TextureReference::uv_set)
     std::vector<VertexColor> colors;  ///< empty (white), or one per position
     std::vector<Triangle> triangles;
     std::vector<Material> materials;

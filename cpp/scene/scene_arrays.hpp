@@ -38,6 +38,7 @@ MeshView with_copied_arrays(MeshView view, Copy&& copy) {
     replace(view.positions, view.vertex_count, copy);
     replace(view.normals, view.vertex_count, copy);
     replace(view.uvs, view.vertex_count, copy);
+    replace(view.second_uvs, view.vertex_count, copy);
     replace(view.colors, view.vertex_count, copy);
     replace(view.materials, view.material_count, copy);
     replace(view.emitters, view.emitter_count, copy);

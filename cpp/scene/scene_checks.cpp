@@ -86,6 +86,7 @@ private:
         };
         one_each(scene_.normals.size(), "normals");
         one_each(scene_.uvs.size(), "texture coordinates");
+        one_each(scene_.second_uvs.size(), "texture coordinates of the second set");
         one_each(scene_.colors.size(), "colours of vertices");
         for (std::size_t i = 0; i < scene_.normals.size(); ++i) {
             if (!finite(scene_.normals[i])) require(false, "normal", i, "must be finite numbers");
@@ -95,11 +96,11 @@ private:
             require(is_reflectance(c.color) && c.alpha >= 0 && c.alpha <= 1, "colour of vertex", i,
                     "must be finite and not negative, and its alpha lie between 0 and 1");
         }
-        for (std::size_t i = 0; i < scene_.uvs.size(); ++i) {
-            if (!std::isfinite(scene_.uvs[i].x) || !std::isfinite(scene_.uvs[i].y)) {
-                require(false, "texture coordinate", i, "must be finite numbers");
+        for (const std::vector<Vec2f>* uvs : {&scene_.uvs, &scene_.second_uvs})
+            for (std::size_t i = 0; i < uvs->size(); ++i) {
+                if (!std::isfinite((*uvs)[i].x) || !std::isfinite((*uvs)[i].y))
+                    require(false, "texture coordinate", i, "must be finite numbers");
             }
-        }
     }
 
     void check_triangles() const {
@@ -152,6 +153,8 @@ private:
             "texture " + std::to_string(reference.texture) + " does not exist; there are " + std::to_string(textures));
         require(reference.texture < 0 || !scene_.uvs.empty(), "material", material,
                 "has a texture, and the vertices have no texture coordinates");
+        require(reference.uv_set == 0 || (reference.uv_set == 1 && !scene_.second_uvs.empty()), "material", material,
+                "has a texture of a set of coordinates that the vertices do not have");
         require(finite(reference.to_u) && finite(reference.to_v), "material", material,
                 "a texture's transform must be finite numbers");
         const TextureSampler& s = reference.sampler;

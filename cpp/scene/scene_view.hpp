@@ -123,7 +123,7 @@ struct MeshView {
     const TrianglePlane* planes;  ///< one for each triangle
     const Vec3f* positions;
     const Vec3f* normals;  ///< per vertex, zero where the triangle is flat; null: all flat
-    const Vec2f* uvs;  ///< per vertex; null: none
+    const Vec2f *uvs, *second_uvs;  ///< per vertex; null: none
     const VertexColor* colors;  ///< per vertex; null: white
     const Material* materials;
     const TextureView* textures;

@@ -104,9 +104,10 @@ std::uint32_t SplitTriangles::add_vertex(const Triangle& t, std::array<double, 3
                                  static_cast<float>(weights[2])};
     // Not made a unit vector: the interpolation then stays the one over the whole triangle.
     if (!normals_.empty()) normals_.push_back(w[0] * normals_[v[0]] + w[1] * normals_[v[1]] + w[2] * normals_[v[2]]);
-    if (!uvs_.empty()) {
-        const Vec2f a = uvs_[v[0]], b = uvs_[v[1]], c = uvs_[v[2]];
-        uvs_.push_back({w[0] * a.x + w[1] * b.x + w[2] * c.x, w[0] * a.y + w[1] * b.y + w[2] * c.y});
+    for (std::vector<Vec2f>* uvs : {&uvs_, &second_uvs_}) {
+        if (uvs->empty()) continue;
+        const Vec2f a = (*uvs)[v[0]], b = (*uvs)[v[1]], c = (*uvs)[v[2]];
+        uvs->push_back({w[0] * a.x + w[1] * b.x + w[2] * c.x, w[0] * a.y + w[1] * b.y + w[2] * c.y});
     }
     if (!colors_.empty()) {
         const VertexColor &a = colors_[v[0]], &b = colors_[v[1]], &c = colors_[v[2]];
@@ -133,6 +134,7 @@ void SplitTriangles::copy_lists() {
     triangles_ = scene_.triangles;
     normals_ = scene_.normals;
     uvs_ = scene_.uvs;
+    second_uvs_ = scene_.second_uvs;
     colors_ = scene_.colors;
 }
 

@@ -29,6 +29,7 @@ public:
     const std::vector<Triangle>& triangles() const { return any() ? triangles_ : scene_.triangles; }
     const std::vector<Vec3f>& normals() const { return any() ? normals_ : scene_.normals; }
     const std::vector<Vec2f>& uvs() const { return any() ? uvs_ : scene_.uvs; }
+    const std::vector<Vec2f>& second_uvs() const { return any() ? second_uvs_ : scene_.second_uvs; }
     const std::vector<VertexColor>& colors() const { return any() ? colors_ : scene_.colors; }
 
     std::size_t position_count() const { return scene_.positions_m.size() + added_.size(); }
@@ -76,7 +77,7 @@ private:
     std::vector<Vec3d> added_;
     std::vector<Triangle> triangles_;
     std::vector<Vec3f> normals_;
-    std::vector<Vec2f> uvs_;
+    std::vector<Vec2f> uvs_, second_uvs_;
     std::vector<VertexColor> colors_;
     std::vector<std::uint32_t> parents_;
     std::uint32_t parent_ = 0;

@@ -78,14 +78,20 @@ struct SurfaceUv {
     Vec2f at, along_u, along_v;  ///< along_...: from the first corner to the second and the third
 };
 
-REALCAM_INLINE SurfaceUv surface_uv(const MeshView& mesh, const Triangle& triangle, Hit hit) {
-    if (!mesh.uvs) return {{0, 0}, {0, 0}, {0, 0}};
-    const Vec2f a = mesh.uvs[triangle.vertices[0]], b = mesh.uvs[triangle.vertices[1]],
-                c = mesh.uvs[triangle.vertices[2]];
+/// `uvs`: of the vertices; null: none.
+REALCAM_INLINE SurfaceUv surface_uv(const Vec2f* uvs, const Triangle& triangle, Hit hit) {
+    if (!uvs) return {{0, 0}, {0, 0}, {0, 0}};
+    const Vec2f a = uvs[triangle.vertices[0]], b = uvs[triangle.vertices[1]], c = uvs[triangle.vertices[2]];
     const float w = 1.0f - hit.u - hit.v;
     return {{w * a.x + hit.u * b.x + hit.v * c.x, w * a.y + hit.u * b.y + hit.v * c.y},
             {b.x - a.x, b.y - a.y},
             {c.x - a.x, c.y - a.y}};
+}
+
+/// Those by which a texture lies.
+REALCAM_INLINE SurfaceUv surface_uv(const MeshView& mesh, const Triangle& triangle, Hit hit,
+                                    const TextureReference& reference) {
+    return surface_uv(reference.uv_set == 0 ? mesh.uvs : mesh.second_uvs, triangle, hit);
 }
 
 REALCAM_INLINE Vec2f transformed(const TextureReference& reference, Vec2f uv) {
@@ -152,6 +158,16 @@ REALCAM_INLINE Color texture_color(const MeshView& mesh, const TextureReference&
     return color_of(mesh.textures[reference.texture], reference, uv, footprint);
 }
 
+/// The same of a texture that lies by second_uvs, as few do.
+REALCAM_GPU_CALL Color color_by_second_uvs(const MeshView& mesh, const Triangle& triangle, Hit hit,
+                                           const TextureReference& reference, Vec3f normal, Vec3f ray_direction,
+                                           Footprint footprint) {
+    const SurfaceUv uv = surface_uv(mesh.second_uvs, triangle, hit);
+    UvFootprint seen;
+    if (footprint.area > 0.0f) seen = uv_footprint(mesh, triangle, uv, hit, normal, ray_direction, footprint);
+    return texture_color(mesh, reference, uv.at, seen);
+}
+
 /// The colour of the vertices at a hit; white where they have none.
 REALCAM_INLINE Color vertex_color(const MeshView& mesh, const Triangle& triangle, Hit hit) {
     if (!mesh.colors) return {1, 1, 1};
@@ -166,6 +182,14 @@ REALCAM_INLINE float vertex_alpha(const MeshView& mesh, const Triangle& triangle
     const std::uint32_t* corner = triangle.vertices;
     return (1.0f - hit.u - hit.v) * mesh.colors[corner[0]].alpha + hit.u * mesh.colors[corner[1]].alpha +
            hit.v * mesh.colors[corner[2]].alpha;
+}
+
+/// The alpha of a texture that there is.
+REALCAM_INLINE float texture_alpha(const MeshView& mesh, const Triangle& triangle, Hit hit,
+                                   const TextureReference& reference) {
+    return sample_texture_alpha(mesh.textures[reference.texture],
+                                transformed(reference, surface_uv(mesh, triangle, hit, reference).at),
+                                reference.sampler);
 }
 
 /// The shading normal that a normal map gives. `normal`: without it; `scale`: of the map's x and y.
@@ -208,7 +232,22 @@ REALCAM_INLINE SurfacePoint point_on_mesh(const MeshView& mesh, Hit hit, Vec3f r
     const Vec3f geometric = (point.is_front ? 1.0f : -1.0f) * plane.normal;
     Vec3f normal = geometric;
     const bool is_textured = scene_kind != SceneKind::plain || material.diffuse_texture.texture >= 0;
-    const SurfaceUv uv = is_textured ? surface_uv(mesh, triangle, hit) : SurfaceUv{{0, 0}, {0, 0}, {0, 0}};
+    const SurfaceUv uv = is_textured ? surface_uv(mesh.uvs, triangle, hit) : SurfaceUv{{0, 0}, {0, 0}, {0, 0}};
+    Footprint footprint;
+    UvFootprint seen;
+    if (is_textured && mesh.uvs) {
+        footprint = footprint_of();
+        if (footprint.area > 0.0f) seen = uv_footprint(mesh, triangle, uv, hit, plane.normal, ray_direction, footprint);
+    }
+    const auto at_point = [&](const TextureReference& map) {
+        if (map.uv_set != 0) return color_by_second_uvs(mesh, triangle, hit, map, plane.normal, ray_direction, {});
+        return texture_color(mesh, map, uv.at);
+    };
+    const auto over_footprint = [&](const TextureReference& map) {
+        if (map.uv_set != 0)
+            return color_by_second_uvs(mesh, triangle, hit, map, plane.normal, ray_direction, footprint);
+        return texture_color(mesh, map, uv.at, seen);
+    };
     if (mesh.normals) {
         const Vec3f n = w * mesh.normals[corner[0]] + hit.u * mesh.normals[corner[1]] + hit.v * mesh.normals[corner[2]];
         const float n2 = dot(n, n);
@@ -219,14 +258,14 @@ REALCAM_INLINE SurfacePoint point_on_mesh(const MeshView& mesh, Hit hit, Vec3f r
         const auto mapped = [&](const TextureReference& map, float scale) {
             if (map.texture < 0 || !mesh.uvs) return smooth;
             const Vec3f outer = dot(smooth, plane.normal) < 0 ? -smooth : smooth;
-            return mapped_normal(mesh, triangle, map, scale, uv, outer);
+            return mapped_normal(mesh, triangle, map, scale,
+                                 map.uv_set == 0 ? uv : surface_uv(mesh.second_uvs, triangle, hit), outer);
         };
         point.clearcoat = material.clearcoat;
         point.coat_normal = smooth;
         if (point.clearcoat > 0.0f) {
-            point.clearcoat *= texture_color(mesh, material.clearcoat_texture, uv.at).r;
-            point.clearcoat_roughness =
-                material.clearcoat_roughness * texture_color(mesh, material.clearcoat_roughness_texture, uv.at).g;
+            point.clearcoat *= at_point(material.clearcoat_texture).r;
+            point.clearcoat_roughness = material.clearcoat_roughness * at_point(material.clearcoat_roughness_texture).g;
             point.coat_normal = mapped(material.clearcoat_normal_texture, material.clearcoat_normal_scale);
             if (dot(point.coat_normal, geometric) < 0) point.coat_normal = -point.coat_normal;
         }
@@ -238,30 +277,22 @@ REALCAM_INLINE SurfacePoint point_on_mesh(const MeshView& mesh, Hit hit, Vec3f r
     point.material = &material;
     point.diffuse = material.diffuse;
     point.emission = point.is_front ? material.emission : Color{0, 0, 0};
-    UvFootprint seen;
-    if (is_textured && mesh.uvs) {
-        const Footprint footprint = footprint_of();
-        if (footprint.area > 0.0f) seen = uv_footprint(mesh, triangle, uv, hit, plane.normal, ray_direction, footprint);
-    }
-    if (is_textured) point.diffuse *= texture_color(mesh, material.diffuse_texture, uv.at, seen);
+    if (is_textured) point.diffuse *= over_footprint(material.diffuse_texture);
     if constexpr (scene_kind != SceneKind::plain) {
         if (mesh.colors) point.diffuse *= vertex_color(mesh, triangle, hit);
         if (material.emits_on_both_sides) point.emission = material.emission;
-        point.emission *= texture_color(mesh, material.emission_texture, uv.at, seen);
+        point.emission *= over_footprint(material.emission_texture);
         if (material.vertex_emission) point.emission *= vertex_color(mesh, triangle, hit);
-        const Color rough_metal = texture_color(mesh, material.metallic_roughness_texture, uv.at);
-        point.specular = material.specular * texture_color(mesh, material.specular_texture, uv.at, seen);
+        const Color rough_metal = at_point(material.metallic_roughness_texture);
+        point.specular = material.specular * over_footprint(material.specular_texture);
         point.roughness = material.roughness * rough_metal.g;
         point.metallic = material.metallic * rough_metal.b;
         point.shininess = material.shininess * rough_metal.g;
         point.transmission = material.transmission;
-        if (point.transmission > 0.0f)
-            point.transmission *= texture_color(mesh, material.transmission_texture, uv.at).r;
+        if (point.transmission > 0.0f) point.transmission *= at_point(material.transmission_texture).r;
         point.specular_weight = material.specular_weight;
         const TextureReference& weights = material.specular_weight_texture;
-        if (weights.texture >= 0 && mesh.uvs)
-            point.specular_weight *=
-                sample_texture_alpha(mesh.textures[weights.texture], transformed(weights, uv.at), weights.sampler);
+        if (weights.texture >= 0 && mesh.uvs) point.specular_weight *= texture_alpha(mesh, triangle, hit, weights);
     }
     point.self_offset = plane.margin;
     return point;

@@ -9,7 +9,7 @@ namespace REALCAM_NAMESPACE {
 enum class TextureWrap : std::int8_t { repeat, clamp, mirror };
 
 /// What is seen between the middles of texels: what lies between them, or the nearest.
-enum class TextureFilter : std::int16_t { linear, nearest };
+enum class TextureFilter : std::int8_t { linear, nearest };
 
 /// How a picture is looked up: what glTF calls a sampler.
 struct TextureSampler {
@@ -25,6 +25,7 @@ struct TextureReference {
     /// The coordinates in the picture of a vertex at (u, v) are the dot products with (u, v, 1), v upwards in both.
     Vec3f to_u = {1, 0, 0}, to_v = {0, 1, 0};
     TextureSampler sampler = {};
+    std::int8_t uv_set = 0;  ///< 0: the vertices' uvs; 1: their second_uvs
 
     constexpr bool operator==(const TextureReference&) const = default;
 };

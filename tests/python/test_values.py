@@ -6,6 +6,7 @@ import copy
 import importlib
 import multiprocessing
 import pickle
+from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 
 import numpy as np
@@ -146,10 +147,10 @@ def test_a_pickle_of_another_format_is_refused() -> None:
 
 def test_what_makes_no_sense_is_not_unpickled() -> None:
     function, (kind, number, version, state) = floor_scene().__reduce__()
-    (positions, normals, uvs, colors, triangles, *rest), *others = state
+    (positions, normals, uvs, second_uvs, colors, triangles, *rest), *others = state
     beyond = np.full_like(triangles, 255)
     with pytest.raises(rc.RealcamError, match="does not exist"):
-        function(kind, number, version, ((positions, normals, uvs, colors, beyond, *rest), *others))
+        function(kind, number, version, ((positions, normals, uvs, second_uvs, colors, beyond, *rest), *others))
 
 
 @pytest.mark.parametrize("method", ["fork", "spawn", "forkserver"])
@@ -164,3 +165,14 @@ def test_goes_to_other_processes(method: str, monkeypatch: pytest.MonkeyPatch) -
         results = pool.map_async(tasks.photograph, [(lit, camera())] * 4).get(timeout=60)
     for image in results:
         assert image == here
+
+
+def test_functions_of_classes_travel_to_other_processes() -> None:
+    names = ["double-gauss-50mm", "tessar-50mm"]
+    with ProcessPoolExecutor(1, mp_context=multiprocessing.get_context("spawn")) as executor:
+        assert list(executor.map(rc.Lens.load, names)) == [rc.Lens.load(name) for name in names]
+    for function in (rc.Scene.load, rc.Scene.from_arrays, rc.Sensor.load, rc.Glass.named, rc.Film.for_lens):
+        assert pickle.loads(pickle.dumps(function)) is function
+        assert function.__doc__
+    with pytest.raises(rc.ArgumentError, match="nonsense"):
+        rc.Lens.load("double-gauss-50mm", nonsense=1)  # type: ignore[call-overload]

@@ -34,7 +34,8 @@ public:
         read_ior(out.ior, extensions["KHR_materials_ior"]["ior"]);
         read_free(out.emissive_strength, extensions["KHR_materials_emissive_strength"]["emissiveStrength"]);
         out.unlit = !extensions["KHR_materials_unlit"].is_null();
-        note_unmodelled(out);
+        has_occlusion_ |= bool(out.occlusion_texture);
+        number_uv_sets(out);
         return out;
     }
 
@@ -51,8 +52,9 @@ public:
                                       "; OPAQUE is taken");
         if (has_occlusion_)
             scene_.warnings.push_back("occlusionTexture is not modelled: the paths of light find what is hidden");
-        if (has_second_set_)
-            scene_.warnings.push_back("a second set of texture coordinates in one material is not modelled");
+        if (has_third_set_)
+            scene_.warnings.push_back(
+                "a third set of texture coordinates in one material is not modelled; its textures lie by the first");
     }
 
 private:
@@ -211,10 +213,17 @@ private:
         return view.is_number() ? first_of_view_.emplace(view.number(0), number).first->second : number;
     }
 
-    void note_unmodelled(const GltfMaterial& material) {
-        has_occlusion_ |= bool(material.occlusion_texture);
-        const std::vector<FileTexture> textures = material.textures();
-        for (const FileTexture& texture : textures) has_second_set_ |= texture.uv_set != textures.front().uv_set;
+    /// Lets textures point to the sets of coordinates that their meshes get, in place of those that the file has.
+    void number_uv_sets(GltfMaterial& material) {
+        std::vector<std::uint32_t>& sets = material.uv_sets;
+        for (FileTexture* texture : material.textures()) {
+            const auto known = std::find(sets.begin(), sets.end(), texture->uv_set);
+            const auto number = static_cast<std::uint32_t>(known - sets.begin());
+            const bool is_third = known == sets.end() && sets.size() == 2;
+            if (known == sets.end() && !is_third) sets.push_back(texture->uv_set);
+            texture->uv_set = is_third ? 0 : number;
+            has_third_set_ |= is_third;
+        }
     }
 
     FileScene& scene_;
@@ -223,7 +232,7 @@ private:
     std::map<double, std::int32_t> first_of_view_;
     std::size_t out_of_range_ = 0, bad_transforms_ = 0, bad_samplers_ = 0;
     std::string bad_alpha_mode_;  // the first, in quotes
-    bool has_occlusion_ = false, has_second_set_ = false;
+    bool has_occlusion_ = false, has_third_set_ = false;
 };
 
 }  // namespace

@@ -119,16 +119,18 @@ void GltfMeshes::check_promise(double bytes) const {
 
 std::uint32_t GltfMeshes::vertices_of(const Primitive& primitive) {
     const Json& attributes = primitive.json["attributes"];
-    const std::uint32_t set = scene_.materials[primitive.material].uv_set();
-    const Json& uvs = attributes["TEXCOORD_" + std::to_string(set)];
+    const std::vector<std::uint32_t> sets = scene_.materials[primitive.material].uv_sets();
+    const auto uvs_of = [&](std::size_t i) -> const Json& {
+        return attributes[i < sets.size() ? "TEXCOORD_" + std::to_string(sets[i]) : ""];
+    };
     constexpr std::size_t none = static_cast<std::size_t>(-1);
-    const Attributes key{attributes["POSITION"].index(none), attributes["NORMAL"].index(none), uvs.index(none),
-                         attributes["COLOR_0"].index(none)};
+    const Attributes key{attributes["POSITION"].index(none), attributes["NORMAL"].index(none), uvs_of(0).index(none),
+                         uvs_of(1).index(none), attributes["COLOR_0"].index(none)};
     const bool may_share = !primitive.joints && primitive.json["targets"].is_null();
     if (const auto known = shared_vertices_.find(key); may_share && known != shared_vertices_.end())
         return known->second;
     const auto number = static_cast<std::uint32_t>(scene_.vertices.size());
-    scene_.vertices.push_back(read_vertices(primitive, uvs));
+    scene_.vertices.push_back(read_vertices(primitive, uvs_of(0), uvs_of(1)));
     if (may_share) shared_vertices_.emplace(key, number);
     return number;
 }
@@ -139,7 +141,7 @@ void GltfMeshes::check_count(std::size_t count, std::size_t vertices, const std:
                        " vertices; one for each is wanted");
 }
 
-FileVertices GltfMeshes::read_vertices(const Primitive& primitive, const Json& uvs) {
+FileVertices GltfMeshes::read_vertices(const Primitive& primitive, const Json& uvs, const Json& second_uvs) {
     const Json& attributes = primitive.json["attributes"];
     const std::string& label = primitive.label;
     FileVertices out;
@@ -149,10 +151,11 @@ FileVertices GltfMeshes::read_vertices(const Primitive& primitive, const Json& u
         out.normals = vectors_of<float>(accessors_.numbers(attributes["NORMAL"], "VEC3", label + ": NORMAL"));
         check_count(out.normals.size(), count, label + ": NORMAL");
     }
-    if (!uvs.is_null()) {
-        const std::vector<float> numbers = accessors_.numbers(uvs, "VEC2", label + ": TEXCOORD");
+    for (const auto& [json, list] : {std::pair(&uvs, &out.uvs), std::pair(&second_uvs, &out.second_uvs)}) {
+        if (json->is_null()) continue;
+        const std::vector<float> numbers = accessors_.numbers(*json, "VEC2", label + ": TEXCOORD");
         check_count(numbers.size() / 2, count, label + ": TEXCOORD");
-        for (std::size_t i = 0; i < count; ++i) out.uvs.push_back({numbers[2 * i], 1 - numbers[2 * i + 1]});
+        for (std::size_t i = 0; i < count; ++i) list->push_back({numbers[2 * i], 1 - numbers[2 * i + 1]});
     }
     if (!attributes["COLOR_0"].is_null()) {
         out.colours = read_colours(attributes["COLOR_0"], label + ": COLOR_0");

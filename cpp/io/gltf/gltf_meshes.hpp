@@ -44,7 +44,7 @@ private:
     void check_compression(const Primitive& primitive) const;
     std::uint32_t material_of(const Json& primitive, const std::string& label);
     std::uint32_t vertices_of(const Primitive& primitive);
-    FileVertices read_vertices(const Primitive& primitive, const Json& uvs);
+    FileVertices read_vertices(const Primitive& primitive, const Json& uvs, const Json& second_uvs);
     std::vector<VertexColor> read_colours(const Json& reference, const std::string& where);
     void add_targets(const Primitive& primitive, FileVertices& vertices);
     std::vector<Triangle> read_triangles(const Primitive& primitive, std::size_t vertices);
@@ -52,8 +52,8 @@ private:
     void check_memory(const FileMesh& mesh);
     void check_count(std::size_t count, std::size_t vertices, const std::string& where) const;
 
-    /// Numbers of the accessors of positions, normals, texture coordinates and colours.
-    using Attributes = std::tuple<std::size_t, std::size_t, std::size_t, std::size_t>;
+    /// Numbers of the accessors of positions, normals, both sets of texture coordinates, and colours.
+    using Attributes = std::tuple<std::size_t, std::size_t, std::size_t, std::size_t, std::size_t>;
 
     const GltfDocument& document_;
     GltfAccessors& accessors_;

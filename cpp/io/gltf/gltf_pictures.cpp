@@ -43,8 +43,8 @@ void fetch_pictures(FileScene& scene, const GltfDocument& document, GltfBuffers&
     for (std::size_t m = 0; m < scene.materials.size(); ++m) {
         const auto* material = std::get_if<GltfMaterial>(&scene.materials[m].content);
         if (!material || !is_used[m]) continue;
-        for (const FileTexture& texture : material->textures()) {
-            const auto number = static_cast<std::size_t>(texture.picture);
+        for (const FileTexture* texture : material->textures()) {
+            const auto number = static_cast<std::size_t>(texture->picture);
             if (number >= images.size() || is_fetched[number]) continue;
             is_fetched[number] = true;
             FilePicture& picture = scene.pictures[number];

@@ -24,12 +24,11 @@ struct FileMaterial {
         return gltf ? gltf->colour_texture() : FileTexture{};
     }
 
-    /// The set of a glTF mesh's texture coordinates that its vertices get: that of the first texture. Textures of
-    /// another set have no coordinates.
-    std::uint32_t uv_set() const {
+    /// The sets of a glTF mesh's texture coordinates by which its textures lie, first those of the first texture: its
+    /// vertices get them as uvs and second_uvs.
+    std::vector<std::uint32_t> uv_sets() const {
         const auto* gltf = std::get_if<GltfMaterial>(&content);
-        const std::vector<FileTexture> textures = gltf ? gltf->textures() : std::vector<FileTexture>();
-        return textures.empty() ? 0 : textures.front().uv_set;
+        return gltf && !gltf->uv_sets.empty() ? gltf->uv_sets : std::vector<std::uint32_t>{0};
     }
 };
 

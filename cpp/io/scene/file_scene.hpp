@@ -18,6 +18,7 @@ struct FileVertices {
     std::vector<Vec3d> positions;
     std::vector<Vec3f> normals;  ///< empty, or one per position; (0, 0, 0): none
     std::vector<Vec2f> uvs;      ///< empty, or one per position, as the file has them but for v, which is upwards
+    std::vector<Vec2f> second_uvs;  ///< the same
     std::vector<VertexColor> colours;  ///< empty, or one per position; linear
     std::vector<std::uint32_t> places;  ///< empty, or one per position: see Smoothing
 };

@@ -8,7 +8,7 @@ namespace realcam::io {
 /// A picture for a property of a material.
 struct FileTexture {
     std::int32_t picture = -1;  ///< number in FileScene::pictures; -1: none
-    std::uint32_t uv_set = 0;   ///< of a glTF mesh
+    std::uint32_t uv_set = 0;   ///< 0: FileVertices::uvs; 1: second_uvs
     TextureTransform transform;
     TextureSampler sampler = {};
 
@@ -16,6 +16,7 @@ struct FileTexture {
     TextureReference reference(std::int32_t texture) const {
         TextureReference out = transform.of(texture);
         out.sampler = sampler;
+        out.uv_set = static_cast<std::int8_t>(uv_set);
         return out;
     }
     /// Whether both lie alike on a surface.

@@ -2,17 +2,34 @@
 
 namespace realcam::io {
 
-std::vector<FileTexture> GltfMaterial::textures() const {
-    const FileTexture& model =
-        specular_glossiness ? specular_glossiness->specular_glossiness_texture : metallic_roughness_texture;
-    std::vector<FileTexture> all = {colour_texture(),         model,
-                                    normal_texture,           emissive_texture,
-                                    transmission.texture,     volume.thickness_texture,
-                                    clearcoat.texture,        clearcoat.roughness_texture,
-                                    clearcoat.normal_texture, specular.texture,
-                                    specular.color_texture};
-    std::erase_if(all, [](const FileTexture& texture) { return !texture; });
+namespace {
+
+template <class Material, class Texture>
+std::vector<Texture*> textures_of(Material& m) {
+    auto& gloss = m.specular_glossiness;
+    std::vector<Texture*> all = {gloss ? &gloss->diffuse_texture : &m.base_color_texture,
+                                 gloss ? &gloss->specular_glossiness_texture : &m.metallic_roughness_texture,
+                                 &m.normal_texture,
+                                 &m.emissive_texture,
+                                 &m.transmission.texture,
+                                 &m.volume.thickness_texture,
+                                 &m.clearcoat.texture,
+                                 &m.clearcoat.roughness_texture,
+                                 &m.clearcoat.normal_texture,
+                                 &m.specular.texture,
+                                 &m.specular.color_texture};
+    std::erase_if(all, [](const FileTexture* texture) { return !*texture; });
     return all;
+}
+
+}  // namespace
+
+std::vector<const FileTexture*> GltfMaterial::textures() const {
+    return textures_of<const GltfMaterial, const FileTexture>(*this);
+}
+
+std::vector<FileTexture*> GltfMaterial::textures() {
+    return textures_of<GltfMaterial, FileTexture>(*this);
 }
 
 }  // namespace realcam::io

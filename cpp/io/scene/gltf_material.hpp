@@ -84,9 +84,12 @@ struct GltfMaterial {
     FileTexture colour_texture() const {
         return specular_glossiness ? specular_glossiness->diffuse_texture : base_color_texture;
     }
+    std::vector<std::uint32_t> uv_sets;  ///< n of TEXCOORD_n, to which FileTexture::uv_set points: at most two
+
     /// Those that there are and that count, the colour's first: no occlusion, and of two models that which replaces the
     /// other.
-    std::vector<FileTexture> textures() const;
+    std::vector<const FileTexture*> textures() const;
+    std::vector<FileTexture*> textures();
 };
 
 }  // namespace realcam::io

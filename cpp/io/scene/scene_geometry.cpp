@@ -26,7 +26,8 @@ public:
         : scene_(scene), part_(part), file_(part.file), leaves_out_(leaves_out) {
         for (const FileMesh& mesh : file_.meshes) {
             any_normals_ |= !vertices_of(mesh).normals.empty();
-            any_uvs_ |= !vertices_of(mesh).uvs.empty();
+            any_second_uvs_ |= !vertices_of(mesh).second_uvs.empty();
+            any_uvs_ |= any_second_uvs_ || !vertices_of(mesh).uvs.empty();
             any_colours_ |= !vertices_of(mesh).colours.empty();
             any_places_ |= !vertices_of(mesh).places.empty();
         }
@@ -64,7 +65,8 @@ private:
             triangles += mesh.triangles.size();
             vertices += std::min(vertices_of(mesh).positions.size(), 3 * mesh.triangles.size());
         });
-        const std::size_t per_vertex = sizeof(Vec3d) + any_normals_ * sizeof(Vec3f) + any_uvs_ * sizeof(Vec2f) +
+        const std::size_t per_vertex = sizeof(Vec3d) + any_normals_ * sizeof(Vec3f) +
+                                       (any_uvs_ + any_second_uvs_) * sizeof(Vec2f) +
                                        any_colours_ * sizeof(VertexColor);
         const std::size_t bytes = vertices * per_vertex + triangles * (sizeof(Triangle) + sizeof(std::uint32_t));
         constexpr std::size_t kAlwaysThere = 1 << 24;
@@ -75,6 +77,7 @@ private:
         scene_.positions_m.reserve(vertices);
         if (any_normals_) scene_.normals.reserve(vertices);
         if (any_uvs_) scene_.uvs.reserve(vertices);
+        if (any_second_uvs_) scene_.second_uvs.reserve(vertices);
         if (any_colours_) scene_.colors.reserve(vertices);
         scene_.triangles.reserve(triangles);
         smoothing_.groups.reserve(triangles);
@@ -83,7 +86,10 @@ private:
     void add_mesh(const FileMesh& mesh, const Affine<double>& transform) {
         const FileVertices& vertices = vertices_of(mesh);
         if (new_numbers_.size() < vertices.positions.size()) new_numbers_.resize(vertices.positions.size(), kUnset);
-        if (add_triangles(mesh, transform) && vertices.uvs.empty()) ++uncovered_;
+        const bool is_textured = add_triangles(mesh, transform);
+        const bool has_two_sets =
+            !mesh.triangles.empty() && file_.materials[mesh.triangles.front().material].uv_sets().size() > 1;
+        uncovered_ += (is_textured && vertices.uvs.empty()) || (has_two_sets && vertices.second_uvs.empty());
     }
 
     /// Returns whether any of them has a texture.
@@ -126,6 +132,8 @@ private:
         if (any_normals_)
             scene_.normals.push_back(from.normals.empty() ? Vec3f{0, 0, 0} : normal(from.normals[number], transform));
         if (any_uvs_) scene_.uvs.push_back(from.uvs.empty() ? Vec2f{0, 0} : uv(from.uvs[number]));
+        if (any_second_uvs_)
+            scene_.second_uvs.push_back(from.second_uvs.empty() ? Vec2f{0, 0} : uv(from.second_uvs[number]));
         if (any_colours_) scene_.colors.push_back(from.colours.empty() ? VertexColor{} : from.colours[number]);
         if (any_places_) smoothing_.places.push_back(from.places.empty() ? number : from.places[number]);
         return known;
@@ -152,7 +160,7 @@ private:
     const FileScene& file_;
     const LeavesOut& leaves_out_;
     bool left_out_ = false;
-    bool any_normals_ = false, any_uvs_ = false, any_colours_ = false, any_places_ = false;
+    bool any_normals_ = false, any_uvs_ = false, any_second_uvs_ = false, any_colours_ = false, any_places_ = false;
     Smoothing smoothing_;
     std::vector<std::uint32_t> new_numbers_;  // in scene_, of the vertices of the mesh at work
     std::size_t bad_normals_ = 0, bad_uvs_ = 0, uncovered_ = 0;

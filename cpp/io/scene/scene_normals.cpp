@@ -127,6 +127,14 @@ private:
     }
 
     /// Replaces a corner's vertex by one that has this normal.
+    /// Adds an element again, where a list has any.
+    template <class T>
+    static void repeat(std::vector<T>& list, std::uint32_t source) {
+        if (list.empty()) return;
+        const T element = list[source];
+        list.push_back(element);
+    }
+
     void set_normal(std::uint32_t& vertex, Vec3f normal) {
         for (const Made& made : made_) {
             if (made.source != vertex || made.normal != normal) continue;
@@ -142,14 +150,9 @@ private:
             const Vec3d position = scene_.positions_m[source];
             scene_.positions_m.push_back(position);
             scene_.normals.push_back(normal);
-            if (!scene_.uvs.empty()) {
-                const Vec2f uv = scene_.uvs[source];
-                scene_.uvs.push_back(uv);
-            }
-            if (!scene_.colors.empty()) {
-                const VertexColor color = scene_.colors[source];
-                scene_.colors.push_back(color);
-            }
+            repeat(scene_.uvs, source);
+            repeat(scene_.second_uvs, source);
+            repeat(scene_.colors, source);
         }
         made_.push_back({source, vertex, normal});
     }

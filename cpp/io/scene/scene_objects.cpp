@@ -182,16 +182,19 @@ std::vector<Instance> SceneObjects::finish(const Scene& materials) {
     return instances;
 }
 
-void forget_textures(Material& material) {
-    for (const auto member : kMaterialTextures) material.*member = {};
+/// Of textures that lie by coordinates that the vertices of the scene do not have.
+void forget_textures(Material& material, const Scene& scene) {
+    for (const auto member : kMaterialTextures) {
+        TextureReference& texture = material.*member;
+        if ((texture.uv_set == 0 ? scene.uvs : scene.second_uvs).empty()) texture = {};
+    }
 }
 
 void keep_all_materials(Scene& scene, Scene from) {
     scene.materials = std::move(from.materials);
     scene.material_names = std::move(from.material_names);
     scene.textures = std::move(from.textures);
-    if (scene.uvs.empty())
-        for (Material& material : scene.materials) forget_textures(material);
+    for (Material& material : scene.materials) forget_textures(material, scene);
 }
 
 void keep_used_materials(Scene& scene, const Scene& from) {
@@ -209,7 +212,7 @@ void keep_used_materials(Scene& scene, const Scene& from) {
         triangle.material = material->second;
     }
     for (Material& material : used) {
-        if (scene.uvs.empty()) forget_textures(material);
+        forget_textures(material, scene);
         for (const auto member : kMaterialTextures) {
             std::int32_t& number = (material.*member).texture;
             if (number < 0) continue;

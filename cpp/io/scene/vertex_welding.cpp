@@ -43,7 +43,8 @@ void weld_vertices(Scene& scene, Checkpoint& checkpoint) {
         std::uint64_t state = hash_of(scene.positions_m[i]);
         const auto add = [&](float value) { state = mix(state, std::bit_cast<std::uint32_t>(value + 0.0f)); };
         if (!scene.normals.empty()) add(scene.normals[i].x), add(scene.normals[i].y), add(scene.normals[i].z);
-        if (!scene.uvs.empty()) add(scene.uvs[i].x), add(scene.uvs[i].y);
+        for (const std::vector<Vec2f>* uvs : {&scene.uvs, &scene.second_uvs})
+            if (!uvs->empty()) add((*uvs)[i].x), add((*uvs)[i].y);
         if (!scene.colors.empty())
             add(scene.colors[i].color.r), add(scene.colors[i].color.g), add(scene.colors[i].alpha);
         return mix(state, state >> 32);
@@ -52,6 +53,7 @@ void weld_vertices(Scene& scene, Checkpoint& checkpoint) {
         return same(scene.positions_m[a], scene.positions_m[b]) &&
                (scene.normals.empty() || same(scene.normals[a], scene.normals[b])) &&
                (scene.uvs.empty() || same(scene.uvs[a], scene.uvs[b])) &&
+               (scene.second_uvs.empty() || same(scene.second_uvs[a], scene.second_uvs[b])) &&
                (scene.colors.empty() || scene.colors[a] == scene.colors[b]);
     };
     const std::vector<std::uint32_t> first = first_equal(scene.positions_m.size(), hash, equal, checkpoint);
@@ -75,6 +77,7 @@ void weld_vertices(Scene& scene, Checkpoint& checkpoint) {
     keep(scene.positions_m, kept);
     keep(scene.normals, kept);
     keep(scene.uvs, kept);
+    keep(scene.second_uvs, kept);
     keep(scene.colors, kept);
 }
 

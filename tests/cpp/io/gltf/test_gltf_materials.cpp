@@ -188,13 +188,13 @@ TEST_CASE("glTF: every texture has its transform and its set of coordinates") {
         return info(picture, R"("texCoord":1,"extensions":{"KHR_texture_transform":{"scale":[)" + scale + ",1]}}");
     };
     const auto all_of = [&](const std::string& json, int count) {
-        const std::vector<FileTexture> textures = file.material(json).textures();
-        CHECK(textures.size() == static_cast<std::size_t>(count));
-        for (const FileTexture& texture : textures) {
-            CHECK(texture.uv_set == 1);
-            CHECK(texture.transform(1, 0).x == static_cast<float>(texture.picture));
+        const GltfMaterial material = file.material(json);
+        CHECK(material.textures().size() == static_cast<std::size_t>(count));
+        for (const FileTexture* texture : material.textures()) {
+            CHECK(texture->uv_set == 0);
+            CHECK(texture->transform(1, 0).x == static_cast<float>(texture->picture));
         }
-        CHECK(file.scene.materials[0].uv_set() == 1);
+        CHECK(file.scene.materials[0].uv_sets() == std::vector<std::uint32_t>{1});
         CHECK(file.scene.warnings.empty());
     };
     // One statement each: the order in which the operands of a sum are computed is not fixed.
@@ -217,23 +217,28 @@ TEST_CASE("glTF: every texture has its transform and its set of coordinates") {
     // texCoord of the transform overrides that of the texture.
     const GltfMaterial m = file.material(R"("normalTexture":)" + info(0, R"("texCoord":1,
         "extensions":{"KHR_texture_transform":{"texCoord":0}})"));
-    CHECK(m.normal_texture.uv_set == 0);
+    CHECK(m.uv_sets == std::vector<std::uint32_t>{0});
 }
 
-TEST_CASE("glTF: vertices get the set of coordinates of the material's first texture") {
+TEST_CASE("glTF: vertices get the sets of coordinates of the material's textures") {
     GltfFile file;
     const auto uvs = [&](const std::string& json) {
         const std::string text = gltf(R"([{"mesh":0}])", "[0]", ",\"materials\":[{" + json + R"(}],
             "textures":[{"source":0}],"images":[{"uri":"a.png"}])",
                                       R"(,"NORMAL":1,"TEXCOORD_1":2)");
         Checkpoint checkpoint;
-        return io::read_gltf(file.folder.write("u.gltf", text), checkpoint).vertices[0].uvs.size();
+        const io::FileVertices vertices = io::read_gltf(file.folder.write("u.gltf", text), checkpoint).vertices[0];
+        return std::pair(vertices.uvs.size(), vertices.second_uvs.size());
     };
-    CHECK(uvs(R"("normalTexture":)" + info(0)) == 0);
-    CHECK(uvs(R"("normalTexture":)" + info(0, R"("texCoord":1)")) == 3);
-    CHECK(uvs(R"("pbrMetallicRoughness":{"baseColorTexture":)" + info(0) + R"(},"normalTexture":)" +
-              info(0, R"("texCoord":1)")) == 0);
-    CHECK(uvs(R"("occlusionTexture":)" + info(0, R"("texCoord":1)")) == 0);  // it is not looked at
+    const auto sizes = [](std::size_t first, std::size_t second) { return std::pair(first, second); };
+    const std::string base = R"("pbrMetallicRoughness":{"baseColorTexture":)";
+    const std::string set1 = info(0, R"("texCoord":1)"), set2 = info(0, R"("texCoord":2)");
+    CHECK(uvs(R"("normalTexture":)" + info(0)) == sizes(0, 0));
+    CHECK(uvs(R"("normalTexture":)" + set1) == sizes(3, 0));
+    CHECK(uvs(base + info(0) + R"(},"normalTexture":)" + set1) == sizes(0, 3));
+    CHECK(uvs(base + set1 + R"(},"normalTexture":)" + set2) == sizes(3, 0));
+    CHECK(uvs(base + set1 + R"(},"normalTexture":)" + set1) == sizes(3, 0));
+    CHECK(uvs(R"("occlusionTexture":)" + set1) == sizes(0, 0));  // it is not looked at
 }
 
 TEST_CASE("glTF: what is not modelled is named once") {
@@ -253,13 +258,16 @@ TEST_CASE("glTF: what is not modelled is named once") {
     CHECK(file.warned("occlusionTexture is not modelled"));
     CHECK(file.scene.warnings.size() == 7);  // and not one for each material
 
-    file.material(R"("pbrMetallicRoughness":{"baseColorTexture":)" + info(0) + R"(},"normalTexture":)" +
-                  info(1, R"("texCoord":1)") + R"(},{"normalTexture":)" + info(1, R"("texCoord":1)"));
-    CHECK(file.warned("a second set of texture coordinates in one material is not modelled"));
+    const GltfMaterial three =
+        file.material(R"("pbrMetallicRoughness":{"baseColorTexture":)" + info(0) + R"(},"normalTexture":)" +
+                      info(1, R"("texCoord":1)") + R"(,"emissiveTexture":)" + info(1, R"("texCoord":2)"));
+    CHECK(file.warned("a third set of texture coordinates in one material is not modelled"));
     CHECK(file.scene.warnings.size() == 1);
+    CHECK(three.normal_texture.uv_set == 1);
+    CHECK(three.emissive_texture.uv_set == 0);
     file.material(R"("pbrMetallicRoughness":{"baseColorTexture":)" + info(0) + R"(}},{"normalTexture":)" +
                   info(1, R"("texCoord":1)"));
-    CHECK(file.scene.warnings.empty());  // a set for each material, and no second one
+    CHECK(file.scene.warnings.empty());  // a set for each material
 }
 
 TEST_CASE("glTF: numbers that no material can have become the nearest, with one warning") {
