@@ -52,7 +52,7 @@ public:
         const ReachedNoise reached =
             taken([&](Session& session, const Progress& progress) { return session.add_until(goal, progress); });
         return py::dict("noise"_a = reached.noise, "is_reached"_a = reached.is_reached,
-                        "spp_wanted"_a = reached.samples_wanted);
+                        "spp_wanted"_a = reached.samples_wanted, "shortfall"_a = shortfall_of(reached, goal));
     }
 
     py::dict picture() {

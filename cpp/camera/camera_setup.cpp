@@ -1,6 +1,7 @@
 #include "camera_setup.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <string>
 #include <tuple>
@@ -9,6 +10,7 @@
 #include "../math/uniform_keys.hpp"
 #include "../optics/lens/exposure.hpp"
 #include "exposed_rays.hpp"
+#include "field_of_view.hpp"
 #include "lens_way.hpp"
 
 namespace realcam {
@@ -175,6 +177,17 @@ FilmArea CameraSetup::film_area() const {
     const Vec2<double> middle = {-film.shift_mm.x, -film.shift_mm.y};
     return {{middle.x - 0.5 * film.width_mm, middle.y - 0.5 * film.height_mm},
             {middle.x + 0.5 * film.width_mm, middle.y + 0.5 * film.height_mm}};
+}
+
+double CameraSetup::widest_angle() const {
+    const LensSystem& lens = camera_.lens;
+    if (lens.is_rotational() && (has_real_pupil(camera_.model) || map_)) {
+        const double angle = widest_field_angle(lens, film_radius());
+        if (std::isfinite(angle)) return angle;
+    }
+    const LensSystem on_axis = centred(lens);
+    const ThinLens thin = thin_lens_of(on_axis, first_order(on_axis, lens.wavelength_nm));
+    return std::atan(film_radius() / std::fabs(static_cast<double>(thin.image_distance)));
 }
 
 void CameraSetup::set_map(const PupilTracer& tracer, const CameraSetup* last) {

@@ -39,6 +39,8 @@ public:
     bool traces_lights() const {
         return has_real_pupil(camera_.model) && camera_.model != CameraModel::polynomial_lens;
     }
+    /// Between the lens's axis and the farthest from it that the film sees, rad.
+    double widest_angle() const;
     /// Of such a camera, if its lens is one of revolution; else null.
     const PupilEntries* pupil_entries() const { return pupil_entries_.get(); }
 

@@ -193,6 +193,11 @@ private:
         return image;
     }
 
+    double least_lamp_share() const override {
+        return realcam::least_lamp_share(scene_.placed().view(),
+                                         setup_->view(scene_.placed().origin_m(), scene_.placed().moves()), *setup_,
+                                         settings().lights_traced());
+    }
     std::vector<float> develop_traced() override {
         return traced_exposure(front().download_splats(), camera().exposure_time_s);
     }

@@ -172,6 +172,9 @@ private:
         return image;
     }
 
+    double least_lamp_share() const override {
+        return realcam::least_lamp_share(scene_->placed().view(), camera_view_, *setup_, settings().lights_traced());
+    }
     std::vector<float> develop_traced() override { return traced_exposure(splats_, camera().exposure_time_s); }
 
     std::vector<std::int64_t> count_samples() override { return samples_of(film_); }

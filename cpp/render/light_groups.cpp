@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "../scene/bounding_box.hpp"
@@ -13,9 +14,9 @@ namespace {
 /// Largest share of a pixel's samples that hit a lamp which is traced. If more hit it, samples of pixels have less
 /// noise than samples from the lamp would.
 constexpr double kLargestShare = 0.8;
-/// Share of the band between neighbouring groups that emits, from which they are one surface in focus. A pixel that is
-/// partly beside one group sees the next.
-constexpr double kSurfaceShare = 0.25;
+/// Depth up to which an emitter continues another, as a multiple of the radius in which a pixel sees it. So surfaces
+/// are one up to a slope of 76 degrees to the line of sight, and a wall behind a lamp is apart from it.
+constexpr double kDepth = 4;
 
 /// Region that the samples of one pixel see at a distance: the blur's disc, swept over the pixel. m.
 struct Footprint {
@@ -28,13 +29,61 @@ struct Footprint {
     double size() const { return 2 * (blur + pixel); }
 };
 
+/// Signed area of the triangle of a point O with O + a and O + b, as far as it lies in the circle of this radius about
+/// O. a and b are at right angles to the axis, about which the turn from a to b counts as positive.
+double area_in_circle(Vec3d a, Vec3d b, Vec3d axis, double radius) {
+    const auto double_area = [&](Vec3d from, Vec3d to) { return dot(cross(from, to), axis); };
+    const auto sector = [&](Vec3d from, Vec3d to) {
+        return 0.5 * radius * radius * std::atan2(double_area(from, to), dot(from, to));
+    };
+    const Vec3d way = b - a;
+    const double way2 = dot(way, way), along = dot(a, way),
+                 discriminant = along * along - way2 * (dot(a, a) - radius * radius);
+    if (!(discriminant > 0)) return sector(a, b);
+    const double root = std::sqrt(discriminant);
+    const Vec3d enters = a + std::clamp((-along - root) / way2, 0.0, 1.0) * way,
+                leaves = a + std::clamp((-along + root) / way2, 0.0, 1.0) * way;
+    return sector(a, enters) + 0.5 * double_area(enters, leaves) + sector(leaves, b);
+}
+
+/// A cylinder about a line of sight, as wide as what the samples of a pixel see there.
+struct Surroundings {
+    Vec3d middle, axis;
+    double radius;
+
+    double area() const { return std::numbers::pi * radius * radius; }
+    /// Whether a ball about a point may reach into it.
+    bool reaches(Vec3d point, double ball) const {
+        const Vec3d way = point - middle;
+        const double along = dot(way, axis), across = length(way - along * axis);
+        return std::fabs(along) < kDepth * radius + ball && across < radius + ball;
+    }
+    /// What the light covers of the cylinder's cross-section, seen along the line of sight.
+    double covered_by(const AreaLight& light) const {
+        const Vec3d corner = static_cast<Vec3d>(light.corner) - middle;
+        Vec3d corners[] = {corner, corner + static_cast<Vec3d>(light.edge_u),
+                           corner + static_cast<Vec3d>(light.edge_v)};
+        double nearest = std::numeric_limits<double>::infinity(), farthest = -nearest;
+        for (Vec3d& p : corners) {
+            const double along = dot(p, axis);
+            nearest = std::min(nearest, along);
+            farthest = std::max(farthest, along);
+            p = p - along * axis;
+        }
+        if (nearest > kDepth * radius || farthest < -kDepth * radius) return 0;
+        double area = 0;
+        for (int i = 0; i < 3; ++i) area += area_in_circle(corners[i], corners[(i + 1) % 3], axis, radius);
+        return std::fabs(area);
+    }
+};
+
 class Grouping {
 public:
     Grouping(const SceneView& scene, const CameraView& camera)
         : scene_(scene), camera_(camera), front_(front_vertex(camera, camera.front_vertex_m)) {}
 
     std::vector<LightGroup> all() && {
-        if (scene_.light_node_count > 0) look_at(0, -1);
+        if (scene_.light_node_count > 0) look_at(0);
         for (std::int32_t i = 0; i < scene_.sun_count; ++i) groups_.push_back({TracedLightKind::sun, {i}});
         return std::move(groups_);
     }
@@ -101,45 +150,77 @@ private:
         return is_one ? box.diagonal() : swept;
     }
 
-    void look_at(std::int32_t at, std::int32_t parent) {
+    void look_at(std::int32_t at) {
         const LightNode& node = scene_.light_nodes[at];
         const Footprint seen = footprint(node.middle);
         const double size = size_m(at);
         if (size >= seen.size() && node.second_child > 0) {
-            look_at(at + 1, at);
-            look_at(node.second_child, at);
+            look_at(at + 1);
+            look_at(node.second_child);
             return;
         }
         LightGroup group{TracedLightKind::triangles, {}};
-        double area = 0;  // as the lens sees it, m^2
         for_lights(at, [&](std::int32_t light) {
-            if (light < scene_.point_count) {
+            if (light < scene_.point_count)
                 groups_.push_back({TracedLightKind::point, {light}});
-                return;
-            }
-            const AreaLight& triangle = scene_.areas[light - scene_.point_count];
-            if (!shines(triangle)) return;
-            group.lights.push_back(light - scene_.point_count);
-            const float cosine = dot(normalized(front_ - triangle.corner), triangle.normal);
-            area += static_cast<double>(triangle.area *
-                                        (triangle.is_two_sided ? std::fabs(cosine) : std::max(cosine, 0.0f)));
+            else if (shines(scene_.areas[light - scene_.point_count]))
+                group.lights.push_back(light - scene_.point_count);
         });
-        // A lamp that is longer than the footprint lies in several footprints, as the tube of a neon sign does.
-        const double share = area / (seen.area() * std::max(1.0, size / seen.size()));
-        if (share < kLargestShare && !group.lights.empty() && !(parent >= 0 && is_surface(parent, seen)))
-            groups_.push_back(std::move(group));
+        if (group.lights.empty()) return;
+        group.share = filled_share(group);
+        if (group.share < kLargestShare) groups_.push_back(std::move(group));
     }
 
-    /// True if the emitters of a node larger than a footprint are parts of one surface in focus.
-    bool is_surface(std::int32_t at, const Footprint& seen) const {
-        if (seen.blur > seen.pixel) return false;
-        double area = 0;
-        for_lights(at, [&](std::int32_t light) {
-            if (light < scene_.point_count) return;
-            const AreaLight& triangle = scene_.areas[light - scene_.point_count];
-            if (shines(triangle)) area += static_cast<double>(triangle.area);
+    /// See LightGroup::share; not much more than kLargestShare, from which it makes no difference.
+    double filled_share(const LightGroup& group) const {
+        double area = 0, brightness = 0;
+        Vec3d middle = {};
+        for (const std::int32_t number : group.lights) {
+            const AreaLight& light = scene_.areas[number];
+            const double weight = static_cast<double>(light.area);
+            area += weight;
+            brightness += weight * static_cast<double>(luminance(light.radiance));
+            middle = middle + weight * middle_of(light);
+        }
+        middle = (1 / area) * middle;
+        brightness /= area;
+        const auto distance = [&](std::int32_t number) { return length(middle_of(scene_.areas[number]) - middle); };
+        const std::int32_t central =
+            *std::min_element(group.lights.begin(), group.lights.end(),
+                              [&](std::int32_t a, std::int32_t b) { return distance(a) < distance(b); });
+
+        const Vec3d place = middle_of(scene_.areas[central]);
+        const Surroundings seen = {place, normalized(static_cast<Vec3d>(front_) - place),
+                                   std::sqrt(footprint(static_cast<Vec3f>(place)).area() / std::numbers::pi)};
+        const double all = kLargestShare * seen.area();
+        double left = all;
+        subtract_lights(0, seen, brightness, left);
+        return (all - left) / seen.area();
+    }
+
+    static Vec3d middle_of(const AreaLight& light) {
+        return static_cast<Vec3d>(light.corner) +
+               1.0 / 3 * (static_cast<Vec3d>(light.edge_u) + static_cast<Vec3d>(light.edge_v));
+    }
+
+    /// Subtracts from an area what a node's emitters cover of it, until nothing is left. Those that are darker count by
+    /// their share of the brightness, because samples that meet them lack the rest.
+    void subtract_lights(std::int32_t at, const Surroundings& seen, double brightness, double& left) const {
+        const LightNode& node = scene_.light_nodes[at];
+        if (left <= 0 ||
+            !seen.reaches(static_cast<Vec3d>(node.middle), std::sqrt(static_cast<double>(node.squared_radius))))
+            return;
+        if (node.second_child > 0) {
+            subtract_lights(at + 1, seen, brightness, left);
+            subtract_lights(node.second_child, seen, brightness, left);
+            return;
+        }
+        for_lights(at, [&](std::int32_t number) {
+            if (number < scene_.point_count) return;
+            const AreaLight& light = scene_.areas[number - scene_.point_count];
+            const double share = static_cast<double>(luminance(light.radiance)) / brightness;
+            if (shines(light)) left -= std::min(1.0, share) * seen.covered_by(light);
         });
-        return area > kSurfaceShare * std::numbers::pi / 4 * size_m(at) * seen.size();
     }
 
     const SceneView& scene_;

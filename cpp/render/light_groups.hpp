@@ -11,6 +11,8 @@ namespace REALCAM_NAMESPACE {
 struct LightGroup {
     TracedLightKind kind;
     std::vector<std::int32_t> lights;  ///< numbers among those of their kind
+    /// Of area lights: the share of what the samples of a pixel see there that these and others like them fill.
+    double share = 0;
 };
 
 /// All points and suns, and those emitters that fill little of the region which the samples of a pixel see at their

@@ -1,5 +1,6 @@
 #include "noise_goal.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -27,11 +28,27 @@ NoiseGoal goal_of(const NoiseRequest& request) {
     return goal;
 }
 
+void look_for_lamps(ReachedNoise& reached, double share, std::int64_t samples) {
+    constexpr double kSurelyMet = 5;  // times on average: by Poisson's law, 0.7% of such lamps are missed
+    if (!(share * static_cast<double>(samples) < kSurelyMet)) return;
+    reached.is_reached = false;
+    reached.missed_share = share;
+    reached.samples_wanted = std::max(reached.samples_wanted, std::ceil(kSurelyMet / share));
+}
+
 std::string shortfall_of(const ReachedNoise& reached, const NoiseGoal& goal) {
     if (reached.is_reached) return "";
     if (!(reached.noise >= 0)) return "too few samples were taken to know how large the noise is";
     const char* unit = goal.unit == NoiseUnit::codes ? " codes" : "";
-    char text[200];
+    char text[300];
+    if (reached.missed_share < 1) {
+        std::snprintf(text, sizeof text,
+                      "lamps fill down to 1/%.2g of what a pixel sees, and may be missing from the picture, because "
+                      "light is not traced from them: that takes the camera model full and light_tracing on; without, "
+                      "about %.2g samples a pixel are wanted",
+                      1 / reached.missed_share, reached.samples_wanted);
+        return text;
+    }
     std::snprintf(
         text, sizeof text,
         "the noise is %.2g%s where the picture is noisiest, not %.2g%s; about %.2g samples a pixel are wanted "

@@ -37,6 +37,8 @@ struct ReachedNoise {
     double noise = std::numeric_limits<double>::quiet_NaN();  ///< of the noisiest tile, in the goal's unit
     bool is_reached = false;
     double samples_wanted = noise;  ///< of a pixel there, for the goal
+    /// Of what a pixel's samples see, the part that a lamp fills which may have been missed; 1: there is none.
+    double missed_share = 1;
 };
 
 /// Throws InputError for what is no goal.
@@ -44,6 +46,10 @@ void validate(const NoiseGoal& goal);
 
 /// Throws InputError where both measures are given, or one is no goal.
 NoiseGoal goal_of(const NoiseRequest& request);
+
+/// Takes back that a goal is reached where lamps may be in view which so few samples have missed: noise that no sample
+/// shows cannot be measured. `share`: least_lamp_share; `samples`: of the pixel that has fewest.
+void look_for_lamps(ReachedNoise& reached, double share, std::int64_t samples);
 
 /// A sentence where a goal was not reached; else nothing.
 std::string shortfall_of(const ReachedNoise& reached, const NoiseGoal& goal);

@@ -410,7 +410,9 @@ ReachedNoise Session::take_until(const NoiseGoal& goal, std::atomic<double>& sha
         tiles.add(develop().exposure, counts, tiles.traces_lights() ? develop_traced() : std::vector<float>());
         share = std::max(share.load(), std::min(1.0, taken / (taken + tiles.left())));
     }
-    return tiles.reached();
+    ReachedNoise reached = tiles.reached();
+    look_for_lamps(reached, least_lamp_share(), std::ranges::min(count_samples()));
+    return reached;
 }
 
 }  // namespace realcam

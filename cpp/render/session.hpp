@@ -150,6 +150,7 @@ protected:
                                              std::shared_ptr<void> under_way) = 0;
     virtual Image develop() = 0;
     virtual std::vector<float> develop_traced() = 0;  ///< traced_exposure
+    virtual double least_lamp_share() const { return 1; }  ///< least_lamp_share of the picture
     /// developed_besides of a film whose samples were taken while the settings asked for it.
     virtual std::vector<LayerImage> develop_besides() = 0;
     /// Samples of a region apart from the film. `counts`: of the region's pixels.

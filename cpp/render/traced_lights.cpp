@@ -151,6 +151,22 @@ TracedLights traced_lights(const SceneView& scene, const CameraView& camera, con
     return TracedLights(scene, camera, setup, tracing, tracer);
 }
 
+double least_lamp_share(const SceneView& scene, const CameraView& camera, const CameraSetup& setup,
+                        LightTracing tracing) {
+    if (setup.traces_lights() && tracing != LightTracing::off) return 1;
+    const Vec3f front = front_vertex(camera, camera.front_vertex_m);
+    const double cosine = std::cos(setup.widest_angle());
+    double least = 1;
+    for (const LightGroup& group : light_groups(scene, camera)) {
+        if (group.kind != TracedLightKind::triangles) continue;  // no ray meets the others
+        const Vec3f way = scene.areas[group.lights.front()].corner - front;
+        const bool is_in_view =
+            static_cast<double>(-dot(way, camera.backward)) > cosine * static_cast<double>(length(way));
+        if (is_in_view || camera.key_count > 0) least = std::min(least, group.share);
+    }
+    return least;
+}
+
 std::vector<GhostView> splatted_lights(const CameraSetup& setup, const TracedLights& lights) {
     std::vector<GhostView> views = setup.effects().splats();
     if (!lights.empty()) views.push_back(setup.effects().lens_way().view(GhostLight::direct, lights.pixel_samples()));

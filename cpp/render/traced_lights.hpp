@@ -38,6 +38,11 @@ private:
 TracedLights traced_lights(const SceneView& scene, const CameraView& camera, const CameraSetup& setup,
                            LightTracing tracing, const PupilTracer& tracer);
 
+/// Where lamps are looked for by samples of pixels alone: the smallest share of what a pixel's samples see that a lamp
+/// in view fills. 1 where there is no such lamp, or lamps are traced.
+double least_lamp_share(const SceneView& scene, const CameraView& camera, const CameraSetup& setup,
+                        LightTracing tracing);
+
 /// All light of a picture that is traced apart from the samples of its pixels: at most kMostSplats.
 std::vector<GhostView> splatted_lights(const CameraSetup& setup, const TracedLights& lights);
 

@@ -27,12 +27,15 @@ if TYPE_CHECKING:
 class ReachedNoise:
     """What has become of a picture that was to have little noise.
 
-    noise: of the noisiest tile, in the measure that was asked for. spp_wanted: of its pixels, for what was wanted.
+    noise: of the noisiest tile, in the measure that was asked for. is_reached: also false where lamps may be missing,
+    because only samples of pixels look for them, and few would meet them. spp_wanted: of the noisiest pixels, for what
+    was wanted. shortfall: a sentence where it was not reached.
     """
 
     noise: float
     is_reached: bool
     spp_wanted: float
+    shortfall: str = ""
 
 
 class Session:

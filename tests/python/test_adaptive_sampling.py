@@ -152,6 +152,32 @@ def test_what_cannot_be_reached_is_said(device: str) -> None:
     assert session.samples.max() <= 256
 
 
+@pytest.mark.parametrize("settings", [{"light_tracing": "off"}, {"layers": "dual_pixel_left"}, {"model": "thin"}])
+def test_lamps_that_no_sample_may_have_met_are_told(settings: dict[str, object], device: str) -> None:
+    """A pixel sees 9 cm at 6 m; a lamp of 3 mm is a thousandth of that, and the pixels' samples alone look for it."""
+    lens = rc.Lens.load("tessar-50mm").focused(6.0)
+    settings = dict(settings)
+    model = str(settings.pop("model", "full"))
+    at = rc.Camera(lens, film=rc.Film(24, 24, (SIDE, SIDE)), exposure_time_s=1, model=model)
+
+    def reached(lamp_m: float, place: tuple[float, float, float], **more: object) -> rc.ReachedNoise:
+        wall = scenes.quad((0, 0, -6.5), 3, emission=0.01)
+        scene = scenes.scene_of(scenes.quad(place, lamp_m / 2, emission=1e4), wall)
+        session = rc.Session(scene, at, device=device, effects=(), **more)
+        return session.add_until(0.05, max_spp=64)
+
+    missed = reached(0.003, (0.3, 0.2, -6), **settings)
+    assert not missed.is_reached
+    assert "lamps fill down to 1/" in missed.shortfall
+    # Five over its share of the pixel, which is (0.003 / 0.09)^2 but for the blur.
+    assert 3000 < missed.spp_wanted < 20000
+    behind_the_camera = reached(0.003, (0.3, 0.2, 6), **settings)
+    assert behind_the_camera.is_reached
+    assert behind_the_camera.shortfall == ""
+    if model == "full":
+        assert reached(0.003, (0.3, 0.2, -6)).is_reached
+
+
 def test_a_picture_ends_after_its_seconds(device: str) -> None:
     rc.render(half_noisy(), camera(), effects=(), spp=1, device=device)  # what a device needs once
     start = time.perf_counter()

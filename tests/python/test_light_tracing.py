@@ -13,6 +13,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 import realcam as rc
+from numpy.lib.stride_tricks import sliding_window_view
 
 from ..measurement import Measurement, hold
 from . import scenes
@@ -160,6 +161,38 @@ def moving() -> rc.Scene:
     return behind().with_instance(lamps((0, 0, -4)), begin, name="lamp").moved("lamp", [begin, end], times_s=[0, 1])
 
 
+def before_a_dim_wall() -> rc.Scene:
+    """A lamp 2 cm before a wall that shines everywhere, 100 times darker."""
+    return scenes.scene_of(
+        scenes.quad((0.05, 0, -1), 0.002, emission=1e5), scenes.quad((0, 0, -1.02), 2.0, emission=1e3)
+    )
+
+
+def led_in_a_dim_panel() -> rc.Scene:
+    """The same in the plane of the wall, in a hole of it."""
+    left, right = ((x, 0, -1) for x in (-0.952, 1.052))
+    above, below = ((0.05, y, -1) for y in (1.002, -1.002))
+    return scenes.scene_of(
+        scenes.quad((0.05, 0, -1), 0.002, emission=1e5),
+        *(scenes.quad(place, 1.0, emission=1e3) for place in (left, right)),
+        *(scenes.quad(place, 0.002, 1.0, emission=1e3) for place in (above, below)),
+    )
+
+
+def fine_mesh() -> rc.Scene:
+    """A part of a ball that shines, 0.2 m in radius, of triangles smaller than pixels, up to 70 degrees from its
+    middle."""
+    angles = np.radians(np.linspace(-70, 70, 300))
+    across, up = np.meshgrid(angles, angles)
+    ball = 0.2 * np.stack([np.sin(across), np.sin(up) * np.cos(across), np.cos(up) * np.cos(across)], axis=-1)
+    corners = ball - np.array([0, 0, 1.2])
+    first = np.stack([corners[:-1, :-1], corners[:-1, 1:], corners[1:, 1:]], axis=-2)
+    second = np.stack([corners[:-1, :-1], corners[1:, 1:], corners[1:, :-1]], axis=-2)
+    triangles = np.concatenate([first.reshape(-1, 3), second.reshape(-1, 3)])
+    faces = np.arange(len(triangles)).reshape(-1, 3)
+    return rc.Scene.from_arrays(triangles, faces, materials=[rc.Material(emission=(1e3,) * 3)])
+
+
 CASES: dict[str, tuple[Callable[[], rc.Scene], dict[str, object], dict[str, object]]] = {
     "on the axis": (lambda: lamps((0, 0, -4)), {}, {}),
     "at the frame's edge": (lambda: lamps((0.88, 0.58, -4), (-0.89, 0, -4)), {}, {}),
@@ -173,6 +206,8 @@ CASES: dict[str, tuple[Callable[[], rc.Scene], dict[str, object], dict[str, obje
         {},
         {},
     ),
+    "before a dim wall": (before_a_dim_wall, {}, {}),
+    "in a dim panel": (led_in_a_dim_panel, {}, {}),
     "a large one": (lambda: lamps((0.05, 0, -4), radius=0.3), {}, {}),
     "1e8 brighter": (lambda: lamps((0, 0, -4), radiance=1e13), {}, {}),
     "a hundred": (
@@ -248,6 +283,9 @@ def test_all_techniques_see_the_same(case: str, device: str) -> None:
         # Of the lamp's pixel, a sixth of the samples meet it.
         ("in focus", 0.1),
         ("a thin tube in focus", 0.1),
+        # The wall's own noise is left.
+        ("before a dim wall", 0.1),
+        ("in a dim panel", 0.1),
         ("in focus, larger than pixels", 1.05),
         ("a large one", 1.05),
     ],
@@ -259,6 +297,17 @@ def test_noise_falls_where_lamps_are_out_of_focus_and_nowhere_rises(case: str, s
         return float(np.var([photograph(scene, at, tracing, device, spp=16, seed=s) for s in range(24)], axis=0).sum())
 
     assert variance("weighted") <= share * variance("off")
+
+
+def test_a_fine_mesh_in_focus_is_left_to_samples_of_pixels(device: str) -> None:
+    """Its triangles are smaller than pixels, but next to others. Where its edges do not reach, nothing is traced."""
+    at = camera(position=(0, 0, 0))
+    by_pixels, both = (photograph(fine_mesh(), at, tracing, device, spp=4) for tracing in ("off", "weighted"))
+    lit = by_pixels.min(axis=2) > 0
+    inside = np.zeros_like(lit)
+    inside[3:-3, 3:-3] = sliding_window_view(lit, (7, 7)).all(axis=(2, 3))
+    assert inside.sum() > 0.5 * lit.sum()
+    np.testing.assert_array_equal(both[inside], by_pixels[inside])
 
 
 PIXEL_MM = 0.1
