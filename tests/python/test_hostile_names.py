@@ -204,6 +204,41 @@ def test_pages() -> None:
     assert page.tags == {"table", "thead", "tbody", "tr", "th", "td"}
 
 
+def test_reports(lens_named: Callable[[str], rc.Lens | None], tmp_path: Path) -> None:
+    """A report shows the name in its text, in attributes and in figures; all texts at once, for its time."""
+    printable = [text for text in TEXTS if visible(text) == text]
+    lens = lens_named(" ".join(printable))
+    assert lens is not None
+    rc.analysis.save_report(lens, tmp_path / "report.html", fields_deg=[0, 1, 2])
+    page = (tmp_path / "report.html").read_text()
+
+    class Scripts(HTMLParser):
+        found = ""
+
+        def handle_data(self, data: str) -> None:
+            self.found += data if self.lasttag != "script" else ""
+            assert self.lasttag != "script" or "alert(1)" not in data
+
+    reader = Scripts()
+    reader.feed(page)
+    assert "<script>alert(1)</script>" in reader.found
+
+
+def test_colmap(tmp_path: Path) -> None:
+    """Fields of its lines are apart by spaces: a name that has any, or an end of a line, is refused."""
+    camera = rc.Camera(rc.Lens.load("singlet-100mm"), film=rc.Film(36, 24, (30, 20)))
+    for text in TEXTS:
+        if any(c.isspace() for c in text):
+            with pytest.raises(rc.InputError, match="COLMAP"):
+                rc.save_colmap(tmp_path / "model", {text: camera}, "pinhole")
+            continue
+        rc.save_colmap(tmp_path / "model", {text: camera}, "pinhole")
+        lines = [line for line in (tmp_path / "model/images.txt").read_bytes().split(b"\n") if line[:1] != b"#"]
+        fields = lines[0].split(b" ")
+        assert len(fields) == 10
+        assert fields[9].decode() == text
+
+
 def test_calibrations(lens_named: Callable[[str], rc.Lens | None]) -> None:
     film = rc.Film(36, 24, (30, 20))
     fits = [rc.fit_camera_model(rc.Camera(rc.Lens.load("singlet-100mm"), film=film), "pinhole")]

@@ -465,6 +465,17 @@ def test_the_commands_make_work_tell_and_finish(tmp_path: Path) -> None:
     assert json.loads(output)["shots_done"] == 2
     assert run("finish", "both.job", "-o", "pictures", "--format", "png", cwd=tmp_path)[0] == 0
     assert sorted(path.name for path in (tmp_path / "pictures").iterdir()) == ["one.png", "two.png"]
+    (tmp_path / "link").symlink_to("both.job/units")
+    before = contents(tmp_path / "both.job")
+    for inside in ("both.job", "both.job/units", "link"):
+        code, _, errors = run("finish", "both.job", "-o", inside, cwd=tmp_path)
+        assert code == 2
+        assert errors.count("\n") == 1
+    assert contents(tmp_path / "both.job") == before
+
+
+def contents(folder: Path) -> dict[Path, bytes]:
+    return {path: path.read_bytes() for path in sorted(folder.rglob("*")) if path.is_file()}
 
 
 @pytest.mark.parametrize(

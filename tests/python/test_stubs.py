@@ -36,7 +36,8 @@ def stub_parameters(node: ast.FunctionDef) -> list[Parameter]:
 
 def documented_parameters(function: object) -> list[Parameter]:
     """From the first line of the docstring, where pybind11 writes the signature in Python's own syntax; of what Python
-    adds to a class, from the function itself."""
+    adds to a class, from the function itself. Static functions of pybind11 are wrapped by functions of Python."""
+    function = getattr(function, "__wrapped__", function)
     if inspect.isfunction(function):
         parameters = inspect.signature(function).parameters.values()
         return [(p.name, p.kind is p.KEYWORD_ONLY, p.default is not p.empty) for p in parameters]

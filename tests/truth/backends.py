@@ -71,5 +71,9 @@ def trace(prescription: Prescription, rays: Rays, backend: str, start: str = "sc
 
 
 def first_order(prescription: Prescription) -> dict[str, float]:
+    """With the rear focal length, n' over the lens's power, which the other programs call the effective one, and with
+    the f-number by it. They differ where the film lies in glass or water."""
     figures = realcam_lens(prescription).first_order()
-    return {name: getattr(figures, name) for name in dir(figures) if not name.startswith("_")}
+    said = {name: getattr(figures, name) for name in dir(figures) if not name.startswith("_")}
+    index = said.pop("image_index")
+    return said | {name: index * said[name] for name in ("effective_focal_length_mm", "f_number")}

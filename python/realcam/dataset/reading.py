@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from .._core import InputError
+from .._core import InputError, one_line
 from .pictures import codes_of
 from .shards import read_samples
 
@@ -32,7 +32,7 @@ def samples(folder: str | os.PathLike[str], shards: slice = slice(None)) -> Iter
             try:
                 yield {"__key__": key, **{name: _decoded(name, content) for name, content in files.items()}}
             except ValueError as error:
-                raise InputError(f"{path}: {key} cannot be read: {error}") from None
+                raise InputError(one_line(f"{path}: {key} cannot be read: {error}")) from None
 
 
 def _decoded(name: str, content: bytes) -> Any:

@@ -11,7 +11,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from .._core import InputError, __version__
+from .._core import InputError, __version__, one_line
 from ..files import make_folder, write_whole
 from .recipe import Recipe
 
@@ -40,7 +40,7 @@ class DatasetFolder:
         except OSError as error:
             raise InputError(f"{error.filename}: {error.strerror}; a folder that can be written to is wanted") from None
         except ValueError as error:
-            raise InputError(f"{file}: this is damaged ({error}); another folder is wanted") from None
+            raise InputError(one_line(f"{file}: this is damaged ({error}); another folder is wanted")) from None
         if foreign:
             raise InputError(
                 f"{foreign}: is not of this data set, as {RECIPE_FILE} is missing; another folder is wanted"
@@ -174,7 +174,7 @@ def read_samples(path: Path) -> Iterator[tuple[str, dict[str, bytes]]]:
                 key = this
                 files[suffix] = content.read()
     except (tarfile.TarError, OSError, EOFError) as error:
-        raise InputError(f"{path}: this cannot be read ({error}); removed, it is made again") from None
+        raise InputError(one_line(f"{path}: this cannot be read ({error}); removed, it is made again")) from None
     if files:
         yield key, files
 
