@@ -49,7 +49,7 @@ std::string film_digest(const shot::ShotRequest& request, const Camera& camera, 
     const Vec3f light = request.environment_cd_m2.value_or(Vec3f{-1, -1, -1});
     text << camera.film.width << ' ' << camera.film.height << ' ' << request.scale << ' ' << light.x << ' ' << light.y
          << ' ' << light.z << ' ' << request.environment_change.scale << ' ' << request.environment_change.rotation_deg
-         << ' ' << s.max_bounces << ' ' << s.thresholds.pixels << ' ' << s.thresholds.codes << ' '
+         << ' ' << s.max_bounces.value_or(-1) << ' ' << s.thresholds.pixels << ' ' << s.thresholds.codes << ' '
          << s.effects.is_automatic << ' ' << s.effects.named << ' ' << s.effects.ghost_share << ' '
          << s.effects.film_reflectance << ' ' << static_cast<int>(s.pupil_sampling) << ' '
          << static_cast<int>(s.light_tracing) << ' ' << static_cast<int>(request.tone) << ' ' << request.denoises << ' '

@@ -104,13 +104,11 @@ public:
         settle_keys(request);
         Camera camera = camera_of(request);
         const LayerSet written_layers = request.settings.layers;
-        if (request.denoises)
-            for (const Layer layer : {Layer::albedo, Layer::normal}) request.settings.layers.add(layer);
+        std::optional<Denoiser> denoiser = denoiser_for(request);
+        if (denoiser) request.settings.layers.add(kDenoiserLayers);
         check_memory(camera.film, request.settings.layers);
         // First, because reading a scene may take long.
         const auto session = make_session(words_.device, [this](const std::string& text) { warn(text); });
-        std::optional<Denoiser> denoiser;
-        if (request.denoises) denoiser.emplace(words_.device, request.settings.threads);
         shot::Shot shot = set_up_shot(request, std::move(camera));
         for (const std::string& file : frames.empty() ? words_.outputs : outputs_.all_files(frames))
             image_io::check_no_input(file);
@@ -122,7 +120,7 @@ public:
         if (!frames.empty()) return film(darkroom, shot, request, frames);
         shot.camera = shaken(std::move(shot.camera), request.shake);
         std::string decisions;
-        if (request.settings.effects.is_automatic) decisions = follow_plan(*session, shot, request);
+        if (request.settings.needs_plan()) decisions = follow_plan(*session, shot, request);
         for (const std::string& notice : effect_notices(request.settings.effects, shot.camera.lens)) warn(notice);
         const std::string figures = take(darkroom, shot, request, decisions, words_.outputs);
         if (!words_.is_quiet || words_.as_json) std::fputs(figures.c_str(), stdout);
@@ -148,6 +146,26 @@ private:
         Denoiser* denoiser;  ///< null: noise stays
         LayerSet written_layers;
     };
+
+    /// One that the user asked for, or that .png may need (denoises_if_noisy). Where the library is missing, the latter
+    /// stay noisy.
+    std::optional<Denoiser> denoiser_for(const shot::ShotRequest& request) {
+        if (!request.denoises && !denoises_if_noisy(request)) return std::nullopt;
+        try {
+            return std::optional<Denoiser>(std::in_place, words_.device, request.settings.threads);
+        } catch (const InputError& missing) {
+            if (request.denoises) throw;
+            why_no_denoiser_ = missing.what();
+            return std::nullopt;
+        }
+    }
+
+    /// Whether pictures for screens are denoised in case they stay noisier than the goal that nobody has said.
+    bool denoises_if_noisy(const shot::ShotRequest& request) const {
+        return request.sampling == shot::Sampling::unsaid && !request.denoises && !request.keeps_noise &&
+               !request.settings.layers.has_any(kHalfLayers) &&
+               !std::all_of(words_.outputs.begin(), words_.outputs.end(), is_exr);
+    }
 
     void warn(const std::string& text) {
         say("warning: " + text);
@@ -195,7 +213,7 @@ private:
                 return plan_film(session, shot.scene, cameras, request.settings, fast_pupil_tracer(),
                                  [](double) { return is_wanted(); });
             });
-            apply({plan.model, plan.effects, {}}, shot.camera, request.settings);
+            apply({plan.model, plan.effects, plan.max_bounces, {}}, shot.camera, request.settings);
             return plan.summary;
         } catch (const NothingToPlan& nothing) {
             return follow_nothing(nothing, request);
@@ -223,7 +241,7 @@ private:
     /// Frames that are done stay.
     void film(const Darkroom& darkroom, shot::Shot& shot, shot::ShotRequest& request, const std::vector<int>& frames) {
         std::string decisions;
-        if (request.settings.effects.is_automatic)
+        if (request.settings.needs_plan())
             decisions = follow_film_plan(darkroom.session, shot, request, frames);
         const Camera camera = shot.camera;
         // The last frame should not be the one to tell that a lens cannot be as its keys say.
@@ -280,13 +298,24 @@ private:
     /// Takes and writes a picture; its figures.
     std::string take(const Darkroom& darkroom, const shot::Shot& shot, const shot::ShotRequest& request,
                      const std::string& decisions, const std::vector<std::string>& files) {
-        const std::string denoiser_name = darkroom.denoiser ? darkroom.denoiser->name() : "";
         Image image = expose(darkroom.session, shot, request);
-        if (darkroom.denoiser)
-            until_interrupted([&] { denoise(image, darkroom.written_layers, *darkroom.denoiser, is_wanted); });
         if (!image.shortfall.empty()) warn(image.shortfall);
-        if (const std::string notice = exposure_notice(image, shot.camera, request.tone); !notice.empty()) warn(notice);
-        write(image, shot, request, decisions, denoiser_name, files);
+        const bool is_noisy = !image.shortfall.empty() && denoises_if_noisy(request);
+        std::optional<Image> denoised;
+        std::string denoiser_name;
+        if (darkroom.denoiser && (request.denoises || is_noisy)) {
+            denoised = image;
+            denoiser_name = darkroom.denoiser->name();
+            until_interrupted([&] { denoise(*denoised, darkroom.written_layers, *darkroom.denoiser, is_wanted); });
+        }
+        keep_layers(image, darkroom.written_layers);
+        if (is_noisy)
+            inform(denoised ? "the noise that is left is taken from what is not .exr by " + denoiser_name +
+                                  "; --no-denoise keeps it"
+                            : "the noise that is left stays: " + why_no_denoiser_);
+        const Image& shown = denoised ? *denoised : image;
+        if (const std::string notice = exposure_notice(shown, shot.camera, request.tone); !notice.empty()) warn(notice);
+        write(request.denoises ? shown : image, shown, shot, request, decisions, denoiser_name, files);
         const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
         return words_.as_json
                    ? render_as_json(shot, request, image, files, decisions, denoiser_name, warnings_, seconds)
@@ -344,15 +373,17 @@ private:
         });
     }
 
-    void write(const Image& image, const shot::Shot& shot, const shot::ShotRequest& request,
+    /// `raw`: goes into .exr; `shown`: into other files.
+    void write(const Image& raw, const Image& shown, const shot::Shot& shot, const shot::ShotRequest& request,
                const std::string& decisions, const std::string& denoiser, const std::vector<std::string>& files) const {
         io::ImageMetadata metadata = io::metadata_of(shot.camera, request.settings);
         metadata.plan = decisions;
-        metadata.denoiser = denoiser;
         metadata.film = frame_digest_;
-        metadata.spp = static_cast<int>(image.spp);
+        metadata.spp = static_cast<int>(raw.spp);
         std::string written;
         for (const std::string& path : files) {
+            const Image& image = is_exr(path) ? raw : shown;
+            metadata.denoiser = !is_exr(path) || request.denoises ? denoiser : "";
             try {
                 image_io::write_image(image_io::view_of(image), path, metadata, request.tone, is_wanted);
             } catch (const Cancelled&) {
@@ -366,6 +397,7 @@ private:
     FilmOutputs outputs_;
     std::chrono::steady_clock::time_point start_;
     std::vector<std::string> warnings_;  ///< that were told
+    std::string why_no_denoiser_;
     io::InputRecording inputs_;
     std::string film_digest_, frame_digest_;  ///< empty: a still
 };

@@ -50,7 +50,7 @@ void write_exposure(JsonWriter& json, const shot::Shot& shot, const Image& image
 
 void write_settings(JsonWriter& json, const shot::ShotRequest& request, const std::string& plan) {
     const RenderSettings& settings = request.settings;
-    json.key("seed").number(settings.seed).key("max_bounces").number(settings.max_bounces);
+    json.key("seed").number(settings.seed).key("max_bounces").number(settings.path().max_bounces);
     json.key("transport").text(io::name_of(settings.transport)).key("clamp_cd_m2").number(settings.clamp);
     json.key("tone").text(request.tone == ToneCurve::linear ? "linear" : "film");
     write_texts(json, "effects", names_of(settings.effects));

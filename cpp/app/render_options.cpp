@@ -12,14 +12,14 @@
 #include "values.hpp"
 
 namespace realcam::app {
+bool is_exr(const std::string& path) {
+    return io::suffix_of(path) == ".exr";
+}
+
 namespace {
 
 bool is_shot_file(const std::string& path) {
     return std::filesystem::path(path).extension() == ".toml";
-}
-
-bool is_exr(const std::string& path) {
-    return io::suffix_of(path) == ".exr";
 }
 
 /// Between commas.
@@ -240,8 +240,11 @@ void add_samples(const OptionAdder& option) {
         [](Request& r, Text o, Text w) { r.noise.max_spp = static_cast<std::int64_t>(parse_whole(o, w, 1u << 31)); });
     option("--seed", "Of the random numbers [0]", "N",
            [](Request& r, Text o, Text w) { r.settings.seed = whole<std::uint32_t>(o, w); });
-    option("--max-bounces", "Light that bounces this often is seen; 0: direct light only [1]", "N",
-           [](Request& r, Text o, Text w) { r.settings.max_bounces = whole<int>(o, w); });
+    option("--max-bounces", "Light that bounces this often is seen; 0: direct light only [auto: what the shot calls for]",
+           "N", [](Request& r, Text o, Text w) {
+               r.settings.max_bounces =
+                   w == "auto" ? std::nullopt : std::optional(static_cast<int>(parse_whole(o, w, kMostBounces)));
+           });
     option("--transport",
            "paths: all ways of light; whitted: direct light, and what mirrors and smooth glass show [paths]", "NAME",
            [](Request& r, Text o, Text w) {
@@ -307,7 +310,12 @@ void add_render_options(CLI::App& command, RenderWords& w) {
     const auto denoise = [&w] { w.changes.emplace_back([](shot::ShotRequest& r) { r.denoises = true; }); };
     command.add_flag_callback(
         "--denoise", denoise,
-        "Take the noise that is left from the picture, by Open Image Denoise (realcam[denoise]) [the noise stays]");
+        "Take the noise that is left from the picture, by Open Image Denoise (realcam[denoise]) [without --spp: from "
+        ".png where the noise goal is not reached]");
+    command.add_flag_callback(
+        "--no-denoise",
+        [&w] { w.changes.emplace_back([](shot::ShotRequest& r) { r.denoises = !(r.keeps_noise = true); }); },
+        "Leave the noise");
     command.add_flag("-v,--verbose", w.verbose, "Also print rays per second, and where the time went");
     command.add_flag("--explain", w.explains, "Also print what --effects auto has decided, and why");
     command.add_flag("--json", w.as_json, "Print the picture's figures and settings as JSON, in place of the text");

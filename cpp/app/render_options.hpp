@@ -23,6 +23,9 @@ struct RenderWords {
 };
 
 /// Those that say what is photographed and how.
+/// Whether a picture is written there as it is measured, and not as a screen shows it.
+bool is_exr(const std::string& path);
+
 void add_shot_options(CLI::App& command, RenderWords& words);
 /// The same, and what to write.
 void add_render_options(CLI::App& command, RenderWords& words);

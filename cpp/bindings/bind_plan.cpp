@@ -27,13 +27,14 @@ struct Decision {
 struct Planned {
     std::string model;
     std::vector<std::string> effects;
+    int max_bounces;
     std::vector<Decision> decisions;
     std::string text, summary;
 };
 
 Planned planned_of(const Plan& plan) {
     const std::string model = io::name_of(plan.model);
-    Planned planned{model, names_of(plan.effects), {}, text_of(plan, model), summary_of(plan)};
+    Planned planned{model, names_of(plan.effects), plan.max_bounces, {}, text_of(plan, model), summary_of(plan)};
     for (const PlanDecision& d : plan.decisions)
         planned.decisions.push_back({d.name, name_of(d.unit), d.by == DecidedBy::user ? "user" : "planner", d.reason,
                                      d.size, d.threshold, d.time, d.is_kept});
@@ -48,16 +49,16 @@ Planned plan(const Assembly& scene, const Camera& camera, const RenderSettings& 
     });
 }
 
-/// Model, effects and what was decided.
-std::tuple<std::string, std::vector<std::string>, std::string> plan_of_film(const Assembly& scene,
-                                                                            const std::vector<Camera>& cameras,
-                                                                            const RenderSettings& settings,
-                                                                            const std::string& device) {
+/// Model, effects, bounces and what was decided.
+std::tuple<std::string, std::vector<std::string>, int, std::string> plan_of_film(const Assembly& scene,
+                                                                                 const std::vector<Camera>& cameras,
+                                                                                 const RenderSettings& settings,
+                                                                                 const std::string& device) {
     const FilmPlan plan = OwnedSession::shared(device).use([&](const auto& session) {
         return plan_film(*session, scene, cameras, settings, fast_pupil_tracer(),
                          [](double) { return heed_signals(); });
     });
-    return {io::name_of(plan.model), names_of(plan.effects), plan.summary};
+    return {io::name_of(plan.model), names_of(plan.effects), plan.max_bounces, plan.summary};
 }
 
 }  // namespace
@@ -89,6 +90,7 @@ measured on the device; None: not measured.)")
     planned
         .def_readonly("model", &Planned::model, "The cheapest camera model that looks like every surface of the lens.")
         .def_readonly("effects", &Planned::effects, "Names, as render takes them.")
+        .def_readonly("max_bounces", &Planned::max_bounces)
         .def_readonly("decisions", &Planned::decisions)
         .def_readonly("summary", &Planned::summary, "What was decided, in a line, as it is in a picture's metadata.")
         .def("__str__", [](const Planned& p) { return p.text; })

@@ -163,7 +163,9 @@ const Setting kSettings[] = {
     {"max_spp", "int | None", set_noise<&NoiseRequest::max_spp>, get_noise<&NoiseRequest::max_spp>},
     {"seed", "int", [](Draft& d, Word word) { d.settings.seed = seed_from(word.cast<std::int64_t>()); },
      get<&RenderSettings::seed>},
-    {"max_bounces", "int", set<&RenderSettings::max_bounces>, get<&RenderSettings::max_bounces>},
+    {"max_bounces", "int | str",
+     [](Draft& d, Word word) { d.settings.max_bounces = bounces_from(word); },
+     [](S s) -> py::object { return s.max_bounces ? py::cast(*s.max_bounces) : py::cast("auto"); }},
     {"transport", "str",
      [](Draft& d, Word word) {
          set_named<&RenderSettings::transport>(d, word, "transport", shot::transport_named, shot::kTransportNames);
@@ -272,7 +274,8 @@ spp: samples per pixel, or "auto": as many as the noise needs, more where it is 
 is more), or noise_codes: in 8-bit codes of the developed picture; 1 code unless said. seconds, max_spp (4096):
 no more samples are taken after so long, and of a pixel no more than so many; warns where the noise is still
 larger then.
-max_bounces: 0 for direct light only, 1 for one reflection more, ...
+max_bounces: 0 for direct light only, 1 for one reflection more, up to 64; "auto": as many as the shot calls for,
+by threshold_codes (docs/plan.md).
 transport: "paths" for all ways of light, "whitted" for direct light and what mirrors and smooth glass show.
 clamp_cd_m2: radiance above which what comes by a bounce is cut off, for fewer bright dots and a picture that is
 too dark; 0: never. threads: 0 for all.

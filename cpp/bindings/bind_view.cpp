@@ -29,11 +29,12 @@ Camera framed(Camera camera, const Assembly& scene, const std::optional<Triple>&
     return camera;
 }
 
-Camera metered(Camera camera, const Assembly& scene, const std::string& device, int max_bounces,
+Camera metered(Camera camera, const Assembly& scene, const std::string& device, const py::object& max_bounces,
                const py::object& progress) {
     const Progress report = progress_of(progress);
+    const std::optional<int> bounces = bounces_from(max_bounces);
     camera.exposure_time_s = OwnedSession::shared(device).use([&](const auto& session) {
-        return metered_exposure_time(*session, scene, camera, {.max_bounces = max_bounces, .effects = {}}, report);
+        return metered_exposure_time(*session, scene, camera, {.max_bounces = bounces, .effects = {}}, report);
     });
     return camera;
 }
@@ -67,7 +68,7 @@ and motion to take, or "none"; where nothing is said of the view it is the first
 looks at the middle of the scene, in front of it along +z
 (-y where up is z) where the scene fills nine tenths of the film, and focuses on the first surface on
 its axis. Of the camera itself lens, film, model and exposure stay. Raises InputError.)")
-        .def("metered", &metered, "scene"_a, py::kw_only(), "device"_a = "auto", "max_bounces"_a = 1,
+        .def("metered", &metered, "scene"_a, py::kw_only(), "device"_a = "auto", "max_bounces"_a = "auto",
              "progress"_a = py::none(),
              R"(The camera with the exposure time that brings the average of its picture of the scene to middle grey at
 its ISO, from a small picture with so many reflections (see render, as for device and progress).

@@ -74,6 +74,12 @@ ToneCurve tone_curve_from(const std::string& name);
 /// Throws InputError for what does not fit 32 bits.
 std::uint32_t seed_from(std::int64_t seed, const char* what = "seed");
 
+/// A number of bounces; none for "auto".
+inline std::optional<int> bounces_from(py::handle word) {
+    const bool is_automatic = py::isinstance<py::str>(word) && word.cast<std::string>() == "auto";
+    return is_automatic ? std::nullopt : std::optional(word.cast<int>());
+}
+
 /// Python's share of the progress: signals (Ctrl-C), then the caller's function (None: nothing more). Called without
 /// the interpreter's lock. The callback must outlive the result.
 Progress progress_of(const py::object& callback);

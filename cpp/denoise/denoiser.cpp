@@ -223,13 +223,23 @@ void denoise(Image& image, LayerSet wanted, Denoiser& denoiser, const KeepGoing&
         const auto is_it = [&](const LayerImage& other) { return other.layer == layer; };
         return std::find_if(image.layers.begin(), image.layers.end(), is_it)->values.data();
     };
-    image.exposure = PictureFloats(denoiser.denoised(
-        {image.width, image.height, image.exposure.data(), values_of(Layer::albedo), values_of(Layer::normal)},
-        DenoiseQuality::high, keep_going));
+    // Lamps out of focus are discs, and their noise is fine grain, which a network takes for detail and spreads.
+    const float* traced = values_of(Layer::traced_light);
+    std::vector<float> rest(image.exposure.begin(), image.exposure.end());
+    for (std::size_t i = 0; i < rest.size(); ++i) rest[i] = std::max(rest[i] - traced[i], 0.0f);
+    std::vector<float> denoised =
+        denoiser.denoised({image.width, image.height, rest.data(), values_of(Layer::albedo), values_of(Layer::normal)},
+                          DenoiseQuality::high, keep_going);
+    // Where lamps outshine the rest, a part of it is their light too, and its noise is not seen.
+    for (std::size_t i = 0; i < rest.size(); ++i) {
+        const float all = traced[i] + denoised[i], share = all > 0 ? traced[i] / all : 0;
+        denoised[i] += share * (rest[i] - denoised[i]) + traced[i];
+    }
+    image.exposure = PictureFloats(std::move(denoised));
+    keep_layers(image, wanted);
     // These describe the noise, or have it.
     constexpr LayerSet kNoisy = {Layer::variance, Layer::dual_pixel_left, Layer::dual_pixel_right};
-    std::erase_if(image.layers,
-                  [&](const LayerImage& layer) { return kNoisy.has(layer.layer) || !wanted.has(layer.layer); });
+    std::erase_if(image.layers, [&](const LayerImage& layer) { return kNoisy.has(layer.layer); });
 }
 
 }  // namespace realcam

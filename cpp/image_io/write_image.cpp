@@ -107,6 +107,8 @@ LayerChannels channels_of(Layer layer) {
         case Layer::motion: return {{"Motion.X", "Motion.Y"}, "pixels right and down while exposed, middle ray"};
         case Layer::position_middle:
             return {{"PositionMiddle.X", "PositionMiddle.Y", "PositionMiddle.Z"}, "metres in the scene, middle ray"};
+        case Layer::traced_light:
+            return {{"TracedLight.R", "TracedLight.G", "TracedLight.B"}, "lux seconds, traced from the lights"};
         case Layer::dual_pixel_left:
             return {{"DualPixelLeft.R", "DualPixelLeft.G", "DualPixelLeft.B"}, "lux seconds, left half of the pupil"};
         case Layer::dual_pixel_right:

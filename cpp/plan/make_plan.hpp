@@ -1,16 +1,22 @@
 #pragma once
 #include "../camera/camera_setup.hpp"
 #include "measure_times.hpp"
+#include "plan_bounces.hpp"
 #include "plan_shot.hpp"
 #include "probe_scene.hpp"
 
 namespace REALCAM_NAMESPACE {
 
-/// Looks at the scene and at the lens, and plans. `settings`: of the picture. Throws what probe_scene throws, and
+/// Looks at the scene and at the lens, and plans what the settings leave to the planner. `settings`: of the picture. Throws what probe_scene throws, and
 /// InputError for a lens that passes nothing and for thresholds that are none.
 inline Plan make_plan(Session& session, const Assembly& scene, const Camera& camera, const RenderSettings& settings,
                       bool measures_times, const PupilTracer& tracer, const Progress& progress = {}) {
     validate(settings);
+    if (!settings.effects.is_automatic) {
+        Plan plan{camera.model, settings.effects, {}, {}};
+        plan_bounces(session, scene, camera, settings, plan, progress);
+        return plan;
+    }
     // What errors and effects amount to is looked at without tilts: they change little of it.
     Camera full = camera;
     full.lens = centred(camera.lens);
@@ -22,6 +28,7 @@ inline Plan make_plan(Session& session, const Assembly& scene, const Camera& cam
     const LensErrors errors =
         lens_errors(of_surfaces.view({0, 0, 0}), of_ideal.view({0, 0, 0}), full.lens, facts, tracer);
     Plan plan = plan_shot(camera, errors, facts, settings);
+    plan_bounces(session, scene, full, settings, plan, progress);
     if (measures_times) measure_times(session, scene, camera, settings, plan, progress);
     return plan;
 }

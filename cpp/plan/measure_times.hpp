@@ -43,6 +43,7 @@ inline void measure_times(Session& session, const Assembly& scene, Camera camera
     camera.model = CameraModel::full_lens;
     settings.layers = {};
     settings.noise.reset();
+    settings.max_bounces = plan.max_bounces;
     EffectChoice none;
     none.motion_blur = none.rolling_shutter = false;
     const auto set = [&](const EffectChoice& effects) {
@@ -68,6 +69,13 @@ inline void measure_times(Session& session, const Assembly& scene, Camera camera
     }
     std::vector<std::optional<double>> with(plan.decisions.size());
     for (std::size_t k = 0; k < plan.decisions.size(); ++k) {
+        if (plan.decisions[k].name == "bounces") {
+            settings.max_bounces = 0;
+            set(none);
+            plan.decisions[k].time = std::max(alone / seconds_of(session, spp, progress) - 1, 0.0);
+            settings.max_bounces = plan.max_bounces;
+            continue;
+        }
         const EffectInfo* effect = find_effect(plan.decisions[k].name);
         if (!effect) continue;  // what comes along with the camera model
         EffectChoice one = none;

@@ -39,6 +39,7 @@ struct PlanDecision {
 struct Plan {
     CameraModel model = CameraModel::full_lens;  ///< the cheapest that looks like every surface of the lens
     EffectChoice effects;
+    int max_bounces = 1;  ///< of light in the scene
     std::vector<PlanDecision> decisions;
 };
 

@@ -12,6 +12,7 @@ namespace REALCAM_NAMESPACE {
 struct FilmPlan {
     EffectChoice effects;
     CameraModel model = CameraModel::full_lens;
+    int max_bounces = 1;
     std::string summary;
 };
 
@@ -31,10 +32,11 @@ inline FilmPlan plan_film(Session& session, const Assembly& scene, const std::ve
         }
     }
     if (plans.empty()) throw NothingToPlan(last_reason);
-    FilmPlan film{plans.front().effects, plans.front().model, ""};
+    FilmPlan film{plans.front().effects, plans.front().model, plans.front().max_bounces, ""};
     for (const Plan& plan : plans) {
         for (const EffectInfo& effect : kEffects)
             film.effects.*effect.member = film.effects.*effect.member || plan.effects.*effect.member;
+        film.max_bounces = std::max(film.max_bounces, plan.max_bounces);
         if (plan.model != film.model) film.model = cameras.front().model;
         const std::string summary = summary_of(plan);
         if (film.summary.find(summary) == std::string::npos)
@@ -42,7 +44,7 @@ inline FilmPlan plan_film(Session& session, const Assembly& scene, const std::ve
     }
     for (const Camera& camera : cameras)
         for (const EffectInfo& effect : kEffects)
-            if (effect.needs_round_lens && !has_radial_pupil(camera.lens) && !(settings.effects.*effect.member))
+            if (settings.effects.is_automatic && effect.needs_round_lens && !has_radial_pupil(camera.lens) && !(settings.effects.*effect.member))
                 film.effects.*effect.member = false;
     return film;
 }

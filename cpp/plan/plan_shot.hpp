@@ -200,6 +200,7 @@ private:
 inline void apply(const Plan& plan, Camera& camera, RenderSettings& settings) {
     camera.model = plan.model;
     settings.effects = plan.effects;
+    settings.max_bounces = plan.max_bounces;
     if (!settings.effects.have_wavelengths()) settings.illuminant.reset();
 }
 

@@ -50,7 +50,7 @@ inline std::string text_of(const Plan& plan, const std::string& model_name) {
     std::array<std::size_t, 6> width{};
     for (const Row& row : rows)
         for (std::size_t c = 0; c < row.size(); ++c) width[c] = std::max(width[c], row[c].size());
-    std::string text = "camera model " + model_name + "\n\n";
+    std::string text = "camera model " + model_name + ", max_bounces " + std::to_string(plan.max_bounces) + "\n\n";
     for (const Row& row : rows) {
         std::string line;
         for (std::size_t c = 0; c < row.size(); ++c)

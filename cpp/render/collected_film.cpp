@@ -18,14 +18,7 @@ FilmView view_of(const FilmSums& pixels, int width, int height, const RenderSett
 std::vector<float> traced_exposure(const std::vector<SplatFilm>& films, double exposure_time_s) {
     const auto lit = std::find_if(films.begin(), films.end(), [](const SplatFilm& film) { return !film.sums.empty(); });
     if (lit == films.end()) return {};
-    const SplattedLight light = view_of(films);
-    std::vector<float> exposure;
-    const auto pixels = static_cast<std::int64_t>(lit->width) * lit->height;
-    exposure.reserve(3 * static_cast<std::size_t>(pixels));
-    for (std::int64_t pixel = 0; pixel < pixels; ++pixel)
-        for (int channel = 0; channel < 3; ++channel)
-            exposure.push_back(film_exposure(light.irradiance(pixel, channel) * exposure_time_s));
-    return exposure;
+    return developed_traced({nullptr, lit->width, lit->height, {}, view_of(films)}, exposure_time_s).values;
 }
 
 }  // namespace realcam

@@ -89,6 +89,15 @@ LayerImage developed_variance(const FilmView& film, double exposure_time_s) {
     return image;
 }
 
+LayerImage developed_traced(const FilmView& film, double exposure_time_s) {
+    LayerImage image{Layer::traced_light, {}, {}};
+    image.values.reserve(3 * pixels_of(film));
+    for (std::int64_t i = 0; i < film.pixel_count(); ++i)
+        for (int channel = 0; channel < 3; ++channel)
+            image.values.push_back(film_exposure(film.splatted.irradiance(i, channel) * exposure_time_s));
+    return image;
+}
+
 namespace {
 
 LayerImage developed_half(const FilmView& film, Layer half, double exposure_time_s) {
@@ -107,6 +116,7 @@ LayerImage developed_half(const FilmView& film, Layer half, double exposure_time
 std::vector<LayerImage> developed_besides(const FilmView& film, LayerSet wanted, double exposure_time_s) {
     std::vector<LayerImage> images;
     if (wanted.has(Layer::variance)) images.push_back(developed_variance(film, exposure_time_s));
+    if (wanted.has(Layer::traced_light)) images.push_back(developed_traced(film, exposure_time_s));
     for (const Layer half : {Layer::dual_pixel_left, Layer::dual_pixel_right})
         if (wanted.has(half)) images.push_back(developed_half(film, half, exposure_time_s));
     return images;

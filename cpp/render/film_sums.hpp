@@ -19,6 +19,9 @@ std::vector<std::uint8_t> developed_codes(const FilmView& film, double exposure_
                                           const RayLoop& loop = {});
 
 /// Variance of the exposure, 3 per pixel (PixelSum::variance).
+/// Of the light that was traced apart from the samples of pixels.
+LayerImage developed_traced(const FilmView& film, double exposure_time_s);
+
 LayerImage developed_variance(const FilmView& film, double exposure_time_s);
 
 /// The layers of PixelSum::besides that are wanted: the variance, or the halves of dual pixels.

@@ -33,4 +33,9 @@ struct Image {
     RenderStats stats;
 };
 
+/// Drops the layers that are not among these.
+inline void keep_layers(Image& image, LayerSet wanted) {
+    std::erase_if(image.layers, [&](const LayerImage& layer) { return !wanted.has(layer.layer); });
+}
+
 }  // namespace REALCAM_NAMESPACE

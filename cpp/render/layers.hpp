@@ -25,6 +25,7 @@ enum class Layer : std::uint32_t {
     material_id,
     motion,
     position_middle,
+    traced_light,
     dual_pixel_left,
     dual_pixel_right,
 };
@@ -36,7 +37,7 @@ struct LayerInfo {
 };
 
 /// In the order of Layer.
-inline constexpr std::array<LayerInfo, 14> kLayers = {{
+inline constexpr std::array<LayerInfo, 15> kLayers = {{
     {"depth", 1, false},
     {"normal", 3, false},
     {"albedo", 3, false},
@@ -49,6 +50,7 @@ inline constexpr std::array<LayerInfo, 14> kLayers = {{
     {"material_id", 1, true},
     {"motion", 2, false},
     {"position_middle", 3, false},
+    {"traced_light", 3, false},
     {"dual_pixel_left", 3, false},
     {"dual_pixel_right", 3, false},
 }};
@@ -71,6 +73,7 @@ public:
     }
 
     constexpr void add(Layer layer) { bits_ |= 1u << static_cast<std::uint32_t>(layer); }
+    constexpr void add(LayerSet other) { bits_ |= other.bits_; }
     constexpr bool has(Layer layer) const { return ((bits_ >> static_cast<std::uint32_t>(layer)) & 1u) != 0; }
     constexpr bool has_any(LayerSet other) const { return (bits_ & other.bits_) != 0; }
     constexpr bool operator==(const LayerSet&) const = default;
@@ -84,6 +87,8 @@ inline constexpr LayerSet kSampledLayers = {Layer::normal, Layer::albedo, Layer:
 /// Those of the surface in the middle ray of each pixel.
 inline constexpr LayerSet kMiddleLayers = {Layer::depth_middle, Layer::normal_middle, Layer::object_id,
                                            Layer::material_id,  Layer::motion,        Layer::position_middle};
+/// By which the picture is denoised; the light that was traced is kept out of that.
+inline constexpr LayerSet kDenoiserLayers = {Layer::albedo, Layer::normal, Layer::traced_light};
 /// The exposure through the left and the right half of the exit pupil.
 inline constexpr LayerSet kHalfLayers = {Layer::dual_pixel_left, Layer::dual_pixel_right};
 

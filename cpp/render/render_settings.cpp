@@ -27,8 +27,8 @@ std::string illuminant_error(const RenderSettings& settings) {
 void validate(const RenderSettings& settings) {
     validate_spp(settings.spp);
     if (settings.noise) validate(*settings.noise);
-    if (settings.max_bounces < 0 || settings.max_bounces > 64)
-        throw InputError("max_bounces must lie between 0 and 64");
+    if (settings.max_bounces && (*settings.max_bounces < 0 || *settings.max_bounces > kMostBounces))
+        throw InputError("max_bounces must be \"auto\", or lie between 0 and 64");
     if (!(settings.clamp >= 0)) throw InputError("clamp must be 0 (none) or a radiance in cd/m^2");
     if (settings.threads < 0 || settings.threads > kMaxThreads)
         throw InputError("threads must be 0 (all) or a number up to " + std::to_string(kMaxThreads));

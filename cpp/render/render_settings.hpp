@@ -25,11 +25,13 @@ inline constexpr EffectChoice kAutomaticEffects = [] {
     return effects;
 }();
 
+inline constexpr int kMostBounces = 64;  ///< mirrors that reflect 95% of the light leave 4% of it
+
 /// How a picture is taken: the same value for the command line, shot files, Python, and all kinds of sessions.
 struct RenderSettings {
     int spp = 64;  ///< samples per pixel
     std::uint32_t seed = 0;
-    int max_bounces = 1;  ///< 0: direct light only
+    std::optional<int> max_bounces = {};  ///< 0: direct light only; none: the planner decides
     int threads = 0;      ///< of the CPU; 0: all
     LightTransport transport = LightTransport::paths;
     double clamp = 0;  ///< see PathSettings
@@ -51,7 +53,10 @@ struct RenderSettings {
     std::optional<GhostChoice> ghost_choice() const;
     /// Light that is traced from lamps has no halves of the pupil.
     LightTracing lights_traced() const { return layers.has_any(kHalfLayers) ? LightTracing::off : light_tracing; }
-    PathSettings path() const { return {max_bounces, transport, static_cast<float>(clamp)}; }
+    /// Whether the planner decides on something.
+    bool needs_plan() const { return effects.is_automatic || !max_bounces; }
+    /// Where nobody has decided on the bounces, they are as many as a plan allows.
+    PathSettings path() const { return {max_bounces.value_or(kMostBounces), transport, static_cast<float>(clamp)}; }
 };
 
 /// Throws InputError where no picture has so many samples per pixel.

@@ -344,7 +344,7 @@ void Session::add_layers(Image& image, const LayerFilm& layers, Besides&& beside
         if (wanted.has(Layer::object_id)) image.object_names = ids.object_names();
         if (wanted.has(Layer::material_id)) image.material_names = ids.names_of_materials();
     }
-    if (wanted.has(Layer::variance) || wanted.has_any(kHalfLayers))
+    if (wanted.has_any({Layer::variance, Layer::traced_light}) || wanted.has_any(kHalfLayers))
         for (LayerImage& layer : besides()) image.layers.push_back(std::move(layer));
     if (wanted.has(Layer::sample_count)) {
         constexpr std::int64_t kMost = std::numeric_limits<std::uint32_t>::max();

@@ -198,7 +198,8 @@ private:
             if (const auto number = table_.number(key)) value = table_.whole<Value>(key, *number);
         };
         read("seed", settings.seed);
-        read("max_bounces", settings.max_bounces);
+        if (const auto bounces = table_.number_or_auto("max_bounces", "a whole number or \"auto\""))
+            settings.max_bounces = table_.whole("max_bounces", *bounces);
         settings.transport = table_.named("transport", transport_named, kTransportNames).value_or(settings.transport);
         settings.clamp = table_.number("clamp_cd_m2").value_or(0);
         if (table_.find("effects")) {

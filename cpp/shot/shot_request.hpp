@@ -65,6 +65,7 @@ struct ShotRequest {
     Sampling sampling = Sampling::unsaid;
     NoiseRequest noise;
     bool denoises = false;
+    bool keeps_noise = false;  ///< else pictures for screens are denoised where the unsaid noise goal was not reached
     ToneCurve tone = ToneCurve::film;
 
     /// Takes a value out of the keys: something else was said of it.

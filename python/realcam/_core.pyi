@@ -1045,7 +1045,7 @@ class Camera(_Value):
         scene_camera: str = "",
     ) -> Camera: ...
     def metered(
-        self, scene: Scene, *, device: str = "auto", max_bounces: int = 1, progress: _Progress | None = None
+        self, scene: Scene, *, device: str = "auto", max_bounces: int | str = "auto", progress: _Progress | None = None
     ) -> Camera: ...
     @property
     def field_of_view_deg(self) -> FieldOfView: ...
@@ -1528,7 +1528,7 @@ class _SettingWords(TypedDict, total=False):
     seconds: float | None
     max_spp: int | None
     seed: int
-    max_bounces: int
+    max_bounces: int | str
     transport: str
     clamp_cd_m2: float
     threads: int
@@ -1552,7 +1552,7 @@ class RenderSettings(_Value):
         seconds: float | None = None,
         max_spp: int | None = None,
         seed: int = 0,
-        max_bounces: int = 1,
+        max_bounces: int | str = "auto",
         transport: str = "paths",
         clamp_cd_m2: float = 0.0,
         threads: int = 0,
@@ -1579,7 +1579,7 @@ class RenderSettings(_Value):
     @property
     def seed(self) -> int: ...
     @property
-    def max_bounces(self) -> int: ...
+    def max_bounces(self) -> int | Literal["auto"]: ...
     @property
     def transport(self) -> str: ...
     @property
@@ -1692,6 +1692,8 @@ class Plan(_Value):
     @property
     def effects(self) -> list[str]: ...
     @property
+    def max_bounces(self) -> int: ...
+    @property
     def decisions(self) -> list[PlanDecision]: ...
     @property
     def summary(self) -> str: ...
@@ -1699,7 +1701,7 @@ class Plan(_Value):
 def _plan(scene: Scene, camera: Camera, settings: RenderSettings, device: str, times: bool) -> Plan: ...
 def _plan_film(
     scene: Scene, cameras: Sequence[Camera], settings: RenderSettings, device: str
-) -> tuple[str, list[str], str]: ...
+) -> tuple[str, list[str], int, str]: ...
 
 @final
 class LiveFrame:
@@ -1794,7 +1796,12 @@ class _Session:
 class _Denoiser:
     def __init__(self, device: str, threads: int, library: str) -> None: ...
     def denoised(
-        self, exposure: NDArray[np.float32], albedo: NDArray[np.float32], normal: NDArray[np.float32], fast: bool
+        self,
+        exposure: NDArray[np.float32],
+        albedo: NDArray[np.float32],
+        normal: NDArray[np.float32],
+        fast: bool,
+        progress: _Progress | None = None,
     ) -> NDArray[np.float32]: ...
     @property
     def name(self) -> str: ...

@@ -109,10 +109,10 @@ class Image:
     def denoised(self, *, device: str = "auto") -> Image:
         """Without noise, as Intel's Open Image Denoise guesses it: a picture to look at, not to measure.
 
-        Wants the layers albedo and normal, and the extra realcam[denoise] (docs/denoising.md). All but the pixels stays
-        as it is; the layers variance and dual_pixel_*, which describe the noise or have it, go. device: "auto" (a GPU
-        if the denoiser can use one), "cpu", "cuda" or "cuda:1". Raises InputError where one of these is missing;
-        DeviceError.
+        Wants the layers albedo, normal and traced_light, and the extra realcam[denoise] (docs/denoising.md). All but
+        the pixels stays as it is; the layers variance and dual_pixel_*, which describe the noise or have it, go.
+        device: "auto" (a GPU if the denoiser can use one), "cpu", "cuda" or "cuda:1". Raises InputError where one of
+        these is missing; DeviceError.
         """
         pixels, name = denoiser.denoised(self.pixels, self.layers, device)
         noisy = ("variance", "dual_pixel_left", "dual_pixel_right")

@@ -28,9 +28,9 @@ class LiveView:
     behind the other without waiting: up to three are under way on a GPU, one on the CPU. Not for two threads at once,
     but for cancel().
 
-    settings, also by their names, are those of render, but that effects are none unless they are named: planning
-    ("auto") takes longer than a frame, and rc.plan says what it would choose. Layers are image()'s, not frames'. Raises
-    InputError; DeviceError where the device is not there.
+    settings, also by their names, are those of render, but that effects are none and max_bounces is 1 unless they are
+    named: planning ("auto") takes longer than a frame, and rc.plan says what it would choose. Layers are image()'s, not
+    frames'. Raises InputError; DeviceError where the device is not there.
     """
 
     def __init__(
@@ -41,7 +41,7 @@ class LiveView:
         device: str = "auto",
         **changes: Unpack[_SettingWords],
     ) -> None:
-        self.settings = settings_of(settings, changes, RenderSettings(effects=()))
+        self.settings = settings_of(settings, changes, RenderSettings(effects=(), max_bounces=1))
         self._core = _core._LiveView(scene, device)
         self._last: tuple[Camera, RenderSettings] | None = None
 

@@ -72,13 +72,13 @@ def settled_film(
 ) -> Settled:
     """The same for frames of a film, given by their cameras, together. The camera is the first one."""
     camera = cameras[0]
-    if "auto" not in settings.effects:
+    if "auto" not in settings.effects and settings.max_bounces != "auto":
         return Settled(camera, settings, "")
-    summary = ""
+    summary, max_bounces = "", settings.max_bounces
     try:
-        model, effects, summary = _core._plan_film(scene, cameras, settings, device)
-        camera = camera.replace(model=model)
+        model, effects, max_bounces, summary = _core._plan_film(scene, cameras, settings, device)
+        camera = camera if model == camera.model else camera.replace(model=model)
     except NothingToPlan as nothing:
         warnings.warn(f"{nothing}; the picture has the effects that are named", stacklevel=stacklevel + 1)
         effects = [name for name in settings.effects if name != "auto"]
-    return Settled(camera, settings.with_(effects=effects), summary)
+    return Settled(camera, settings.with_(effects=effects, max_bounces=max_bounces), summary)

@@ -105,7 +105,7 @@ class Session:
         new_scene = self.scene if scene is None else scene
         asked = self._asked_camera if camera is None else camera
         wanted = self._asked_settings if settings is None else settings_of(settings, {})
-        if "auto" in wanted.effects and isinstance(asked, Camera):
+        if ("auto" in wanted.effects or wanted.max_bounces == "auto") and isinstance(asked, Camera):
             if asked.model == self.camera.model:  # made of self.camera: the model of it was planned
                 asked = asked.replace(model=self._asked_camera.model)
             if scene is None and settings is None:

@@ -27,7 +27,12 @@ pytestmark = [
 def noisy() -> rc.Image:
     camera = frame_camera().replace(film=rc.Film(36, 24, (192, 128)))
     return rc.render(
-        frame_scene(spheres=10, boxes=10), camera, effects=(), spp=4, layers=("albedo", "normal"), device="cuda"
+        frame_scene(spheres=10, boxes=10),
+        camera,
+        effects=(),
+        spp=4,
+        layers=("albedo", "normal", "traced_light"),
+        device="cuda",
     )
 
 

@@ -16,9 +16,10 @@ from frame_scene import frame_scene
 from realcam.denoiser import opened
 from realcam_command import denoiser_library
 
+from . import scenes
 from .programs import PROGRAM
 
-GUIDES = ("albedo", "normal")
+GUIDES = ("albedo", "normal", "traced_light")
 NOWHERE = "/nowhere/libOpenImageDenoise.so"
 QUAD = "v -1 -1 -3\nv 1 -1 -3\nv 1 1 -4\nv -1 1 -4\nf 1 2 3 4\n"
 
@@ -60,7 +61,7 @@ def test_noise_falls() -> None:
     # Light is neither made nor lost.
     assert clean.pixels.mean() == pytest.approx(noisy.pixels.mean(), rel=0.03)
     assert (clean.pixels.shape, clean.pixels.dtype) == (noisy.pixels.shape, np.float32)
-    assert set(clean.layers) == {"albedo", "normal", "depth_middle"}
+    assert set(clean.layers) == {*GUIDES, "depth_middle"}
     assert clean != noisy
     assert "denoised" in repr(clean)
 
@@ -82,8 +83,30 @@ def test_it_is_never_on_by_itself_and_tells(tmp_path: Path) -> None:
             assert spec.getattribute("realcam:denoiser") == clean.denoiser
 
 
+@wants_it
+@pytest.mark.parametrize("focus_m", [6.0, 1.0])
+def test_lamps_keep_their_light(focus_m: float) -> None:
+    """Five small lamps before a lit wall: their light is traced, and stays what it is."""
+    lamps = [scenes.quad((0.3 * x, 0.1 * x * x, -6), 0.01, emission=3e4) for x in range(-2, 3)]
+    scene = scenes.scene_of(*lamps, scenes.quad((0, 0, -8), 4, diffuse=0.5)).with_point_light((2, 2, -5), (200,) * 3)
+    lens = rc.Lens.load("double-gauss-50mm").focused(focus_m)
+    camera = rc.Camera(lens, film=rc.Film(36, 24, (120, 80)), exposure_time_s=1)
+
+    def taken(spp: int, seed: int) -> rc.Image:
+        return rc.render(scene, camera, effects=(), spp=spp, seed=seed, max_bounces=1, layers=GUIDES, device="cpu")
+
+    truth = taken(4096, 100).pixels.astype(float)
+    for seed in range(5):
+        noisy = taken(8, seed)
+        assert noisy.layers["traced_light"].max() > 0.5 * truth.max()
+        clean = noisy.denoised().pixels.astype(float)
+        raw = noisy.pixels.astype(float)
+        assert ((clean - truth) ** 2).mean() <= ((raw - truth) ** 2).mean()
+        assert clean.mean() == pytest.approx(raw.mean(), rel=0.005)
+
+
 def test_what_is_missing_is_told_in_one_line(monkeypatch: pytest.MonkeyPatch) -> None:
-    with pytest.raises(rc.InputError, match="wants the layers albedo and normal; render") as error:
+    with pytest.raises(rc.InputError, match="wants the layers albedo, normal, traced_light; render") as error:
         picture(1, ("albedo",)).denoised()
     assert "\n" not in str(error.value)
     image = picture(1, GUIDES)

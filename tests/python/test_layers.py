@@ -26,9 +26,10 @@ ALL = (
     "material_id",
     "motion",
     "position_middle",
+    "traced_light",
 )
 NUMBERS = ("sample_count", "object_id", "material_id")
-THREE = ("normal", "albedo", "variance", "normal_middle", "position_middle")
+THREE = ("normal", "albedo", "variance", "normal_middle", "position_middle", "traced_light")
 FILM = rc.Film(24, 16, (24, 16))
 SLANT = np.array([0.6, 0.0, 0.8])
 

@@ -188,7 +188,7 @@ def test_times_are_measured_where_they_are_asked_for() -> None:
     scene = board(10.0, radiance=150)
     assert all(d.time_share is None for d in decisions(scene, camera).values())
     measured = {name for name, d in decisions(scene, camera, times=True).items() if d.time_share is not None}
-    assert measured == {"coatings", "ghosts", "diffraction", "dispersion"}
+    assert measured == {"coatings", "ghosts", "diffraction", "dispersion", "bounces"}
     assert all((d.time_share or 0) >= 0 for d in decisions(scene, camera, times=True).values())
 
 
@@ -236,13 +236,13 @@ def test_a_picture_says_what_was_decided(tmp_path: Path) -> None:
     written = read_film(tmp_path / "picture.exr")[1]
     # All that the file says, but for the version of the library that wrote it.
     assert {name: written[name] for name in picture.metadata()} == picture.metadata()
-    assert "realcam:plan" not in rc.render(scene, camera, effects=(), spp=1, device="cpu").metadata()
+    assert "realcam:plan" not in rc.render(scene, camera, effects=(), max_bounces=1, spp=1, device="cpu").metadata()
 
 
 def test_a_plan_is_a_value() -> None:
     plan = rc.plan(board(3.0), camera_of(), device="cpu")
     assert copy.deepcopy(plan) == plan
-    assert str(plan).startswith(f"camera model {plan.model}\n")
+    assert str(plan).startswith(f"camera model {plan.model}, max_bounces {plan.max_bounces}\n")
     for decision in plan.decisions:
         assert decision.effect in str(plan)
         assert decision.reason in str(plan)

@@ -171,6 +171,7 @@ CHANNELS = {
     "material_id": ("MaterialId",),
     "motion": ("Motion.X", "Motion.Y"),
     "position_middle": ("PositionMiddle.X", "PositionMiddle.Y", "PositionMiddle.Z"),
+    "traced_light": ("TracedLight.R", "TracedLight.G", "TracedLight.B"),
 }
 
 

@@ -75,8 +75,16 @@ def test_fewer_pixels_where_all_would_take_too_long(scene: rc.Scene) -> None:
     noisy = rc.render(scene, camera(), effects=(), spp=1, layers=GUIDES, device="cpu")
     slow = PreviewDenoiser("cpu")
     slow._rates.clear()
-    slow._rates.append(120 * 80 / 0.15)  # a picture of half the pixels takes 75 ms
-    assert slow.denoised(noisy).shape == (53, 80, 3)
+    slow._rates.append(120 * 80 / 0.1)  # a picture of half the pixels takes 50 ms
+    assert slow.denoised(noisy, is_hurried=True).shape == (53, 80, 3)
+    assert slow.denoised(noisy).shape == (80, 120, 3)
+
+
+@wants_it
+def test_a_picture_that_is_not_wanted_any_more_is_given_up(scene: rc.Scene) -> None:
+    noisy = rc.render(scene, camera(), effects=(), spp=1, layers=GUIDES, device="cpu")
+    with pytest.raises(rc.Cancelled):
+        PreviewDenoiser("cpu").denoised(noisy, is_wanted=lambda: False)
 
 
 @wants_it

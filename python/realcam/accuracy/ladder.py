@@ -10,8 +10,9 @@ from dataclasses import asdict
 
 import numpy as np
 
-from .._core import Camera, InputError, Scene
+from .._core import Camera, InputError, RenderSettings, Scene
 from ..image import Image
+from ..planning import settled
 from ..render import ProgressCallback, render
 from .errors import Codes, codes, flip, mean_square
 from .measurements import Measured, Measurements, Rung
@@ -51,7 +52,7 @@ def accuracy_cost(
     device: str = "auto",
     threads: int = 0,
     seed: int = 0,
-    max_bounces: int = 1,
+    max_bounces: int | str = "auto",
     size: int = 320,
     most_spp: int = 256,
     reference_spp: int = 4096,
@@ -74,7 +75,9 @@ def accuracy_cost(
     scale = min(1.0, size / max(columns, rows))
     small = (max(1, round(columns * scale)), max(1, round(rows * scale)))
     camera = camera.replace(film=film.replace(resolution=small), model="full")
-    settings = {"device": device, "threads": threads, "max_bounces": max_bounces}
+    asked = RenderSettings(effects=(), max_bounces=max_bounces)
+    bounces = settled(scene, camera, asked, device, stacklevel=2).settings.max_bounces
+    settings = {"device": device, "threads": threads, "max_bounces": bounces}
     wanted = tuple(known_effects(camera) if effects is None else effects)
 
     def tell(done: float) -> None:

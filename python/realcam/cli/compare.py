@@ -53,7 +53,7 @@ def compare(
     described = Shot.load(shot, device=device)
     settings = described.settings.with_(spp="auto", noise_codes=noise_codes, seconds=seconds)
     if denoise:
-        settings = settings.with_(layers=("albedo", "normal"))
+        settings = settings.with_(layers=("albedo", "normal", "traced_light"))
     pictures = []
     varied = variations(described, name, values.split(","))
     check_figure_target(output)  # again: now the files are known that the pictures are made from

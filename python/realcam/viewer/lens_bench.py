@@ -8,7 +8,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
-from .._core import Film, InputError, Lens, LensFileError, Plan, RealcamError
+from .._core import Film, InputError, Lens, LensFileError, Plan, RealcamError, RenderSettings
 from ..denoiser import GUIDES
 from ..drawing.cut import PLANES
 from ..image import Image
@@ -366,10 +366,17 @@ class LensBench:
             self.problem = problem
             self.listeners.problem(problem)
 
+    def _settings(self, switches: Switches) -> RenderSettings:
+        """Those of a picture: what is left to the plan as it says, or as pictures are taken until there is one."""
+        settings = self.shot.settings.with_(effects=switches.named(self.plan))
+        if settings.max_bounces == "auto":
+            settings = settings.with_(max_bounces=self.plan.max_bounces if self.plan else 1)
+        return settings
+
     def _request(self, controls: CameraControls) -> PictureRequest:
         return PictureRequest(
             camera=controls.camera,
-            settings=self.shot.settings.with_(effects=self.switches.of_model(controls.model).named(self.plan)),
+            settings=self._settings(self.switches.of_model(controls.model)),
             tone=self.shot.tone,
             is_automatic=controls.is_automatic,
             compensation_ev=controls.compensation_ev,
@@ -405,17 +412,17 @@ class LensBench:
         self._follow_ups.keep(self.controls, dict(self.switches.of))
 
     def _ask_for_plan(self) -> None:
-        if "auto" in self.switches.of.values():
+        if "auto" in self.switches.of.values() or self.shot.settings.max_bounces == "auto":
             self._follow_ups.plan(self.controls.camera, self.switches.as_words(), self._take_plan)
         else:
             self.plan = None
             self._follow_ups.plan_nothing(self._take_plan)  # how the switches stand is told all the same
 
     def _take_plan(self, plan: Plan | None, note: str) -> None:
-        before = self.switches.named(self.plan)
+        before = self._settings(self.switches)
         self.plan = plan
         self.listeners.plan(plan, note)
-        if self.switches.named(plan) != before:
+        if self._settings(self.switches) != before:
             self._photograph()
 
 

@@ -5,8 +5,11 @@ from __future__ import annotations
 import math
 import statistics
 from collections import deque
+from itertools import pairwise
 
 _PREVIEW_S = 0.032  # what the first frame of a change may take, so that 25 of them fit into a second
+_LEAST_PREVIEW = 240 * 160  # pixels that it has, as long as it does not take more than this
+_MOST_PREVIEW_S = 0.07
 _QUICK_S = 0.008  # for so long it takes more than one sample, on a GPU: 60 frames a second remain
 _REFINING_S = 0.040  # what a frame may take that only refines, as long as it is more than a sample
 _MOST_REFINING_S = 1.0  # and one that adds no more than an eighth of the samples, of which little is seen
@@ -33,11 +36,13 @@ class Pace:
 
     def preview_size(self, whole: Size) -> Size:
         """Pixels of the first frame of a picture."""
-        for divisor in _DIVISORS:
-            size = max(1, round(whole[0] / divisor)), max(1, round(whole[1] / divisor))
-            if math.prod(size) <= _PREVIEW_S * statistics.median(self._first_rates):
-                break
-        return size
+        rate = statistics.median(self._first_rates)
+        sizes = [(max(1, round(whole[0] / d)), max(1, round(whole[1] / d))) for d in _DIVISORS]
+        for size, next_size in pairwise(sizes):
+            seconds = math.prod(size) / rate
+            if seconds <= _PREVIEW_S or (math.prod(next_size) < _LEAST_PREVIEW and seconds <= _MOST_PREVIEW_S):
+                return size
+        return sizes[-1]
 
     def first_spp(self, size: Size) -> int:
         return self._affordable_spp(_QUICK_S * statistics.median(self._first_rates), size)

@@ -63,7 +63,7 @@ class PictureLoop:
         device: str = "auto",
     ) -> None:
         self._live = LiveView(scene, device=device)
-        self._taker = PictureTaker(self._live, self._wait_for, device)
+        self._taker = PictureTaker(self._live, self._wait_for, self._is_wanted, device)
         self._on_error = on_error
         self._wake = threading.Condition()
         self._pending: _Pending | None = None
@@ -131,6 +131,9 @@ class PictureLoop:
         return answer
 
     # What follows runs on the loop's thread.
+
+    def _is_wanted(self) -> bool:
+        return not self._pending and not self._is_closed
 
     def _run(self) -> None:
         while self._wait_for_work():

@@ -28,11 +28,19 @@ class PictureTaker:
     """Works on one thread; what it has metered stays from picture to picture.
 
     wait_for: called with a frame that is under way while the one before is kept, and returns when it is ready.
+    is_wanted: whether the picture is still wanted whose noise is taken away.
     """
 
-    def __init__(self, live: LiveView, wait_for: Callable[[LiveFrame, GrowingPicture], None], device: str) -> None:
+    def __init__(
+        self,
+        live: LiveView,
+        wait_for: Callable[[LiveFrame, GrowingPicture], None],
+        is_wanted: Callable[[], bool],
+        device: str,
+    ) -> None:
         self._live = live
         self._wait_for = wait_for
+        self._is_wanted = is_wanted
         self._device = device
         self._metered_s = 0.0
         self.pace = Pace()
@@ -85,12 +93,18 @@ class PictureTaker:
     def without_noise(self, picture: GrowingPicture, *, is_free: bool) -> NDArray[np.uint8] | None:
         """The samples that are there, denoised. is_free: no frame is under way, whose end this would have to wait for.
 
-        None: nothing that a frame has not shown, and no time for more.
+        None: nothing that a frame has not shown, and no time for more. The first frame of a change may have fewer
+        pixels than the picture. Later ones have all, so that none is coarser than the one before. Raises Cancelled
+        where another picture is wanted.
         """
         is_new = picture.denoised_lx is None or picture.denoised_of != picture.size
         if is_free and (is_new or self._denoiser.is_due):
             image = self._live.image(GUIDES)
-            picture.denoised_lx = self._denoiser.denoised(image) / np.float32(image.camera.exposure_time_s)
+            if picture.denoised_lx is None:  # the first frame of a change is shown, whatever is wanted by then
+                exposure = self._denoiser.denoised(image, is_hurried=True)
+            else:
+                exposure = self._denoiser.denoised(image, is_wanted=self._is_wanted)
+            picture.denoised_lx = exposure / np.float32(image.camera.exposure_time_s)
             picture.denoised_of = picture.size
         elif picture.denoised_lx is None or picture.denoised_serial == picture.serial:
             return None

@@ -1,4 +1,4 @@
-"""Frames without noise, in as many pixels as there is time for."""
+"""Frames without noise."""
 
 from __future__ import annotations
 
@@ -6,17 +6,18 @@ import math
 import statistics
 import time
 from collections import deque
+from collections.abc import Callable
 from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .._core import RealcamError
-from ..denoiser import opened
+from ..denoiser import GUIDES, opened, without_noise
 from ..image import Image
 from .pace import Size
 
-_MOST_S = 0.1  # which a frame may take to be denoised
+_MOST_S = 0.05  # which the first frame of a change may take to be denoised, so that 10 of them fit into a second
 _SHARE = 0.25  # of the time, at most: the rest is for samples
 
 
@@ -44,16 +45,17 @@ class PreviewDenoiser:
         now = time.perf_counter()
         return (self._ended - self._began) / max(now - self._began, 1e-9) <= _SHARE
 
-    def denoised(self, image: Image) -> NDArray[np.float32]:
-        """(h, w, 3) exposure without noise, of fewer pixels where all take too long. image: with albedo and normal."""
+    def denoised(
+        self, image: Image, *, is_hurried: bool = False, is_wanted: Callable[[], bool] = lambda: True
+    ) -> NDArray[np.float32]:
+        """(h, w, 3) exposure without noise. image: with GUIDES. is_hurried: of fewer pixels where all take too long.
+        Raises Cancelled where is_wanted, which is asked meanwhile, returns False."""
         self._began = time.perf_counter()
         height, width = image.depth.shape
-        size = self._affordable_size((width, height))
-        exposure, albedo, normal = (
-            shrunk(array, size) for array in (image.pixels, image.layers["albedo"], image.layers["normal"])
-        )
+        size = self._affordable_size((width, height)) if is_hurried else (width, height)
+        exposure, *guides = (shrunk(array, size) for array in (image.pixels, *map(image.layers.__getitem__, GUIDES)))
         begin = time.perf_counter()
-        result = self._core.denoised(exposure, albedo, normal, True)
+        result = without_noise(self._core, exposure, *guides, fast=True, progress=lambda _: is_wanted())
         self._ended = time.perf_counter()
         self._rates.append(math.prod(size) / (self._ended - begin))
         return result
