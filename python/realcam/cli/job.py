@@ -32,7 +32,9 @@ Threads = Annotated[int, typer.Option(metavar="N", help="Of each process; 0: all
 
 @app.command()
 def make(
-    shots: Annotated[list[Path], typer.Argument(help="Shot files, .toml", metavar="SHOT")],
+    shots: Annotated[
+        list[Path], typer.Argument(help="Shot files (.toml), scene files, or bundled shots", metavar="SCENE")
+    ],
     output: Annotated[Path, typer.Option("--output", "-o", metavar="FOLDER", help="Of the job; it must not be there")],
     spp: Annotated[
         str | None, typer.Option("--spp", metavar="N", help="Samples per pixel, or auto [those of the shots]")
@@ -208,7 +210,7 @@ def finish(
     from ..files import remove_leftovers
     from ..job import Job
 
-    options.check_known(format, ("exr", "png"), "format")
+    format = options.known_word(format, ("exr", "png"), "format")
     job = Job.load(folder)
     remove_leftovers(job.path)
     if [path.suffix.lower() for path in output] == [".mp4"]:

@@ -39,7 +39,10 @@ def draw(
     name: lens_options.LensName,
     *,
     output: Annotated[
-        Path | None, typer.Option("--output", "-o", metavar="FILE", help="A .svg, .png or .pdf file [LENS.svg, here]")
+        Path | None,
+        typer.Option(
+            "--output", "-o", metavar="FILE", help="A .svg, .pdf, .png, .jpg, .tif or .webp file [LENS.svg, here]"
+        ),
     ] = None,
     rings: lens_options.Rings,
     plane: Annotated[
@@ -137,7 +140,9 @@ def compare(
     *,
     output: Annotated[
         Path | None,
-        typer.Option("--output", "-o", metavar="FILE", help="Also draw both at one scale: .svg, .png or .pdf"),
+        typer.Option(
+            "--output", "-o", metavar="FILE", help="Also draw both at one scale: .svg, .pdf, .png, .jpg, .tif or .webp"
+        ),
     ] = None,
     rings: lens_options.Rings,
     circle: Circle = None,
@@ -217,9 +222,9 @@ def blender(
 def gallery(
     names: lens_options.LensNames = None,
     *,
-    output: Annotated[Path, typer.Option("--output", "-o", metavar="FILE", help="A .png, .svg or .pdf file")] = Path(
-        "lenses.png"
-    ),
+    output: Annotated[
+        Path, typer.Option("--output", "-o", metavar="FILE", help="A .png, .jpg, .tif, .webp, .svg or .pdf file")
+    ] = Path("lenses.png"),
     columns: Annotated[int, typer.Option(metavar="N", help="Drawings side by side", min=1, max=50)] = 6,
     theme: lens_options.ThemeName = "light",
     file: lens_options.File,
