@@ -11,6 +11,7 @@ import typer
 from .._core import Camera, InputError
 from ..command_words import plain_number
 from ..json_values import json_text
+from ..number_text import counted, number_text
 from ..progress import progress_bar
 from ..shot import Shot
 from ..variations import Variation, variations
@@ -96,7 +97,7 @@ def compare(
         typer.echo(json_text(rows))
     elif not quiet:
         for label, image in pictures:
-            typer.echo(f"{label}, {image.camera.exposure_time_s:.3g} s, {image.spp} samples")
+            typer.echo(f"{label}, {number_text(image.camera.exposure_time_s, 3)} s, {counted(image.spp, 'sample')}")
         options.say_written(output)
 
 

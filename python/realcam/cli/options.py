@@ -13,6 +13,7 @@ import typer
 
 from .._core import InputError, Lens, LensFileError, _did_you_mean
 from ..command_words import spelled
+from ..number_text import number_text
 from .completions import completion_of
 
 SHOT_HELP = "A shot file (.toml), a scene file (.obj, .gltf, .glb or .ply), or the name of a bundled shot: demo"
@@ -93,5 +94,6 @@ def advice_on(error: LensFileError) -> str:
 def title_of(lens: Lens) -> str:
     """A line over a plot: the lens, its focal length and its f-number."""
     data = lens.first_order()
-    text = f"{lens.title or lens.name}   f = {data.effective_focal_length_mm:.4g} mm, f/{data.f_number:.3g}"
+    focal_length, f_number = number_text(data.effective_focal_length_mm), number_text(data.f_number, 3)
+    text = f"{lens.title or lens.name}   f = {focal_length} mm, f/{f_number}"
     return "".join(c for c in text if c.isprintable())  # titles come from files, and may hold any characters
