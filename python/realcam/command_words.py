@@ -69,36 +69,45 @@ _PREFIXES = {"F_NUMBER": r"f\s*[/:]?|1:", "ISO": "iso"}
 _NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:e[+-]?\d+)?"
 
 
+# Between numbers: commas, the "x" of sizes, and the minus of ranges, but not that of an exponent.
+_SEPARATOR = r"(\s*[,x×]\s*(?=[-+.\d])|(?<=[\w.])(?<!\de)\s*-\s*(?=[\d.f]))"
+
+
 def plain_number(text: str, kind: str) -> str:
-    """A number without its unit, or several with "," or "x" between them: "50cm" of METRES as "0.5", "1/125 s" of TIME
-    as "1/125", "f/4" of F_NUMBER as "4". A unit at the end holds for all of them. Any other text remains as it is.
+    """A number without its unit, or several with ",", "x" or "-" between them: "50cm" of METRES as "0.5", "1/125 s" of
+    TIME as "1/125", "f/4" of F_NUMBER as "4". A unit at the end holds for all of them. Any other text remains as it is.
     """
-    if kind in _PREFIXES:
-        found = re.fullmatch(rf"(?:{_PREFIXES[kind]})\s*({_NUMBER})", text.strip(), re.IGNORECASE)
-        return found[1] if found else text
-    if kind not in _UNITS:
-        return text
-    if text == "∞":
+    words = re.split(_SEPARATOR, text.strip(), flags=re.IGNORECASE)
+    if text == "∞" and kind in _UNITS:
         return "inf"
-    words = re.split(r"(\s*[,x×]\s*(?=[-+.\d]))", text.strip())
-    found_numbers = [
-        re.fullmatch(rf"({_NUMBER})((?:/{_NUMBER})?)\s*([^\d\s.]\S*)?", word, re.IGNORECASE) for word in words[::2]
-    ]
-    numbers = [found for found in found_numbers if found]
-    if len(numbers) < len(found_numbers) or not numbers[-1][3]:
+    if kind in _PREFIXES:
+        pattern = rf"(?:{_PREFIXES[kind]})?\s*({_NUMBER})"
+        found_numbers = [re.fullmatch(pattern, word, re.IGNORECASE) for word in words[::2]]
+        plain = [found[1] for found in found_numbers if found]
+    else:
+        plain = _without_units(words[::2], _UNITS.get(kind, {}))
+    if not plain or len(plain) < len(words[::2]):
         return text
+    separators = [next(c for c in ",-x" if c in separator.replace("×", "x").lower()) for separator in words[1::2]]
+    return "".join(word for pair in zip(plain, [*separators, ""], strict=True) for word in pair)
+
+
+def _without_units(words: Sequence[str], sizes: Mapping[str, Decimal]) -> list[str]:
+    """Empty where the words have no units, or others."""
+    pattern = rf"({_NUMBER})((?:/{_NUMBER})?)\s*([^\d\s.]\S*)?"
+    numbers = [found for word in words if (found := re.fullmatch(pattern, word, re.IGNORECASE))]
+    if len(numbers) < len(words) or not numbers[-1][3]:
+        return []
     units = [found[3] or numbers[-1][3] for found in numbers]
-    sizes = [size for unit in units if (size := _UNITS[kind].get(unit, _UNITS[kind].get(unit.lower())))]
-    if len(sizes) < len(numbers):
-        return text
-    scaled = [_scaled(found[1], size) + found[2] for found, size in zip(numbers, sizes, strict=True)]
-    separators = ["," if "," in separator else "x" for separator in words[1::2]]
-    return "".join(word for pair in zip(scaled, [*separators, ""], strict=True) for word in pair)
+    known = [size for unit in units if (size := sizes.get(unit, sizes.get(unit.lower())))]
+    if len(known) < len(numbers):
+        return []
+    return [_scaled(found[1], size) + found[2] for found, size in zip(numbers, known, strict=True)]
 
 
 def _scaled(number: str, size: Decimal) -> str:
     """In decimal arithmetic, so that 50cm is 0.5 to the last digit."""
-    return number if size == 1 else f"{(Decimal(number) * size).normalize():f}"
+    return f"{(Decimal(number) * size).normalize():f}"
 
 
 _AMERICAN = {

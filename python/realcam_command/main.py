@@ -9,7 +9,7 @@ import sys
 from . import denoiser_library
 
 # What the extension does, with the C++ that the executable has, so that the two cannot differ.
-_IN_CPP = (["render"], ["plan"], ["devices"], ["lens", "info"], ["lens", "list"])
+_IN_CPP = (["render"], ["plan"], ["devices"], ["lens", "info"])
 
 
 def main() -> None:

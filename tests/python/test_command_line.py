@@ -29,7 +29,7 @@ PYTHON_COMMAND = [sys.executable, "-c", "from realcam_command.main import main; 
 
 TREE = typer.main.get_command(cli.app)
 finish(TREE)
-IN_CPP = ["render", "plan", "devices", "lens list", "lens info"]
+IN_CPP = ["render", "plan", "devices", "lens info"]
 QUAD = "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nf 1 2 3 4\n"
 
 pictures = pytest.mark.picture_files  # a build without picture files has none of these commands

@@ -3,6 +3,11 @@
 from __future__ import annotations
 
 EXAMPLES: dict[str, tuple[str, ...]] = {
+    "lens list": (
+        "realcam lens list",
+        "realcam lens list --focal-length 35-70 --f-number 2",
+        "realcam lens list zeiss --kind wide --json",
+    ),
     "lens plot": (
         "realcam lens plot mtf-field tessar-50mm -o mtf.svg -o mtf.csv",
         "realcam lens plot spot double-gauss-50mm --f-number 4 --focus 2 --fields-deg 0,10,20",

@@ -10,7 +10,7 @@ import typer
 
 from .._core import InputError
 from ..json_values import json_text
-from . import lens_figures, lens_options, lens_plots, lens_tolerance, optimise, options
+from . import lens_figures, lens_list, lens_options, lens_plots, lens_tolerance, optimise, options
 from .commands_in_cpp import add_command_in_cpp
 from .completions import completion_of
 from .grouped_options import grouped
@@ -26,7 +26,7 @@ Circle = Annotated[
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON; what is infinite or does not exist is null")]
 
 
-add_command_in_cpp(app, "lens", "list")
+app.command("list")(lens_list.list_lenses)
 add_command_in_cpp(app, "lens", "info")
 lens_plots.register(app)
 app.command("optimise")(optimise.optimise)
