@@ -39,7 +39,8 @@ def compare(
         float, typer.Option(metavar="CODES", help="Noise of each picture, of 255 codes", min=0.1, max=50)
     ] = 2.0,
     seconds: Annotated[
-        float, typer.Option(metavar="S", help="The most for each picture; one that ends sooner is told", min=0.1)
+        float,
+        typer.Option(metavar="S", help="Longest time for each picture, with a warning if it is noisier then", min=0.1),
     ] = 60.0,
     denoise: Annotated[bool, typer.Option("--denoise", help="Remove the noise (realcam[denoise])")] = False,
     theme: lens_options.ThemeName = "light",

@@ -164,7 +164,7 @@ def work(
 
 @app.command()
 def status(folder: Folder, as_json: options.AsJson = False) -> None:
-    """Tell how far a job is."""
+    """Show the progress of a job."""
     from ..job import Job
 
     found = Job.load(folder).status()
