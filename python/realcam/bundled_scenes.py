@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import inspect
 import os
 from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 from ._core import InputError, Scene, _did_you_mean
 
@@ -32,6 +34,8 @@ def bundled_file(path: str | os.PathLike[str], suffixes: Sequence[str]) -> str |
     A file or folder of this name in the current folder comes first. Raises InputError for a name that nearly is one of
     a bundled shot.
     """
+    if not isinstance(path, (str, bytes, os.PathLike)):
+        return path
     name = os.fsencode(path).decode(errors="replace")
     if not name or set(name) & {"/", "."} or os.path.lexists(path):
         return path
@@ -46,9 +50,18 @@ def bundled_file(path: str | os.PathLike[str], suffixes: Sequence[str]) -> str |
 _read_scene = Scene.load
 
 
-def _load(path: str | os.PathLike[str], *, scale: float = 1.0, objects: Sequence[str] = []) -> Scene:
-    return _read_scene(bundled_file(path, SCENE_SUFFIXES), scale=scale, objects=objects)
+def _load(*arguments: Any, **named: Any) -> Scene:
+    if arguments:
+        arguments = (bundled_file(arguments[0], SCENE_SUFFIXES), *arguments[1:])
+    elif "path" in named:
+        named["path"] = bundled_file(named["path"], SCENE_SUFFIXES)
+    return _read_scene(*arguments, **named)  # which explains arguments that it does not take
 
 
-_load.__doc__ = _read_scene.__doc__
+def _signature(path: str | os.PathLike[str], *, scale: float = 1.0, objects: Sequence[str] = []) -> Scene:
+    return _load(path, scale=scale, objects=objects)
+
+
+_load.__signature__ = inspect.signature(_signature)  # type: ignore[attr-defined]
+_load.__name__, _load.__qualname__, _load.__doc__ = "load", "Scene.load", _read_scene.__doc__
 Scene.load = staticmethod(_load)  # type: ignore[method-assign]

@@ -66,7 +66,7 @@ _UNITS: dict[str, dict[str, Decimal]] = {
 }
 _PREFIXES = {"F_NUMBER": r"f\s*[/:]?|1:", "ISO": "iso"}
 
-_NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:e[+-]?\d+)?"
+_NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:e[+-]?\d{1,3})?"
 
 
 # Between numbers: commas, the "x" of sizes, and the minus of ranges, but not that of an exponent.
@@ -77,6 +77,8 @@ def plain_number(text: str, kind: str) -> str:
     """A number without its unit, or several with ",", "x" or "-" between them: "50cm" of METRES as "0.5", "1/125 s" of
     TIME as "1/125", "f/4" of F_NUMBER as "4". A unit at the end holds for all of them. Any other text remains as it is.
     """
+    if len(text) > 200:
+        return text
     words = re.split(_SEPARATOR, text.strip(), flags=re.IGNORECASE)
     if text == "∞" and kind in _UNITS:
         return "inf"
@@ -265,4 +267,5 @@ def _suffix(word: str) -> str:
 
 
 def _mistake(what: str, meant: str, grammar: Grammar) -> InputError:
-    return InputError(f'{what} (did you mean "{meant}"?) ({grammar.name} --help lists the options)')
+    text = f'{what} (did you mean "{meant}"?) ({grammar.name} --help lists the options)'
+    return InputError(text.encode(errors="replace").decode())  # words may be no UTF-8

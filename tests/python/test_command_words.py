@@ -77,6 +77,7 @@ def test_numbers_have_units(text: str, kind: str, plain: str) -> None:
         ("-1,-2e-3", "X,Y,Z"),
         ("0.1,.2,+3", "X,Y,Z"),
         ("f/", "F_NUMBER"),
+        ("1e999999999m", "METRES"),
         ("four", "F_NUMBER"),
         ("", "METRES"),
     ],
@@ -125,6 +126,7 @@ def test_spelling() -> None:
         ("plan demo --shutter 1/125", 'unknown option --shutter (did you mean "--exposure-time"?)'),
         ("lens photo tessar-50mm --shutter 1/125", 'unknown option --shutter (did you mean "--exposure-time"?)'),
         ("lens info tessar-50mm --shutter 1/125", "unknown option --shutter (realcam lens info --help"),
+        ("render demo \udcff.png", 'unexpected argument "?.png" (did you mean "-o ?.png"?)'),
         ("render dmo -o a.png", 'no file and no bundled shot is called "dmo" (did you mean "demo"?)'),
         ("render demo -o a.png --focus 2s", '--focus: "2s" is not a number of metres, inf or auto'),
     ],
@@ -175,6 +177,8 @@ def test_a_bundled_shot_has_a_name(command: Command, tmp_path: Path, monkeypatch
     shot = rc.Shot.load("demo", device="cpu")
     assert shot.camera.lens.name == "double-gauss-50mm" and shot.max_bounces == 6
     assert rc.Scene.load("demo").triangle_count == shot.scene.triangle_count
+    with pytest.raises(rc.ArgumentError, match="load\\(\\) has no argument scal; is scale meant"):
+        rc.Scene.load("demo", scal=2)  # type: ignore[call-arg]
     # What lies here under this name comes first, for all of them.
     (tmp_path / "demo").mkdir()
     for refused in (rc.Shot.load, rc.Scene.load):

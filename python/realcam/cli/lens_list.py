@@ -9,7 +9,7 @@ from typing import Annotated
 
 import typer
 
-from .._core import Camera, InputError, Lens, RealcamError, lens_names
+from .._core import Camera, InputError, Lens, RealcamError, lens_names, one_line
 from ..json_values import json_text
 from ..lens_kinds import KINDS, kind_of, year_of
 from ..number_text import number_text
@@ -77,9 +77,10 @@ def _all_lenses() -> list[ListedLens]:
         warnings.simplefilter("ignore")
         for name, file in lens_options.lens_files_on_path().items():
             try:
-                listed.append(_listed(name, os.fspath(file)))
+                listed.append(_listed(name, os.fsencode(file).decode(errors="replace")))
             except RealcamError as error:
-                typer.echo(f"realcam: warning: {file} is left out: {error}", err=True)
+                said = one_line(os.fsencode(f"{file} is left out: {error}").decode(errors="replace"))
+                typer.echo(f"realcam: warning: {said}", err=True)
     return listed
 
 
@@ -87,7 +88,7 @@ def _listed(name: str, file: str | None = None) -> ListedLens:
     lens = Lens.load(name)
     focal_lengths_mm = lens.zoom_focal_lengths_mm or [lens.first_order().effective_focal_length_mm]
     return ListedLens(
-        name,
+        os.fsencode(name).decode(errors="replace"),
         lens.title,
         kind_of(lens, Camera(lens).field_of_view_deg.diagonal),
         (min(focal_lengths_mm), max(focal_lengths_mm)),
