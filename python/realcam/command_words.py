@@ -173,6 +173,7 @@ def understood(words: Sequence[str], grammar: Grammar) -> list[str]:
     result: list[str] = []
     arguments: list[str] = []
     values: list[tuple[str, str]] = []  # with the names of their options
+    unknown: list[str] = []
     option = ""  # the one whose value comes next
     for i, word in enumerate(words):
         if option and word not in grammar.options:
@@ -191,14 +192,21 @@ def understood(words: Sequence[str], grammar: Grammar) -> list[str]:
             continue
         name, equals, value = word.partition("=")
         name = spelled(name, grammar.options)
+        if name not in grammar.options:
+            unknown.append(name)
         if equals:
             result.append(f"{name}={_plain_value(name, value, grammar)}")
             values.append((name, value))
         else:
             result.append(name)
             option = name if grammar.options.get(name) else ""
-    if not {"-h", "--help"} & set(words):
-        _check_options(result, grammar)
+    if {"-h", "--help"} & set(words):
+        return result
+    for name in unknown:
+        for own in _OTHER_NAMES.get(name, ()):
+            if own in grammar.options:
+                raise _mistake(f"unknown option {name}", own, grammar)
+    if not unknown:  # which the parser reports first
         _check_arguments(arguments, [value for name, value in values if name in ("-o", "--output")], grammar)
     return result
 
@@ -225,15 +233,6 @@ def _placeholder(index: int, grammar: Grammar) -> str:
     """Of an argument; empty for one too many."""
     last = len(grammar.arguments) - 1
     return grammar.arguments[min(index, last)] if last >= 0 and (index <= last or grammar.takes_more) else ""
-
-
-def _check_options(words: Sequence[str], grammar: Grammar) -> None:
-    for word in words:
-        name = word.partition("=")[0]
-        if name not in grammar.options:
-            for own in _OTHER_NAMES.get(name, ()):
-                if own in grammar.options:
-                    raise _mistake(f"unknown option {name}", own, grammar)
 
 
 def _check_arguments(arguments: Sequence[str], outputs: Sequence[str], grammar: Grammar) -> None:

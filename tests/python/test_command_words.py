@@ -126,6 +126,7 @@ def test_spelling() -> None:
         ("plan demo --shutter 1/125", 'unknown option --shutter (did you mean "--exposure-time"?)'),
         ("lens photo tessar-50mm --shutter 1/125", 'unknown option --shutter (did you mean "--exposure-time"?)'),
         ("lens info tessar-50mm --shutter 1/125", "unknown option --shutter (realcam lens info --help"),
+        ("render demo --outptu y.png", 'unknown option --outptu (did you mean "--output"?)'),
         ("render demo \udcff.png", 'unexpected argument "?.png" (did you mean "-o ?.png"?)'),
         ("render dmo -o a.png", 'no file and no bundled shot is called "dmo" (did you mean "demo"?)'),
         ("render demo -o a.png --focus 2s", '--focus: "2s" is not a number of metres, inf or auto'),
