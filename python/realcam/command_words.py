@@ -245,13 +245,10 @@ def _check_arguments(arguments: Sequence[str], outputs: Sequence[str], grammar: 
     if kind == "SCENE" and "--lens" in grammar.options and first in lens_names() and not Path(first).exists():
         raise _mistake(f'{kind}: "{first}" is a lens', f"--lens {first}", grammar)
     last, kind = arguments[-1], _placeholder(len(arguments) - 1, grammar)
-    if (
-        len(arguments) > 1
-        and "--output" in grammar.options
-        and not outputs
-        and _suffix(last)
-        and not _is_read(last, kind)
-    ):
+    if not kind and "--lens" in grammar.options and last in lens_names():
+        raise _mistake(f'unexpected argument "{last}"', f"--lens {last}", grammar)
+    is_written = _suffix(last) and not _is_read(last, kind)
+    if len(arguments) > 1 and is_written and "--output" in grammar.options and not outputs:
         raise _mistake(f'unexpected argument "{last}"', f"-o {last}", grammar)
 
 

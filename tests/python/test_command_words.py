@@ -119,6 +119,7 @@ def test_spelling() -> None:
         ("expose raw.dng -o film.exr", 'FILM and --output are swapped (did you mean "film.exr -o raw.dng"?)'),
         ("lens plot tessar-50mm mtf", 'KIND and LENS are swapped (did you mean "mtf tessar-50mm"?)'),
         ("render tessar-50mm -o a.png", 'SCENE: "tessar-50mm" is a lens (did you mean "--lens tessar-50mm"?)'),
+        ("render a.glb tessar-50mm -o a.png", 'unexpected argument "tessar-50mm" (did you mean "--lens tessar-50mm"?)'),
         ("render demo -o a.png --aperture 4", 'unknown option --aperture (did you mean "--f-number"?)'),
         ("lens draw tessar-50mm --aperture=4", 'unknown option --aperture (did you mean "--f-number"?)'),
         ("render demo -o a.png --samples 4", 'unknown option --samples (did you mean "--spp"?)'),
