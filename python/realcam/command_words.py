@@ -236,7 +236,7 @@ def _placeholder(index: int, grammar: Grammar) -> str:
 
 
 def _check_arguments(arguments: Sequence[str], outputs: Sequence[str], grammar: Grammar) -> None:
-    if not arguments:
+    if not arguments or not grammar.arguments:
         return
     first, kind = arguments[0], _placeholder(0, grammar)
     read = next((name for name in outputs if _is_read(name, kind)), None)
@@ -247,7 +247,7 @@ def _check_arguments(arguments: Sequence[str], outputs: Sequence[str], grammar: 
     last, kind = arguments[-1], _placeholder(len(arguments) - 1, grammar)
     if not kind and "--lens" in grammar.options and last in lens_names():
         raise _mistake(f'unexpected argument "{last}"', f"--lens {last}", grammar)
-    is_written = _suffix(last) and not _is_read(last, kind)
+    is_written = _suffix(last) and not _is_read(last, kind or grammar.arguments[-1])
     if len(arguments) > 1 and is_written and "--output" in grammar.options and not outputs:
         raise _mistake(f'unexpected argument "{last}"', f"-o {last}", grammar)
 
