@@ -22,7 +22,10 @@ __all__ = ["draw_cross_section", "draw_states", "save_cross_section", "save_stat
 
 
 def save_cross_section(lens: Lens, path: str | os.PathLike[str], rays: int = 7, **options: Any) -> None:
-    """Writes Lens.draw, with the options of that, as .svg, .png or .pdf. Raises ImageFileError and InputError."""
+    """Writes Lens.draw, with the options of that, as .svg, .pdf, .png, .jpg, .tif or .webp.
+
+    Raises ImageFileError and InputError.
+    """
     target = check_figure_target(path)
     figure = lens.draw(rays, **options)
     save_figure(figure, target, dpi=figure.dpi)
@@ -93,7 +96,10 @@ def draw_states(
 
 
 def save_states(states: Sequence[tuple[str, Lens]], path: str | os.PathLike[str], **options: Any) -> None:
-    """Writes draw_states, with the options of that, as .svg, .png or .pdf. Raises ImageFileError and InputError."""
+    """Writes draw_states, with the options of that, as .svg, .pdf, .png, .jpg, .tif or .webp.
+
+    Raises ImageFileError and InputError.
+    """
     target = check_figure_target(path)
     figure = draw_states(states, **options)
     save_figure(figure, target, dpi=figure.dpi)

@@ -1,4 +1,4 @@
-"""Files of matplotlib's figures: .svg, .png and .pdf, with the same bytes each time, whole or not at all."""
+"""Files of matplotlib's figures, drawings and pictures, with the same bytes each time, whole or not at all."""
 
 from __future__ import annotations
 
@@ -15,9 +15,18 @@ from matplotlib.transforms import Bbox
 from . import files
 
 NOTEBOOK_DPI = 100
-FORMATS = (".svg", ".png", ".pdf")
 _SETTINGS: Any = {"svg.fonttype": "none", "pdf.fonttype": 42}  # text stays text
-_WITHOUT_DATE: dict[str, dict[str, None]] = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}, ".png": {}}
+# By suffix, for Figure.savefig. Drawings have no date; pictures lose nothing, and those of JPEG nothing that is seen.
+_OPTIONS: dict[str, dict[str, Any]] = {
+    ".svg": {"metadata": {"Date": None}},
+    ".png": {},
+    ".pdf": {"metadata": {"CreationDate": None}},
+    ".jpg": {"pil_kwargs": {"quality": 95, "subsampling": 0}},
+    ".tif": {"pil_kwargs": {"compression": "tiff_lzw"}},
+    ".webp": {"pil_kwargs": {"lossless": True}},
+}
+_OPTIONS |= {".jpeg": _OPTIONS[".jpg"], ".tiff": _OPTIONS[".tif"]}
+FORMATS = tuple(_OPTIONS)
 
 
 class ShownFigure(Figure):
@@ -49,7 +58,7 @@ def figure_bytes(
             dpi=dpi,
             bbox_inches=crop,
             facecolor=figure.get_facecolor(),
-            metadata=_WITHOUT_DATE[kind],
+            **_OPTIONS[kind],
         )
     return drawing.getvalue()
 

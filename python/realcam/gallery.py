@@ -28,7 +28,7 @@ def save_gallery(
     theme: str = "light",
     titles: bool = True,
 ) -> None:
-    """Writes cross-sections of lenses as .png, .svg or .pdf.
+    """Writes cross-sections of lenses as .svg, .pdf, .png, .jpg, .tif or .webp.
 
     lenses: the bundled ones, by name, if None. columns: of the grid; its rows follow. theme: light or dark.
     titles: name, focal length in mm and f-number above each.

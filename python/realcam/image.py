@@ -12,6 +12,7 @@ import numpy as np
 from . import _core, denoiser, notebook
 from ._core import Camera, InputError, RenderSettings, RenderStats
 from .files import system_name
+from .number_text import counted
 from .pickling import set_checked_state
 from .settings import setting
 
@@ -92,7 +93,7 @@ class Image:
         layers = f", with layers {', '.join(self.layers)}" if self.layers else ""
         denoised = ", denoised" if self.denoiser else ""
         return (
-            f"<realcam.Image {width} x {height} pixels of {self.spp} samples{denoised}{layers}, "
+            f"<realcam.Image {width} x {height} pixels of {counted(self.spp, 'sample')}{denoised}{layers}, "
             f"taken with {self.camera!r:.60}>"
         )
 

@@ -6,14 +6,14 @@ import math
 from collections.abc import Iterator
 
 from ._core import Lens, Surface
+from .number_text import number_text
 from .photography import magnification, photographic_figures
 
 PRESCRIPTION = ("", "kind", "radius / mm", "thickness / mm", "glass, n_d", "semi-diameter / mm")
 
 
 def number(value: float, digits: int = 4) -> str:
-    """Without an exponent, which %g begins at 10 to the power of the digits."""
-    return "∞" if math.isinf(value) else f"{value:.{max(digits, len(str(int(abs(value)))))}g}"
+    return number_text(value, digits, infinite="∞")
 
 
 def prescription(lens: Lens) -> Iterator[tuple[str, ...]]:

@@ -14,6 +14,7 @@ from ._core import PSF, InputError, Lens, Plan, develop
 from .drawing import cross_section
 from .drawing.style import Style, data_of
 from .drawing.themes import theme_named
+from .number_text import number_text, percent_text
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -107,9 +108,9 @@ def plan_html(plan: Plan) -> str:
         (
             decision.effect,
             "kept" if decision.is_kept else "left out",
-            f"{decision.size:.3g} {decision.unit}",
-            f"{decision.threshold:.3g} {decision.unit}",
-            "" if decision.time_share is None else f"{100 * decision.time_share:+.0f} %",
+            f"{number_text(decision.size, 3)} {decision.unit}",
+            f"{number_text(decision.threshold, 3)} {decision.unit}",
+            "" if decision.time_share is None else percent_text(decision.time_share, signed=True),
             decision.reason,
         )
         for decision in plan.decisions

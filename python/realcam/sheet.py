@@ -28,7 +28,8 @@ def save_sheet(
     tone: str = "film",
     theme: str = "light",
 ) -> None:
-    """Writes (label, image) pairs as .png, .svg or .pdf, pixel by pixel where they are as wide as each other.
+    """Writes (label, image) pairs as .png, .jpg, .tif, .webp, .svg or .pdf, pixel by pixel where they are as wide as
+    each other.
 
     Raises ImageFileError, and InputError for no pictures, no columns or an unknown theme.
     """

@@ -2,17 +2,32 @@
 
 from __future__ import annotations
 
+import json
 import math
 import os
+import tempfile
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
 
 from . import _core
-from ._core import Camera, CameraKey, InputError, RenderSettings, Scene, Shake
+from ._core import Camera, CameraKey, InputError, RealcamError, RenderSettings, Scene, Shake
+from .bundled_scenes import bundled_file
 from .image import Image
 from .planning import settled_film
 from .render import ProgressCallback, render
 from .settings import setting
+
+
+def is_shot_file(path: str | os.PathLike[str]) -> bool:
+    """True for a shot file, false for a scene file: the rule of `realcam render`."""
+    return Path(os.fsdecode(path)).suffix == ".toml"
+
+
+def text_of_shot_of(scene: str) -> str:
+    """The text of a shot file that names a scene file alone."""
+    quoted = json.dumps(scene, ensure_ascii=False).replace("\x7f", "\\u007f")  # JSON's strings are TOML's, but for this
+    return f"format = 1\nscene = {quoted}\n"
 
 
 @dataclass(frozen=True)
@@ -51,12 +66,25 @@ class Shot:
 
     @classmethod
     def load(cls, path: str | os.PathLike[str], *, device: str = "auto") -> Shot:
-        """Reads a shot file, and its scene; paths in it are relative to it.
+        """Reads a shot file and its scene, a scene file alone, or a bundled shot by its name: Shot.load("demo").
 
-        What it leaves out is chosen as the command `realcam render` chooses it: `device` meters the light where the
+        Paths in a shot file are relative to it. A name is that of a bundled shot if no file or folder here has it.
+        What a shot leaves out is chosen as the command `realcam render` chooses it: `device` meters the light where the
         file gives no exposure time. Raises InputError naming file, line and key, and what scene and lens raise.
         """
-        return cls(**_core._read_shot(path, device, None))
+        path = bundled_file(path, (".toml",))
+        named = os.fsdecode(path)
+        if is_shot_file(path) or Path(named).is_dir():
+            return cls(**_core._read_shot(path, device, None))
+        scene = str(Path(named).absolute())
+        with tempfile.TemporaryDirectory(prefix="realcam-") as folder:
+            file = Path(folder) / "scene.toml"
+            file.write_bytes(os.fsencode(text_of_shot_of(scene)))
+            try:
+                return cls(**_core._read_shot(file, device, None))
+            except RealcamError as error:
+                told = str(error).replace(f"{file}:2: ", "").replace(str(file), named).replace(scene, named)
+                raise type(error)(told) from None
 
     def frames(
         self, numbers: Sequence[int], *, frames_per_second: float = 24.0, name: str = "frame", device: str = "auto"

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ._core import Camera, InputError, Lens
+from .number_text import number_text
 from .shot import Shot
 
 NAMES = ("f_number", "lens", "zoom")
@@ -93,10 +94,10 @@ def _behind_pupil_m(lens: Lens) -> float:
 
 def _label_of(camera: Camera, name: str) -> str:
     lens = camera.lens
-    words = [f"f/{lens.f_number:.3g}"]
+    words = [f"f/{number_text(lens.f_number, 3)}"]
     if name != "f_number":
         focal_length_mm = lens.focused(math.inf).first_order().effective_focal_length_mm
-        words = [f"{focal_length_mm:.3g} mm", *words, f"from {lens.focus_distance_m:.3g} m"]
+        words = [f"{number_text(focal_length_mm, 3)} mm", *words, f"from {number_text(lens.focus_distance_m, 3)} m"]
     if name == "lens":
         words.insert(0, lens.name)
     return ", ".join(words)

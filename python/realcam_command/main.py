@@ -9,7 +9,7 @@ import sys
 from . import denoiser_library
 
 # What the extension does, with the C++ that the executable has, so that the two cannot differ.
-_IN_CPP = (["render"], ["plan"], ["devices"], ["lens", "info"], ["lens", "list"])
+_IN_CPP = (["render"], ["plan"], ["devices"], ["lens", "info"])
 
 
 def main() -> None:
@@ -38,4 +38,11 @@ def _run_in_cpp(arguments: list[str]) -> int:
     if not hasattr(_core, "_run_command"):
         print("realcam: error: this build of realcam has no picture files, and no such command", file=sys.stderr)
         return 2
-    return _core._run_command([os.fsencode(word) for word in arguments])
+    from realcam.command_words import understood_in_cpp
+
+    try:
+        words = understood_in_cpp(arguments)
+    except _core.InputError as error:
+        print(f"realcam: error: {_core.one_line(str(error))}", file=sys.stderr)
+        return 2
+    return _core._run_command([os.fsencode(word) for word in words])

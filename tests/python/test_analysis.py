@@ -416,7 +416,7 @@ def test_commands(tmp_path: Path, realcam: Callable[..., tuple[int, str, str]]) 
     [
         (["plot", "mft", "tessar-50mm"], 'unknown plot "mft"'),
         (["plot", "mtf"], "the name of a lens is missing"),
-        (["plot", "mtf", "tessar-50mm", "-o", "x.bmp"], ".svg, .png, .pdf, .json or .csv is wanted"),
+        (["plot", "mtf", "tessar-50mm", "-o", "x.bmp"], ".tiff, .json or .csv is wanted"),
         (["plot", "wavefront", "tessar-50mm", "--fields-deg", "0,5"], "of one field; 2 are given"),
         (["plot", "mtf", "tessar-50mm", "--fields-deg", "1,a"], '"a" is not a number'),
         (["plot", "mtf", "tessar-50mm", "--theme", "blue"], "light or dark is wanted"),

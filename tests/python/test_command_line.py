@@ -29,7 +29,7 @@ PYTHON_COMMAND = [sys.executable, "-c", "from realcam_command.main import main; 
 
 TREE = typer.main.get_command(cli.app)
 finish(TREE)
-IN_CPP = ["render", "plan", "devices", "lens list", "lens info"]
+IN_CPP = ["render", "plan", "devices", "lens info"]
 QUAD = "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nf 1 2 3 4\n"
 
 pictures = pytest.mark.picture_files  # a build without picture files has none of these commands
@@ -77,12 +77,21 @@ def test_help(name: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.Capture
     assert text.startswith(f"Usage: realcam {name}".rstrip())
     assert "-h, --help" in text
     assert not re.search(r"<\w+(\[|>| range)", text), "a type of Python"
+    assert not re.search(r"<=|>=|\d\.0[];]", text), "a range as Python writes it"
     usage, _, rest = text.partition("\n")
     assert not re.search("[{}]", usage)
     assert not re.search(r"\w\.\.\.$", rest, re.M), "a line that was cut off"
     has_examples = name in EXAMPLES
     assert ("\nExamples:\n  realcam " in text) == has_examples
     assert has_examples or name in ("", "lens", "sensor")
+
+
+def test_ranges_in_the_help_are_those_of_people(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = " ".join(said(["compare", "-h"], monkeypatch, capsys)[1].split())
+    assert "[480; 8 to 4096]" in text and "[60; 0.1 or more]" in text and "[2; 0.1 to 50]" in text
+    assert "[8; 1 to 100 000]" in " ".join(said(["job", "make", "-h"], monkeypatch, capsys)[1].split())
 
 
 def test_the_help_of_plots_names_all(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:

@@ -16,6 +16,7 @@ import numpy as np
 import pytest
 import realcam as rc
 from matplotlib.backends.backend_agg import FigureCanvasAgg
+from PIL import Image, ImageChops, ImageStat
 from realcam import cli
 from realcam.draw import draw_cross_section, draw_states, save_cross_section, save_states, states_of
 from realcam.drawing.inset import draw_inset
@@ -178,9 +179,14 @@ def test_every_format_is_written_in_its_size(tmp_path: Path) -> None:
     assert (tmp_path / "a.pdf").read_bytes().startswith(b"%PDF")
     width, _ = struct.unpack(">II", (tmp_path / "a.PNG").read_bytes()[16:24])
     assert width == 500
+    pixels = Image.open(tmp_path / "a.PNG").convert("RGB")
+    for suffix, most_codes in ((".tif", 0), (".TIFF", 0), (".webp", 0), (".jpg", 8), (".jpeg", 8)):
+        save_cross_section(GAUSS, tmp_path / f"a{suffix}", width_px=500)
+        difference = ImageChops.difference(Image.open(tmp_path / f"a{suffix}").convert("RGB"), pixels)
+        assert ImageStat.Stat(difference).rms <= [most_codes] * 3, suffix
     # Text that stays text can be searched and is small.
     assert "Double Gauss 50 mm f/2 (Tronnier)" in words_in(tmp_path / "a.svg")
-    with pytest.raises(rc.ImageFileError, match=r"\.svg, \.png or \.pdf is wanted"):
+    with pytest.raises(rc.ImageFileError, match=r"\.svg, \.png, \.pdf, .* or \.tiff is wanted"):
         save_cross_section(GAUSS, tmp_path / "a.gif")
     with pytest.raises(rc.InputError, match="200 to 20000"):
         save_cross_section(GAUSS, tmp_path / "a.png", width_px=10)

@@ -221,8 +221,6 @@ def test_layers_that_cannot_be_written_are_refused(folder: Path, words: list[str
     [
         ["lens", "info", "phone-4mm"],
         ["lens", "info", "phone-4mm", "--json", "--focus", "0.5"],
-        ["lens", "list"],
-        ["lens", "list", "--json"],
         ["lens", "info", "--help"],
         ["render", "--help"],
         ["devices", "--json"],
@@ -240,6 +238,16 @@ def test_the_commands_print_the_same(folder: Path, words: list[str | bytes]) -> 
     one, other = run(EXECUTABLE, *text, folder=folder), run(PYTHON, *text, folder=folder)
     assert (one.returncode, one.stdout, one.stderr) == (other.returncode, other.stdout, other.stderr)
     assert one.stdout + one.stderr
+
+
+@wants_executable
+def test_both_list_the_same_lenses(folder: Path) -> None:
+    """The executable by name and title alone; a lens file by its path, which is all that it knows of it."""
+    rc.Lens.load("tessar-50mm").save(folder / "mine.toml")
+    words = ("lens", "list", "--json", "--lens-path", folder)
+    one, other = (json.loads(run(program, *words, folder=folder).stdout) for program in (EXECUTABLE, PYTHON))
+    assert [row["name"] for row in one] == [row["name"] for row in other] == [*rc.lens_names(), "mine"]
+    assert [row["title"] for row in one] == [row["file"] or row["title"] for row in other]
 
 
 @pytest.mark.parametrize(

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 import realcam as rc
-from realcam.viewer.lens_cards import lens_cards, year_of
+from realcam.lens_kinds import KINDS, year_of
+from realcam.viewer.lens_cards import lens_cards
 
 
 @pytest.mark.parametrize(
@@ -25,6 +26,7 @@ def test_years_are_no_parts_of_other_numbers(source: str, year: int | None) -> N
 def test_kinds_are_those_of_the_lenses() -> None:
     kinds = {card["name"]: card["kind"] for card in lens_cards()}
     assert set(kinds) == set(rc.lens_names())
+    assert set(kinds.values()) == set(KINDS)
     assert kinds["zoom-70-200mm"] == "zoom"
     assert kinds["mirror-telephoto-500mm"] == "mirror lens"
     assert kinds["phone-4mm"] == "phone"

@@ -12,6 +12,7 @@ import numpy as np
 
 from .._core import Camera, InputError, RenderSettings, Scene
 from ..image import Image
+from ..number_text import counted
 from ..planning import settled
 from ..render import ProgressCallback, render
 from .errors import Codes, codes, flip, mean_square
@@ -111,7 +112,7 @@ def accuracy_cost(
     return AccuracyCost(
         device=reference.image.stats.device,
         size=small,
-        reference=", ".join(("full lens", *wanted)) + f", {2 * reference_spp} samples",
+        reference=", ".join(("full lens", *wanted)) + f", {counted(2 * reference_spp, 'sample')}",
         reference_noise_codes=math.sqrt(reference.variance),
         rungs=tuple(rung for is_level, rung in done if is_level),
         samplings=tuple(rung for is_level, rung in done if not is_level),

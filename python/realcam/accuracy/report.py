@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from ..number_text import number_text, percent_text
 from .measurements import Measurements, Rung
 
 
@@ -28,30 +29,31 @@ def tables_of(cost: Measurements) -> list[tuple[str, list[str], list[list[str]]]
 def _rows_of(rungs: tuple[Rung, ...]) -> tuple[list[str], list[list[str]]]:
     goals = goals_of(rungs)
     heads = ["M samples/s", "lens", "scene", "rest", "bias", "noise", "FLIP"]
-    heads += [f"s to {goal:.2g} codes" for goal in goals]
+    heads += [f"s to {number_text(goal, 2)} codes" for goal in goals]
     return heads, [_cells(rung, goals) for rung in rungs]
 
 
 def _cells(rung: Rung, goals: list[float]) -> list[str]:
     last = rung.pictures[-1]
-    shares = [f"{100 * share:.0f}%" for share in (rung.lens_share, rung.scene_share, rung.other_share)]
+    shares = [percent_text(share) for share in (rung.lens_share, rung.scene_share, rung.other_share)]
     seconds = [rung.seconds_to(goal) for goal in goals]
     return [
         rung.name,
-        f"{1e-6 * rung.samples_per_second:.3g}",
+        number_text(1e-6 * rung.samples_per_second, 3),
         *shares,
-        f"{rung.bias_codes:.2g}",
-        f"{rung.noise_codes:.2g}",
+        number_text(rung.bias_codes, 2),
+        number_text(rung.noise_codes, 2),
         "" if last.flip is None else f"{last.flip:.4f}",
-        *("never" if math.isinf(value) else f"{value:.2g}" for value in seconds),
+        *("never" if math.isinf(value) else number_text(value, 2) for value in seconds),
     ]
 
 
 def text_of(cost: Measurements) -> str:
     """Markdown tables, with what was compared above, and what is missing below."""
+    noise = number_text(cost.reference_noise_codes, 2)
     lines = [
         f"{cost.size[0]} x {cost.size[1]} pixels on {cost.device}. Bias, noise (with the most samples) and errors in "
-        f"8-bit codes against: {cost.reference}, whose own noise is {cost.reference_noise_codes:.2g} codes; ways of "
+        f"8-bit codes against: {cost.reference}, whose own noise is {noise} codes; ways of "
         "sampling against the same without effects.",
     ]
     for title, heads, rows in tables_of(cost):

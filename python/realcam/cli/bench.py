@@ -11,7 +11,7 @@ import typer
 from rich.console import Console
 
 from .._core import InputError, devices
-from .options import Threads, check_known
+from .options import Threads, known_word
 
 
 def bench(
@@ -39,8 +39,7 @@ def bench(
     benchmarks = CPU_BENCHMARKS | GPU_BENCHMARKS
     has_gpu = any(device.name.startswith("cuda") for device in devices())
     wanted = names or list(benchmarks if has_gpu else CPU_BENCHMARKS)
-    for name in wanted:
-        check_known(name, benchmarks, "benchmark")
+    wanted = [known_word(name, benchmarks, "benchmark") for name in wanted]
     results: dict[str, object] = {}
     status = Console(stderr=True)
     for name in wanted:

@@ -9,7 +9,9 @@ from typing import Annotated
 import typer
 
 from .._core import Camera, InputError
+from ..command_words import plain_number
 from ..json_values import json_text
+from ..number_text import counted, number_text
 from ..progress import progress_bar
 from ..shot import Shot
 from ..variations import Variation, variations
@@ -17,12 +19,18 @@ from . import lens_options, options
 
 
 def compare(
-    shot: Annotated[Path, typer.Argument(help="A shot file, .toml", metavar="SHOT")],
+    shot: options.ShotName,
     vary: Annotated[
         str,
         typer.Option(metavar="NAME=VALUE,...", help="f_number=2,4,8, lens=NAME,... (or files), or zoom=POSITION,..."),
     ],
-    output: Annotated[Path, typer.Option("--output", "-o", metavar="FILE", help="The sheet, as .png, .svg or .pdf")],
+    output: Annotated[
+        Path, typer.Option("--output", "-o", metavar="FILE", help="The sheet, as .png, .jpg, .tif, .webp, .svg or .pdf")
+    ],
+    f_number: Annotated[
+        float | None,
+        typer.Option("--f-number", metavar="N", help="Of all pictures, where it is not varied [the shot's]"),
+    ] = None,
     size: Annotated[
         int, typer.Option(metavar="PIXELS", help="Pixels of the longer side of each picture", min=8, max=4096)
     ] = 480,
@@ -31,7 +39,8 @@ def compare(
         float, typer.Option(metavar="CODES", help="Noise of each picture, of 255 codes", min=0.1, max=50)
     ] = 2.0,
     seconds: Annotated[
-        float, typer.Option(metavar="S", help="The most for each picture; one that ends sooner is told", min=0.1)
+        float,
+        typer.Option(metavar="S", help="Longest time for each picture, with a warning if it is noisier then", min=0.1),
     ] = 60.0,
     denoise: Annotated[bool, typer.Option("--denoise", help="Remove the noise (realcam[denoise])")] = False,
     theme: lens_options.ThemeName = "light",
@@ -50,12 +59,18 @@ def compare(
     name, equals, values = vary.partition("=")
     if not equals or not all(values.split(",")):
         raise InputError(f'--vary: "{vary:.60}": NAME=VALUE,... is wanted, as f_number=2,4,8')
+    name = name.replace("-", "_")
+    if f_number is not None and name == "f_number":
+        raise InputError("--f-number: the f-number is what --vary names")
     described = Shot.load(shot, device=device)
+    if f_number is not None:
+        described = variations(described, "f_number", [str(f_number)])[0].shot
     settings = described.settings.with_(spp="auto", noise_codes=noise_codes, seconds=seconds)
     if denoise:
         settings = settings.with_(layers=("albedo", "normal", "traced_light"))
     pictures = []
-    varied = variations(described, name, values.split(","))
+    kind = "F_NUMBER" if name == "f_number" else ""
+    varied = variations(described, name, [plain_number(value, kind) for value in values.split(",")])
     check_figure_target(output)  # again: now the files are known that the pictures are made from
     for variation in varied:
         taken = Shot(described.scene, sized(variation, size), settings, described.tone)
@@ -83,7 +98,7 @@ def compare(
         typer.echo(json_text(rows))
     elif not quiet:
         for label, image in pictures:
-            typer.echo(f"{label}, {image.camera.exposure_time_s:.3g} s, {image.spp} samples")
+            typer.echo(f"{label}, {number_text(image.camera.exposure_time_s, 3)} s, {counted(image.spp, 'sample')}")
         options.say_written(output)
 
 

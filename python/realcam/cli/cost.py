@@ -14,7 +14,7 @@ from . import options
 
 
 def cost(
-    shot: Annotated[Path, typer.Argument(help="A shot file, .toml", metavar="SHOT")],
+    shot: options.ShotName,
     figure: Annotated[
         list[Path] | None,
         typer.Option(

@@ -13,7 +13,8 @@ from typing import Annotated
 import typer
 from realcam_command import denoiser_library
 
-from .._core import InputError, Lens
+from .._core import Lens
+from ..bundled_scenes import scenes_folder
 from ..files import make_folder
 from . import options
 
@@ -81,12 +82,3 @@ def _render(shot: Path, spp: int, quiet: bool, *rest: Path | str) -> None:
                 program.terminate()
     if code != 0:
         sys.exit(code if code > 0 else 128 - code)
-
-
-def scenes_folder() -> Path:
-    """Beside the package where it is installed, in the repository where it is not."""
-    package = Path(__file__).resolve().parents[1]
-    for folder in (package / "scenes", package.parents[1] / "scenes"):
-        if (folder / "demo.toml").is_file():
-            return folder
-    raise InputError("the demo scene is missing from this installation")

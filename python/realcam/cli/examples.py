@@ -3,6 +3,11 @@
 from __future__ import annotations
 
 EXAMPLES: dict[str, tuple[str, ...]] = {
+    "lens list": (
+        "realcam lens list",
+        "realcam lens list --focal-length 35-70 --f-number 2",
+        "realcam lens list zeiss --kind wide --json",
+    ),
     "lens plot": (
         "realcam lens plot mtf-field tessar-50mm -o mtf.svg -o mtf.csv",
         "realcam lens plot spot double-gauss-50mm --f-number 4 --focus 2 --fields-deg 0,10,20",
@@ -39,10 +44,10 @@ EXAMPLES: dict[str, tuple[str, ...]] = {
     ),
     "demo": ("realcam demo -o pictures --spp 200",),
     "bench": ("realcam bench lens-rays frame --json",),
-    "cost": ("realcam cost shot.toml -o cost.html",),
+    "cost": ("realcam cost demo -o cost.html",),
     "compare": (
-        "realcam compare shot.toml --vary f_number=2,4,8 -o sheet.png",
-        "realcam compare shot.toml --vary lens=wide-24mm,double-gauss-50mm,sonnar-180mm -o sheet.png",
+        "realcam compare demo --vary f_number=2.8,4,8 -o sheet.png",
+        "realcam compare demo --vary lens=wide-24mm,double-gauss-50mm,sonnar-180mm --f-number 4 -o sheet.jpg",
     ),
     "job": (
         "realcam job make terrace.toml -o terrace.job",
@@ -70,7 +75,7 @@ EXAMPLES: dict[str, tuple[str, ...]] = {
         "realcam dataset recipe.toml -o pictures --count 1000 --workers 8",
     ),
     "view": (
-        "realcam view",
+        "realcam view demo",
         "realcam view shot.toml --port 8081 --no-browser",
     ),
 }

@@ -9,6 +9,7 @@ from typing import Any
 import typer
 
 from .._core import _help_text
+from ..number_text import number_text
 from .examples import EXAMPLES
 from .usage_message import check_usage
 
@@ -49,5 +50,11 @@ def _sections(command: Any, context: Any) -> Iterator[Section]:
 
 
 def _as_in_cpp(text: str) -> str:
-    """What stands if an option is left out is in brackets; that this is so needs no word."""
-    return re.sub(r"\s+\[default: ", " [", text.removesuffix("."))
+    """Defaults and ranges in brackets, in the words of the commands in C++."""
+    text = re.sub(r"\s+\[default: ", " [", text.removesuffix("."))
+    if not (brackets := re.search(r" \[[^]]*\]$", text)):
+        return text
+    end = re.sub(r"([-\d.]+)<=x<=([-\d.]+)", r"\1 to \2", brackets[0])
+    end = re.sub(r"x>=([-\d.]+)", r"\1 or more", end)
+    end = re.sub(r"(?<![\w.])\d+(\.\d+)?(?![\w.])", lambda number: number_text(float(number[0])), end)
+    return text[: brackets.start()] + end

@@ -16,6 +16,7 @@ import typer
 
 from .._core import InputError
 from ..json_values import json_text
+from ..number_text import counted, number_text, percent_text
 from ..progress import progress_bar
 from ..shot import Shot
 from . import options
@@ -32,7 +33,9 @@ Threads = Annotated[int, typer.Option(metavar="N", help="Of each process; 0: all
 
 @app.command()
 def make(
-    shots: Annotated[list[Path], typer.Argument(help="Shot files, .toml", metavar="SHOT")],
+    shots: Annotated[
+        list[Path], typer.Argument(help="Shot files (.toml), scene files, or bundled shots", metavar="SCENE")
+    ],
     output: Annotated[Path, typer.Option("--output", "-o", metavar="FOLDER", help="Of the job; it must not be there")],
     spp: Annotated[
         str | None, typer.Option("--spp", metavar="N", help="Samples per pixel, or auto [those of the shots]")
@@ -102,8 +105,8 @@ def make(
     job = Job.make(output, named, device=device, tile=size)
     if not quiet:
         made = job.status()
-        units = "units as the noise wants them" if made.is_adaptive else _count(made.units_known, "unit")
-        typer.echo(f"{output}: {_count(made.shots, 'picture')}, {units}")
+        units = "units as the noise wants them" if made.is_adaptive else counted(made.units_known, "unit")
+        typer.echo(f"{output}: {counted(made.shots, 'picture')}, {units}")
     for path, content in written.items():
         files.write_whole(path, content)
         options.say_written(path, quiet)
@@ -161,7 +164,7 @@ def work(
 
 @app.command()
 def status(folder: Folder, as_json: options.AsJson = False) -> None:
-    """Tell how far a job is."""
+    """Show the progress of a job."""
     from ..job import Job
 
     found = Job.load(folder).status()
@@ -169,10 +172,10 @@ def status(folder: Folder, as_json: options.AsJson = False) -> None:
         typer.echo(json_text(found))
         return
     lines = [
-        f"{100 * found.share:.1f} %",
-        f"{found.units_done} of {_count(found.units_known, 'unit')}"
+        percent_text(found.share, 3),
+        f"{number_text(found.units_done)} of {counted(found.units_known, 'unit')}"
         + (" that are known so far" if found.is_adaptive and not found.is_done else ""),
-        f"{found.shots_done} of {_count(found.shots, 'picture')}",
+        f"{number_text(found.shots_done)} of {counted(found.shots, 'picture')}",
     ]
     if found.damaged:
         lines.append(f"{len(found.damaged)} damaged ({found.damaged[0]}), which realcam job work does again")
@@ -208,7 +211,7 @@ def finish(
     from ..files import remove_leftovers
     from ..job import Job
 
-    options.check_known(format, ("exr", "png"), "format")
+    format = options.known_word(format, ("exr", "png"), "format")
     job = Job.load(folder)
     remove_leftovers(job.path)
     if [path.suffix.lower() for path in output] == [".mp4"]:
@@ -297,12 +300,8 @@ def _tile(text: str | None) -> tuple[int, int] | None:
     return int(across), int(down)
 
 
-def _count(count: int, noun: str) -> str:
-    return f"{count} {noun}" + ("" if count == 1 else "s")
-
-
 def _duration(seconds: float) -> str:
-    for size, name in ((86400.0, "days"), (3600.0, "hours"), (60.0, "minutes")):
+    for size, name in ((86400.0, "day"), (3600.0, "hour"), (60.0, "minute")):
         if seconds >= 2 * size:
-            return f"{seconds / size:.0f} {name}"
-    return f"{seconds:.0f} seconds"
+            return counted(round(seconds / size), name)
+    return counted(round(seconds), "second")

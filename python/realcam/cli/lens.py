@@ -10,7 +10,7 @@ import typer
 
 from .._core import InputError
 from ..json_values import json_text
-from . import lens_figures, lens_options, lens_plots, lens_tolerance, optimise, options
+from . import lens_figures, lens_list, lens_options, lens_plots, lens_tolerance, optimise, options
 from .commands_in_cpp import add_command_in_cpp
 from .completions import completion_of
 from .grouped_options import grouped
@@ -26,7 +26,7 @@ Circle = Annotated[
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON; what is infinite or does not exist is null")]
 
 
-add_command_in_cpp(app, "lens", "list")
+app.command("list")(lens_list.list_lenses)
 add_command_in_cpp(app, "lens", "info")
 lens_plots.register(app)
 app.command("optimise")(optimise.optimise)
@@ -39,7 +39,10 @@ def draw(
     name: lens_options.LensName,
     *,
     output: Annotated[
-        Path | None, typer.Option("--output", "-o", metavar="FILE", help="A .svg, .png or .pdf file [LENS.svg, here]")
+        Path | None,
+        typer.Option(
+            "--output", "-o", metavar="FILE", help="A .svg, .pdf, .png, .jpg, .tif or .webp file [LENS.svg, here]"
+        ),
     ] = None,
     rings: lens_options.Rings,
     plane: Annotated[
@@ -137,7 +140,9 @@ def compare(
     *,
     output: Annotated[
         Path | None,
-        typer.Option("--output", "-o", metavar="FILE", help="Also draw both at one scale: .svg, .png or .pdf"),
+        typer.Option(
+            "--output", "-o", metavar="FILE", help="Also draw both at one scale: .svg, .pdf, .png, .jpg, .tif or .webp"
+        ),
     ] = None,
     rings: lens_options.Rings,
     circle: Circle = None,
@@ -217,9 +222,9 @@ def blender(
 def gallery(
     names: lens_options.LensNames = None,
     *,
-    output: Annotated[Path, typer.Option("--output", "-o", metavar="FILE", help="A .png, .svg or .pdf file")] = Path(
-        "lenses.png"
-    ),
+    output: Annotated[
+        Path, typer.Option("--output", "-o", metavar="FILE", help="A .png, .jpg, .tif, .webp, .svg or .pdf file")
+    ] = Path("lenses.png"),
     columns: Annotated[int, typer.Option(metavar="N", help="Drawings side by side", min=1, max=50)] = 6,
     theme: lens_options.ThemeName = "light",
     file: lens_options.File,

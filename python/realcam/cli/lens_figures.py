@@ -7,6 +7,7 @@ import math
 import typer
 
 from .._core import FieldOfView
+from ..number_text import number_text
 from ..photography import DepthOfField, LensSummary, PhotographicFigures, SharpRange
 
 Rows = list[tuple[str, str]]
@@ -19,9 +20,13 @@ def photo_rows(figures: PhotographicFigures) -> Rows:
     rows: Rows = [
         ("focus", _metres(f.focus_distance_m)),
         ("focal length", _focal_length(f)),
-        ("f-number", f"f/{f.f_number:.3g}"),
-        ("T-stop", f"T/{f.t_stop:.3g}"),
-        ("working f-number", f"f/{f.working_f_number:.3g}; N (1 + m / p) is f/{f.working_f_number_by_formula:.3g}"),
+        ("f-number", f"f/{number_text(f.f_number, 3)}"),
+        ("T-stop", f"T/{number_text(f.t_stop, 3)}"),
+        (
+            "working f-number",
+            f"f/{number_text(f.working_f_number, 3)}; N (1 + m / p) is "
+            f"f/{number_text(f.working_f_number_by_formula, 3)}",
+        ),
         ("magnification", _magnification(f.magnification)),
         ("angle of view", "horizontal, vertical, diagonal"),
         (real, _angles(f.angle_of_view_deg)),
@@ -34,19 +39,22 @@ def photo_rows(figures: PhotographicFigures) -> Rows:
                           f"{_metres(breath.nearest_focus_m)}{assumed}"),
         ]  # fmt: skip
     rows += [
-        ("depth of field", f"for a blur of {1000 * dof.circle_of_confusion_mm:.4g} um"),
+        ("depth of field", f"for a blur of {number_text(1000 * dof.circle_of_confusion_mm)} um"),
         (real, _range(dof)),
         (formula, _sharp(dof.formula)),
         ("  2 N c (m + 1) / m^2", _metres(dof.approximate_depth_m)),
         ("hyperfocal distance", ""),
         (real, _metres(dof.real_hyperfocal_m)),
         (formula, _metres(dof.formula_hyperfocal_m)),
-        ("blur in focus", f"{1000 * dof.blur_in_focus_mm:.3g} um, of aberrations"),
+        ("blur in focus", f"{number_text(1000 * dof.blur_in_focus_mm, 3)} um, of aberrations"),
     ]
     if f.exposure is not None:
         e = f.exposure
         rows += [
-            ("exposure value", f"EV {e.ev:.2f} at {e.exposure_time_s:.4g} s; for light of EV100 {e.ev100:.2f}"),
+            (
+                "exposure value",
+                f"EV {e.ev:.2f} at {number_text(e.exposure_time_s)} s; for light of EV100 {e.ev100:.2f}",
+            ),
             ("  by T-stop", f"for light of EV100 {e.ev100_at_film:.2f}, with the lens's losses and extension"),
         ]
     return rows
@@ -58,22 +66,26 @@ def summary_rows(summary: LensSummary) -> Rows:
     rows: Rows = [
         ("focus", _metres(f.focus_distance_m)),
         ("focal length", _focal_length(f)),
-        ("f-number, T-stop", f"f/{f.f_number:.3g}, T/{f.t_stop:.3g}"),
-        ("working f-number", f"f/{f.working_f_number:.3g}"),
+        ("f-number, T-stop", f"f/{number_text(f.f_number, 3)}, T/{number_text(f.t_stop, 3)}"),
+        ("working f-number", f"f/{number_text(f.working_f_number, 3)}"),
         ("film", f"{summary.lens.film_mm[0]:g} x {summary.lens.film_mm[1]:g} mm"),
-        ("elements, front to film", f"{summary.element_count}, {summary.length_mm:.4g} mm"),
+        ("elements, front to film", f"{summary.element_count}, {number_text(summary.length_mm)} mm"),
         ("angle of view h, v, d", _angles(f.angle_of_view_deg)),
         ("breathing", "none known" if f.breathing is None else f"{f.breathing.change_percent:+.2f}%"),
-        ("circle of confusion", f"{1000 * dof.circle_of_confusion_mm:.4g} um"),
+        ("circle of confusion", f"{number_text(1000 * dof.circle_of_confusion_mm)} um"),
         ("depth of field, rays", _range(dof)),
         ("depth of field, formula", _sharp(dof.formula)),
         ("hyperfocal, rays", _metres(dof.real_hyperfocal_m)),
         ("hyperfocal, formula", _metres(dof.formula_hyperfocal_m)),
     ]
     for place in summary.fields:
-        share = f"{place.field.share:g}" if place.field.share is not None else f"{place.field.angle_deg:.3g}°"
+        share, angle_deg = place.field.share, place.field.angle_deg
+        where = f"{number_text(angle_deg, 3)}°" if share is None else f"{share:g}"
         rows.append(
-            (f"RMS spot at {share}", f"{place.rms_spot_radius_um:.3g} um ({place.field.film_height_mm:.3g} mm)")
+            (
+                f"RMS spot at {where}",
+                f"{number_text(place.rms_spot_radius_um, 3)} um ({number_text(place.field.film_height_mm, 3)} mm)",
+            )
         )
         if place.mtf_tangential is None or place.mtf_sagittal is None:
             continue
@@ -94,19 +106,19 @@ def print_columns(titles: list[str], rows: list[Rows]) -> None:
 
 def _focal_length(figures: PhotographicFigures) -> str:
     here, far = figures.focal_length_mm, figures.focal_length_at_infinity_mm
-    text = f"{far:.4g} mm"
-    return text if f"{here:.4g}" == f"{far:.4g}" else f"{text}; {here:.4g} mm as focused"
+    text, text_here = number_text(far), number_text(here)
+    return f"{text} mm" if text_here == text else f"{text} mm; {text_here} mm as focused"
 
 
 def _metres(value: float) -> str:
     if math.isnan(value):
         return "none"
-    return "infinity" if math.isinf(value) else f"{value:.4g} m"
+    return number_text(value) + (" m" if math.isfinite(value) else "")
 
 
 def _range(dof: DepthOfField) -> str:
     if math.isnan(dof.real.near_m):
-        return f"nothing is sharp: {1000 * dof.blur_in_focus_mm:.3g} um in focus"
+        return f"nothing is sharp: {number_text(1000 * dof.blur_in_focus_mm, 3)} um in focus"
     return _sharp(dof.real)
 
 
@@ -115,8 +127,8 @@ def _sharp(sharp: SharpRange) -> str:
 
 
 def _angles(angles: FieldOfView) -> str:
-    return ", ".join(f"{angle:.4g}" for angle in angles) + " deg"
+    return ", ".join(map(number_text, angles)) + " deg"
 
 
 def _magnification(m: float) -> str:
-    return "0" if m == 0 else f"{m:.4g} (1:{1 / m:.3g})"
+    return "0" if m == 0 else f"{number_text(m)} (1:{number_text(1 / m, 3)})"

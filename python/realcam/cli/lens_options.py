@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
-from .._core import InputError, Lens
+from .._core import InputError, Lens, lens_names
 from . import options
 from .completions import completion_of
 
@@ -52,6 +53,16 @@ Zoom = Annotated[
 ]
 
 
+LensPath = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--lens-path",
+        help="A folder whose lens files are known by their names; may be repeated [REALCAM_LENS_PATH]",
+        metavar="DIR",
+    ),
+]
+
+
 @dataclass(frozen=True)
 class File:
     """How the file of a lens is read."""
@@ -73,14 +84,7 @@ class File:
             metavar="FILE",
         ),
     ] = None
-    lens_path: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--lens-path",
-            help="A folder whose lens files are known by their names; may be repeated [REALCAM_LENS_PATH]",
-            metavar="DIR",
-        ),
-    ] = None
+    lens_path: LensPath = None
     force: Annotated[
         bool, typer.Option("--force", help="Leave out what the lens's file has that there is no model of, and name it")
     ] = False
@@ -94,9 +98,7 @@ class File:
     ] = None
 
     def lens(self, name: str) -> Lens:
-        if self.lens_path:
-            before = os.environ.get("REALCAM_LENS_PATH")
-            os.environ["REALCAM_LENS_PATH"] = ":".join([*self.lens_path, *([before] if before else [])])
+        add_to_lens_path(self.lens_path)
         return Lens.load(
             name,
             glass=options.glasses(self.glass or ()),
@@ -159,6 +161,26 @@ class Look:
 
 
 SUFFIXES = (".toml", ".zmx", ".seq", ".len", ".dat", ".json", ".roa")  # of lens files
+
+
+def add_to_lens_path(folders: Sequence[str] | None) -> None:
+    """Puts folders before those of REALCAM_LENS_PATH. Raises InputError."""
+    for folder in folders or ():
+        if not Path(folder).is_dir():
+            raise InputError(f"--lens-path: {folder} is no folder")
+    before = os.environ.get("REALCAM_LENS_PATH")
+    if folders:
+        os.environ["REALCAM_LENS_PATH"] = ":".join([*folders, *([before] if before else [])])
+
+
+def lens_files_on_path() -> dict[str, Path]:
+    """Lens files in the folders of REALCAM_LENS_PATH by name, as Lens.load finds them."""
+    files: dict[str, Path] = {}
+    for folder in filter(None, os.environ.get("REALCAM_LENS_PATH", "").split(":")):
+        for path in sorted(Path(folder).iterdir()) if Path(folder).is_dir() else ():
+            if path.suffix.lower() in SUFFIXES and path.is_file():
+                files.setdefault(path.stem, path)
+    return {name: files[name] for name in sorted(files.keys() - lens_names())}
 
 
 def output_of(name: str, suffix: str) -> Path:

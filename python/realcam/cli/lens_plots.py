@@ -56,7 +56,10 @@ def plot(
     output: Annotated[
         list[Path] | None,
         typer.Option(
-            "--output", "-o", metavar="FILE", help=".svg, .png or .pdf; .json or .csv for the numbers. May be repeated"
+            "--output",
+            "-o",
+            metavar="FILE",
+            help=".svg, .pdf, .png, .jpg, .tif or .webp; .json or .csv for the numbers. May be repeated",
         ),
     ] = None,
     rings: lens_options.Rings,
@@ -95,7 +98,9 @@ def plot(
     from ..analysis import kinds, numbers
     from ..figure_files import FORMATS, save_figure
 
-    options.check_known(kind, kinds.KINDS, "plot")
+    if kind not in kinds.KINDS and name in kinds.KINDS:
+        raise InputError(f'KIND and LENS are swapped (did you mean "{name} {kind}"?)')
+    kind = options.known_word(kind, kinds.KINDS, "plot")
     if name is None:
         raise InputError(f"realcam lens plot {kind}: the name of a lens is missing")
     targets = output or ([] if as_json else [Path(f"{kind}.svg")])

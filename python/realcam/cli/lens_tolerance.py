@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from ..json_values import json_text
+from ..number_text import number_text, percent_text
 from ..progress import progress_bar
 from . import lens_options, options
 from .grouped_options import grouped
@@ -85,7 +86,7 @@ def tolerance(
     if quiet:
         return
     if not study.is_whole:
-        typer.echo(f"ended after {len(study)} of {copies} copies")
+        typer.echo(f"ended after {number_text(len(study))} of {number_text(copies)} copies")
     _print(study, wanted, share)
     if output is not None:
         options.say_written(output)
@@ -94,14 +95,14 @@ def tolerance(
 def _print(study: ToleranceStudy, wanted: float, share: float) -> None:
     from ..tolerance.plots import MEASURES, with_limit
 
-    typer.echo(f"MTF at {study.frequencies_per_mm[study.main]:.4g} periods per mm")
-    typer.echo(f"{'':26}{'as drawn':>10}{'10 % below':>12}{'half below':>12}{'90 % below':>12}")
+    typer.echo(f"MTF at {number_text(study.frequencies_per_mm[study.main])} periods per mm")
+    typer.echo(f"{'':26}{'as drawn':>10}{'10% below':>12}{'half below':>12}{'90% below':>12}")
     for measure, words in MEASURES.items():
         scale = 100 if measure == "distortion" else 1
         low, middle, high = scale * study.quantiles(measure, [0.1, 0.5, 0.9])
         drawn = scale * study.nominal_measure(measure)
         typer.echo(f"{words:26}{drawn:10.4f}{low:12.4f}{middle:12.4f}{high:12.4f}")
-    typer.echo(f"yield with an MTF of {wanted:.3g} in the worst field: {100 * share:.1f} %")
+    typer.echo(f"yield with an MTF of {wanted:.3g} in the worst field: {percent_text(share, 3)}")
     typer.echo("worst offenders, mean MTF lost at the limit:")
     for offender in study.worst_offenders(8):
         typer.echo(f"  {offender.loss:7.4f}  {with_limit(offender)}")

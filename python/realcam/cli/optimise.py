@@ -12,6 +12,7 @@ import typer
 
 from .._core import InputError, Lens
 from ..json_values import json_text
+from ..number_text import counted, number_text
 from ..progress import progress_bar
 from ..variable import Variable
 from . import lens_options, options
@@ -206,8 +207,9 @@ def _print(found: Optimisation | GlassSearch, glasses: Mapping[int, str], file: 
         typer.echo(json_text(figures))
     else:
         typer.echo(
-            f"RMS spot {1000 * found.rms_spot_before_mm:.3g} um before, {1000 * found.rms_spot_mm:.3g} um now, after "
-            f"{found.evaluations} looks: {found.message}"
+            f"RMS spot {number_text(1000 * found.rms_spot_before_mm, 3)} um before, "
+            f"{number_text(1000 * found.rms_spot_mm, 3)} um now, "
+            f"after {counted(found.evaluations, 'evaluation')}: {found.message}"
         )
         for surface, name in glasses.items():
             typer.echo(f"surface {surface + 1}: {name}")

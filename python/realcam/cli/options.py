@@ -12,8 +12,12 @@ from typing import Annotated
 import typer
 
 from .._core import InputError, Lens, LensFileError, _did_you_mean
+from ..command_words import spelled
+from ..number_text import number_text
 from .completions import completion_of
 
+SHOT_HELP = "A shot file (.toml), a scene file (.obj, .gltf, .glb or .ply), or the name of a bundled shot: demo"
+ShotName = Annotated[Path, typer.Argument(help=SHOT_HELP, metavar="SCENE")]
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print warnings and errors alone")]
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON")]
 Device = Annotated[
@@ -53,11 +57,11 @@ def frame_numbers(text: str) -> range:
     return numbers
 
 
-def check_known(word: str, known: Iterable[str], what: str) -> None:
-    """Raises InputError where a word is none of those, with the ones that are near."""
+def known_word(word: str, known: Iterable[str], what: str) -> str:
+    """The word as it is listed; American spellings are known. Raises InputError, with similar words, for any other."""
     names = list(known)
-    if word in names:
-        return
+    if (listed := spelled(word, names)) in names:
+        return listed
     raise InputError(f'unknown {what} "{word:.40}"{_did_you_mean(word, names)}; one of {", ".join(names)} is wanted')
 
 
@@ -90,5 +94,6 @@ def advice_on(error: LensFileError) -> str:
 def title_of(lens: Lens) -> str:
     """A line over a plot: the lens, its focal length and its f-number."""
     data = lens.first_order()
-    text = f"{lens.title or lens.name}   f = {data.effective_focal_length_mm:.4g} mm, f/{data.f_number:.3g}"
+    focal_length, f_number = number_text(data.effective_focal_length_mm), number_text(data.f_number, 3)
+    text = f"{lens.title or lens.name}   f = {focal_length} mm, f/{f_number}"
     return "".join(c for c in text if c.isprintable())  # titles come from files, and may hold any characters

@@ -13,6 +13,7 @@ import typer
 
 from .._core import Film, InputError, Sensor, sensor_names
 from ..json_values import json_text
+from ..number_text import number_text, percent_text
 from . import options
 from .completions import completion_of
 
@@ -58,12 +59,12 @@ def info(name: SensorName, as_json: options.AsJson = False) -> None:
         else f"{sensor.gain_dn_per_e:g} DN/e, and up to {sensor.largest_gain_db:g} dB",
         "converter": f"{sensor.adc_bits} bit, black at {sensor.black_level_dn:g} DN",
         "converter noise": f"{sensor.converter_noise_dn:g} DN",
-        "saturation capacity": f"{sensor.saturation_capacity_e:g} e",
+        "saturation capacity": f"{number_text(sensor.saturation_capacity_e, 6)} e",
         "read noise": f"{sensor.read_noise_e:g} e",
         "row noise": f"{sensor.row_noise_e:g} e",
         "dark current": f"{sensor.dark_current_e_per_s:g} e/s at {sensor.dark_current_temperature_c:g} degrees C",
-        "DSNU, PRNU": f"{sensor.dsnu_e:g} e, {sensor.prnu_percent:g} %",
-        "hot pixels": f"{100 * sensor.hot_pixel_share:g} %, {sensor.hot_pixel_current_e_per_s:g} e/s",
+        "DSNU, PRNU": f"{sensor.dsnu_e:g} e, {percent_text(sensor.prnu_percent / 100)}",
+        "hot pixels": f"{percent_text(sensor.hot_pixel_share)}, {sensor.hot_pixel_current_e_per_s:g} e/s",
     }
     typer.echo(sensor.title or sensor.name)
     for what, value in rows.items():
@@ -150,7 +151,7 @@ def expose(
         return
     typer.echo(
         f"{chosen.name}, ISO {raw.iso:.4g}: {raw.gain_dn_per_e:.4g} DN/e, black {raw.black_level_dn:g}, "
-        f"white {raw.white_level_dn} DN, {100 * full:.2g}% of the pixels full"
+        f"white {number_text(raw.white_level_dn)} DN, {percent_text(full)} of the pixels full"
     )
     for assumption in chosen.assumptions:
         typer.echo(f"assumed: {assumption}")

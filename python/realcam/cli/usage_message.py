@@ -8,18 +8,23 @@ from typing import Any
 import typer
 
 from .._core import _did_you_mean
+from ..command_words import Grammar, spelled, understood
 
 # click's, which newer versions of typer bring along under a private name.
 UsageError: Any = typer.BadParameter.__bases__[0]
 
 
 def check_usage(command: Any) -> None:
-    """Has a command raise UsageError where an option stands twice that counts once, of which click takes the last, and
-    has its errors know the command and the word that is wrong."""
+    """Has a command understand words as people write them, raise UsageError where an option stands twice that counts
+    once, of which click takes the last, and has its errors know the command and the word that is wrong."""
     parse = command.parse_args
 
     def parse_strictly(context: Any, words: list[str]) -> Any:
         given: dict[str, Any] = {}
+        if below := getattr(command, "commands", None):
+            words = [spelled(word, below) for word in words[:1]] + words[1:]
+        elif not context.resilient_parsing:
+            words = understood(words, _grammar_of(command, context))
         try:
             given, _, order = command.make_parser(context).parse_args(args=list(words))
             for parameter in order:
@@ -33,6 +38,23 @@ def check_usage(command: Any) -> None:
             raise
 
     command.parse_args = parse_strictly
+
+
+def _grammar_of(command: Any, context: Any) -> Grammar:
+    options: dict[str, str] = {}
+    arguments = []
+    for parameter in command.get_params(context):
+        if parameter.param_type_name == "argument":
+            arguments.append(parameter)
+        else:
+            value = "" if parameter.is_flag or parameter.count else parameter.metavar
+            options |= dict.fromkeys((*parameter.opts, *parameter.secondary_opts), value)
+    return Grammar(
+        context.command_path,
+        options,
+        [argument.metavar for argument in arguments],
+        bool(arguments) and arguments[-1].nargs == -1,
+    )
 
 
 def usage_message(error: Any) -> str:

@@ -8,14 +8,12 @@ from typing import Annotated
 import typer
 
 from .._core import InputError
+from ..bundled_scenes import scenes_folder
 from . import options
-from .demo import scenes_folder
 
 
 def view(
-    shot: Annotated[
-        Path | None, typer.Argument(help="Shot file or scene file; the demo if left out", show_default=False)
-    ] = None,
+    shot: Annotated[Path | None, typer.Argument(help=f"{options.SHOT_HELP} [demo]", metavar="SCENE")] = None,
     folder: Annotated[
         list[Path] | None,
         typer.Option(help="Folder that the page may read and write, besides the current one", show_default=False),

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from .._core import Lens
+from ..number_text import number_text
 from .ray_paths import RayBundle
 from .section import CrossSection
 from .themes import LIGHT, Theme, colours_of_wavelengths
@@ -42,13 +43,13 @@ def legend_of_wavelengths(section: CrossSection, theme: Theme) -> Sequence[tuple
 def data_of(lens: Lens, section: CrossSection) -> str:
     """Focal length, f-number and focus, as the line below the title of a drawing has them."""
     data = lens.first_order()
-    words = [f"f = {data.effective_focal_length_mm:.4g} mm"]
+    words = [f"f = {number_text(data.effective_focal_length_mm)} mm"]
     is_far = math.isinf(lens.focus_distance_m)
     # An f-number is one of the lens at infinity, and a group that has moved makes another lens.
     if is_far or lens.focus_group is None:
         words.append(f"f/{data.f_number:.3g}")
     if not is_far:
-        words.append(f"focused at {lens.focus_distance_m:.4g} m")
+        words.append(f"focused at {number_text(lens.focus_distance_m)} m")
     if len(section.wavelengths_nm) == 1:
         words.append(f"{section.wavelengths_nm[0]:.4g} nm")
     return ", ".join(words) + ("   * asphere" if any(face.is_asphere for face in section.faces) else "")

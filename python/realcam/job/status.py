@@ -1,4 +1,4 @@
-"""How far a job is."""
+"""The progress of a job."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ _LAST_UNITS = 200  # whose pace is the rate
 
 @dataclass(frozen=True)
 class JobStatus:
-    """How far a job is.
+    """The progress of a job.
 
     shots, shots_done: numbers of pictures. units_done, units_known: numbers of units; with a noise goal, units become
     known round by round. is_adaptive: True if some shot has a noise goal. share: estimated share of all work, 0 to 1.

@@ -11,6 +11,7 @@ from .. import files
 from ..analysis import style
 from ..drawing.themes import theme_named
 from ..drawing.web_page import inline_svg, page_top
+from ..number_text import percent_text
 from .plots import MEASURES, study_figure, with_limit
 from .study import SHARES, ToleranceStudy
 
@@ -70,7 +71,7 @@ def page_of(study: ToleranceStudy, theme: str | None, loss: float) -> str:
 <p>{len(study)} copies, seed {study.seed}; {html.escape(_compensators(study))}.{whole}</p>
 {figure}
 <h2>Copies</h2>
-<div class="wide">{_table(["", "as drawn", *(f"{100 * share:g} % below" for share in SHARES)], _quantiles(study))}</div>
+<div class="wide">{_table(["", "as drawn", *(f"{percent_text(x)} below" for x in SHARES)], _quantiles(study))}</div>
 <h2>Each tolerance alone</h2>
 <div class="wide">{sensitivities}</div>
 <p class="note">Changes at the lower and the upper limit, with the compensators set; what has a direction, in that which

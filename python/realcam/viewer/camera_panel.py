@@ -94,9 +94,11 @@ class CameraPanel:
                 lambda value: self._run(self._bench.set_noise, float(value)),
                 "How much noise the picture may have when it is done, of the 255 levels from black to white",
             )
-            self._denoise = ui.switch("Denoise until then").props('data-testid="denoise"')
+            self._denoise = ui.switch("Denoise while refining").props('data-testid="denoise"')
             self._denoise.on("update:model-value", lambda e: self._run(self._bench.set_denoising, bool(_value(e))))
-            self._denoise.tooltip("Until then the picture is shown without its noise, as Open Image Denoise guesses")
+            self._denoise.tooltip(
+                "Until it is done the picture is shown without its noise, as Open Image Denoise guesses"
+            )
             if self._bench.why_no_denoiser:
                 self._denoise.disable()
                 ui.label(self._bench.why_no_denoiser).classes("rc-note").props('data-testid="why-no-denoiser"')

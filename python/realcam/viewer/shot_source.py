@@ -2,14 +2,10 @@
 
 from __future__ import annotations
 
-import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
-import tomlkit
-
-from .._core import RealcamError
-from ..shot import Shot
+from ..shot import Shot, is_shot_file, text_of_shot_of
 
 
 @dataclass(frozen=True)
@@ -22,16 +18,7 @@ class ShotSource:
 
     @classmethod
     def opened(cls, path: Path, device: str) -> tuple[ShotSource, Shot]:
-        """A .toml as a shot file, all else as a scene, as `realcam render` does. Raises what Shot.load raises."""
-        folder = path.absolute().parent
-        if path.suffix == ".toml":
-            shot = Shot.load(path, device=device)
-            return cls(path.name, path.read_text(encoding="utf-8"), folder), shot
-        with tempfile.TemporaryDirectory() as elsewhere:
-            only = Path(elsewhere) / f"{path.name}.toml"
-            only.write_text(tomlkit.dumps({"format": 1, "scene": str(path.absolute())}), encoding="utf-8")
-            try:
-                shot = Shot.load(only, device=device)
-            except RealcamError as error:  # which may name the file that nobody knows
-                raise type(error)(str(error).replace(f"{only}:2: ", "").replace(str(only), str(path))) from None
-        return cls(path.name, tomlkit.dumps({"format": 1, "scene": path.name}), folder), shot
+        """Raises what Shot.load raises."""
+        shot = Shot.load(path, device=device)
+        text = path.read_text(encoding="utf-8") if is_shot_file(path) else text_of_shot_of(path.name)
+        return cls(path.name, text, path.absolute().parent), shot

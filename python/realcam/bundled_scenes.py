@@ -1,0 +1,67 @@
+"""The scenes that come with realcam, each with the shot that photographs it, by their names."""
+
+from __future__ import annotations
+
+import inspect
+import os
+from collections.abc import Sequence
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from ._core import InputError, Scene, _did_you_mean
+
+SCENE_SUFFIXES = (".gltf", ".glb", ".obj", ".ply")
+
+
+@cache
+def scenes_folder() -> Path:
+    """Beside the package where it is installed, in the repository where it is not."""
+    package = Path(__file__).resolve().parent
+    for folder in (package / "scenes", package.parents[1] / "scenes"):
+        if (folder / "demo.toml").is_file():
+            return folder
+    raise InputError("the demo scene is missing from this installation")
+
+
+def shot_names() -> list[str]:
+    return sorted(path.stem for path in scenes_folder().glob("*.toml"))
+
+
+def bundled_file(path: str | os.PathLike[str], suffixes: Sequence[str]) -> str | os.PathLike[str]:
+    """The file of a bundled shot or scene that is given by its name; any other path as it is.
+
+    A file or folder of this name in the current folder comes first. Raises InputError for a name that nearly is one of
+    a bundled shot.
+    """
+    if not isinstance(path, (str, bytes, os.PathLike)):
+        return path
+    name = os.fsencode(path).decode(errors="replace")
+    if not name or set(name) & {"/", "."} or os.path.lexists(path):
+        return path
+    found = (scenes_folder() / f"{name}{suffix}" for suffix in suffixes if name in shot_names())
+    if file := next(filter(Path.is_file, found), None):
+        return file
+    if near := _did_you_mean(name, shot_names()):
+        raise InputError(f'no file and no bundled shot is called "{name:.60}"{near}')
+    return path
+
+
+_read_scene = Scene.load
+
+
+def _load(*arguments: Any, **named: Any) -> Scene:
+    if arguments:
+        arguments = (bundled_file(arguments[0], SCENE_SUFFIXES), *arguments[1:])
+    elif "path" in named:
+        named["path"] = bundled_file(named["path"], SCENE_SUFFIXES)
+    return _read_scene(*arguments, **named)  # which explains arguments that it does not take
+
+
+def _signature(path: str | os.PathLike[str], *, scale: float = 1.0, objects: Sequence[str] = []) -> Scene:
+    return _load(path, scale=scale, objects=objects)
+
+
+_load.__signature__ = inspect.signature(_signature)  # type: ignore[attr-defined]
+_load.__name__, _load.__qualname__, _load.__doc__ = "load", "Scene.load", _read_scene.__doc__
+Scene.load = staticmethod(_load)  # type: ignore[method-assign]

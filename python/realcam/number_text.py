@@ -1,0 +1,31 @@
+"""Numbers as people write them, for the texts that commands print."""
+
+from __future__ import annotations
+
+import math
+from decimal import Decimal
+
+
+def number_text(value: float, digits: int = 4, infinite: str = "infinity") -> str:
+    """Significant digits, and all of the whole part: "0.00001", "50.36", "12 346". An exponent stands only for numbers
+    below a millionth and from 1e15 on."""
+    if math.isinf(value):
+        return infinite if value > 0 else f"-{infinite}"
+    size = abs(value)
+    if math.isnan(value) or 0 < size < 1e-6 or size >= 1e15:
+        return f"{value:.{digits}g}"
+    text = f"{Decimal(f'{value:.{max(digits, len(str(int(size))))}g}'):f}"
+    whole, point, fraction = text.partition(".")
+    grouped = f"{int(whole):,}".replace(",", " ") if size >= 9999.5 else whole
+    return grouped + point + fraction
+
+
+def percent_text(share: float, digits: int = 2, *, signed: bool = False) -> str:
+    """A share as "14%", "140%", or with its sign "+140%"."""
+    plus = "+" if signed and share >= 0 else ""
+    return f"{plus}{number_text(100 * share, digits)}%"
+
+
+def counted(count: int, noun: str) -> str:
+    """ "1 sample", "10 000 samples"."""
+    return f"{number_text(count)} {noun}{'' if count == 1 else 's'}"
