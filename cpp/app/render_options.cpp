@@ -256,7 +256,7 @@ void add_samples(const OptionAdder& option) {
 }
 
 void add_picture(const OptionAdder& option) {
-    option("--tone", "Tone mapping of .png: film (soft highlights) or linear (clipped) [film]", "CURVE",
+    option("--tone", "Tone mapping of developed pictures: film (soft highlights) or linear (clipped) [film]", "CURVE",
            [](Request& r, Text, Text w) { r.tone = parse_tone(w); });
     option("--layers", "Also write to .exr, separated by commas: all, or some of " + layer_names() + " [none]", "NAMES",
            [&words = option.words](Request& r, Text o, Text w) {
@@ -335,7 +335,8 @@ void add_render_options(CLI::App& command, RenderWords& w) {
     command.option_defaults()->group(group);
     command
         .add_option("-o,--output", w.outputs,
-                    "Picture to write, .png or .exr; may be repeated. With --frames also .mp4 (realcam[video])")
+                    "Picture to write: .png, .jpg, .tif or .webp, or the film as .exr; may be repeated. With --frames "
+                    "also .mp4 (realcam[video])")
         ->type_name("FILE")
         ->required()
         ->allow_extra_args(false);

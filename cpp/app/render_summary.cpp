@@ -50,7 +50,7 @@ std::string summary(const shot::Shot& shot, const RenderSettings& settings, cons
     line("camera", "at " + point(from) + ", looks at " + point(to));
     line("film", short_number(film.width_mm) + " x " + short_number(film.height_mm) + " mm, " +
                      std::to_string(film.width) + " x " + std::to_string(film.height) + " pixels of " +
-                     std::to_string(image.spp) + " samples");
+                     std::to_string(image.spp) + (image.spp == 1 ? " sample" : " samples"));
     line("exposure", exposure_text(camera.exposure_time_s) + ", ISO " + short_number(camera.iso) +
                          (shot.is_metered ? " (metered: the average lands on middle grey)" : ""));
     const std::vector<std::string> effects = names_of(settings.effects);

@@ -64,7 +64,9 @@ inline PictureView view_of(const Image& image) {
 /// Writes a picture; the suffix picks the format. Throws ImageFileError and Cancelled, and then leaves nothing behind:
 /// the file appears under its name only when it is whole.
 ///
-/// - .png: 8-bit sRGB, developed at metadata.iso by the tone curve, with text for every entry of the metadata.
+/// - .png, .jpg (quality 95), .tif, .webp (lossless): 8-bit sRGB, developed at metadata.iso by the tone curve. PNG has
+/// a
+///   text for every entry of the metadata, JPEG and TIFF have them as lines of the description, and WebP has none.
 /// - .exr: float R, G, B, the exposure of the film in lux seconds, and Z, the depth in metres (infinite where nothing
 /// is).
 ///   Z is a channel beside the colours, under the name that OpenEXR reserves for depth: compositing programs show it as
@@ -73,7 +75,7 @@ inline PictureView view_of(const Image& image) {
 void write_image(const PictureView& picture, const std::string& path, const io::ImageMetadata& metadata,
                  ToneCurve tone = ToneCurve::film, const KeepGoing& keep_going = {});
 
-/// A picture of 8-bit sRGB codes (height * width * 3) as .png, with text for every entry. Throws as write_image does.
+/// A picture of 8-bit sRGB codes (height * width * 3) in a developed format of write_image. Throws as write_image does.
 void write_codes(const std::string& path, int width, int height, const std::uint8_t* codes,
                  const std::vector<std::pair<std::string, std::string>>& entries, const KeepGoing& keep_going = {});
 

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cstring>
 #include <filesystem>
+#include <string_view>
 #include <vector>
 
 #include "../error.hpp"
@@ -16,11 +17,26 @@ namespace {
 /// Rows that are converted and handed over at a time: a large picture is not held twice.
 constexpr int kRows = 64;
 
-std::string format_of(const std::string& path) {
+/// A format that is written: the suffix of its files, its name in OpenImageIO, and the attribute that compresses it.
+struct WrittenFormat {
+    std::string_view suffix;
+    const char* name;
+    const char* compression;
+};
+
+constexpr WrittenFormat kExr{".exr", "exr", "zip"};
+constexpr WrittenFormat kDeveloped[] = {
+    {".png", "png", ""},     {".jpg", "jpeg", "jpeg:95"}, {".jpeg", "jpeg", "jpeg:95"},
+    {".tif", "tiff", "zip"}, {".tiff", "tiff", "zip"},    {".webp", "webp", "lossless"},
+};
+
+const WrittenFormat& format_of(const std::string& path) {
     const std::string suffix = io::suffix_of(path);
-    if (suffix == ".png" || suffix == ".exr") return suffix.substr(1);
+    if (suffix == kExr.suffix) return kExr;
+    for (const WrittenFormat& format : kDeveloped)
+        if (suffix == format.suffix) return format;
     throw ImageFileError(path + ": " + (suffix.empty() ? "there is no suffix" : "\"" + suffix + "\" is not written") +
-                         "; .png (developed) or .exr (exposure and depth) is wanted");
+                         "; .png, .jpg, .tif, .webp (developed) or .exr (exposure and depth) is wanted");
 }
 
 /// What an UnfinishedFile could only name as the system does.
@@ -39,11 +55,26 @@ std::size_t row_values(const PictureView& picture, std::size_t channels) {
     return channels * static_cast<std::size_t>(picture.width);
 }
 
-EncodedPicture encoded(const std::string& format, int width, int height,
-                       const std::vector<std::pair<std::string, std::string>>& entries) {
-    EncodedPicture picture{format, width, height, {}, {}};
+using Entries = std::vector<std::pair<std::string, std::string>>;
+
+EncodedPicture encoded(const WrittenFormat& format, int width, int height, const Entries& entries) {
+    EncodedPicture picture{format.name, width, height, {}, {}};
     picture.attributes.emplace_back("Software", "realcam " REALCAM_VERSION);
+    if (*format.compression) picture.attributes.emplace_back("compression", format.compression);
     for (const auto& [name, value] : entries) picture.attributes.emplace_back(name, value);
+    return picture;
+}
+
+EncodedPicture encoded_codes(const WrittenFormat& format, int width, int height, const Entries& entries) {
+    EncodedPicture picture = encoded(format, width, height, entries);
+    picture.attributes.emplace_back("oiio:ColorSpace", "sRGB");
+    if (picture.format == "jpeg") picture.attributes.emplace_back("jpeg:subsampling", "4:4:4");
+    if (picture.format == "jpeg" || picture.format == "tiff") {
+        // These formats have no attributes of any name, and WebP has no text at all.
+        std::string description;
+        for (const auto& [name, value] : entries) description += name + '=' + value + '\n';
+        picture.attributes.emplace_back("ImageDescription", description);
+    }
     return picture;
 }
 
@@ -73,13 +104,13 @@ void write_rows(const std::string& path, const EncodedPicture& picture, const Ke
     file.finish();
 }
 
-void write_png(const PictureView& picture, const std::string& path, const io::ImageMetadata& metadata, ToneCurve tone,
-               const KeepGoing& keep_going) {
-    EncodedPicture png = encoded("png", picture.width, picture.height, metadata.entries());
-    png.attributes.emplace_back("oiio:ColorSpace", "sRGB");
-    png.attributes.emplace_back("realcam:tone", tone == ToneCurve::film ? "film" : "linear");
+void write_developed(const PictureView& picture, const std::string& path, const io::ImageMetadata& metadata,
+                     ToneCurve tone, const KeepGoing& keep_going) {
+    Entries entries = metadata.entries();
+    entries.emplace_back("realcam:tone", tone == ToneCurve::film ? "film" : "linear");
+    const EncodedPicture file = encoded_codes(format_of(path), picture.width, picture.height, entries);
     const std::size_t row = row_values(picture, 3);
-    write_rows<std::uint8_t>(path, png, keep_going, [&](std::size_t first, std::size_t end, std::uint8_t* out) {
+    write_rows<std::uint8_t>(path, file, keep_going, [&](std::size_t first, std::size_t end, std::uint8_t* out) {
         for (std::size_t i = first * row; i < end * row; ++i) {
             const double value = sensor_value(static_cast<double>(picture.exposure[i]), metadata.iso);
             *out++ = srgb_code(apply_tone_curve(tone, value));
@@ -145,9 +176,8 @@ void add_layers(const PictureView& picture, EncodedPicture& exr) {
 
 void write_exr(const PictureView& picture, const std::string& path, const io::ImageMetadata& metadata,
                const KeepGoing& keep_going) {
-    EncodedPicture exr = encoded("exr", picture.width, picture.height, metadata.entries());
+    EncodedPicture exr = encoded(kExr, picture.width, picture.height, metadata.entries());
     exr.channels = {{"R"}, {"G"}, {"B"}, {"Z"}};
-    exr.attributes.emplace_back("compression", "zip");
     add_layers(picture, exr);
     // The standard attributes of OpenEXR, in its units.
     const auto set = [&](const char* name, double value) {
@@ -183,22 +213,20 @@ void write_image(const PictureView& picture, const std::string& path, const io::
                  const KeepGoing& keep_going) {
     check_name(path);
     if (picture.width < 1 || picture.height < 1) throw ImageFileError(path + ": the picture is empty");
-    if (format_of(path) == "png") {
-        write_png(picture, path, metadata, tone, keep_going);
-    } else {
+    if (&format_of(path) == &kExr)
         write_exr(picture, path, metadata, keep_going);
-    }
+    else
+        write_developed(picture, path, metadata, tone, keep_going);
 }
 
 void write_codes(const std::string& path, int width, int height, const std::uint8_t* codes,
                  const std::vector<std::pair<std::string, std::string>>& entries, const KeepGoing& keep_going) {
     check_name(path);
-    if (format_of(path) != "png") throw ImageFileError(path + ": codes are written to .png");
+    if (&format_of(path) == &kExr) throw ImageFileError(path + ": codes are written to .png, .jpg, .tif or .webp");
     if (width < 1 || height < 1) throw ImageFileError(path + ": the picture is empty");
-    EncodedPicture png = encoded("png", width, height, entries);
-    png.attributes.emplace_back("oiio:ColorSpace", "sRGB");
+    const EncodedPicture file = encoded_codes(format_of(path), width, height, entries);
     const std::size_t row = 3 * static_cast<std::size_t>(width);
-    write_rows<std::uint8_t>(path, png, keep_going, [&](std::size_t first, std::size_t end, std::uint8_t* out) {
+    write_rows<std::uint8_t>(path, file, keep_going, [&](std::size_t first, std::size_t end, std::uint8_t* out) {
         std::memcpy(out, codes + first * row, (end - first) * row);
     });
 }

@@ -121,7 +121,8 @@ class Image:
         return replace(self, pixels=pixels, layers=layers, denoiser=name)
 
     def save(self, path: str | os.PathLike[str], tone: str = "film") -> None:
-        """Writes .png (developed) or .exr (film exposure R, G, B in lux seconds, depth as Z in metres, and all layers).
+        """Writes .png, .jpg, .tif, .webp (developed) or .exr (film exposure R, G, B in lux seconds, depth as Z in
+        metres, and all layers).
 
         Lens, f-number, focus, exposure time, ISO, seed and version are in the file's metadata. Raises ImageFileError;
         no half-written file is left. An image does not know which files its scene was read from: one of the same name

@@ -11,6 +11,8 @@ import numpy as np
 from . import _core
 from .files import system_name
 
+DEVELOPED = (".png", ".jpg", ".jpeg", ".tif", ".tiff", ".webp")
+
 
 def read_environment(path: str | os.PathLike[str], *, layer: str = "") -> np.ndarray:
     """A latitude-longitude picture as (H, W, 3) float32, linear, row 0 up: what Scene.with_environment takes.
@@ -28,7 +30,7 @@ def read_environment(path: str | os.PathLike[str], *, layer: str = "") -> np.nda
 
 
 def write_codes(codes: np.ndarray, path: str | os.PathLike[str], entries: Mapping[str, str]) -> None:
-    """Writes (H, W, 3) uint8 sRGB as .png with metadata. Raises ImageFileError."""
+    """Writes (H, W, 3) uint8 sRGB as one of DEVELOPED, with metadata. Raises ImageFileError."""
     _core._write_codes(system_name(path), codes, list(entries.items()))
 
 

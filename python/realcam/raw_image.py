@@ -149,21 +149,23 @@ class RawImage:
         return _core.develop(self.exposure(demosaic), self.iso if iso is None else iso, tone)
 
     def save(self, path: str | os.PathLike[str], tone: str = "linear", demosaic: str = "menon") -> None:
-        """Writes .dng (the mosaic, for raw developers), .npy (the same as an array) or .png (developed).
+        """Writes .dng (the mosaic, for raw developers), .npy (the same as an array), developed .png, .jpg, .tif, .webp.
 
-        DNG and PNG hold the metadata. Raises ImageFileError and InputError; no half-written file is left.
+        DNG, PNG, JPEG and TIFF hold the metadata. Raises ImageFileError and InputError; no half-written file is left.
         """
         suffix = os.path.splitext(os.fsdecode(path))[1].lower()  # noqa: PTH122 - bytes are paths, too
         if suffix == ".dng":
             dng.write(self._negative(), path)
         elif suffix == ".npy":
             dng.write_array(self.mosaic, path)
-        elif suffix == ".png":
+        elif suffix in image_file.DEVELOPED:
             image_file.write_codes(
                 self.developed(tone, demosaic=demosaic), path, {**self.metadata(), "realcam:tone": tone}
             )
         else:
-            raise InputError(f"{os.fsdecode(path)}: .dng, .npy (the mosaic) or .png (developed) is wanted")
+            raise InputError(
+                f"{os.fsdecode(path)}: .dng, .npy (the mosaic) or .png, .jpg, .tif, .webp (developed) is wanted"
+            )
 
     def _negative(self) -> dng.Negative:
         filters = None

@@ -52,7 +52,7 @@ endif()
 
 expect(0 "f/2\\.03.*metered.*time [^\n]* s on CPU[^\n]*\npicture +a\\.png\npicture +a\\.exr\n.*no light.*daylight"
        render quad.obj -o a.png -o a.exr ${small})
-expect(0 "f/4,.*focus 2 m.*at -1,2,3, looks at 0,0,0.*24 x 24 mm, 40 x 40 pixels of 1 samples.*1/125 s, ISO 200\n"
+expect(0 "f/4,.*focus 2 m.*at -1,2,3, looks at 0,0,0.*24 x 24 mm, 40 x 40 pixels of 1 sample.*1/125 s, ISO 200\n"
        render quad.obj -o b.png --resolution 40x40 --spp 1 --f-number 4 --focus 2 --position -1,2,3 --look-at 0,0,0
        --exposure-time 1/125 --iso 200 --environment 1000 --tone linear --max-bounces 0 --threads 1 --device cpu --seed 7)
 expect(0 "as thin model.*% of the sampled rays pass" render quad.obj -o c.png ${small} --model thin --environment a.exr
@@ -73,7 +73,7 @@ expect(2 "SCENE is required" render)
 expect(2 "output is required" render quad.obj)
 expect(2 "unknown option --foo \\(" render quad.obj -o x.png --foo)
 expect(2 "unknown option --exposur-time \\(did you mean \"--exposure-time\"" render quad.obj --exposur-time=1/50)
-expect(2 "\"\\.jpg\" is not written; \\.png .* or \\.exr .* is wanted" render quad.obj -o x.jpg)
+expect(2 "\"\\.bmp\" is not written; \\.png.* or \\.exr .* is wanted" render quad.obj -o x.bmp)
 expect(2 "\"gone\" does not exist" render quad.obj -o gone/x.png)
 expect(2 "\"quad\\.obj\" is not a folder" render quad.obj -o quad.obj/x.png)
 expect(2 "given twice" render quad.obj -o x.png -o x.png)

@@ -51,6 +51,21 @@ def test_exr_holds_exposure_and_depth_to_the_bit(image: rc.Image, tmp_path: Path
     assert list(tmp_path.iterdir()) == [path]
 
 
+def test_developed_pictures_have_four_formats(image: rc.Image, tmp_path: Path) -> None:
+    codes = image.developed("film").astype(int)
+    for suffix, most_codes in ((".png", 0), (".tif", 0), (".TIFF", 0), (".webp", 0), (".jpg", 40), (".jpeg", 40)):
+        path = tmp_path / f"picture{suffix}"
+        image.save(path)
+        pixels, spec = read(path)
+        assert (spec.format, spec.nchannels) == (oiio.UINT8, 3)
+        assert np.abs(pixels.astype(int) - codes).max() <= most_codes, suffix  # small sharp patches, as JPEG has them
+        if suffix != ".webp":
+            told = str(spec.getattribute("ImageDescription" if suffix != ".png" else "realcam:lens"))
+            assert "double-gauss-50mm" in told
+    with pytest.raises(rc.ImageFileError, match=r"\.png, \.jpg, \.tif, \.webp \(developed\) or \.exr"):
+        image.save(tmp_path / "picture.bmp")
+
+
 def test_png_holds_the_developed_picture(image: rc.Image, tmp_path: Path) -> None:
     for tone in ("film", "linear"):
         path = tmp_path / f"{tone}.png"

@@ -15,6 +15,7 @@ import numpy as np
 import typer
 
 from .._core import InputError
+from ..image_file import DEVELOPED
 from ..json_values import json_text
 from ..number_text import counted, number_text, percent_text
 from ..progress import progress_bar
@@ -195,11 +196,12 @@ def finish(
             "--output",
             "-o",
             metavar="FILE",
-            help="Of one picture, .exr or .png, may be repeated; a folder for all of them; or a film of them, .mp4",
+            help="Of one picture, .exr, .png, .jpg, .tif or .webp, may be repeated; a folder for all of them; or a "
+            "film of them, .mp4",
         ),
     ],
     format: Annotated[
-        str, typer.Option("--format", metavar="NAME", help="Of pictures in a folder: exr or png")
+        str, typer.Option("--format", metavar="NAME", help="Of pictures in a folder: exr, png, jpg, tif or webp")
     ] = "exr",
     fps: Annotated[float, typer.Option("--fps", metavar="N", help="Frames in a second of a film")] = 24.0,
     device: Annotated[
@@ -211,7 +213,7 @@ def finish(
     from ..files import remove_leftovers
     from ..job import Job
 
-    format = options.known_word(format, ("exr", "png"), "format")
+    format = options.known_word(format, ("exr", "png", "jpg", "tif", "webp"), "format")
     job = Job.load(folder)
     remove_leftovers(job.path)
     if [path.suffix.lower() for path in output] == [".mp4"]:
@@ -234,14 +236,14 @@ def _picture_files(job: Job, output: list[Path], format: str) -> dict[str, list[
     """Into which files each picture goes. Makes the folder that `output` may be."""
     from .. import files
 
-    is_file = [path.suffix.lower() in (".exr", ".png") for path in output]
+    is_file = [path.suffix.lower() in (".exr", *DEVELOPED) for path in output]
     if all(is_file):
         if len(job.names) > 1:
             raise InputError(f"the job has {len(job.names)} pictures; a folder is wanted for --output")
         targets = {job.names[0]: output}
     else:
         if len(output) > 1:
-            raise InputError("one folder is wanted for --output, or files .exr and .png")
+            raise InputError("one folder is wanted for --output, or files .exr, .png, .jpg, .tif and .webp")
         files.make_folder(output[0])
         targets = {name: [output[0] / f"{name}.{format}"] for name in job.names}
     files.check_targets([path for paths in targets.values() for path in paths], outside=job.path)

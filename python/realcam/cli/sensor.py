@@ -78,7 +78,12 @@ def expose(
     film: Annotated[Path, typer.Argument(help="The film's exposure: an .exr of `realcam render`", metavar="FILM")],
     output: Annotated[
         list[Path],
-        typer.Option("--output", "-o", metavar="FILE", help="Raw as .dng or .npy, developed as .png; may be repeated"),
+        typer.Option(
+            "--output",
+            "-o",
+            metavar="FILE",
+            help="Raw as .dng or .npy, developed as .png, .jpg, .tif or .webp; may be repeated",
+        ),
     ],
     sensor: Annotated[
         str,
@@ -96,23 +101,25 @@ def expose(
         float | None,
         typer.Option("--temperature", metavar="CELSIUS", help="Degrees Celsius [that of the sensor's dark current]"),
     ] = None,
-    tone: Annotated[str, typer.Option(metavar="CURVE", help="Tone curve of .png: linear (clipped) or film")] = "linear",
-    demosaic: Annotated[str, typer.Option(metavar="NAME", help="Of .png: menon, malvar or bilinear")] = "menon",
+    tone: Annotated[
+        str, typer.Option(metavar="CURVE", help="Tone curve, developed: linear (clipped) or film")
+    ] = "linear",
+    demosaic: Annotated[str, typer.Option(metavar="NAME", help="Developed, by menon, malvar or bilinear")] = "menon",
     as_json: options.AsJson = False,
     quiet: options.Quiet = False,
 ) -> None:
     """Expose a sensor to a film: raw numbers with the sensor's noise, and a picture developed from them."""
     from ..demosaicing import METHODS
     from ..files import check_target
-    from ..image_file import read_film
+    from ..image_file import DEVELOPED, read_film
     from ..raw_image import exposed_film
 
     for path in output:
         check_target(path)
         if path.exists() and path.samefile(film):
             raise InputError(f"{path}: is the film itself; the raw picture needs another name")
-        if path.suffix.lower() not in (".dng", ".npy", ".png"):
-            raise InputError(f"{path}: .dng, .npy (raw) or .png (developed) is wanted")
+        if path.suffix.lower() not in (".dng", ".npy", *DEVELOPED):
+            raise InputError(f"{path}: .dng, .npy (raw) or .png, .jpg, .tif, .webp (developed) is wanted")
     for option, word, known in (("--tone", tone, ("linear", "film")), ("--demosaic", demosaic, METHODS)):
         if word not in known:
             raise InputError(f'{option}: "{word:.60}" is unknown; {", ".join(known)} is wanted')
