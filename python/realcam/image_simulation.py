@@ -25,8 +25,9 @@ Points = tuple[Doubles, Doubles]
 FLIPS = {"none": (1, 1), "horizontal": (1, -1), "vertical": (-1, 1), "both": (-1, -1)}  # steps along rows and columns
 PROJECTIONS = ("tangent", "angle")
 WAVELENGTHS_NM = (440.0, 480.0, 520.0, 560.0, 600.0, 640.0)
-_WIDEST_TANGENT_DEG = 60.0  # beyond it the projection is "angle" by default, as for rc.analysis.distortion
-_LARGEST_BLUR = 255  # pixels from the chief ray
+_WIDEST_TANGENT_DEG = 70.0  # between lenses that keep lines straight, up to 63 degrees, and fisheyes, from 78 on
+_LARGEST_BLUR = 511  # pixels from the chief ray
+_LARGEST_LOSS = 0.25  # share of the light that may land farther away
 _LARGEST_DIRECT_ARRAY = 131  # points across; the time of the direct sum rises with the fourth power
 _LARGEST_DIRECT_SPOT = 20.0  # wavelengths x f-number
 _DIFFRACTION_TAIL = 16.0  # wavelengths x f-number, beyond which 1.3% of Airy's light falls
@@ -122,7 +123,7 @@ def image_simulation(
     height_deg: angle of the picture's height, seen from the entrance pupil. height_m: its height in metres, for an
       object at a finite distance. None of both: the largest that the film shows whole, by the scale at its centre.
     projection: "tangent" for a flat object, "angle" for distances from the centre that are field angles, which has no
-      end at 90 degrees. None: "tangent" while the film's corners look up to 60 degrees away from the axis.
+      end at 90 degrees. None: "tangent" while the film's corners look up to 70 degrees away from the axis.
     object_distance_m: object plane to front vertex, inf allowed; None is the plane in focus.
     resolution: (width, height) of the film in pixels; None: the picture's, or as many as pixel_um allows on the film.
     pixel_um: None: the largest with which the resolution fits on the film.
@@ -133,8 +134,8 @@ def image_simulation(
     wavelengths_nm: None: 440 to 640 in steps of 40, or the design wavelength alone for a lens that is not made for
       visible light. Each stands for the part of the film's sensitivity to white (D65) that is nearest to it.
     progress: called with the share done, 0 to 1.
-    Raises InputError where the arguments contradict each other, no light reaches the film's centre, or the blur is
-    larger than 255 pixels; ImageFileError for a file that cannot be read.
+    Raises InputError where the arguments contradict each other, no light reaches the film's centre, or more than a
+    quarter of the light of a point lands farther than 511 pixels away; ImageFileError for a file that cannot be read.
     """
     source = _linear(picture)
     if flip not in FLIPS:
@@ -145,7 +146,7 @@ def image_simulation(
     left, top, columns, rows = _checked_crop(crop, film)
     wavelengths, weights = _bands(lens, wavelengths_nm)
     light = _FieldLight(lens, object_distance_m, wavelengths, weights, film.half_mm)
-    kind = _projection(projection, light.corner_deg, height_m)
+    kind = _projection(projection, light, height_m)
     centre, scale = light.centre(kind, film.pitch_mm)
     extent = _object_height(light, kind, height_deg, height_m)
     if extent is None:
@@ -267,6 +268,8 @@ class _FieldLight:
         (x, y, z), way = rays.origins_mm[passing[0]], rays.directions[passing[0]]
         if math.isinf(self.distance_m):
             across, along = -way[:2], float(way[2])
+        elif way[2] <= 0:  # it does not come from the object plane
+            return np.full(2, np.nan)
         else:  # where the ray meets the object plane, seen from the entrance pupil
             across = np.array([x, y]) - (1e3 * self.distance_m + z) / way[2] * way[:2]
             along = 1e3 * self.from_pupil_m
@@ -448,20 +451,22 @@ class _Kernels:
         # Colours within a channel are apart by what is left of lateral colour.
         apart = 1e3 * np.abs(shifts[:, None] - light.weights.T @ shifts)[np.abs(light.weights) > 0.01].max(initial=0.0)
         details = [1e-3 * b.wavelength_nm / b.index / np.ptp(b.edge_slopes.reshape(-1, 2), axis=0) for b in bundles]
-        reach = max(1e3 * float(np.abs(b.points_mm - b.chief_ray_mm).max()) for b in bundles) + apart
-        widths = [1e3 * float(np.ptp(b.points_mm, axis=0).max()) for b in bundles]
+        reach = max(_reach_um(bundle) for bundle in bundles) + apart
         finest, coarsest = min(float(d.min()) for d in details), max(float(d.max()) for d in details)
         radius = max(1, math.ceil((reach + _DIFFRACTION_TAIL * coarsest) / self.pitch_um))
         odd = max(3, 2 * math.ceil(0.5 * (self.pitch_um / finest - 1)) + 1)
-        is_direct = max(widths) <= _LARGEST_DIRECT_SPOT * finest and odd * (2 * radius + 1) <= _LARGEST_DIRECT_ARRAY
+        is_direct = 2 * reach <= _LARGEST_DIRECT_SPOT * finest and odd * (2 * radius + 1) <= _LARGEST_DIRECT_ARRAY
         if not is_direct:
             radius = min(radius, max(math.ceil(reach / self.pitch_um) + 1, 12))
             odd = 5 if radius < 32 else 3 if radius < 64 else 1
         if radius > _LARGEST_BLUR:
-            raise InputError(
-                f"the blur at the film point ({point[0]:.4g}, {point[1]:.4g}) mm spans {2 * radius} pixels; at most "
-                f"{2 * _LARGEST_BLUR} can be simulated: larger pixels or a smaller stop are wanted"
-            )
+            radius = _LARGEST_BLUR
+            most = max(_reach_um(bundle, 1 - _LARGEST_LOSS) for bundle in bundles) / self.pitch_um
+            if most > radius:
+                raise InputError(
+                    f"the blur at the film point ({point[0]:.4g}, {point[1]:.4g}) mm reaches {most:.0f} pixels from "
+                    f"the chief ray; at most {radius} can be simulated: larger pixels or a smaller stop are wanted"
+                )
         size, step = odd * (2 * radius + 1), self.pitch_um / odd
         fine = np.zeros((3, size, size))
         for nm, moved, share, detail in zip(light.wavelengths, shifts, light.weights, details, strict=True):
@@ -532,6 +537,14 @@ class _Kernels:
                         values = map_coordinates(found[1][channel], at, order=1, mode="grid-constant")
                         psfs[row, column, ..., channel] = values / found[2] ** 2
         return psfs, self.x, -self.y, pitch
+
+
+def _reach_um(bundle: RayBundle, share: float = 0.999) -> float:
+    """Distance from the chief ray within which a share of the light lands; a few rays may go far astray."""
+    away = np.hypot(*(bundle.points_mm - bundle.chief_ray_mm).T)
+    order = np.argsort(away)
+    inside = np.cumsum(bundle.energy[order])
+    return float(1e3 * away[order][np.searchsorted(inside, share * inside[-1])])
 
 
 def _diffracted(values: Doubles, details: Doubles) -> Doubles:
@@ -670,16 +683,22 @@ def _distance_in_focus(lens: Lens) -> float:
     return float(lens.focus_distance_m - 1e-3 * lens.film_frame[3, 2])
 
 
-def _projection(projection: str | None, corner_deg: float, height_m: float | None) -> str:
-    kind = projection or ("tangent" if corner_deg <= _WIDEST_TANGENT_DEG or height_m is not None else "angle")
+def _projection(projection: str | None, light: _FieldLight, height_m: float | None) -> str:
+    corner = light.corner_deg
+    kind = projection or ("tangent" if corner <= _WIDEST_TANGENT_DEG or height_m is not None else "angle")
     if kind not in PROJECTIONS:
         raise InputError(f'unknown projection "{kind}"; tangent or angle is wanted')
-    if height_m is not None and (kind == "angle" or corner_deg >= 90):
+    if height_m is not None and corner >= 90:
         raise InputError(
-            f"height_m: the film looks {corner_deg:.3g} deg away from the axis, where a flat object has no height; "
+            f"height_m: the film looks {corner:.3g} deg away from the axis, where a flat object has no height; "
             'height_deg with the projection "angle" is wanted'
-            if corner_deg >= 90
-            else 'height_m goes with the projection "tangent" alone; height_deg is wanted'
+        )
+    if height_m is not None and kind == "angle":
+        raise InputError('height_m goes with the projection "tangent" alone; height_deg is wanted')
+    if kind == "angle" and corner >= 90 and math.isfinite(light.distance_m):
+        raise InputError(
+            f"the film looks {corner:.3g} deg away from the axis, and an object at a finite distance ends before 90 "
+            "deg; an object distance of inf is wanted"
         )
     return kind
 

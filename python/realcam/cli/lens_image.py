@@ -37,7 +37,7 @@ def image(
             "--projection",
             metavar="NAME",
             help="tangent: a flat object; angle: distances from the picture's centre are field angles [angle beyond "
-            "60 degrees]",
+            "70 degrees]",
         ),
     ] = None,
     resolution: Annotated[
