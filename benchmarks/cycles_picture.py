@@ -37,7 +37,12 @@ def by_realcam() -> rc.Image:
         look_at=tuple(LOOK_AT),
         exposure_time_s=EXPOSURE_S,
     )
-    settings = {"effects": {"dispersion"}, "max_bounces": 6, "spp": SAMPLES, "layers": ["albedo", "normal", "traced_light"]}
+    settings = {
+        "effects": {"dispersion"},
+        "max_bounces": 6,
+        "spp": SAMPLES,
+        "layers": ["albedo", "normal", "traced_light"],
+    }
     return rc.render(scene, camera, **settings).denoised()
 
 

@@ -15,6 +15,7 @@ GROUPS = {
     ),
     "Rays, wavefronts and spots": (
         "AimedRays", "FilmPupil", "PSF", "RayBundle", "RayStatus", "Seidel", "Spot", "TraceResult", "Wavefront",
+        "ImageSimulation", "image_simulation",
     ),
     "Changing a lens": (
         "Optimisation", "Targets", "Operand", "Variable", "optimised", "GlassMatch", "GlassSearch", "nearest_glasses",

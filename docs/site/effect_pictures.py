@@ -42,7 +42,12 @@ class Pair:
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore")  # of coatings that no lens file knows
                 image = rc.render(
-                    self.scene, self.camera, spp=self.spp, max_bounces=2, effects=effects, layers=["albedo", "normal", "traced_light"]
+                    self.scene,
+                    self.camera,
+                    spp=self.spp,
+                    max_bounces=2,
+                    effects=effects,
+                    layers=["albedo", "normal", "traced_light"],
                 )
             image = image.denoised() if self.is_denoised else image
             matplotlib.image.imsave(folder / f"{name}-{suffix}.png", image.developed())

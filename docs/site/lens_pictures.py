@@ -56,7 +56,12 @@ def save_photograph(lens: rc.Lens, shot: rc.Shot, target: Path) -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # of glass whose index is known for one wavelength alone
         image = rc.render(
-            shot.scene, camera_for(lens, shot), spp=SAMPLES, max_bounces=3, effects=(), layers=["albedo", "normal", "traced_light"]
+            shot.scene,
+            camera_for(lens, shot),
+            spp=SAMPLES,
+            max_bounces=3,
+            effects=(),
+            layers=["albedo", "normal", "traced_light"],
         )
     matplotlib.image.imsave(target, image.denoised().developed())
 

@@ -80,6 +80,7 @@ from .flow import OpticalFlow, optical_flow
 from .glass_search import GlassMatch, GlassSearch, nearest_glasses, with_better_glasses
 from .image import Image
 from .image_file import read_environment
+from .image_simulation import ImageSimulation, image_simulation
 from .job import Job, JobStatus
 from .lens import Mirror, Stop
 from .live_view import LiveView
@@ -146,6 +147,7 @@ __all__ = [
     "Gradient",
     "Image",
     "ImageFileError",
+    "ImageSimulation",
     "InputError",
     "Job",
     "JobStatus",
@@ -206,6 +208,7 @@ __all__ = [
     "effects",
     "fit_camera_model",
     "glass_names",
+    "image_simulation",
     "lens_names",
     "nearest_glasses",
     "optical_flow",

@@ -29,6 +29,16 @@ def read_environment(path: str | os.PathLike[str], *, layer: str = "") -> np.nda
     return pixels
 
 
+def read_picture(path: str | os.PathLike[str]) -> np.ndarray:
+    """A picture as (H, W, 3) float32, linear Rec. 709, row 0 at the top. Codes of 8 and 16 bits are sRGB with white as
+    1; values of EXR and HDR stay as they are. Raises ImageFileError.
+    """
+    try:
+        return read_environment(path)
+    except _core.ImageFileError as error:
+        raise _core.ImageFileError(str(error).removesuffix("; a latitude-longitude picture was wanted")) from None
+
+
 def write_codes(codes: np.ndarray, path: str | os.PathLike[str], entries: Mapping[str, str]) -> None:
     """Writes (H, W, 3) uint8 sRGB as one of DEVELOPED, with metadata. Raises ImageFileError."""
     _core._write_codes(system_name(path), codes, list(entries.items()))

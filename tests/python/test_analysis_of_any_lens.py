@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import json
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -132,3 +134,58 @@ def test_no_field_is_lost_beyond_a_small_image_circle() -> None:
         assert [field.share for field in fields_along(large, (-1, 0, 1), axis)] == [-1, 0, 1]
         last = [fields_along(one, (1,), axis)[0].film_height_mm for one in (lens, large)]
         assert last[1] == pytest.approx(last[0], rel=0.06)  # steps of 5%
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "view-camera-210mm",
+        *(
+            pytest.param(name, marks=pytest.mark.slow)
+            for name in (
+                "anamorphic-31mm", "anamorphic-65mm", "off-axis-500mm", "periscope-50mm", "schmidt-225mm",
+                "scope-adapter-50mm",
+            )
+        ),
+    ],
+)  # fmt: skip
+def test_reports_of_lenses_that_are_not_of_revolution(name: str, tmp_path: Path) -> None:
+    """Maps over the film, and its points in place of angles; no plot is replaced by a reason."""
+    lens = rc.Lens.load(name)
+    analysis.save_report(lens, tmp_path / "r.html", wavelengths_nm=[587.6])
+    page = (tmp_path / "r.html").read_text(encoding="utf-8")
+    x, y = (0.35 * side for side in lens.film_mm)
+    points = f"(0, 0), ({x:.3g}, 0), (0, {y:.3g}), ({x:.3g}, {y:.3g}) mm on the film"
+    assert points in page
+    assert "Over the film" in page and "Points of the film" in page
+    for title in (
+        "RMS radius of the spot",
+        "RMS of the wavefront",
+        "contrast of a pattern along x",
+        "illumination, of",
+    ):
+        assert title in page, title
+    assert page.count(f"({x:.3g}, {y:.3g}) mm, RMS") == 2  # spot and wavefront
+    assert "no light" not in page
+    with pytest.raises(rc.InputError, match="are points of its film"):
+        analysis.save_report(lens, tmp_path / "r.html", fields_deg=[0, 5, 10])
+
+
+def test_spots_at_film_points_are_those_of_their_angles() -> None:
+    """The double Gauss at 10 degrees, by its angle and by the film point at which the chief ray ends."""
+    lens = LENS.stopped_down(4)
+    height = lens.spot(10.0).chief_ray_mm[1]
+    by_angle = analysis.spot_diagram(lens, [10.0], [546.0], rings=4)
+    by_point = analysis.spot_diagram(lens, wavelengths_nm=[546.0], film_mm=[(0.0, height)], rings=4)
+    np.testing.assert_allclose(by_point.points_mm, by_angle.points_mm, atol=1e-7)
+    assert np.isnan(by_point.fields_deg).all()
+    np.testing.assert_array_equal(by_point.film_mm, [(0.0, height)])
+    with pytest.raises(rc.InputError, match="film_mm must be film points"):
+        analysis.spot_diagram(lens, film_mm=[1.0, 2.0, 3.0])
+
+
+def test_numbers_of_maps_are_written(tmp_path: Path) -> None:
+    """They have no frequency and no vectors: null."""
+    told = json.loads(analysis.as_json(analysis.field_map(LENS, "spot", points=(2, 2))))
+    assert told["frequency_per_mm"] is None and told["vectors_mm"] is None
+    assert np.shape(told["values"]) == (2, 2)

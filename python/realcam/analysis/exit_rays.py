@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from .._core import Lens
+from ..fields import FieldPlace, field_arguments
 from ..short_text import ShortText
 from .fields import Doubles
 
@@ -32,12 +33,14 @@ class ExitRays(ShortText):
 def exit_rays(
     lens: Lens,
     pupil: ArrayLike,
-    field_deg: float,
+    field: FieldPlace,
     wavelength_nm: float,
     object_distance_m: float | None = None,
 ) -> ExitRays:
     """Rays through places of the stop, (N, 2) as shares of its radius, aimed at them through the real lens."""
-    spot = lens.spot(field_deg, wavelength_nm=wavelength_nm, object_distance_m=object_distance_m, pupil=pupil)
+    spot = lens.spot(
+        **field_arguments(field), wavelength_nm=wavelength_nm, object_distance_m=object_distance_m, pupil=pupil
+    )
     directions = spot.directions
     return ExitRays(spot.points_mm, directions[:, :2] / directions[:, 2:], directions[:, :2])
 

@@ -40,9 +40,9 @@ class Bundles:
             )
         return self._kept[key]
 
-    def chief(self, field_deg: float, wavelength_nm: float) -> RayBundle:
+    def chief(self, field: FieldPlace, wavelength_nm: float) -> RayBundle:
         """Few rays: enough for what is asked of the chief ray alone."""
-        return self.at(field_deg, wavelength_nm, 8, 2)
+        return self.at(field, wavelength_nm, 8, 2)
 
     @cached_property
     def largest_field_deg(self) -> float:
@@ -86,6 +86,14 @@ def fields_of(lens: Lens, fields_deg: ArrayLike | None, count: int, bundles: Bun
 def three_fields(lens: Lens, fields_deg: ArrayLike | None, bundles: Bundles) -> Doubles:
     """(F,): as given, or the axis, 0.7 and all of the image height."""
     return field_angles_deg(lens, [0, 0.7, 1], bundles) if fields_deg is None else numbers_of(fields_deg, "fields_deg")
+
+
+def film_points_of(film_mm: ArrayLike) -> list[FieldPlace]:
+    """(x, y) of each of (F, 2) film points. Raises InputError."""
+    points = np.asarray(film_mm, dtype=float)
+    if points.ndim != 2 or points.shape[1] != 2 or points.size == 0 or not np.isfinite(points).all():
+        raise InputError("film_mm must be film points, (x, y) in mm, at least one")
+    return [(float(x), float(y)) for x, y in points]
 
 
 def light_of(

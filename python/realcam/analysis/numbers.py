@@ -62,6 +62,6 @@ def _plain(value: Any) -> Any:
         return None if math.isnan(number) else number if math.isfinite(number) else str(number)
     if isinstance(value, (np.integer, int)):
         return int(value)
-    if isinstance(value, str):
+    if value is None or isinstance(value, str):
         return value
     raise InputError(f"{type(value).__name__} cannot be written as JSON")

@@ -27,6 +27,7 @@ class PointSpread(ShortText):
     centre_mm: tuple[float, float]
     strehl: float
     energy: float
+    film_mm: tuple[float, float] | None = None
 
 
 def point_spread(
@@ -38,8 +39,10 @@ def point_spread(
     size: int = 64,
     pitch_um: float | None = None,
     object_distance_m: float | None = None,
+    film_mm: tuple[float, float] | None = None,
 ) -> PointSpread:
-    """By Lens.psf, about the centroid of the light. None: the design wavelength; the plane in focus."""
+    """By Lens.psf, about the centroid of the light. film_mm: a film point in place of the angle. None of the
+    others: the design wavelength; the plane in focus."""
     colours = None if wavelengths_nm is None else list(numbers_of(wavelengths_nm, "wavelengths_nm"))
     psf: PSF = lens.psf(
         field_deg,
@@ -48,14 +51,17 @@ def point_spread(
         size=size,
         pitch_um=pitch_um,
         object_distance_m=object_distance_m,
+        film_mm=film_mm,
         centre="centroid",
     )
-    return PointSpread(field_deg, method, psf.x_um, psf.y_um, psf.values, psf.centre_mm, psf.strehl, psf.energy)
+    return PointSpread(
+        field_deg, method, psf.x_um, psf.y_um, psf.values, psf.centre_mm, psf.strehl, psf.energy, film_mm
+    )
 
 
 def plot_point_spread(data: PointSpread, axes: Axes) -> None:
     """In decades of the largest value."""
-    plot_decades(data, axes, f"{data.field_deg:.3g}°, {data.method}")
+    plot_decades(data, axes, f"{style.field_title(data.field_deg, data.film_mm)}, {data.method}")
 
 
 def plot_decades(data: PointSpread | PSF, axes: Axes, title: str) -> None:

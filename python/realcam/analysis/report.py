@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 
-import numpy as np
 from numpy.typing import ArrayLike
 
 from .. import files
@@ -14,7 +13,7 @@ from . import style
 from .fields import bundles_of, three_fields, wavelengths_of
 from .report_facts import facts_of
 from .report_paper import pdf_of
-from .report_plots import ReportPlots
+from .report_plots import FilmPlots, ReportPlots
 from .report_web import page_of
 
 
@@ -33,18 +32,31 @@ def save_report(
     fields_deg: three; None is the axis, 0.7 and all of the image height. wavelengths_nm: None is F line, design
     wavelength and C line. object_distance_m: object plane to front vertex; None is the plane in focus.
     theme: "light" or "dark"; None is light paper, and a page that is as its reader has set the browser.
-    What a lens cannot have (a plane grid of a fisheye, say) has its reason in its place.
+    What a lens cannot have (a plane grid of a fisheye, say) has its reason in its place. A lens that is not of
+    revolution has sections in two planes, maps over the film, and spots, wavefronts and point spread functions at four
+    points of it; fields_deg is None.
     Raises ImageFileError for the file, and InputError where no light passes.
     """
     target = files.check_target(path, (".pdf", ".html"))
     if theme is not None:
         theme_named(theme)
     source = bundles_of(lens, object_distance_m, None)
-    fields = three_fields(lens, fields_deg, source)
-    if len(fields) != 3:
-        raise InputError(f"a report shows three fields; {len(fields)} are given")
     colours = wavelengths_of(lens, wavelengths_nm)
-    facts, plots = facts_of(source, np.asarray(fields), colours), ReportPlots(source, fields, colours)
+    plots: ReportPlots
+    if lens.is_rotational:
+        fields = three_fields(lens, fields_deg, source)
+        if len(fields) != 3:
+            raise InputError(f"a report shows three fields; {len(fields)} are given")
+        plots = ReportPlots(source, fields, colours)
+        facts = facts_of(source, fields.tolist(), colours)
+    else:
+        if fields_deg is not None:
+            raise InputError(
+                f'fields of lens "{lens.name}" are points of its film, as it is not of revolution; its report chooses '
+                "them itself"
+            )
+        plots = FilmPlots(source, colours)
+        facts = facts_of(source, plots.points, colours)
     if target.suffix.lower() == ".pdf":
         paper = theme or "light"
         with style.themed(paper, 7.0):

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-
-import numpy as np
 
 from .. import lens_tables
 from .._core import InputError
+from ..fields import FieldPlace
 from .fields import Bundles, Doubles
 from .seidel_bars import SYMBOLS, seidel_bars, seidel_table
 
@@ -27,16 +27,20 @@ class ReportFacts:
     note: str
 
 
-def facts_of(source: Bundles, fields: Doubles, colours: Doubles) -> ReportFacts:
+def facts_of(source: Bundles, fields: Sequence[FieldPlace], colours: Doubles) -> ReportFacts:
     lens = source.lens
     columns: tuple[str, ...] = lens_tables.PRESCRIPTION
     rows = list(lens_tables.prescription(lens))
     count = len(columns)
     note = "The last thickness is the distance to the film. A positive radius has its centre on the film's side."
+    fields_deg = [field for field in fields if not isinstance(field, tuple)]
+    points = [f"({field[0]:.3g}, {field[1]:.3g})" for field in fields if isinstance(field, tuple)]
     try:
+        if not fields_deg:
+            raise InputError("they are of lenses of revolution")
         third = seidel_bars(
             lens,
-            min(float(np.abs(fields).max()), WIDEST_DEG),
+            min(max(map(abs, fields_deg)), WIDEST_DEG),
             object_distance_m=source.object_distance_m,
             bundles=source,
         )
@@ -49,7 +53,7 @@ def facts_of(source: Bundles, fields: Doubles, colours: Doubles) -> ReportFacts:
         note += f" There are no Seidel sums: {error}."
     figures = [
         *lens_tables.first_order(lens),
-        ("fields", ", ".join(f"{field:.3g}°" for field in fields)),
+        ("fields", ", ".join(f"{angle:.3g}°" for angle in fields_deg) or f"{', '.join(points)} mm on the film"),
         ("wavelengths", ", ".join(f"{nm:.5g}" for nm in colours) + " nm"),
     ]
     return ReportFacts(

@@ -9,7 +9,6 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ..draw import draw_cross_section
-from .fields import Bundles, Doubles
 from .report_facts import ReportFacts
 from .report_plots import PAGE_IN, ReportPlots
 from .style import GREY
@@ -26,26 +25,26 @@ def pdf_of(facts: ReportFacts, plots: ReportPlots, theme: str) -> bytes:
 
     content = io.BytesIO()
     with PdfPages(content, metadata={"CreationDate": None}) as pdf:
-        pdf.savefig(lens_page(facts, plots.source, plots.fields, theme), dpi=200)
+        pdf.savefig(lens_page(facts, plots, theme), dpi=200)
         for subject, page in plots.pages():
             _head(page, facts.title, subject)
             pdf.savefig(page, dpi=200)
     return content.getvalue()
 
 
-def lens_page(facts: ReportFacts, source: Bundles, fields: Doubles, theme: str) -> Figure:
+def lens_page(facts: ReportFacts, plots: ReportPlots, theme: str) -> Figure:
     figure = Figure(figsize=PAGE_IN)
     _head(figure, facts.title, "The lens")
     below = 0.944
     for line in textwrap.wrap(facts.source, 150)[:2]:
         figure.text(LEFT, below, line, fontsize=6, va="top", alpha=QUIET, parse_math=False)
         below -= 0.0095
-    axes = figure.add_axes((0.085, 0.665, 0.875, below - 0.015 - 0.665))
-    draw_cross_section(
-        source.lens, axes, fields_deg=fields.tolist(), object_distance_m=source.object_distance_m, theme=theme
-    )
-    axes.set_title("")
-    axes.grid(visible=False)
+    height = (below - 0.015 - 0.665) / len(plots.drawings)
+    for k, options in enumerate(plots.drawings):
+        axes = figure.add_axes((0.085, below - 0.015 - (k + 1) * height, 0.875, (0.85 if k else 1) * height))
+        draw_cross_section(plots.source.lens, axes, theme=theme, **options)
+        axes.set_title("")
+        axes.grid(visible=False)
     below = _draw_figures(figure, facts.figures, 0.615)
     _draw_table(figure, facts, below - 0.02)
     return figure

@@ -15,9 +15,11 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from .._core import InputError
+from ..fields import FieldPlace, field_arguments
 from .bokeh import bokeh, plot_bokeh
 from .distortion import distortion, distortion_grid, plot_distortion, plot_distortion_grid
 from .field_curves import field_curves, plot_field_curves
+from .field_map import QUANTITIES, field_map, plot_field_map
 from .fields import Bundles, Doubles, field_angles_deg
 from .film_pupil import film_pupils, plot_pupil_shapes, plot_relative_illumination
 from .lateral_colour import lateral_colour, plot_lateral_colour
@@ -62,21 +64,29 @@ class ReportPlots:
         fine = np.interp(np.linspace(0, 50, 101), np.arange(51), self.scan)
         self.chief_rays: dict[str, Any] = {**self.common, "fields_deg": fine}
 
+    @property
+    def drawings(self) -> list[dict[str, Any]]:
+        """Cross-sections of the lens, as arguments of Lens.draw."""
+        return [{"fields_deg": self.fields.tolist(), "object_distance_m": self.source.object_distance_m}]
+
     def pages(self) -> list[tuple[str, matplotlib.figure.Figure]]:
         """Subjects and their figures, of PAGE_IN; what is above PLOTS_TOP is left to headings."""
         # Titles keep their place: matplotlib would look for it around all ticks, which takes a sixth of the time.
         with matplotlib.rc_context({"axes.titley": 1.02}):
-            pages = [
-                ("Rays", self.rays()),
-                ("Contrast and colour", self.contrast()),
-                ("Waves and light", self.light()),
-            ]
+            pages = self._pages()
         for axes in (axes for _, page in pages for axes in page.axes):
             for axis in (axes.xaxis, axes.yaxis):
                 locator = axis.get_major_locator()
                 if isinstance(locator, matplotlib.ticker.MaxNLocator):
                     locator.set_params(nbins=5)
         return pages
+
+    def _pages(self) -> list[tuple[str, matplotlib.figure.Figure]]:
+        return [
+            ("Rays", self.rays()),
+            ("Contrast and colour", self.contrast()),
+            ("Waves and light", self.light()),
+        ]
 
     def rays(self) -> matplotlib.figure.Figure:
         figure = matplotlib.figure.Figure(figsize=PAGE_IN)
@@ -89,9 +99,9 @@ class ReportPlots:
             plot_spot_diagram(spots, figure.add_subplot(grid[2, f]), f)
         handles, labels = figure.axes[2].get_legend_handles_labels()
         figure.legend(handles, labels, loc="upper right", ncols=4, bbox_to_anchor=(0.975, 0.938), markerscale=3)
-        self._try(figure, grid[3, 0], self._longitudinal, plot_longitudinal_aberration)
-        self._try(figure, grid[3, 1], lambda: field_curves(self.lens, **self.chief_rays), plot_field_curves)
-        self._try(figure, grid[3, 2], lambda: distortion(self.lens, **self.chief_rays), plot_distortion)
+        _try(figure, grid[3, 0], self._longitudinal, plot_longitudinal_aberration)
+        _try(figure, grid[3, 1], lambda: field_curves(self.lens, **self.chief_rays), plot_field_curves)
+        _try(figure, grid[3, 2], lambda: distortion(self.lens, **self.chief_rays), plot_distortion)
         return figure
 
     def contrast(self) -> matplotlib.figure.Figure:
@@ -105,7 +115,7 @@ class ReportPlots:
             (grid[1, 1], lambda: lateral_colour(self.lens, **{**over, **self.chief_rays}), plot_lateral_colour),
             (grid[2, :], self._seidel, plot_seidel_bars),
         ):
-            self._try(figure, place, compute, plot)
+            _try(figure, place, compute, plot)
         return figure
 
     def light(self) -> matplotlib.figure.Figure:
@@ -113,52 +123,34 @@ class ReportPlots:
         grid = figure.add_gridspec(4, 3, top=0.92, bottom=0.05, hspace=0.4, wspace=0.5, left=0.085, right=0.95)
         distance = self.source.object_distance_m
         for f, field in enumerate(self.fields):
-            self._try(
+            _try(
                 figure,
                 grid[0, f],
                 partial(wavefront_map, self.lens, float(field), samples=64, object_distance_m=distance),
                 plot_wavefront_map,
             )
-            self._try(figure, grid[1, f], partial(self._psf, float(field)), plot_point_spread)
-        self._try(
-            figure, grid[2, :2], lambda: film_pupils(self.lens, self.scan[::10], **self.common), plot_pupil_shapes
-        )
-        self._try(
+            _try(figure, grid[1, f], partial(self._psf, float(field)), plot_point_spread)
+        _try(figure, grid[2, :2], lambda: film_pupils(self.lens, self.scan[::10], **self.common), plot_pupil_shapes)
+        _try(
             figure,
             grid[2, 2],
             lambda: film_pupils(self.lens, self.scan[::2], **self.common),
             plot_relative_illumination,
         )
-        self._try(
+        _try(
             figure,
             grid[3, 0].subgridspec(1, 2, width_ratios=(0.45, 0.55), wspace=0)[1],  # beside names
             lambda: zernike_fit(self.lens, float(self.fields[1]), samples=24, object_distance_m=distance),
             plot_zernike_fit,
         )
-        self._try(figure, grid[3, 1], lambda: distortion_grid(self.lens, **self.common), plot_distortion_grid)
-        self._try(
+        _try(figure, grid[3, 1], lambda: distortion_grid(self.lens, **self.common), plot_distortion_grid)
+        _try(
             figure,
             grid[3, 2],
             lambda: bokeh(self.lens, self.fields[1:2], self.colours, rays=100000, size=72),
             plot_bokeh,
         )
         return figure
-
-    @staticmethod
-    def _try(
-        figure: matplotlib.figure.Figure, place: Any, compute: Callable[[], Any], plot: Callable[[Any, Axes], None]
-    ) -> None:
-        """What this lens cannot have has the reason in its place, and the rest is shown."""
-        axes = figure.add_subplot(place)
-        try:
-            plot(compute(), axes)
-        except InputError as error:
-            axes.set_axis_off()
-            # In lines of the place's width: matplotlib's own wrap is by the page. A letter is about half its size wide.
-            width_in = axes.get_position().width * figure.get_size_inches()[0]
-            letters = max(int(72 * width_in / (0.55 * matplotlib.rcParams["font.size"])), 12)
-            reason = textwrap.fill(str(error), letters)
-            axes.text(0.5, 0.5, reason, ha="center", va="center", parse_math=False)
 
     def _longitudinal(self) -> Any:
         return longitudinal_aberration(
@@ -177,15 +169,76 @@ class ReportPlots:
             self.mtf_method = "geometric"
             return compute(self.lens, method=self.mtf_method, **given)
 
-    def _psf(self, field: float) -> Any:
+    def _psf(self, field: FieldPlace) -> Any:
         """The point spread function, by rays alone where waves would take seconds because the spot is wide."""
         bundle = self.source.at(field, self.lens.wavelength_nm)
         spot = float(np.ptp(bundle.points_mm, axis=0).max())
         detail = 1e-6 * bundle.wavelength_nm / float(np.ptp(bundle.edge_slopes.reshape(-1, 2), axis=0).max())
-        distance = self.source.object_distance_m
-        if spot > 60 * detail:
-            pitch = 1e3 * 1.3 * spot / 64
-            return point_spread(
-                self.lens, field, method="geometric", size=64, pitch_um=pitch, object_distance_m=distance
+        by_rays = {"method": "geometric", "pitch_um": 1e3 * 1.3 * spot / 64} if spot > 60 * detail else {}
+        return point_spread(
+            self.lens,
+            **field_arguments(field),
+            size=64,
+            object_distance_m=self.source.object_distance_m,
+            **by_rays,  # type: ignore[arg-type]
+        )
+
+
+class FilmPlots(ReportPlots):
+    """Those of a lens without rotational symmetry: maps over the film, and what four of its points see."""
+
+    def __init__(self, source: Bundles, colours: Doubles) -> None:
+        self.lens, self.source, self.colours = source.lens, source, colours
+        half = 0.5 * np.array(self.lens.film_mm)
+        self.points = [(float(x), float(y)) for x, y in half * np.array([(0, 0), (0.7, 0), (0, 0.7), (0.7, 0.7)])]
+
+    @property
+    def drawings(self) -> list[dict[str, Any]]:
+        return [{"plane": plane, "object_distance_m": self.source.object_distance_m} for plane in ("yz", "xz")]
+
+    def _pages(self) -> list[tuple[str, matplotlib.figure.Figure]]:
+        return [("Over the film", self.maps()), ("Points of the film", self.film_points())]
+
+    def maps(self) -> matplotlib.figure.Figure:
+        figure = matplotlib.figure.Figure(figsize=PAGE_IN)
+        grid = figure.add_gridspec(3, 2, top=0.91, bottom=0.06, hspace=0.3, wspace=0.3, **SIDE)
+        for k, quantity in enumerate(QUANTITIES):
+            compute = partial(field_map, self.lens, quantity, points=(9, 7), bundles=self.source)
+            _try(figure, grid[k // 2, k % 2], compute, plot_field_map)
+        return figure
+
+    def film_points(self) -> matplotlib.figure.Figure:
+        figure = matplotlib.figure.Figure(figsize=PAGE_IN)
+        grid = figure.add_gridspec(4, 3, top=0.91, bottom=0.05, hspace=0.45, wspace=0.5, left=0.085, right=0.95)
+        for k, point in enumerate(self.points):
+            spot = partial(
+                spot_diagram, self.lens, wavelengths_nm=self.colours, film_mm=[point], rings=7, bundles=self.source
             )
-        return point_spread(self.lens, field, size=64, object_distance_m=distance)
+            front = partial(
+                wavefront_map, self.lens, film_mm=point, samples=64, object_distance_m=self.source.object_distance_m
+            )
+            _try(figure, grid[k, 0], spot, plot_spot_diagram)
+            _try(figure, grid[k, 1], front, plot_wavefront_map)
+            _try(figure, grid[k, 2], partial(self._psf, point), plot_point_spread)
+        for axes in figure.axes:
+            handles, labels = axes.get_legend_handles_labels()
+            if handles:
+                figure.legend(handles, labels, loc="upper right", ncols=4, bbox_to_anchor=(0.95, 0.945), markerscale=3)
+                break
+        return figure
+
+
+def _try(
+    figure: matplotlib.figure.Figure, place: Any, compute: Callable[[], Any], plot: Callable[[Any, Axes], None]
+) -> None:
+    """What this lens cannot have has the reason in its place, and the rest is shown."""
+    axes = figure.add_subplot(place)
+    try:
+        plot(compute(), axes)
+    except InputError as error:
+        axes.set_axis_off()
+        # In lines of the place's width: matplotlib's own wrap is by the page. A letter is about half its size wide.
+        width_in = axes.get_position().width * figure.get_size_inches()[0]
+        letters = max(int(72 * width_in / (0.55 * matplotlib.rcParams["font.size"])), 12)
+        reason = textwrap.fill(str(error), letters)
+        axes.text(0.5, 0.5, reason, ha="center", va="center", parse_math=False)

@@ -51,9 +51,9 @@ def page_of(facts: ReportFacts, plots: ReportPlots, theme: str | None) -> bytes:
     """theme: None follows the browser's setting. Figures are those of the light theme, in force here, whose colours
     become the page's variables."""
     with matplotlib.rc_context({"axes.grid": False}):
-        drawing = inline_svg(plots.source.lens.draw(
-        fields_deg=plots.fields.tolist(), object_distance_m=plots.source.object_distance_m
-    ), "lens")  # fmt: skip
+        drawing = "\n".join(
+            inline_svg(plots.source.lens.draw(**options), f"lens{k or ''}") for k, options in enumerate(plots.drawings)
+        )
     sections = "\n".join(
         f"<section>\n<h2>{html.escape(subject)}</h2>\n"
         f"{inline_svg(page, f'{number}', Bbox.from_bounds(0, 0, PAGE_IN[0], PLOTS_TOP * PAGE_IN[1]))}\n</section>"

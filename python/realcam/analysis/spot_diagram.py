@@ -9,10 +9,11 @@ from matplotlib.axes import Axes
 from numpy.typing import ArrayLike
 
 from .._core import InputError, Lens
+from ..fields import FieldPlace, field_arguments, field_text
 from ..short_text import ShortText
 from . import style
 from .exit_rays import exit_rays, hexapolar
-from .fields import Bundles, Doubles, light_of, numbers_of
+from .fields import Bundles, Doubles, bundles_of, film_points_of, light_of, numbers_of, wavelengths_of
 
 
 @dataclass(frozen=True, repr=False)
@@ -26,6 +27,7 @@ class SpotDiagram(ShortText):
     rms_radius_mm: (D, F), of all colours, about their centroid.
     airy_radii_mm: (F, 2), along x and y: 1.22 times the design wavelength times the f-number that the light of the
       field has in that direction.
+    film_mm: (F, 2), the fields where they are film points; then fields_deg is nan.
     """
 
     fields_deg: Doubles
@@ -35,6 +37,7 @@ class SpotDiagram(ShortText):
     centroid_mm: Doubles
     rms_radius_mm: Doubles
     airy_radii_mm: Doubles
+    film_mm: Doubles | None = None
 
 
 def spot_diagram(
@@ -42,6 +45,7 @@ def spot_diagram(
     fields_deg: ArrayLike | None = None,
     wavelengths_nm: ArrayLike | None = None,
     *,
+    film_mm: ArrayLike | None = None,
     defocus_mm: ArrayLike = 0.0,
     rings: int = 10,
     object_distance_m: float | None = None,
@@ -49,38 +53,50 @@ def spot_diagram(
 ) -> SpotDiagram:
     """Spots of rays in `rings` rings over the stop, on the film and on planes beside it.
 
-    defocus_mm: (D,), of the planes, positive behind the film. None: the axis, 0.7 and all of the image height; F line,
+    film_mm: (F, 2), film points at which the chief rays end, in place of angles. defocus_mm: (D,), of the planes,
+    positive behind the film. None: the axis, 0.7 and all of the image height; F line,
     design wavelength, C line. Raises InputError where no light passes.
     """
-    source, fields, colours = light_of(lens, fields_deg, wavelengths_nm, object_distance_m, bundles)
+    angles: Doubles
+    fields: list[FieldPlace]
+    if film_mm is None:
+        source, angles, colours = light_of(lens, fields_deg, wavelengths_nm, object_distance_m, bundles)
+        fields = [float(angle) for angle in angles]
+    else:
+        source, colours = bundles_of(lens, object_distance_m, bundles), wavelengths_of(lens, wavelengths_nm)
+        fields = film_points_of(film_mm)
+        angles = np.full(len(fields), np.nan)
     planes = numbers_of(defocus_mm, "defocus_mm")
     places = hexapolar(rings)
     points = np.empty((len(planes), len(fields), len(colours), len(places), 2))
     airy = np.empty((len(fields), 2))
     for f, field in enumerate(fields):
-        middle = _chief_line(source, float(field))
+        middle = _chief_line(source, field)
         for w, colour in enumerate(colours):
-            rays = exit_rays(lens, places, float(field), float(colour), source.object_distance_m)
+            rays = exit_rays(lens, places, field, float(colour), source.object_distance_m)
             if np.isnan(rays.points_mm).all():
-                raise InputError(f'none of {len(places)} rays at {field:.6g} deg passes lens "{lens.name}"')
+                raise InputError(f'none of {len(places)} rays at {field_text(field)} passes lens "{lens.name}"')
             for d, plane in enumerate(planes):
                 points[d, f, w] = rays.at(float(plane)) - (middle[0] + plane * middle[1])
-        bundle = source.at(float(field), lens.wavelength_nm)
+        bundle = source.at(field, lens.wavelength_nm)
         across = np.ptp(bundle.edge_slopes.reshape(-1, 2), axis=0)
         airy[f] = 1.22e-6 * bundle.wavelength_nm / bundle.index / across
     all_colours = points.reshape(len(planes), len(fields), -1, 2)
     centroid = np.nanmean(all_colours, axis=2)
     square = ((all_colours - centroid[:, :, None]) ** 2).sum(axis=-1)
-    return SpotDiagram(fields, colours, planes, points, centroid, np.sqrt(np.nanmean(square, axis=2)), airy)
+    rms = np.sqrt(np.nanmean(square, axis=2))
+    return SpotDiagram(
+        angles, colours, planes, points, centroid, rms, airy, None if film_mm is None else np.array(fields)
+    )
 
 
-def _chief_line(source: Bundles, field: float) -> tuple[Doubles, Doubles]:
+def _chief_line(source: Bundles, field: FieldPlace) -> tuple[Doubles, Doubles]:
     """Point on the film and dx/dz, dy/dz of the chief ray of the design wavelength, even where the lens blocks it."""
     lens = source.lens
     step = 1e-3 * max(abs(lens.film_distance_mm), 1.0)
     here = np.array(source.chief(field, lens.wavelength_nm).chief_ray_mm)
     there = lens.bundle(
-        field,
+        **field_arguments(field),
         wavelength_nm=lens.wavelength_nm,
         object_distance_m=source.object_distance_m,
         film_distance_mm=lens.film_distance_mm + step,
@@ -123,7 +139,9 @@ def plot_spot_diagram(spots: SpotDiagram, axes: Axes, field: int = 0, plane: int
     axes.set_xlabel("x / µm")
     axes.set_ylabel("y / µm")
     beside = f", {1e3 * spots.defocus_mm[plane]:+.3g} µm" if len(spots.defocus_mm) > 1 else ""
-    title = f"{spots.fields_deg[field]:.3g}°{beside}, RMS {1e3 * spots.rms_radius_mm[plane, field]:.3g} µm"
+    place = None if spots.film_mm is None else spots.film_mm[field]
+    radius_um = 1e3 * spots.rms_radius_mm[plane, field]
+    title = f"{style.field_title(spots.fields_deg[field], place)}{beside}, RMS {radius_um:.3g} µm"
     axes.set_title(title.replace("-", "−"))  # the minus sign of the axes' numbers
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any
 
@@ -101,6 +101,11 @@ def field_upwards(axes: Axes, fields_deg: NDArray[np.float64]) -> None:
     zero_lines(axes, y=False)
     axes.set_ylim(0, max(float(fields_deg.max()), 1e-9))
     axes.set_ylabel("field / °")
+
+
+def field_title(field_deg: float, film_mm: Sequence[float] | NDArray[np.float64] | None) -> str:
+    """A field in a title: its angle, or its film point."""
+    return f"{field_deg:.3g}°" if film_mm is None else f"({film_mm[0]:.3g}, {film_mm[1]:.3g}) mm"
 
 
 def zero_lines(axes: Axes, x: bool = True, y: bool = True) -> None:

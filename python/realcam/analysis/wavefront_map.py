@@ -25,6 +25,7 @@ class WavefrontMap(ShortText):
     rms_waves: float
     peak_to_valley_waves: float
     strehl: float
+    film_mm: tuple[float, float] | None = None
 
 
 def wavefront_map(
@@ -35,10 +36,16 @@ def wavefront_map(
     samples: int = 48,
     remove: str | None = None,
     object_distance_m: float | None = None,
+    film_mm: tuple[float, float] | None = None,
 ) -> WavefrontMap:
-    """remove: as for Lens.wavefront. None of the others: the design wavelength; the plane in focus."""
+    """remove, film_mm: as for Lens.wavefront. None of the others: the design wavelength; the plane in focus."""
     front = lens.wavefront(
-        field_deg, wavelength_nm=wavelength_nm, samples=samples, remove=remove, object_distance_m=object_distance_m
+        field_deg,
+        wavelength_nm=wavelength_nm,
+        samples=samples,
+        remove=remove,
+        object_distance_m=object_distance_m,
+        film_mm=film_mm,
     )
     return WavefrontMap(
         field_deg,
@@ -47,6 +54,7 @@ def wavefront_map(
         front.rms_waves,
         front.peak_to_valley_waves,
         front.strehl,
+        film_mm,
     )
 
 
@@ -65,5 +73,5 @@ def plot_wavefront_map(data: WavefrontMap, axes: Axes) -> None:
     axes.grid(visible=False)
     axes.set_xlabel("x in the stop / its radius")
     axes.set_ylabel("y in the stop / its radius")
-    axes.set_title(f"{data.field_deg:.3g}°, RMS {data.rms_waves:.3g} waves")
+    axes.set_title(f"{style.field_title(data.field_deg, data.film_mm)}, RMS {data.rms_waves:.3g} waves")
     style.colour_bar(axes, picture, "waves")

@@ -13,6 +13,11 @@ EXAMPLES: dict[str, tuple[str, ...]] = {
         "realcam lens plot spot double-gauss-50mm --f-number 4 --focus 2 --fields-deg 0,10,20",
     ),
     "lens report": ("realcam lens report tessar-50mm --f-number 5.6 -o tessar.pdf",),
+    "lens image": (
+        "realcam lens image double-gauss-50mm chart.png -o seen.png --f-number 2.8 --psfs",
+        "realcam lens image tessar-50mm chart.png -o near.png --object-distance 0.5 --height 0.3 --crop 0,0,400,300",
+        "realcam lens image fisheye-6mm-220deg sky.jpg -o dome.png --height-deg 180 --projection angle",
+    ),
     "lens draw": (
         "realcam lens draw fisheye-6mm-220deg -o fisheye.svg",
         "realcam lens draw double-gauss-50mm --focus 0.6 --f-number 2.8 --marks --theme dark",

@@ -57,9 +57,13 @@ def tolerance(
     """
     from .. import files
     from ..tolerance import Tolerances, tolerance_study
+    from ..tolerance.compensators import NAMES
     from ..tolerance.tolerances import check_distribution
 
     tolerances = Tolerances.grade(grade, distribution=distribution)
+    compensators = [] if compensate == "nothing" else [word.strip() for word in compensate.split(",")]
+    for word in compensators:
+        options.check_known(word, (*NAMES, "nothing") if len(compensators) == 1 else NAMES, "compensator")
     check_distribution(distribution)
     if output is not None:
         lens_options.check_not_the_lens(files.check_target(output, (".html",)), name)
@@ -69,7 +73,7 @@ def tolerance(
             lens,
             tolerances,
             copies,
-            compensators=() if compensate == "nothing" else compensate.split(","),
+            compensators=compensators,
             seed=seed,
             frequencies_per_mm=None if frequency is None else [frequency],
             progress=bar,

@@ -213,6 +213,8 @@ def tolerance_study(
         raise InputError(f'sharpest_by: "{sharpest_by!s:.40}" is unknown; mtf or spot is wanted')
     if not 2 <= rings <= 100:
         raise InputError(f"rings is {rings!r:.40}; 2 to 100 are wanted")
+    if not lens.is_rotational:
+        raise InputError(f'tolerances are of lenses of revolution, with a flat film; lens "{lens.name}" is none')
     items = drawing.of(lens)
     from ..analysis.fields import default_frequencies_per_mm, numbers_of, wavelengths_of  # brings matplotlib
 

@@ -1,0 +1,101 @@
+"""realcam lens image: a picture as a lens images it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from .._core import InputError
+from ..progress import progress_bar
+from . import lens_options, lens_plots, options
+from .grouped_options import grouped
+
+
+@grouped
+def image(
+    name: lens_options.LensName,
+    picture: Annotated[
+        Path, typer.Argument(help="A .png, .jpg, .tif, .webp, .bmp, .exr or .hdr file", metavar="PICTURE")
+    ],
+    *,
+    output: Annotated[Path, typer.Option("--output", "-o", metavar="FILE", help="A .png file")],
+    rings: lens_options.Rings,
+    object_distance: lens_plots.ObjectDistance = None,
+    height_deg: Annotated[
+        float | None,
+        typer.Option("--height-deg", metavar="DEGREES", help="Angle that the picture's height spans [fits the film]"),
+    ] = None,
+    height: Annotated[
+        float | None,
+        typer.Option("--height", metavar="METRES", help="The picture's height, of an object at a finite distance"),
+    ] = None,
+    projection: Annotated[
+        str | None,
+        typer.Option(
+            "--projection",
+            metavar="NAME",
+            help="tangent: a flat object; angle: distances from the picture's centre are field angles [angle beyond "
+            "70 degrees]",
+        ),
+    ] = None,
+    resolution: Annotated[
+        str | None, typer.Option("--resolution", metavar="WxH", help="The film's pixels [the picture's]")
+    ] = None,
+    pixel: Annotated[
+        float | None, typer.Option("--pixel", metavar="UM", help="Their pitch in um [fits the film]")
+    ] = None,
+    crop: Annotated[
+        str | None,
+        typer.Option("--crop", metavar="X,Y,W,H", help="Only these pixels of the film: left, top, width, height"),
+    ] = None,
+    flip: Annotated[
+        str, typer.Option("--flip", metavar="NAME", help="none, horizontal, vertical, or both: as it lies on the film")
+    ] = "none",
+    falloff: Annotated[bool, typer.Option(help="With relative illumination")] = True,
+    psfs: Annotated[
+        bool, typer.Option("--psfs", help="Put a grid of point spread functions to the right of the picture")
+    ] = False,
+    psf_grid: Annotated[
+        str, typer.Option("--psf-grid", metavar="XxY", help="How many are computed over the film")
+    ] = "7x5",
+    wavelengths: Annotated[
+        str | None, typer.Option("--wavelengths", metavar="NM", help="In nm, with commas between [440 to 640]")
+    ] = None,
+    file: lens_options.File,
+    quiet: options.Quiet = False,
+) -> None:
+    """Image a flat picture through a lens: blur, distortion, lateral colour, falloff and diffraction."""
+    from .. import files
+    from ..image_simulation import image_simulation
+
+    lens_options.check_not_the_lens(files.check_target(output, (".png",)), name)
+    lens = rings.set(file.lens(name))
+    with progress_bar("image simulation", is_shown=not quiet) as bar:
+        seen = image_simulation(
+            lens,
+            picture,
+            height_deg=height_deg,
+            height_m=height,
+            projection=projection,
+            object_distance_m=None if object_distance is None else options.number(object_distance, "--object-distance"),
+            resolution=None if resolution is None else _whole_numbers(resolution, "--resolution", "x", 2),
+            pixel_um=pixel,
+            crop=None if crop is None else _whole_numbers(crop, "--crop", ",", 4),
+            flip=flip,
+            falloff=falloff,
+            psf_grid=_whole_numbers(psf_grid, "--psf-grid", "x", 2),
+            wavelengths_nm=lens_options.numbers(wavelengths, "--wavelengths"),
+            progress=bar,
+        )
+    seen.save(output, psfs=psfs)
+    options.say_written(output, quiet)
+
+
+def _whole_numbers(text: str, option: str, between: str, count: int) -> tuple[int, ...]:
+    """Raises InputError."""
+    words = text.split(between)
+    if len(words) != count or not all(word.strip().isdecimal() and len(word) < 9 for word in words):
+        raise InputError(f'{option}: "{text:.40}": {count} whole numbers with "{between}" between are wanted')
+    return tuple(map(int, words))
