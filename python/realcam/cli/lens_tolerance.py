@@ -61,9 +61,9 @@ def tolerance(
     from ..tolerance.tolerances import check_distribution
 
     tolerances = Tolerances.grade(grade, distribution=distribution)
-    compensators = [] if compensate == "nothing" else [word.strip() for word in compensate.split(",")]
-    for word in compensators:
-        options.check_known(word, (*NAMES, "nothing") if len(compensators) == 1 else NAMES, "compensator")
+    words = [word.strip() for word in compensate.split(",")]
+    known = (*NAMES, "nothing") if len(words) == 1 else NAMES
+    compensators = [options.known_word(word, known, "compensator") for word in words if word != "nothing" or words[1:]]
     check_distribution(distribution)
     if output is not None:
         lens_options.check_not_the_lens(files.check_target(output, (".html",)), name)
