@@ -164,7 +164,13 @@ const Setting kSettings[] = {
     {"seed", "int", [](Draft& d, Word word) { d.settings.seed = seed_from(word.cast<std::int64_t>()); },
      get<&RenderSettings::seed>},
     {"max_bounces", "int | str",
-     [](Draft& d, Word word) { d.settings.max_bounces = bounces_from(word); },
+     [](Draft& d, Word word) {
+         try {
+             d.settings.max_bounces = bounces_from(word);
+         } catch (const py::cast_error&) {
+             refuse("max_bounces must be a whole number or \"auto\"; it is " + short_repr(word));
+         }
+     },
      [](S s) -> py::object { return s.max_bounces ? py::cast(*s.max_bounces) : py::cast("auto"); }},
     {"transport", "str",
      [](Draft& d, Word word) {

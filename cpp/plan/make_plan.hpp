@@ -7,8 +7,8 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Looks at the scene and at the lens, and plans what the settings leave to the planner. `settings`: of the picture. Throws what probe_scene throws, and
-/// InputError for a lens that passes nothing and for thresholds that are none.
+/// Looks at the scene and at the lens, and plans what the settings leave to the planner. `settings`: of the picture.
+/// Throws what probe_scene throws, and InputError for a lens that passes nothing and for thresholds that are none.
 inline Plan make_plan(Session& session, const Assembly& scene, const Camera& camera, const RenderSettings& settings,
                       bool measures_times, const PupilTracer& tracer, const Progress& progress = {}) {
     validate(settings);

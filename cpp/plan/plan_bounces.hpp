@@ -1,6 +1,5 @@
 #pragma once
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -15,33 +14,26 @@ namespace REALCAM_NAMESPACE {
 
 namespace plan_bounces_detail {
 
-/// Pixels of the longer side, and samples of a pixel in each of two pictures.
-inline constexpr int kLongSide = 48, kSamples = 16;
+/// Pixels of the longer side, and samples of a pixel.
+inline constexpr int kLongSide = 48, kSamples = 32;
 /// Of the threshold, what the small pictures may lack: they show less of what few samples find, as of light that is
 /// reflected many times in glass. More bounces than are wanted cost little, because few paths take them.
 inline constexpr double kMargin = 0.5;
 
-/// Two small pictures through a pinhole whose samples are independent, as linear 8-bit codes. Those of another number
-/// of bounces follow the same paths, as far as they go, so that they differ by the light of the other bounces alone.
-using SmallPictures = std::array<std::vector<double>, 2>;
-
-inline SmallPictures small_pictures(Session& session, const Assembly& scene, const Camera& camera,
-                                    RenderSettings settings, int max_bounces, const Progress& progress) {
+/// A small picture as linear 8-bit codes. That of another number of bounces follows the same paths, as far as they go,
+/// so that both differ by the light of the other bounces alone.
+inline std::vector<double> small_picture(Session& session, const Assembly& scene, const Camera& camera,
+                                         RenderSettings settings, int max_bounces, const Progress& progress) {
     settings.max_bounces = max_bounces;
-    SmallPictures pictures;
-    for (std::vector<double>& codes : pictures) {
-        ++settings.seed;
-        for (const float exposure : take_picture(session, scene, camera, settings, progress).exposure)
-            codes.push_back(code_of(sensor_value(static_cast<double>(exposure), camera.iso)));
-    }
-    return pictures;
+    std::vector<double> codes;
+    for (const float exposure : take_picture(session, scene, camera, settings, progress).exposure)
+        codes.push_back(code_of(sensor_value(static_cast<double>(exposure), camera.iso)));
+    return codes;
 }
 
-/// The largest difference that both pairs of pictures show: few samples of a bright light make one in one of them.
-inline double difference(const SmallPictures& a, const SmallPictures& b) {
+inline double largest_difference(const std::vector<double>& a, const std::vector<double>& b) {
     double largest = 0;
-    for (std::size_t i = 0; i < a[0].size(); ++i)
-        largest = std::max(largest, std::min(std::fabs(a[0][i] - b[0][i]), std::fabs(a[1][i] - b[1][i])));
+    for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, std::fabs(a[i] - b[i]));
     return largest;
 }
 
@@ -58,33 +50,35 @@ inline void plan_bounces(Session& session, const Assembly& scene, Camera camera,
     }
     const double threshold = settings.thresholds.codes;
     camera.film = with_long_side(camera.film, kLongSide);
-    camera.model = CameraModel::pinhole;
+    // A pinhole shows it sooner, wherever a lens has an axis.
+    if (const LensSystem on_axis = centred(camera.lens); on_axis.is_rotational()) {
+        camera.lens = on_axis;
+        camera.model = CameraModel::pinhole;
+    }
     settings.spp = kSamples;
     settings.noise.reset();
     settings.effects = {};
     settings.pupil_sampling = PupilSampling::outline;
     settings.illuminant.reset();
     settings.layers = {};
-    const auto with = [&](int bounces) {
-        return small_pictures(session, scene, camera, settings, bounces, progress);
-    };
-    const SmallPictures all = with(kMostBounces);
-    const double indirect = difference(with(0), all);
+    const auto with = [&](int bounces) { return small_picture(session, scene, camera, settings, bounces, progress); };
+    const std::vector<double> all = with(kMostBounces);
+    const double indirect = largest_difference(with(0), all);
     double lacking = indirect, lacking_before = indirect;
     plan.max_bounces = 0;
     for (const int bounces : {1, 2, 3, 4, 6, 8, 12, 16, 24, 32, kMostBounces}) {
         if (lacking < kMargin * threshold) break;
         lacking_before = lacking;
         plan.max_bounces = bounces;
-        lacking = bounces == kMostBounces ? 0 : difference(with(bounces), all);
+        lacking = bounces == kMostBounces ? 0 : largest_difference(with(bounces), all);
     }
     const auto codes = [](double size) { return plan_text_detail::number(size, 2) + " codes"; };
     plan.decisions.push_back(
         {"bounces", indirect, SizeUnit::codes, threshold, plan.max_bounces > 0, DecidedBy::planner, std::nullopt,
          plan.max_bounces == 0
              ? "light that has bounced brings " + codes(indirect)
-             : "max_bounces " + std::to_string(plan.max_bounces) + " lacks " + codes(lacking) +
-                   ", fewer would lack " + codes(lacking_before) + ", and direct light alone " + codes(indirect)});
+             : "max_bounces " + std::to_string(plan.max_bounces) + " lacks " + codes(lacking) + ", fewer would lack " +
+                   codes(lacking_before) + ", and direct light alone " + codes(indirect)});
 }
 
 }  // namespace REALCAM_NAMESPACE

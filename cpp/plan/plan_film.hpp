@@ -44,7 +44,8 @@ inline FilmPlan plan_film(Session& session, const Assembly& scene, const std::ve
     }
     for (const Camera& camera : cameras)
         for (const EffectInfo& effect : kEffects)
-            if (settings.effects.is_automatic && effect.needs_round_lens && !has_radial_pupil(camera.lens) && !(settings.effects.*effect.member))
+            if (settings.effects.is_automatic && effect.needs_round_lens && !has_radial_pupil(camera.lens) &&
+                !(settings.effects.*effect.member))
                 film.effects.*effect.member = false;
     return film;
 }

@@ -482,7 +482,7 @@ def contents(folder: Path) -> dict[Path, bytes]:
     ("words", "why"),
     [
         (("finish", "JOB", "-o", "one.exr"), "the job has 2 pictures; a folder is wanted for --output"),
-        (("finish", "JOB", "-o", "x", "--format", "jpg"), 'unknown format "jpg"'),
+        (("finish", "JOB", "-o", "x", "--format", "gif"), 'unknown format "gif"'),
         (("work", "JOB", "--here", "--scheduler", "x"), "--scheduler and --workers exclude them"),
         (("work", "JOB", "--part", "9/8"), "K/N is wanted, 1/8 to 8/8"),
         (("work", "JOB", "--device", "cuda:1"), "--here is wanted with it"),

@@ -81,8 +81,8 @@ def test_a_change_takes_with_it_what_has_no_meaning_any_more() -> None:
 @pytest.mark.parametrize(
     ("words", "sentence"),
     [
-        ({"max_bounces": "many"}, "max_bounces must be a whole number; it is 'many'"),
-        ({"max_bounces": None}, "max_bounces must be a whole number; it is None"),
+        ({"max_bounces": "many"}, "max_bounces must be a whole number or \"auto\"; it is 'many'"),
+        ({"max_bounces": None}, 'max_bounces must be a whole number or "auto"; it is None'),
         ({"spp": 1.5}, 'spp must be a whole number or "auto"; it is 1.5'),
         ({"transport": 3}, "transport must be a text; it is 3"),
         ({"noise": [1]}, "noise must be a number or None; it is [1]"),
@@ -106,7 +106,7 @@ def test_a_word_that_is_none_is_told(words: dict[str, Any], sentence: str) -> No
     ("words", "sentence"),
     [
         ({"spp": 0}, "spp must lie between 1 and"),
-        ({"max_bounces": 65}, "max_bounces must lie between"),
+        ({"max_bounces": 65}, 'max_bounces must be "auto", or lie between'),
         ({"seed": -1}, "seed must lie between"),
         ({"clamp_cd_m2": float("nan")}, "clamp must be 0"),
         ({"threshold_px": 0}, "must be above 0"),
@@ -126,13 +126,15 @@ def scene_and_camera() -> tuple[rc.Scene, rc.Camera]:
 
 def test_all_that_take_pictures_have_the_same_defaults() -> None:
     scene, camera = scene_and_camera()
-    plain = DEFAULTS.with_(effects=())
+    plan = rc.plan(scene, camera, device="cpu")
+    plain = DEFAULTS.with_(effects=(), max_bounces=plan.max_bounces)
     assert rc.render(scene, camera, effects=(), device="cpu").settings == plain
     assert rc.Session(scene, camera, effects=(), device="cpu").settings == plain
-    assert rc.LiveView(scene, device="cpu").settings == plain  # planning takes longer than a frame
+    live = rc.LiveView(scene, device="cpu").settings  # planning takes longer than a frame
+    assert live == DEFAULTS.with_(effects=(), max_bounces=1)
     assert rc.Shot(scene, camera).settings == DEFAULTS
     # What "auto" comes to is all that changes.
-    planned = DEFAULTS.with_(effects=rc.plan(scene, camera, device="cpu").effects)
+    planned = DEFAULTS.with_(effects=plan.effects, max_bounces=plan.max_bounces)
     assert rc.render(scene, camera, device="cpu").settings == planned
     assert rc.Session(scene, camera, device="cpu").settings == planned
 
@@ -147,8 +149,9 @@ def test_shot_files_and_the_command_line_have_the_same_defaults(tmp_path: Path) 
     image = shot.render(device="cpu")
     command = [*PROGRAM, "render", "quad.obj", "-o", "a.png", "--json", "--device", "cpu", "--resolution", "6x4"]
     told = json.loads(subprocess.run(command, capture_output=True, check=True, cwd=tmp_path).stdout)
-    for name in ("seed", "max_bounces", "transport", "clamp_cd_m2"):
+    for name in ("seed", "transport", "clamp_cd_m2"):
         assert told[name] == getattr(DEFAULTS, name), name
+    assert told["max_bounces"] == image.settings.max_bounces
     assert (tuple(told["effects"]), told["plan"]) == (image.effects, image.plan)
     assert (told["spp"], told["noise"]["wanted"], told["noise"]["unit"]) == (image.spp, 2, "codes")
 

@@ -326,7 +326,7 @@ def test_what_is_no_shot_file(tmp_path: Path) -> None:
 def test_a_shot_is_rendered_with_all_its_settings() -> None:
     scene = scene_of(quad((0, 0, -3), 3, diffuse=0.6)).with_environment(1.0)
     view = rc.Camera(rc.Lens.load("tessar-50mm"), film=rc.Film(36, 24, (6, 4)), exposure_time_s=1)
-    settings = rc.RenderSettings(effects=(), spp=1, threads=1, seed=3)
+    settings = rc.RenderSettings(effects=(), max_bounces=1, spp=1, threads=1, seed=3)
     shot = rc.Shot(scene, view, settings)
     assert shot.render(device="cpu").settings == settings
     assert shot.render(device="cpu", threads=2).settings == settings.with_(threads=2)

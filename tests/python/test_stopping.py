@@ -61,10 +61,10 @@ LONG_CALLS = {
     "64 bounces": 'rc.render(room(), camera, effects=(), spp=256, max_bounces=64, device="cpu")',
     # Which waits for another thread's picture.
     "a second picture": """
-        work = lambda: rc.render(room(), camera, effects=(), spp=4096, device="cpu")
+        work = lambda: rc.render(room(), camera, effects=(), max_bounces=1, spp=4096, device="cpu")
         threading.Thread(target=work, daemon=True).start()
         time.sleep(0.3)
-        rc.render(room(), camera, effects=(), spp=1, device="cpu")
+        rc.render(room(), camera, effects=(), max_bounces=1, spp=1, device="cpu")
         """,
     "metering": 'while True: camera.metered(room(), device="cpu", max_bounces=64)',
     "a session": 'rc.Session(room(), camera, device="cpu", max_bounces=64, effects=()).add(256)',
@@ -138,25 +138,37 @@ def test_the_hierarchy_is_left_unfinished() -> None:
     scene = grid_scene(1225)
     told: list[float] = []
     with pytest.raises(rc.Cancelled):
-        rc.render(scene, camera, effects=(), spp=1, device="cpu", progress=lambda done: bool(told.append(done)))
+        rc.render(
+            scene, camera, effects=(), max_bounces=1, spp=1, device="cpu", progress=lambda done: bool(told.append(done))
+        )
     assert len(told) == 1
     assert told[0] < 0.5
-    image = rc.render(scene, camera, effects=(), spp=1, device="cpu")  # and the next picture builds it anew
+    image = rc.render(
+        scene, camera, effects=(), max_bounces=1, spp=1, device="cpu"
+    )  # and the next picture builds it anew
     assert image.pixels.any()
-    assert rc.render(scene, camera, effects=(), spp=1, device="cpu") == image
+    assert rc.render(scene, camera, effects=(), max_bounces=1, spp=1, device="cpu") == image
 
 
 def test_progress_is_told_while_the_scene_is_made_ready() -> None:
     shares: list[float] = []
     camera = rc.Camera(rc.Lens.load("tessar-50mm"), film=rc.Film(36, 24, (3, 2)), position=(0, 3, 3))
-    rc.render(grid_scene(900), camera, effects=(), spp=1, device="cpu", progress=lambda done: shares.append(done))
+    rc.render(
+        grid_scene(900),
+        camera,
+        effects=(),
+        max_bounces=1,
+        spp=1,
+        device="cpu",
+        progress=lambda done: shares.append(done),
+    )
     assert shares.count(0) >= 2
     assert shares == sorted(shares)
     assert shares[-1] == 1
 
 
 AT_WORK = {
-    "render": 'rc.render(room(), camera, effects=(), spp=64, device="cpu")',
+    "render": 'rc.render(room(), camera, effects=(), max_bounces=1, spp=64, device="cpu")',
     "session": 'rc.Session(room(), camera, device="cpu", effects=()).add(64)',
     "live": "live.shoot(camera, spp=64).codes",
     "generate_rays": "camera.generate_rays(spp=20)",
@@ -266,13 +278,13 @@ FORK = """
     lit = room()
     ended = False
     def work():
-        rc.render(lit, camera, effects=(), spp=10**6, device="cpu", progress=lambda done: not ended)
+        rc.render(lit, camera, effects=(), max_bounces=1, spp=10**6, device="cpu", progress=lambda done: not ended)
     thread = threading.Thread(target=work)
     if {concurrent}:
         thread.start()
         time.sleep(0.5)
     else:
-        rc.render(lit, camera, effects=(), spp=1, device="cpu")
+        rc.render(lit, camera, effects=(), max_bounces=1, spp=1, device="cpu")
     child = os.fork()
     if child == 0:
         try:
@@ -297,7 +309,7 @@ def test_a_forked_process_works_or_says_why_not(concurrent: bool) -> None:
 def test_a_process_forked_amid_a_render_ends_at_once() -> None:
     """By sys.exit, which runs what waits for work under way: there is none in the child."""
     code = """
-        work = lambda: rc.render(room(), camera, effects=(), spp=10**6, device="cpu")
+        work = lambda: rc.render(room(), camera, effects=(), max_bounces=1, spp=10**6, device="cpu")
         thread = threading.Thread(target=work, daemon=True)
         thread.start()
         time.sleep(0.5)
@@ -314,7 +326,12 @@ def test_a_process_forked_amid_a_render_ends_at_once() -> None:
 def test_more_threads_than_cores_are_no_reason_for_a_warning(capfd: pytest.CaptureFixture[str]) -> None:
     scene = rc.Scene.from_arrays([(0, 0, -2), (1, 0, -2), (0, 1, -2)], [(0, 1, 2)]).with_environment(1)
     rc.render(
-        scene, rc.Camera(rc.Lens.load("tessar-50mm"), film=rc.Film(36, 24, (3, 2))), effects=(), spp=1, threads=1000
+        scene,
+        rc.Camera(rc.Lens.load("tessar-50mm"), film=rc.Film(36, 24, (3, 2))),
+        effects=(),
+        max_bounces=1,
+        spp=1,
+        threads=1000,
     )
     assert capfd.readouterr().err == ""
 
@@ -324,9 +341,9 @@ def test_more_threads_than_any_machine_has_are_refused() -> None:
     camera = rc.Camera(rc.Lens.load("tessar-50mm"), film=rc.Film(36, 24, (3, 2)))
     for threads in (4097, 100_000, 2**31 - 1, -1):
         with pytest.raises(rc.InputError, match=r"threads must be 0 \(all\) or a number up to 4096"):
-            rc.render(scene, camera, effects=(), spp=1, device="cpu", threads=threads)
-    assert rc.render(scene, camera, effects=(), spp=1, device="cpu", threads=64) == rc.render(
-        scene, camera, effects=(), spp=1, device="cpu"
+            rc.render(scene, camera, effects=(), max_bounces=1, spp=1, device="cpu", threads=threads)
+    assert rc.render(scene, camera, effects=(), max_bounces=1, spp=1, device="cpu", threads=64) == rc.render(
+        scene, camera, effects=(), max_bounces=1, spp=1, device="cpu"
     )
 
 
@@ -342,7 +359,7 @@ def test_no_thread_to_be_had_is_told() -> None:
         size = int(open("/proc/self/statm").read().split()[0]) * resource.getpagesize()
         resource.setrlimit(resource.RLIMIT_AS, (size + {room} * 2**20,) * 2)
         try:
-            rc.render(lit, small, effects=(), spp=1, device="cpu", progress=lambda done: True)
+            rc.render(lit, small, effects=(), max_bounces=1, spp=1, device="cpu", progress=lambda done: True)
             print("rendered", flush=True)
         except (rc.DeviceError, MemoryError) as error:
             print(error, flush=True)

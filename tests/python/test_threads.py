@@ -50,7 +50,7 @@ thread.join()
 print("both")
 """
 TAKES = {
-    "render": 'lambda: rc.render(scene, camera, effects=(), spp=1, device="auto")',
+    "render": 'lambda: rc.render(scene, camera, effects=(), max_bounces=1, spp=1, device="auto")',
     "metered": 'lambda: camera.metered(scene, device="auto")',
 }
 

@@ -116,7 +116,7 @@ def test_the_noise_that_is_told_is_the_error(scene: rc.Scene) -> None:
 def compare_noise(scene: rc.Scene, small: rc.Camera, asked: float, truth: np.ndarray) -> None:
     told, true = [], []
     for seed in range(4):
-        watched, settings = Watched(scene), rc.RenderSettings(seed=seed, effects=())
+        watched, settings = Watched(scene), rc.RenderSettings(seed=seed, effects=(), max_bounces=1)
         try:
             told.append(watched.photograph(PictureRequest(small, settings, noise_codes=asked)).noise_codes)
             image = watched.loop.image().result(60)

@@ -14,7 +14,7 @@ class PictureRequest:
     """camera: of the whole resolution. The others are as the user has set them."""
 
     camera: Camera
-    settings: RenderSettings = field(default_factory=lambda: RenderSettings(effects=()))
+    settings: RenderSettings = field(default_factory=lambda: RenderSettings(effects=(), max_bounces=1))
     tone: str = "film"
     is_automatic: bool = False  #: the exposure time follows the light
     compensation_ev: float = 0.0

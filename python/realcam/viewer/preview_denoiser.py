@@ -12,7 +12,7 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
-from .._core import RealcamError
+from .._core import Cancelled, RealcamError
 from ..denoiser import GUIDES, opened, without_noise
 from ..image import Image
 from .pace import Size
@@ -50,6 +50,8 @@ class PreviewDenoiser:
     ) -> NDArray[np.float32]:
         """(h, w, 3) exposure without noise. image: with GUIDES. is_hurried: of fewer pixels where all take too long.
         Raises Cancelled where is_wanted, which is asked meanwhile, returns False."""
+        if not is_wanted():
+            raise Cancelled("another picture is wanted")
         self._began = time.perf_counter()
         height, width = image.depth.shape
         size = self._affordable_size((width, height)) if is_hurried else (width, height)
