@@ -16,6 +16,10 @@ FieldPlace = float | tuple[float, float]  #: an angle in degrees, or a film poin
 _LARGEST_STEP_DEG = 5.0
 _STEPS_INWARDS = 160  # of 5%: to 0.03% of the film
 _PROBES = np.column_stack([np.zeros(21), np.linspace(-1, 1, 21)])  # rays of the meridional plane, over the stop
+# Points of the stop, nearest to its centre first: the centre may be obstructed, and the edge vignetted.
+STOP_PROBES = np.array(
+    [(0.0, 0.0), *((r * x, r * y) for r in (0.35, 0.7, 0.9) for x, y in ((0, 1), (1, 0), (0, -1), (-1, 0)))]
+)
 
 
 def field_arguments(field: FieldPlace) -> dict[str, Any]:

@@ -16,6 +16,7 @@ from scipy.ndimage import map_coordinates, shift
 
 from . import image_file
 from ._core import InputError, Lens, RayBundle, RayStatus, __version__, _film_of_white, develop
+from .fields import STOP_PROBES
 from .short_text import ShortText
 
 Doubles = NDArray[np.float64]
@@ -33,10 +34,6 @@ _LARGEST_DIRECT_SPOT = 20.0  # wavelengths x f-number
 _DIFFRACTION_TAIL = 16.0  # wavelengths x f-number, beyond which 1.3% of Airy's light falls
 _TILE = 512  # pixels
 _SHOWN_PSF = 65  # points across
-# Points of the stop, nearest to its centre first: the centre may be obstructed, and the edge vignetted.
-_PROBES = np.array(
-    [(0.0, 0.0), *((r * x, r * y) for r in (0.35, 0.7, 0.9) for x, y in ((0, 1), (1, 0), (0, -1), (-1, 0)))]
-)
 
 
 @dataclass(frozen=True, repr=False)
@@ -259,7 +256,7 @@ class _FieldLight:
     def direction(self, point: tuple[float, float]) -> Doubles:
         """(2,): direction of the object point, as its angle to the axis in radians along x and y; nan: no light."""
         try:
-            rays = self.lens.aim(_PROBES, film_mm=point, object_distance_m=self.distance_m)
+            rays = self.lens.aim(STOP_PROBES, film_mm=point, object_distance_m=self.distance_m)
         except InputError:
             return np.full(2, np.nan)
         passing = np.flatnonzero(rays.status == RayStatus.OK)

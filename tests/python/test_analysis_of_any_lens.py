@@ -189,3 +189,20 @@ def test_numbers_of_maps_are_written(tmp_path: Path) -> None:
     told = json.loads(analysis.as_json(analysis.field_map(LENS, "spot", points=(2, 2))))
     assert told["frequency_per_mm"] is None and told["vectors_mm"] is None
     assert np.shape(told["values"]) == (2, 2)
+
+
+def test_the_distortion_of_a_lens_whose_middle_is_obstructed() -> None:
+    """The mirror lens blocks the ray through the middle of its stop; bundles find where it would end, by its angle."""
+    lens = rc.Lens.load("mirror-telephoto-500mm")
+
+    def height_mm(angle_deg: float) -> float:
+        return abs(lens.bundle(angle_deg, object_distance_m=math.inf, spokes=8, nodes=2).chief_ray_mm[1])
+
+    edge = height_mm(1.2)
+    straight = height_mm(0.01) / math.tan(math.radians(0.01)) * math.tan(math.radians(1.2))
+    narrow = lens.with_film(36, 2 * edge)
+    bent = analysis.field_map(narrow, "distortion", points=(3, 3))
+    assert np.isfinite(bent.values).all()
+    assert bent.vectors_mm is not None
+    assert bent.vectors_mm[2, 1, 1] == pytest.approx(edge - straight, rel=0.01)
+    assert bent.vectors_mm[1, 1] == pytest.approx(0, abs=1e-6)

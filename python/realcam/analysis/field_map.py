@@ -8,7 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from matplotlib.axes import Axes
 
-from .._core import InputError, Lens
+from .._core import InputError, Lens, RayStatus
+from ..fields import STOP_PROBES
 from ..short_text import ShortText
 from . import style
 from .fields import Bundles, Doubles, bundles_of, default_frequencies_per_mm
@@ -125,11 +126,18 @@ def _or_nan(
 
 
 def _tangents(lens: Lens, point: Point) -> Doubles:
-    """(2,): dx/dz and dy/dz, before the lens, of the chief ray of a film point; nan where there is none."""
+    """(2,): dx/dz and dy/dz, before the lens, of the chief ray of a film point; nan where there is none.
+
+    The middle of the stop may be obstructed: rays of a point at infinity are parallel to its chief ray.
+    """
     try:
-        direction = lens.aim([[0.0, 0.0]], film_mm=point).directions[0]
+        rays = lens.aim(STOP_PROBES, film_mm=point, object_distance_m=np.inf)
     except InputError:
         return np.full(2, np.nan)
+    passing = np.flatnonzero(rays.status == RayStatus.OK)
+    if not passing.size:
+        return np.full(2, np.nan)
+    direction = rays.directions[passing[0]]
     tangents: Doubles = direction[:2] / direction[2]
     return tangents
 
