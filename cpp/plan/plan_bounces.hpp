@@ -14,20 +14,31 @@ namespace REALCAM_NAMESPACE {
 
 namespace plan_bounces_detail {
 
-/// Pixels of the longer side, and samples of a pixel.
-inline constexpr int kLongSide = 48, kSamples = 32;
+/// Pixels of the longer side, pixels of the side of a square, and samples of a pixel. What differs is looked for in
+/// means of squares, because roulette lets few paths go on, which shine in single pixels.
+inline constexpr int kLongSide = 48, kSquare = 4, kSamples = 32;
 /// Of the threshold, what the small pictures may lack: they show less of what few samples find, as of light that is
 /// reflected many times in glass. More bounces than are wanted cost little, because few paths take them.
 inline constexpr double kMargin = 0.5;
 
-/// A small picture as linear 8-bit codes. That of another number of bounces follows the same paths, as far as they go,
-/// so that both differ by the light of the other bounces alone.
+/// A small picture as linear 8-bit codes of its squares, of three channels each. That of another number of bounces
+/// follows the same paths, as far as they go, so that both differ by the light of the other bounces alone.
 inline std::vector<double> small_picture(Session& session, const Assembly& scene, const Camera& camera,
                                          RenderSettings settings, int max_bounces, const Progress& progress) {
     settings.max_bounces = max_bounces;
+    const Image image = take_picture(session, scene, camera, settings, progress);
     std::vector<double> codes;
-    for (const float exposure : take_picture(session, scene, camera, settings, progress).exposure)
-        codes.push_back(code_of(sensor_value(static_cast<double>(exposure), camera.iso)));
+    for (int top = 0; top < image.height; top += kSquare)
+        for (int left = 0; left < image.width; left += kSquare)
+            for (int channel = 0; channel < 3; ++channel) {
+                const int bottom = std::min(top + kSquare, image.height), right = std::min(left + kSquare, image.width);
+                double sum = 0;
+                for (int y = top; y < bottom; ++y)
+                    for (int x = left; x < right; ++x)
+                        sum += static_cast<double>(
+                            image.exposure[static_cast<std::size_t>(3 * (y * image.width + x) + channel)]);
+                codes.push_back(code_of(sensor_value(sum / ((bottom - top) * (right - left)), camera.iso)));
+            }
     return codes;
 }
 
@@ -40,7 +51,7 @@ inline double largest_difference(const std::vector<double>& a, const std::vector
 }  // namespace plan_bounces_detail
 
 /// Decides how often light may bounce: the least number with which a small picture lacks less than the threshold of
-/// codes in all of its pixels. `settings`: of the picture. Throws what take_picture throws.
+/// codes in all of its squares. `settings`: of the picture. Throws what take_picture throws.
 inline void plan_bounces(Session& session, const Assembly& scene, Camera camera, RenderSettings settings, Plan& plan,
                          const Progress& progress) {
     using namespace plan_bounces_detail;

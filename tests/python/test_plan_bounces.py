@@ -44,20 +44,21 @@ def test_a_furnace_has_as_many_as_its_series(albedo: float, device: str) -> None
     shot = camera()
     plan = rc.plan(scene, shot, effects=(), device=device)
     chosen = plan.max_bounces
-    whole = float(rc.render(scene, shot, effects=(), max_bounces=64, spp=64, device=device).pixels.mean())
+    pixels = rc.render(scene, shot, effects=(), max_bounces=64, spp=64, device=device).pixels.astype(float)
+    squares = pixels.reshape(8, 4, 12, 4, 3).mean(axis=(1, 3, 4))
 
     def lacks(n: int) -> float:
-        return code(whole) - code(whole * (1 - albedo ** (n + 2)))
+        return max(code(whole) - code(whole * (1 - albedo ** (n + 2))) for whole in squares.ravel())
 
-    # It wants half a code. Some pixels of the small picture find too much of the light, where roulette let few paths go
-    # on, so that it may be two steps too many.
+    # It wants half a code. Some squares of the small picture find too much of the light, where roulette lets few paths
+    # go on, so that it may be two steps too many, and the largest of 288 sizes is too large by a few percent.
     assert lacks(chosen) < 1
     steps = [0, 1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 64]
     least = next(n for n in steps if lacks(n) < 0.5)
     assert chosen <= steps[steps.index(least) + 2]
     row = next(d for d in plan.decisions if d.effect == "bounces")
     assert (row.unit, row.by, row.is_kept) == ("codes", "planner", chosen > 0)
-    assert row.size == pytest.approx(lacks(0), abs=0.2 * lacks(0) + 0.5)
+    assert row.size == pytest.approx(lacks(0), abs=0.1 * lacks(0) + 1)
     assert f"max_bounces {chosen}" in row.reason or chosen == 0
     assert rc.render(scene, shot, effects=(), spp=1, device=device).settings.max_bounces == chosen
 
@@ -102,10 +103,10 @@ def test_no_path_ends_inside_glass_or_between_mirrors(scene: object, device: str
         rc.render(made, shot, max_bounces=n, **settings).pixels
         for n in ("auto", 64, 1)  # type: ignore[arg-type]
     )
-    codes = np.vectorize(code)
-    # The same paths: what is between them is light of more bounces alone, to which 256 samples add little noise.
-    assert np.abs(codes(planned) - codes(all_light)).max() < 2
-    assert np.abs(codes(one) - codes(all_light)).max() > 5
+    squares = [np.vectorize(code)(p.reshape(8, 4, 12, 4, 3).mean(axis=(1, 3))) for p in (planned, all_light, one)]
+    # The same paths: what is between them is light of more bounces alone, to which 4096 samples add little noise.
+    assert np.abs(squares[0] - squares[1]).max() < 1
+    assert np.abs(squares[2] - squares[1]).max() > 2
 
 
 def test_an_open_scene_has_no_more_than_it_shows(device: str) -> None:
