@@ -160,7 +160,7 @@ private:
         }
     }
 
-    /// Whether pictures for screens are denoised in case they stay noisier than the goal that nobody has said.
+    /// Whether pictures for screens are denoised if they miss the default noise goal.
     bool denoises_if_noisy(const shot::ShotRequest& request) const {
         return request.sampling == shot::Sampling::unsaid && !request.denoises && !request.keeps_noise &&
                !request.settings.layers.has_any(kHalfLayers) &&
@@ -241,8 +241,7 @@ private:
     /// Frames that are done stay.
     void film(const Darkroom& darkroom, shot::Shot& shot, shot::ShotRequest& request, const std::vector<int>& frames) {
         std::string decisions;
-        if (request.settings.needs_plan())
-            decisions = follow_film_plan(darkroom.session, shot, request, frames);
+        if (request.settings.needs_plan()) decisions = follow_film_plan(darkroom.session, shot, request, frames);
         const Camera camera = shot.camera;
         // The last frame should not be the one to tell that a lens cannot be as its keys say.
         std::set<std::string> notices;

@@ -240,8 +240,9 @@ void add_samples(const OptionAdder& option) {
         [](Request& r, Text o, Text w) { r.noise.max_spp = static_cast<std::int64_t>(parse_whole(o, w, 1u << 31)); });
     option("--seed", "Of the random numbers [0]", "N",
            [](Request& r, Text o, Text w) { r.settings.seed = whole<std::uint32_t>(o, w); });
-    option("--max-bounces", "Light that bounces this often is seen; 0: direct light only [auto: what the shot calls for]",
-           "N", [](Request& r, Text o, Text w) {
+    option("--max-bounces",
+           "Light that bounces this often is seen; 0: direct light only [auto: what the shot calls for]", "N",
+           [](Request& r, Text o, Text w) {
                r.settings.max_bounces =
                    w == "auto" ? std::nullopt : std::optional(static_cast<int>(parse_whole(o, w, kMostBounces)));
            });

@@ -23,7 +23,7 @@ struct RenderWords {
 };
 
 /// Those that say what is photographed and how.
-/// Whether a picture is written there as it is measured, and not as a screen shows it.
+/// Whether the file holds linear exposure (.exr), and not developed codes for a screen.
 bool is_exr(const std::string& path);
 
 void add_shot_options(CLI::App& command, RenderWords& words);

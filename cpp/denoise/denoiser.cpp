@@ -230,7 +230,7 @@ void denoise(Image& image, LayerSet wanted, Denoiser& denoiser, const KeepGoing&
     std::vector<float> denoised =
         denoiser.denoised({image.width, image.height, rest.data(), values_of(Layer::albedo), values_of(Layer::normal)},
                           DenoiseQuality::high, keep_going);
-    // Where lamps outshine the rest, a part of it is their light too, and its noise is not seen.
+    // Pixels that lamps outshine keep their noise: it is invisible beside the lamp, and part of it is the lamp's light.
     for (std::size_t i = 0; i < rest.size(); ++i) {
         const float all = traced[i] + denoised[i], share = all > 0 ? traced[i] / all : 0;
         denoised[i] += share * (rest[i] - denoised[i]) + traced[i];

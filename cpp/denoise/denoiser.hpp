@@ -43,9 +43,9 @@ private:
     std::unique_ptr<Parts> parts_;
 };
 
-/// Takes the noise from the exposure of a picture, by its kDenoiserLayers, which it must have, but for that of the light
-/// that was traced from lights. Layers that are
-/// not `wanted` go, and so does the variance, which would be that of the noise. Throws as Denoiser.
+/// Takes the noise from the exposure of a picture, by its kDenoiserLayers, which it must have, but for that of the
+/// light that was traced from lights. Layers that are not `wanted` go, and so does the variance, which would be that of
+/// the noise. Throws as Denoiser.
 void denoise(Image& image, LayerSet wanted, Denoiser& denoiser, const KeepGoing& keep_going);
 
 }  // namespace realcam

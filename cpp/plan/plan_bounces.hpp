@@ -17,8 +17,8 @@ namespace plan_bounces_detail {
 /// Pixels of the longer side, pixels of the side of a square, and samples of a pixel. What differs is looked for in
 /// means of squares, because roulette lets few paths go on, which shine in single pixels.
 inline constexpr int kLongSide = 48, kSquare = 4, kSamples = 32;
-/// Of the threshold, what the small pictures may lack: they show less of what few samples find, as of light that is
-/// reflected many times in glass. More bounces than are wanted cost little, because few paths take them.
+/// Share of the threshold that the small picture may lack. It underestimates light that few samples find, such as that
+/// of many reflections in glass. Superfluous bounces cost little, because few paths take them.
 inline constexpr double kMargin = 0.5;
 
 /// A small picture as linear 8-bit codes of its squares, of three channels each. That of another number of bounces

@@ -19,7 +19,7 @@ std::vector<std::uint8_t> developed_codes(const FilmView& film, double exposure_
                                           const RayLoop& loop = {});
 
 /// Variance of the exposure, 3 per pixel (PixelSum::variance).
-/// Of the light that was traced apart from the samples of pixels.
+/// The exposure of the light that was traced from the lights.
 LayerImage developed_traced(const FilmView& film, double exposure_time_s);
 
 LayerImage developed_variance(const FilmView& film, double exposure_time_s);

@@ -53,9 +53,9 @@ struct RenderSettings {
     std::optional<GhostChoice> ghost_choice() const;
     /// Light that is traced from lamps has no halves of the pupil.
     LightTracing lights_traced() const { return layers.has_any(kHalfLayers) ? LightTracing::off : light_tracing; }
-    /// Whether the planner decides on something.
+    /// Whether effects or bounces are left to the planner.
     bool needs_plan() const { return effects.is_automatic || !max_bounces; }
-    /// Where nobody has decided on the bounces, they are as many as a plan allows.
+    /// Undecided bounces are kMostBounces.
     PathSettings path() const { return {max_bounces.value_or(kMostBounces), transport, static_cast<float>(clamp)}; }
 };
 

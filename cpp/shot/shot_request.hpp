@@ -65,7 +65,8 @@ struct ShotRequest {
     Sampling sampling = Sampling::unsaid;
     NoiseRequest noise;
     bool denoises = false;
-    bool keeps_noise = false;  ///< else pictures for screens are denoised where the unsaid noise goal was not reached
+    /// --no-denoise. Otherwise pictures for screens that miss the default noise goal are denoised.
+    bool keeps_noise = false;
     ToneCurve tone = ToneCurve::film;
 
     /// Takes a value out of the keys: something else was said of it.
