@@ -16,7 +16,7 @@ inline constexpr int kMaxResolution = 32768;
 struct Film {
     double width_mm = 36, height_mm = 24;
     int width = 960, height = 640;
-    /// Of its middle from the place that the camera's pose names, right and up as the picture shows it.
+    /// Offset of the film's centre from Pose::position_m, to the right and upwards as seen in the picture.
     Vec2<double> shift_mm = {0, 0};
 
     bool operator==(const Film&) const = default;
@@ -35,9 +35,9 @@ struct Film {
     }
 };
 
-/// Where the camera is, and its axes, in the scene (metres, right-handed, y up).
+/// Position and orientation of the camera in the scene (metres, right-handed, y up).
 struct Pose {
-    Vec3d position_m = {0, 0, 0};  ///< of the middle of the film, as if Film::shift_mm were 0
+    Vec3d position_m = {0, 0, 0};  ///< centre of the unshifted film (Film::shift_mm is 0)
     Vec3d look_at_m = {0, 0, -1};
     Vec3d up = {0, 1, 0};
 

@@ -52,13 +52,13 @@ struct Surroundings {
     double radius;
 
     double area() const { return std::numbers::pi * radius * radius; }
-    /// Whether a ball about a point may reach into it.
+    /// Returns whether a sphere about a point may intersect the cylinder.
     bool reaches(Vec3d point, double ball) const {
         const Vec3d way = point - middle;
         const double along = dot(way, axis), across = length(way - along * axis);
         return std::fabs(along) < kDepth * radius + ball && across < radius + ball;
     }
-    /// What the light covers of the cylinder's cross-section, seen along the line of sight.
+    /// Area of the cylinder's cross-section that the light covers, projected along the line of sight.
     double covered_by(const AreaLight& light) const {
         const Vec3d corner = static_cast<Vec3d>(light.corner) - middle;
         Vec3d corners[] = {corner, corner + static_cast<Vec3d>(light.edge_u),
@@ -203,8 +203,8 @@ private:
                1.0 / 3 * (static_cast<Vec3d>(light.edge_u) + static_cast<Vec3d>(light.edge_v));
     }
 
-    /// Subtracts from an area what a node's emitters cover of it, until nothing is left. Those that are darker count by
-    /// their share of the brightness, because samples that meet them lack the rest.
+    /// Subtracts from an area what a node's emitters cover of it, until nothing is left. Those that are darker count in
+    /// proportion to their brightness, as samples that meet them find so much less light.
     void subtract_lights(std::int32_t at, const Surroundings& seen, double brightness, double& left) const {
         const LightNode& node = scene_.light_nodes[at];
         if (left <= 0 ||

@@ -38,8 +38,8 @@ private:
 TracedLights traced_lights(const SceneView& scene, const CameraView& camera, const CameraSetup& setup,
                            LightTracing tracing, const PupilTracer& tracer);
 
-/// Where lamps are looked for by samples of pixels alone: the smallest share of what a pixel's samples see that a lamp
-/// in view fills. 1 where there is no such lamp, or lamps are traced.
+/// The smallest share of a pixel's footprint that a lamp in view fills. Returns 1 if lamps are traced, or none is in
+/// view.
 double least_lamp_share(const SceneView& scene, const CameraView& camera, const CameraSetup& setup,
                         LightTracing tracing);
 

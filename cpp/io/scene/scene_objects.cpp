@@ -182,7 +182,7 @@ std::vector<Instance> SceneObjects::finish(const Scene& materials) {
     return instances;
 }
 
-/// Of textures that lie by coordinates that the vertices of the scene do not have.
+/// Removes the textures whose set of texture coordinates the vertices of the scene lack.
 void forget_textures(Material& material, const Scene& scene) {
     for (const auto member : kMaterialTextures) {
         TextureReference& texture = material.*member;
