@@ -39,7 +39,7 @@ TracedLights traced_lights(const SceneView& scene, const CameraView& camera, con
                            LightTracing tracing, const PupilTracer& tracer);
 
 /// The smallest share of a pixel's footprint that a lamp in view fills. Returns 1 if lamps are traced, or none is in
-/// view: only then are the samples of pixels sure to find the light of lamps.
+/// view.
 double least_lamp_share(const SceneView& scene, const CameraView& camera, const CameraSetup& setup,
                         LightTracing tracing);
 

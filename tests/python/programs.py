@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
 from collections.abc import Callable
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -21,3 +23,11 @@ Command = Callable[..., subprocess.CompletedProcess[str]]  # of the fixture `com
 PROGRAM = EXECUTABLE or PYTHON
 
 wants_executable = pytest.mark.skipif(not EXECUTABLE, reason="the executable is not built")
+
+
+@cache
+def loads_cuda_plugins() -> bool:
+    """Whether the CUDA backend of this build would be a plug-in; False where it is compiled in."""
+    environment = {**os.environ, "REALCAM_CUDA_PLUGIN": ""}
+    done = subprocess.run([*PYTHON, "devices"], capture_output=True, text=True, env=environment)
+    return "no CUDA backend" in done.stderr

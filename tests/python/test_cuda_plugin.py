@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 from realcam import _core
 
-from .programs import PYTHON
+from .programs import PYTHON, loads_cuda_plugins
 
 # Plug-ins that are built with the C++ tests. The GPU of the first is one that it has no code for.
 PLUGINS = Path(_core.__file__).resolve().parents[1] / "tests"
@@ -24,7 +24,7 @@ def run(command: list[str], plugin: object, *words: object) -> subprocess.Comple
 
 @pytest.fixture(scope="module", autouse=True)
 def no_cuda_inside() -> None:
-    if "no CUDA backend" not in run(PYTHON, "", "devices").stderr:
+    if not loads_cuda_plugins():
         pytest.skip("this build has the CUDA backend inside, and loads no plug-in")
 
 
