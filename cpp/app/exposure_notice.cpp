@@ -50,9 +50,9 @@ std::string exposure_notice(const Image& image, const Camera& camera, ToneCurve 
     if (!is_dark && !is_bright) return "";
     const std::string time = exposure_text(camera.exposure_time_s / std::exp2(stops));
     const std::string head = std::string("the picture is nearly all ") + (is_dark ? "black" : "white") + ", " +
-                             short_number(std::fabs(stops), 2) + " stops " + (is_dark ? "below" : "above") +
+                             number_text(std::fabs(stops), 2) + " stops " + (is_dark ? "below" : "above") +
                              " middle grey at " + exposure_text(camera.exposure_time_s) + ", ISO " +
-                             short_number(camera.iso) + "; ";
+                             number_text(camera.iso) + "; ";
     return head + "--exposure-time auto or about " + time.substr(0, time.size() - 2) +
            (is_dark ? ", a higher --iso or a smaller --f-number is wanted"
                     : ", a lower --iso or a larger --f-number is wanted");

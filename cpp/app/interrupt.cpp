@@ -5,9 +5,10 @@
 namespace realcam::app {
 namespace {
 
-volatile std::sig_atomic_t received = 0;
+volatile std::sig_atomic_t received = 0, is_last = 0;
 
 void take_note(int signal) {
+    if (received != 0 || signal != SIGINT) is_last = 1;
     received = signal;
 }
 
@@ -24,6 +25,7 @@ void handle(void (*handler)(int)) {
 
 Interrupt::Interrupt() {
     received = 0;
+    is_last = 0;
     handle(take_note);
 }
 
@@ -33,6 +35,10 @@ Interrupt::~Interrupt() {
 
 int Interrupt::signal() {
     return received;
+}
+
+bool Interrupt::is_final() {
+    return is_last != 0;
 }
 
 }  // namespace realcam::app

@@ -11,8 +11,10 @@ public:
     Interrupt& operator=(const Interrupt&) = delete;
     ~Interrupt();
 
-    /// The signal that came; 0: none.
+    /// The last signal that came; 0: none.
     static int signal();
+    /// Whether nothing more is to be written: after a second Ctrl-C, or SIGTERM.
+    static bool is_final();
 };
 
 }  // namespace realcam::app

@@ -53,13 +53,13 @@ std::string coating_name(const Coating& coating) {
         case CoatingKind::bare: return "bare";
         case CoatingKind::layers: break;
         case CoatingKind::metal: return "metal";
-        case CoatingKind::reflectance: return "reflectance " + short_number(coating.reflectance);
+        case CoatingKind::reflectance: return "reflectance " + number_text(coating.reflectance);
     }
     return std::to_string(coating.layers.size()) + " layers";
 }
 
 std::string vector_text(Vec3d v) {
-    return '(' + short_number(v.x, 6) + ", " + short_number(v.y, 6) + ", " + short_number(v.z, 6) + ')';
+    return '(' + number_text(v.x, 6) + ", " + number_text(v.y, 6) + ", " + number_text(v.z, 6) + ')';
 }
 
 /// How it is moved from its place; empty: it is not.
@@ -74,7 +74,7 @@ std::string place_text(const SurfacePlacement& place) {
 std::string film_remarks(const LensSystem& lens) {
     const std::string place = place_text(lens.film_placement);
     if (std::isinf(lens.film_radius_of_curvature)) return place;
-    return "radius " + short_number(lens.film_radius_of_curvature, 6) + " mm" + (place.empty() ? "" : ", " + place);
+    return "radius " + number_text(lens.film_radius_of_curvature, 6) + " mm" + (place.empty() ? "" : ", " + place);
 }
 
 std::string remarks(const Surface& surface) {
@@ -83,15 +83,15 @@ std::string remarks(const Surface& surface) {
     const SurfaceForm& form = surface.form;
     if (form.base != BaseForm::conic)
         add((form.base == BaseForm::toroid ? "toroid, " : "biconic, ") +
-            (form.curvature_x == 0 ? "plane" : "radius " + short_number(1 / form.curvature_x, 6) + " mm") + " in xz");
-    if (form.conic_x != 0) add("conic " + short_number(form.conic_x, 6) + " in xz");
+            (form.curvature_x == 0 ? "plane" : "radius " + number_text(1 / form.curvature_x, 6) + " mm") + " in xz");
+    if (form.conic_x != 0) add("conic " + number_text(form.conic_x, 6) + " in xz");
     if (!form.radial.empty() || !form.xy.empty() || form.zernike || form.forbes) add("polynomial terms");
     if (const std::string place = place_text(surface.placement); !place.empty()) add(place);
-    if (surface.conic != 0) add("conic " + short_number(surface.conic, 6));
+    if (surface.conic != 0) add("conic " + number_text(surface.conic, 6));
     if (surface.is_asphere()) add("asphere to r^" + std::to_string(2 * surface.aspheric.size() + 2));
     if (surface.coating.kind != CoatingKind::unknown && surface.coating.kind != CoatingKind::bare)
         add(coating_name(surface.coating));
-    if (surface.inner_semi_diameter > 0) add("blocked inside " + short_number(surface.inner_semi_diameter, 6) + " mm");
+    if (surface.inner_semi_diameter > 0) add("blocked inside " + number_text(surface.inner_semi_diameter, 6) + " mm");
     return text;
 }
 
@@ -126,7 +126,7 @@ std::string table(const LensSystem& lens) {
         if (!s.is_asphere()) continue;
         text += "  asphere " + std::to_string(i + 1) + ':';
         for (std::size_t k = 0; k < s.aspheric.size(); ++k)
-            if (s.aspheric[k] != 0) text += ' ' + short_number(s.aspheric[k], 8) + " r^" + std::to_string(2 * k + 4);
+            if (s.aspheric[k] != 0) text += ' ' + number_text(s.aspheric[k], 8) + " r^" + std::to_string(2 * k + 4);
         text += '\n';
     }
     return text;
@@ -181,7 +181,7 @@ std::optional<double> known_t_stop(const LensSystem& lens, std::string& why) {
 std::string t_stop_text(const LensSystem& lens) {
     std::string why;
     const std::optional<double> value = known_t_stop(lens, why);
-    return value ? "T/" + short_number(*value) : "unknown: " + why;
+    return value ? "T/" + number_text(*value) : "unknown: " + why;
 }
 
 /// Each zoom position with its focal length and f-number, at rest.
@@ -191,15 +191,15 @@ std::vector<std::string> zoom_lines(const LensSystem& lens) {
         const LensSystem there = at_zoom_position(lens, static_cast<int>(i));
         const FirstOrder data = first_order(there, lens.wavelength_nm);
         lines.push_back(lens.zoom.positions[i].name + ": " + fixed(data.effective_focal_length) + " mm f/" +
-                        short_number(data.f_number) + (static_cast<int>(i) == lens.zoom.current ? ", this one" : ""));
+                        number_text(data.f_number) + (static_cast<int>(i) == lens.zoom.current ? ", this one" : ""));
     }
     return lines;
 }
 
 std::string iris_text(const IrisShape& iris) {
     if (iris.blades == 0) return "round";
-    return std::to_string(iris.blades) + " blades, rounding " + short_number(iris.rounding) + ", rotation " +
-           short_number(iris.rotation_rad * 180 / std::numbers::pi) + " degrees";
+    return std::to_string(iris.blades) + " blades, rounding " + number_text(iris.rounding) + ", rotation " +
+           number_text(iris.rotation_rad * 180 / std::numbers::pi) + " degrees";
 }
 
 }  // namespace
@@ -217,15 +217,15 @@ std::string lens_as_text(const LensSystem& lens) {
         const std::string number = fixed(value);
         return std::string(number.size() < 12 ? 12 - number.size() : 0, ' ') + number + " mm";
     };
-    text += "At " + short_number(lens.wavelength_nm, 7) + " nm; positions are measured from the front vertex.\n";
+    text += "At " + number_text(lens.wavelength_nm, 7) + " nm; positions are measured from the front vertex.\n";
     line("effective focal length", mm(data.effective_focal_length));
     if (!lens.is_rotational())
         for (const Meridian& meridian : parabasal_data(lens, lens.wavelength_nm).meridians)
-            line("  at " + short_number(meridian.azimuth_deg, 4) + " degrees from x", mm(meridian.focal_length));
+            line("  at " + number_text(meridian.azimuth_deg, 4) + " degrees from x", mm(meridian.focal_length));
     line("back focal distance", mm(data.back_focal_distance));
     line("front focal distance", mm(data.front_focal_distance));
     // The ring's, and beside it that of a lens whose focusing group has moved.
-    const std::string f_number = short_number(f_number_at_infinity(lens)), focused = short_number(data.f_number);
+    const std::string f_number = number_text(f_number_at_infinity(lens)), focused = number_text(data.f_number);
     line("f-number", std::string(7, ' ') + "f/" + f_number + (f_number == focused ? "" : ", as focused f/" + focused));
     line("T-stop", std::string(7, ' ') + t_stop_text(lens));
     const std::string assumptions = coating_assumptions(lens);
@@ -248,7 +248,7 @@ std::string lens_as_text(const LensSystem& lens) {
         is_first = false;
     }
     line("diaphragm", "     " + iris_text(lens.iris));
-    line("film", "     " + short_number(lens.film_width) + " x " + short_number(lens.film_height) + " mm");
+    line("film", "     " + number_text(lens.film_width) + " x " + number_text(lens.film_height) + " mm");
     line("field of view", "     " + field_text(field_of_view(lens)));
     return text;
 }

@@ -58,6 +58,11 @@ bool is_wanted() {
     return Interrupt::signal() == 0;
 }
 
+/// The same of the work that makes a file of what is there.
+bool is_to_be_finished() {
+    return !Interrupt::is_final();
+}
+
 /// Work that a signal stops.
 template <class Work>
 auto until_interrupted(Work&& work) {
@@ -79,7 +84,7 @@ void check_memory(const Film& film, LayerSet layers) {
     const auto free = static_cast<double>(io::free_memory());
     if (wanted > free)
         throw Error("out of memory: a picture of " + std::to_string(film.width) + " x " + std::to_string(film.height) +
-                    " pixels needs " + short_number(wanted / 1e9, 3) + " GB, and " + short_number(free / 1e9, 3) +
+                    " pixels needs " + number_text(wanted / 1e9, 3) + " GB, and " + number_text(free / 1e9, 3) +
                     " GB are free; a smaller --resolution is wanted");
 }
 
@@ -122,8 +127,10 @@ public:
         std::string decisions;
         if (request.settings.needs_plan()) decisions = follow_plan(*session, shot, request);
         for (const std::string& notice : effect_notices(request.settings.effects, shot.camera.lens)) warn(notice);
-        const std::string figures = take(darkroom, shot, request, decisions, words_.outputs);
+        const std::string figures = take(darkroom, shot, request, decisions, words_.outputs, is_to_be_finished);
         if (!words_.is_quiet || words_.as_json) std::fputs(figures.c_str(), stdout);
+        if (Interrupt::signal() != 0)
+            throw Interrupted{Interrupt::signal(), "; the picture has the samples that were taken until then"};
     }
 
     void plan(bool as_json) {
@@ -294,10 +301,13 @@ private:
             if (!words_.is_quiet && !words_.as_json) std::fputs(("wrote " + film + '\n').c_str(), stdout);
     }
 
-    /// Takes and writes a picture; its figures.
+    /// Takes and writes a picture; its figures. `finishes`: asked whether a picture that a signal has stopped is
+    /// written; empty: it is not.
     std::string take(const Darkroom& darkroom, const shot::Shot& shot, const shot::ShotRequest& request,
-                     const std::string& decisions, const std::vector<std::string>& files) {
-        Image image = expose(darkroom.session, shot, request);
+                     const std::string& decisions, const std::vector<std::string>& files,
+                     const KeepGoing& finishes = {}) {
+        const KeepGoing& goes_on = finishes ? finishes : KeepGoing(is_wanted);
+        Image image = expose(darkroom.session, shot, request, finishes);
         if (!image.shortfall.empty()) warn(image.shortfall);
         const bool is_noisy = !image.shortfall.empty() && denoises_if_noisy(request);
         std::optional<Image> denoised;
@@ -305,7 +315,7 @@ private:
         if (darkroom.denoiser && (request.denoises || is_noisy)) {
             denoised = image;
             denoiser_name = darkroom.denoiser->name();
-            until_interrupted([&] { denoise(*denoised, darkroom.written_layers, *darkroom.denoiser, is_wanted); });
+            until_interrupted([&] { denoise(*denoised, darkroom.written_layers, *darkroom.denoiser, goes_on); });
         }
         keep_layers(image, darkroom.written_layers);
         if (is_noisy)
@@ -314,7 +324,7 @@ private:
                             : "the noise that is left stays: " + why_no_denoiser_);
         const Image& shown = denoised ? *denoised : image;
         if (const std::string notice = exposure_notice(shown, shot.camera, request.tone); !notice.empty()) warn(notice);
-        write(request.denoises ? shown : image, shown, shot, request, decisions, denoiser_name, files);
+        write(request.denoises ? shown : image, shown, shot, request, decisions, denoiser_name, files, goes_on);
         const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
         return words_.as_json
                    ? render_as_json(shot, request, image, files, decisions, denoiser_name, warnings_, seconds)
@@ -349,7 +359,8 @@ private:
         });
     }
 
-    Image expose(Session& session, const shot::Shot& shot, const shot::ShotRequest& request) const {
+    Image expose(Session& session, const shot::Shot& shot, const shot::ShotRequest& request,
+                 const KeepGoing& finishes) const {
         const Film& film = shot.camera.film;
         return until_interrupted([&] {
             ProgressBar rendering("rendering", !words_.is_quiet);
@@ -368,13 +379,16 @@ private:
             };
             return with_memory_for(
                 "for a picture of " + std::to_string(film.width) + " x " + std::to_string(film.height) + " pixels",
-                [&] { return take_picture(session, shot.scene, shot.camera, request.settings, show_rendering); });
+                [&] {
+                    return take_picture(session, shot.scene, shot.camera, request.settings, show_rendering, finishes);
+                });
         });
     }
 
     /// `raw`: goes into .exr; `shown`: into other files.
     void write(const Image& raw, const Image& shown, const shot::Shot& shot, const shot::ShotRequest& request,
-               const std::string& decisions, const std::string& denoiser, const std::vector<std::string>& files) const {
+               const std::string& decisions, const std::string& denoiser, const std::vector<std::string>& files,
+               const KeepGoing& goes_on) const {
         io::ImageMetadata metadata = io::metadata_of(shot.camera, request.settings);
         metadata.plan = decisions;
         metadata.film = frame_digest_;
@@ -384,7 +398,7 @@ private:
             const Image& image = is_exr(path) ? raw : shown;
             metadata.denoiser = !is_exr(path) || request.denoises ? denoiser : "";
             try {
-                image_io::write_image(image_io::view_of(image), path, metadata, request.tone, is_wanted);
+                image_io::write_image(image_io::view_of(image), path, metadata, request.tone, goes_on);
             } catch (const Cancelled&) {
                 throw Interrupted{Interrupt::signal(), written.empty() ? "" : "; written before: " + written};
             }

@@ -18,10 +18,6 @@ bool is_exr(const std::string& path) {
 
 namespace {
 
-bool is_shot_file(const std::string& path) {
-    return std::filesystem::path(path).extension() == ".toml";
-}
-
 /// Between commas.
 std::vector<std::string> words_in(const std::string& text) {
     std::vector<std::string> names;
@@ -157,7 +153,7 @@ void add_view(const OptionAdder& option) {
                r.motion.clear();
            });
     option("--position",
-           "Middle of the film, metres [in front of look-at, along +z, such that the scene fills the film]", "X,Y,Z",
+           "Middle of the film, metres [in front of the scene, which fills the film: docs/scenes.md]", "X,Y,Z",
            [is_given = option.is_given("--camera")](Request& r, Text o, Text w) {
                if (!is_given()) r.view.camera.clear();
                r.view.position_m = parse_point(o, w);
@@ -345,8 +341,8 @@ void add_render_options(CLI::App& command, RenderWords& w) {
 
 shot::ShotRequest understand(const RenderWords& w) {
     shot::ShotRequest request;
-    if (is_shot_file(w.scene)) {
-        request = shot::read_shot_file(w.scene);
+    if (shot::is_shot_file(w.scene)) {
+        request = shot::read_shot(w.scene);
     } else {
         request.scene = w.scene;
     }

@@ -41,17 +41,17 @@ std::string summary(const shot::Shot& shot, const RenderSettings& settings, cons
     };
     const std::string model = io::name_of(camera.model);
     line("lens", (lens.title.empty() ? lens.name : lens.title) + (model == "full" ? "" : ", as " + model + " model"));
-    line("", "focal length " + short_number(data.effective_focal_length) + " mm, f/" + short_number(data.f_number, 3) +
+    line("", "focal length " + number_text(data.effective_focal_length) + " mm, f/" + number_text(data.f_number, 3) +
                  (lens.iris.blades > 0 && !lens.is_wide_open() ? " with " + std::to_string(lens.iris.blades) + " blades"
                                                                : "") +
                  ", focus " + distance_text(lens.focus_distance / 1000));
     const Vec3d from = camera.pose.position_m, to = camera.pose.look_at_m;
-    const auto point = [](Vec3d p) { return short_number(p.x) + "," + short_number(p.y) + "," + short_number(p.z); };
+    const auto point = [](Vec3d p) { return number_text(p.x) + "," + number_text(p.y) + "," + number_text(p.z); };
     line("camera", "at " + point(from) + ", looks at " + point(to));
-    line("film", short_number(film.width_mm) + " x " + short_number(film.height_mm) + " mm, " +
+    line("film", number_text(film.width_mm) + " x " + number_text(film.height_mm) + " mm, " +
                      std::to_string(film.width) + " x " + std::to_string(film.height) + " pixels of " +
                      std::to_string(image.spp) + (image.spp == 1 ? " sample" : " samples"));
-    line("exposure", exposure_text(camera.exposure_time_s) + ", ISO " + short_number(camera.iso) +
+    line("exposure", exposure_text(camera.exposure_time_s) + ", ISO " + number_text(camera.iso) +
                          (shot.is_metered ? " (metered: the average lands on middle grey)" : ""));
     const std::vector<std::string> effects = names_of(settings.effects);
     if (!effects.empty()) {
@@ -73,9 +73,9 @@ std::string summary(const shot::Shot& shot, const RenderSettings& settings, cons
                                million(count(stats.scene_rays), stats.scene_seconds) +
                                "/s a core while in the scene, " + percent(stats.scene_seconds, busy) + " of the time");
     }
-    line("time", short_number(seconds, 3) + " s" +
-                     (verbose ? ", of which " + short_number(stats.seconds, 3) + " s for the picture (set-up " +
-                                    short_number(stats.setup_seconds, 2) + " s)"
+    line("time", number_text(seconds, 3) + " s" +
+                     (verbose ? ", of which " + number_text(stats.seconds, 3) + " s for the picture (set-up " +
+                                    number_text(stats.setup_seconds, 2) + " s)"
                               : "") +
                      " on " + stats.device);
     if (!denoiser.empty()) line("denoised", "by " + denoiser);
@@ -85,9 +85,9 @@ std::string summary(const shot::Shot& shot, const RenderSettings& settings, cons
 
 std::string frame_summary(int frame, const Camera& camera, const std::vector<std::string>& pictures) {
     const FirstOrder data = first_order(camera.lens, camera.lens.wavelength_nm);
-    std::string text = "frame " + std::to_string(frame) + ": " + short_number(data.effective_focal_length) + " mm, f/" +
-                       short_number(data.f_number, 3) + ", focus " + distance_text(camera.lens.focus_distance / 1000) +
-                       ", " + exposure_text(camera.exposure_time_s) + ", ISO " + short_number(camera.iso);
+    std::string text = "frame " + std::to_string(frame) + ": " + number_text(data.effective_focal_length) + " mm, f/" +
+                       number_text(data.f_number, 3) + ", focus " + distance_text(camera.lens.focus_distance / 1000) +
+                       ", " + exposure_text(camera.exposure_time_s) + ", ISO " + number_text(camera.iso);
     for (const std::string& path : pictures) text += ", " + path;
     return text + '\n';
 }

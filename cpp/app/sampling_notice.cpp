@@ -9,9 +9,9 @@ namespace realcam::app {
 namespace {
 
 std::string duration_text(double seconds) {
-    if (seconds < 100) return short_number(std::max(1.0, std::round(seconds)), 2) + " s";
-    if (seconds < 6000) return short_number(seconds / 60, 2) + " minutes";
-    return short_number(seconds / 3600, 2) + " hours";
+    if (seconds < 100) return number_text(std::max(1.0, std::round(seconds)), 2) + " s";
+    if (seconds < 6000) return number_text(seconds / 60, 2) + " minutes";
+    return number_text(seconds / 3600, 2) + " hours";
 }
 
 /// Nobody needs to be told of what is over sooner.
@@ -22,9 +22,9 @@ constexpr double kLong_s = 3;
 std::string SamplingNotice::aim() const {
     const bool is_in_codes = goal_.unit == NoiseUnit::codes;
     std::string text =
-        "samples are taken until the noise is " + (is_in_codes ? short_number(goal_.noise) + " codes of 255"
-                                                               : short_number(100 * goal_.noise) + "% of the light");
-    if (std::isfinite(goal_.seconds)) text += ", for " + short_number(goal_.seconds) + " s at most";
+        "samples are taken until the noise is " +
+        (is_in_codes ? counted(goal_.noise, "code") + " of 255" : number_text(100 * goal_.noise) + "% of the light");
+    if (std::isfinite(goal_.seconds)) text += ", for " + number_text(goal_.seconds) + " s at most";
     if (sampling_ == shot::Sampling::unsaid) text += "; --noise-codes, --seconds or --spp say otherwise";
     return text;
 }

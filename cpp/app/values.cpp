@@ -118,23 +118,16 @@ ToneCurve parse_tone(const std::string& text) {
     return *tone;
 }
 
-std::string short_number(double value, int digits) {
-    if (std::isinf(value)) return value > 0 ? "infinity" : "-infinity";
-    char text[32];
-    std::snprintf(text, sizeof text, "%.*g", digits, value);
-    return text;
-}
-
 std::string distance_text(double metres) {
-    return short_number(metres) + (std::isfinite(metres) ? " m" : "");
+    return number_text(metres) + (std::isfinite(metres) ? " m" : "");
 }
 
 std::string exposure_text(double seconds) {
     const double inverse = 1 / seconds;
-    if (inverse < 2.5) return short_number(seconds) + " s";
+    if (inverse < 2.5) return number_text(seconds) + " s";
     constexpr double kMostInFull = 1e6;  // no shutter is faster
     const bool in_full = inverse >= 10 && inverse <= kMostInFull;
-    return "1/" + (in_full ? std::to_string(std::llround(inverse)) : short_number(inverse, 2)) + " s";
+    return "1/" + (in_full ? std::to_string(std::llround(inverse)) : number_text(inverse, 2)) + " s";
 }
 
 }  // namespace realcam::app

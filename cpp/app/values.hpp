@@ -10,6 +10,7 @@
 #include "../camera/camera_view.hpp"
 #include "../camera/develop.hpp"
 #include "../math/vec3.hpp"
+#include "../number_text.hpp"
 
 namespace realcam::app {
 
@@ -38,8 +39,6 @@ std::array<int, 2> parse_resolution(const std::string& option, const std::string
 CameraModel parse_model(const std::string& text);
 ToneCurve parse_tone(const std::string& text);
 
-/// A number with a few digits, as short as it can be: "50.36", "infinity".
-std::string short_number(double value, int digits = 4);
 /// "2.5 m", "infinity".
 std::string distance_text(double metres);
 /// "1/125 s", "2 s".

@@ -49,11 +49,14 @@ Planned plan(const Assembly& scene, const Camera& camera, const RenderSettings& 
     });
 }
 
-/// Model, effects, bounces and what was decided.
+/// Model, effects, bounces and the summary of a film, given by its first camera and those of other frames.
 std::tuple<std::string, std::vector<std::string>, int, std::string> plan_of_film(const Assembly& scene,
-                                                                                 const std::vector<Camera>& cameras,
+                                                                                 const Camera& camera,
+                                                                                 const std::vector<Camera>& others,
                                                                                  const RenderSettings& settings,
                                                                                  const std::string& device) {
+    std::vector<Camera> cameras = {camera};
+    cameras.insert(cameras.end(), others.begin(), others.end());
     const FilmPlan plan = OwnedSession::shared(device).use([&](const auto& session) {
         return plan_film(*session, scene, cameras, settings, fast_pupil_tracer(),
                          [](double) { return heed_signals(); });
@@ -69,6 +72,7 @@ template <>
 struct RestoredCheck<Planned> : AnyMembers {};
 
 void bind_plan(py::module_& m) {
+    m.def("_number_text", [](double value, int digits) { return number_text(value, digits); }, "value"_a, "digits"_a);
     py::class_<Decision> decision(m, "PlanDecision", "One thing that a picture may have or do without.");
     def_value(decision);
     decision.def_readonly("effect", &Decision::effect)
@@ -100,7 +104,7 @@ measured on the device; None: not measured.)")
             return "<realcam.Plan: model " + p.model + ", effects " + (names.empty() ? "none" : names) + '>';
         });
     m.def("_plan", &plan, "scene"_a, "camera"_a, "settings"_a, "device"_a, "times"_a);
-    m.def("_plan_film", &plan_of_film, "scene"_a, "cameras"_a, "settings"_a, "device"_a);
+    m.def("_plan_film", &plan_of_film, "scene"_a, "camera"_a, "others"_a, "settings"_a, "device"_a);
 }
 
 }  // namespace realcam::bindings

@@ -64,11 +64,13 @@ Progress progress_of(const py::object& callback) {
 
 namespace {
 
+/// `keeps_stopped`: what was taken when progress stops the picture is the picture.
 py::dict render(const Assembly& scene, const Camera& camera, const RenderSettings& settings, const std::string& device,
-                const py::object& progress) {
+                const py::object& progress, bool keeps_stopped) {
     const Progress report = progress_of(progress);
+    const KeepGoing finishes = keeps_stopped ? KeepGoing(heed_signals) : KeepGoing();
     Image image = OwnedSession::shared(device).use(
-        [&](const auto& session) { return take_picture(*session, scene, camera, settings, report); });
+        [&](const auto& session) { return take_picture(*session, scene, camera, settings, report, finishes); });
     return picture_from(std::move(image), settings.layers);
 }
 
@@ -116,7 +118,8 @@ void bind_render(py::module_& m) {
         .def("__repr__", [](const RenderStats& s) {
             return "<realcam.RenderStats " + digits(s.seconds) + " s on " + s.device + '>';
         });
-    m.def("_render", &render, "scene"_a, "camera"_a, "settings"_a, "device"_a, "progress"_a);
+    m.def("_render", &render, "scene"_a, "camera"_a, "settings"_a, "device"_a, "progress"_a,
+          "keeps_stopped"_a);
     m.def(
         "_effect_notices",
         [](const LensSystem& lens, const RenderSettings& settings) { return effect_notices(settings.effects, lens); },

@@ -212,8 +212,12 @@ z_m; but for the time any may be missing. Raises InputError naming file and line
         .def("__repr__", &text_of_shake);
 }
 
-/// What realcam.Shot is made of, by the names of its fields.
-py::dict read_shot(const py::object& path, const std::string& device, const py::object& progress) {
+/// What realcam.Shot is made of, by the names of its fields, and whether nobody has said how many samples it has or how
+/// little noise. `given`: a scene in place of a file, which messages call
+/// by the path; `lens`: in place of the request's; `denoises`: the picture is to be denoised.
+py::tuple read_shot(const py::object& path, const std::string& changes, const std::optional<Assembly>& given,
+                    std::optional<LensSystem> lens, bool denoises, const std::string& device,
+                    const py::object& progress) {
     shot::ShotRequest request;
     Camera camera;
     Assembly scene;
@@ -222,13 +226,18 @@ py::dict read_shot(const py::object& path, const std::string& device, const py::
     const std::string name = path_from(path);
     {
         const Unlocked unlocked;
-        request = shot::read_shot_file(name);
+        request =
+            given ? shot::parse_shot("format = 1\nscene = \"scene\"\n", name, changes) : shot::read_shot(name, changes);
+        request.lens_in_memory = std::move(lens);
+        request.denoises = denoises;
+        shot::settle_noise_goal(request);
         request.lens_options.keep_going = heed_signals;
         request.lens_options.warn = [&](const std::string& note) { notes.push_back(note); };
         shot::settle_keys(request);
         camera = shot::camera_of(request);
         request.lens_options = {};  // which must not outlive what they name
-        scene = shot::scene_of(request, readers, heed_signals);
+        scene = given ? shot::scene_of(request, *given, readers, heed_signals)
+                      : shot::scene_of(request, readers, heed_signals);
     }
     for (const std::string& note : notes)
         if (PyErr_WarnEx(PyExc_UserWarning, note.c_str(), 1) < 0) throw py::error_already_set();
@@ -237,11 +246,12 @@ py::dict read_shot(const py::object& path, const std::string& device, const py::
         const Progress report = progress_of(progress);
         OwnedSession::shared(device).use([&](const auto& session) { meter(shot, request, *session, report); });
     }
-    return py::dict("scene"_a = shot.scene, "camera"_a = shot.camera, "settings"_a = request.settings,
+    py::dict fields("scene"_a = shot.scene, "camera"_a = shot.camera, "settings"_a = request.settings,
                     "tone"_a = request.tone == ToneCurve::film ? "film" : "linear",
                     "keys"_a = py::tuple(py::cast(request.keys)),
                     "shake"_a = request.shake.is_still() ? std::nullopt : std::optional(request.shake),
                     "iso_follows_s"_a = request.iso_follows_s);
+    return py::make_tuple(std::move(fields), request.sampling == shot::Sampling::unsaid);
 }
 
 py::dict metadata(const Camera& camera, const RenderSettings& settings, int spp, std::uint32_t seed,
@@ -267,7 +277,7 @@ void bind_shot(py::module_& m) {
     m.def("_frame_seed", &shot::frame_seed, "seed"_a, "number"_a);
     m.def("_followed_isos", &followed_isos, "scene"_a, "camera"_a, "keys"_a, "settings"_a, "numbers"_a,
           "frames_per_second"_a, "smoothing_s"_a, "device"_a);
-    m.def("_read_shot", &read_shot, "path"_a, "device"_a, "progress"_a);
+    m.def("_read_shot", &read_shot, "path"_a, "changes"_a, "scene"_a, "lens"_a, "denoises"_a, "device"_a, "progress"_a);
     m.def("_metadata", &metadata, "camera"_a, "settings"_a, "spp"_a, "seed"_a, "plan"_a, "denoiser"_a);
 }
 

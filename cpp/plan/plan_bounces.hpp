@@ -83,7 +83,7 @@ inline void plan_bounces(Session& session, const Assembly& scene, Camera camera,
         plan.max_bounces = bounces;
         lacking = bounces == kMostBounces ? 0 : largest_difference(with(bounces), all);
     }
-    const auto codes = [](double size) { return plan_text_detail::number(size, 2) + " codes"; };
+    const auto codes = [](double size) { return number_text(size, 2) + " codes"; };
     plan.decisions.push_back(
         {"bounces", indirect, SizeUnit::codes, threshold, plan.max_bounces > 0, DecidedBy::planner, std::nullopt,
          plan.max_bounces == 0

@@ -1,11 +1,10 @@
 #pragma once
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <cstdio>
 #include <string>
 #include <vector>
 
+#include "../number_text.hpp"
 #include "plan.hpp"
 
 namespace REALCAM_NAMESPACE {
@@ -14,38 +13,29 @@ inline const char* name_of(SizeUnit unit) {
     return unit == SizeUnit::pixels ? "px" : "codes";
 }
 
-namespace plan_text_detail {
-
-inline std::string number(double value, int digits) {
-    if (!std::isfinite(value)) return "infinite";
-    char text[32];
-    std::snprintf(text, sizeof text, "%.*g", digits, value);
-    return text;
+/// A size with its unit: "31 px", "1 code".
+inline std::string size_text(double size, SizeUnit unit) {
+    return unit == SizeUnit::pixels ? number_text(size, 3) + " px" : counted(size, "code", 3);
 }
-
-}  // namespace plan_text_detail
 
 /// In a line, for a picture's metadata: "ghosts 0.3 codes left out, defocus 31 px kept".
 inline std::string summary_of(const Plan& plan) {
     std::string text;
     for (const PlanDecision& decision : plan.decisions)
-        text += (text.empty() ? "" : ", ") + decision.name + ' ' + plan_text_detail::number(decision.size, 3) + ' ' +
-                name_of(decision.unit) + (decision.is_kept ? " kept" : " left out") +
-                (decision.by == DecidedBy::user ? " as asked" : "");
+        text += (text.empty() ? "" : ", ") + decision.name + ' ' + size_text(decision.size, decision.unit) +
+                (decision.is_kept ? " kept" : " left out") + (decision.by == DecidedBy::user ? " as asked" : "");
     return text;
 }
 
 /// A table for people. `model_name`: of the plan's camera model.
 inline std::string text_of(const Plan& plan, const std::string& model_name) {
-    using plan_text_detail::number;
     using Row = std::array<std::string, 6>;
     std::vector<Row> rows = {{"effect", "size", "threshold", "", "time", "because"}};
     for (const PlanDecision& decision : plan.decisions) {
-        const std::string unit = name_of(decision.unit);
         rows.push_back(
-            {decision.name, number(decision.size, 3) + " " + unit, number(decision.threshold, 3) + " " + unit,
+            {decision.name, size_text(decision.size, decision.unit), size_text(decision.threshold, decision.unit),
              std::string(decision.is_kept ? "kept" : "left out") + (decision.by == DecidedBy::user ? " as asked" : ""),
-             decision.time ? "+" + number(100 * *decision.time, 2) + "%" : "", decision.reason});
+             decision.time ? "+" + number_text(100 * *decision.time, 2) + "%" : "", decision.reason});
     }
     std::array<std::size_t, 6> width{};
     for (const Row& row : rows)

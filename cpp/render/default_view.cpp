@@ -8,76 +8,113 @@
 
 #include "../optics/lens/focus.hpp"
 #include "axis_crossings.hpp"
-#include "room.hpp"
+#include "subject.hpp"
 
 namespace realcam {
 
 namespace {
 
-/// The share of the film that the scene fills.
-constexpr double kFilledShare = 0.9;
-
-/// Autofocus: the first surface on the axis; where there is none, the plane through the middle of the scene.
-/// `film_m`: where the film is on the line of the crossings, which run along the camera's view.
-double autofocus_m(const AxisCrossings& axis, double film_m, const BoundingBox& box, const Camera& camera) {
-    const double lens_end = camera.lens.film_position() / 1000;
-    const double hit = axis.first_beyond(film_m + lens_end) - film_m;
-    if (std::isfinite(hit)) return hit;
-    const Vec3d forward = normalized(camera.pose.look_at_m - camera.pose.position_m);
-    const double middle = dot(forward, box.middle() - camera.pose.position_m);
-    return middle > lens_end ? middle : kInfinity;
+/// Focuses on the first surface on the axis beyond the lens; where there is none, on the plane through the middle of
+/// the subject. Throws InputError where the lens cannot. `film_m`: the position of the film on the line of the
+/// crossings, which run along the camera's view.
+void autofocus(Camera& camera, const LensSystem& lens, const AxisCrossings& axis, double film_m,
+               const BoundingBox& subject) {
+    const double lens_end_m = camera.lens.film_position() / 1000;
+    double distance_m = axis.first_beyond(film_m + lens_end_m) - film_m;
+    if (!std::isfinite(distance_m)) {
+        const Vec3d forward = normalized(camera.pose.look_at_m - camera.pose.position_m);
+        const double middle_m = dot(forward, subject.middle() - camera.pose.position_m);
+        distance_m = middle_m > lens_end_m ? middle_m : kInfinity;
+    }
+    camera.lens = focused(lens, 1000 * distance_m);
 }
 
-/// Entrance pupil to `target` at which every corner of the box lies in the picture. The field counts up to 90 degrees:
-/// to fill the picture of a fisheye, the camera would have to stand inside the scene. No corner lies in the lens.
-double filling_distance(const BoundingBox& box, const Camera& camera, Vec3d target) {
-    using camera_detail::axes_of;
+/// From the entrance pupil to the film, along the axis.
+double film_to_pupil_m(const LensSystem& lens) {
+    const double pupil = nominal_first_order(lens).entrance_pupil_position;
+    return (lens.film_position() - (std::isfinite(pupil) ? pupil : 0.0)) / 1000;
+}
+
+/// The direction in which the front of a scene looks: +z as in glTF, or -y where z is up.
+Vec3d front_of(Vec3d up) {
+    return std::fabs(up.z) > 0.99 * length(up) ? Vec3d{0, -1, 0} : Vec3d{0, 0, 1};
+}
+
+/// The axes of a view that was chosen, unit vectors.
+struct ViewAxes {
+    Vec3d front, right, up;  ///< front: from the subject to the camera, horizontal
+
+    ViewAxes(const Subject& subject, Vec3d up_wanted) {
+        front = front_of(up_wanted);
+        up = normalized(up_wanted - dot(up_wanted, front) * front);
+        right = cross(up, front);
+        for (const Vec3d side : {front, right, -right, -front})
+            if (!has_wall(subject, side)) {
+                front = side;
+                break;
+            }
+        right = cross(up, front);
+    }
+
+    /// Whether the subject's side in this direction, which is nearly along an axis, is a wall.
+    static bool has_wall(const Subject& subject, Vec3d direction) {
+        const auto along = coordinates(direction);
+        const auto largest = std::ranges::max_element(along, {}, [](double c) { return std::fabs(c); });
+        return subject.has_wall[static_cast<std::size_t>(2 * (largest - along.begin()) + (*largest > 0))];
+    }
+
+    static double extent(const BoundingBox& box, Vec3d direction) {
+        const Vec3d size = box.size();
+        return std::fabs(direction.x) * size.x + std::fabs(direction.y) * size.y + std::fabs(direction.z) * size.z;
+    }
+};
+
+/// From the subject to the camera: the elevation is half of that of the line from the lower front edge to the upper
+/// back edge. So an upright picture is seen from in front, a floor from 45 degrees above. A room is entered level.
+Vec3d direction_to_camera(const Subject& subject, const ViewAxes& axes) {
+    if (subject.is_room()) return axes.front;
+    const double elevation = 0.5 * std::atan2(axes.extent(subject.box, axes.front), axes.extent(subject.box, axes.up));
+    return std::cos(elevation) * axes.front + std::sin(elevation) * axes.up;
+}
+
+/// Entrance pupil to `target` at which every corner of the box lies in the picture, or, of an open room, at which its
+/// open side fills the picture. The field counts up to 90 degrees: to fill the picture of a fisheye, the camera would
+/// have to stand inside the scene. No corner lies in the lens.
+double filling_distance(const BoundingBox& box, const Camera& camera, Vec3d target, bool is_open_room) {
+    constexpr double kFilledShare = 0.9;
     const auto tangent = [&](double half_film_mm) {
         const double angle = widest_field_angle(camera.lens, half_film_mm);
-        return kFilledShare * (angle > 0 && angle < std::numbers::pi / 4 ? std::tan(angle) : 1.0);
+        return angle > 0 && angle < std::numbers::pi / 4 ? std::tan(angle) : 1.0;
     };
     // The axis looks at the target: of a film that is shifted the narrower side counts, as far as there is one.
     const auto half = [](double side, double shift) { return std::max(0.5 * side - std::fabs(shift), 0.1 * side); };
     const Film& film = camera.film;
     const double tan_x = tangent(half(film.width_mm, film.shift_mm.x)),
                  tan_y = tangent(half(film.height_mm, film.shift_mm.y));
-    const auto axes = axes_of(camera.pose);
+    const auto axes = camera_detail::axes_of(camera.pose);
     // This also keeps a scene without breadth, such as a plane seen edge on, in front of the camera.
     const double pupil = nominal_first_order(camera.lens).entrance_pupil_position;
     const double least = std::max(0.1 * box.diagonal(), std::isfinite(pupil) ? 0.0012 * pupil : 0.0);
     double distance = 0;
     for (int corner = 0; corner < 8; ++corner) {
         const Vec3d p = box.corner(corner) - target;
-        const double aside = std::max(std::fabs(dot(p, axes.right)) / tan_x, std::fabs(dot(p, axes.up)) / tan_y);
-        distance = std::max(distance, dot(p, axes.backward) + std::max(aside, least));
+        const double by_width = std::fabs(dot(p, axes.right)) / tan_x, by_height = std::fabs(dot(p, axes.up)) / tan_y;
+        const double wanted =
+            is_open_room ? std::min(by_width, by_height) : std::max(by_width, by_height) / kFilledShare;
+        distance = std::max(distance, dot(p, axes.backward) + std::max(wanted, least));
     }
     return distance;
 }
 
-/// `pose.position_m` for an entrance pupil that far from look_at_m.
-void stand_back(Camera& camera, Vec3d backward, double pupil_to_target_m) {
-    const LensSystem& lens = camera.lens;
-    const double pupil = nominal_first_order(lens).entrance_pupil_position;
-    const double film_to_pupil_m = (lens.film_position() - (std::isfinite(pupil) ? pupil : 0.0)) / 1000;
-    camera.pose.position_m = camera.pose.look_at_m + (pupil_to_target_m + film_to_pupil_m) * backward;
-}
-
-/// How far from its target the camera may stand, so that no surface is between it and its subject; infinite where there
-/// is room. `axis`: along the camera's view, from the target.
-double free_distance(const AxisCrossings& axis, const BoundingBox& subject, bool room, Vec3d target, Vec3d backward) {
+/// How far from its target the camera may stand, so that no surface is between it and its subject; infinite where
+/// nothing is in front of it. `axis`: along the camera's view, from the target.
+double free_distance(const AxisCrossings& axis, const BoundingBox& subject, Vec3d target, Vec3d backward) {
     double edge = 1e-6 * subject.diagonal();
     for (int corner = 0; corner < 8; ++corner)
         edge = std::max(edge, 1e-6 * subject.diagonal() + dot(subject.corner(corner) - target, backward));
-    double limit = kInfinity, last = -kInfinity, longest = 0;
-    for (const double forward : axis.distances_m()) {
-        const bool within = forward >= -edge;
-        // What is in front of the subject is no part of it: a wall, or the sky's back.
-        if (!room && !within) limit = std::min(limit, -forward);
-        if (!room || !within) continue;
-        // In a room the camera stands where its view is longest.
-        if (last < 0 && std::isfinite(last) && forward - last > longest) longest = forward - last, limit = -last;
-        last = forward;
-    }
+    double limit = kInfinity;
+    for (const double forward : axis.distances_m())
+        if (forward < -edge) limit = std::min(limit, -forward);
     return limit;
 }
 
@@ -105,9 +142,7 @@ const SceneCamera* chosen_camera(const Assembly& assembly, const ViewRequest& re
 /// Where a camera of the scene is: the entrance pupil of the lens in its place.
 Pose pose_of(const Affine<double>& scene_from_camera, const LensSystem& lens) {
     const Vec3d backward = normalized(scene_from_camera.z);
-    const double pupil = nominal_first_order(lens).entrance_pupil_position;
-    const double film_to_pupil_m = (lens.film_position() - (std::isfinite(pupil) ? pupil : 0.0)) / 1000;
-    const Vec3d position = scene_from_camera.origin + film_to_pupil_m * backward;
+    const Vec3d position = scene_from_camera.origin + film_to_pupil_m(lens) * backward;
     return {position, position - backward, normalized(scene_from_camera.y)};
 }
 
@@ -121,13 +156,13 @@ void take_view(Camera& camera, const Assembly& assembly, const SceneCamera& from
         camera.pose = pose_of(place, camera.lens);
         validate(camera);
     } else {
-        const BoundingBox box = Surroundings(assembly).box();
+        const BoundingBox box = Subject(assembly).box;
         // Where the film is depends on the focus, and that on where the film is.
         for (int i = 0; i < 4; ++i) {
             camera.pose = pose_of(place, camera.lens);
             validate(camera);
             const AxisCrossings axis(assembly, camera.pose.position_m, -normalized(place.z));
-            camera.lens = focused(lens, 1000 * autofocus_m(axis, 0, box, camera));
+            autofocus(camera, lens, axis, 0, box);
         }
         camera.pose = pose_of(place, camera.lens);
     }
@@ -136,6 +171,64 @@ void take_view(Camera& camera, const Assembly& assembly, const SceneCamera& from
     for (std::size_t k = 0; k < from.motion->times_s.size(); ++k)
         keys.push_back({from.motion->times_s[k], pose_of(from.motion->transforms[k], camera.lens)});
     set_motion(camera, std::move(keys));
+}
+
+/// Stands in that corner of a closed room which has the longest free view towards the target, a little above half of
+/// its height. Throws InputError where the lens cannot focus there.
+void stand_inside(Camera& camera, const Assembly& assembly, const BoundingBox& room, const ViewAxes& axes,
+                  const std::optional<double>& focus_distance_m) {
+    constexpr double kAside = 0.42, kAbove = 0.1;  // of the room's extent, from its middle
+    double longest = 0;
+    for (const double forth : {1, -1})
+        for (const double aside : {1, -1}) {
+            const Vec3d from = room.middle() + kAside * forth * axes.extent(room, axes.front) * axes.front +
+                               kAside * aside * axes.extent(room, axes.right) * axes.right +
+                               kAbove * axes.extent(room, axes.up) * axes.up;
+            const Vec3d view = camera.pose.look_at_m - from;
+            const double seen = std::min(AxisCrossings(assembly, from, normalized(view)).first_beyond(0), length(view));
+            if (!(seen > 1.001 * longest)) continue;
+            longest = seen;
+            camera.pose.position_m = from;
+        }
+    validate(camera);
+    if (focus_distance_m) {
+        camera.lens = focused(camera.lens, 1000 * *focus_distance_m);
+        return;
+    }
+    const Vec3d forward = normalized(camera.pose.look_at_m - camera.pose.position_m);
+    const LensSystem lens = camera.lens;
+    autofocus(camera, lens, AxisCrossings(assembly, camera.pose.position_m, forward), 0, room);
+}
+
+/// Stands so far from its target that the subject fills the picture, or where the next surface in front of it begins,
+/// and steps back where the lens cannot focus that near.
+void stand_outside(Camera& camera, const Assembly& assembly, const BoundingBox& subject, bool is_open_room,
+                   Vec3d backward, const std::optional<double>& focus_distance_m) {
+    const Vec3d target = camera.pose.look_at_m;
+    camera.pose.position_m = target + backward;
+    validate(camera);
+    const LensSystem lens = camera.lens;
+    const AxisCrossings axis(assembly, target, -backward);
+    double limit = 0.99 * free_distance(axis, subject, target, backward);
+    if (focus_distance_m) camera.lens = focused(lens, 1000 * *focus_distance_m);
+    // The field narrows as the lens focuses nearer, and the lens focuses nearer as the field widens.
+    double least = 0;
+    for (int i = 0, settled = 0; i < 100 && settled < 4; ++i) {
+        const double distance =
+            std::max(least, std::min(limit, filling_distance(subject, camera, target, is_open_room)));
+        const double film_m = distance + film_to_pupil_m(camera.lens);
+        camera.pose.position_m = target + film_m * backward;
+        ++settled;
+        if (focus_distance_m) continue;
+        try {
+            autofocus(camera, lens, axis, -film_m, subject);
+        } catch (const InputError&) {
+            if (i == 99) throw;
+            least = 1.2 * distance;
+            limit = kInfinity;
+            settled = 0;
+        }
+    }
 }
 
 }  // namespace
@@ -153,52 +246,40 @@ const SceneCamera* set_view(Camera& camera, const Assembly& assembly, const View
         return from;
     }
     if (assembly.moves()) return set_view(camera, standing_at(assembly, camera.shutter.opens_s), request);
-    const Surroundings subject(assembly);
-    const BoundingBox& box = subject.box();
-    const LensSystem lens = camera.lens;
+    const Subject subject(assembly);
     camera.pose.up = request.up;
-    camera.pose.look_at_m = request.look_at_m.value_or(box.middle());
-    const auto focus = [&](const AxisCrossings& axis, double film_m) {
-        camera.lens = focused(lens, 1000 * autofocus_m(axis, film_m, box, camera));
-    };
     if (request.position_m) {
+        camera.pose.look_at_m = request.look_at_m.value_or(subject.box.middle());
         camera.pose.position_m = *request.position_m;
         validate(camera);
         if (request.focus_distance_m) {
-            camera.lens = focused(lens, 1000 * *request.focus_distance_m);
-            return nullptr;
+            camera.lens = focused(camera.lens, 1000 * *request.focus_distance_m);
+        } else {
+            const Vec3d forward = normalized(camera.pose.look_at_m - camera.pose.position_m);
+            const LensSystem lens = camera.lens;
+            autofocus(camera, lens, AxisCrossings(assembly, camera.pose.position_m, forward), 0, subject.box);
         }
-        const Vec3d forward = normalized(camera.pose.look_at_m - camera.pose.position_m);
-        focus(AxisCrossings(assembly, camera.pose.position_m, forward), 0);
         return nullptr;
     }
-    const bool z_is_up = std::fabs(request.up.z) > 0.99 * length(request.up);
-    const Vec3d backward = z_is_up ? Vec3d{0, -1, 0} : Vec3d{0, 0, 1};
-    camera.pose.position_m = camera.pose.look_at_m + backward;
+    camera.pose.look_at_m = request.look_at_m.value_or(subject.box.middle());
+    camera.pose.position_m = camera.pose.look_at_m + front_of(request.up);
     validate(camera);
-    const AxisCrossings axis(assembly, camera.pose.look_at_m, -backward);
-    const bool room = !request.look_at_m && is_room(assembly, subject, backward);
-    double limit = 0.99 * free_distance(axis, box, room, camera.pose.look_at_m, backward);
-    if (request.focus_distance_m) camera.lens = focused(lens, 1000 * *request.focus_distance_m);
-    // The field narrows as the lens focuses nearer, and the lens focuses nearer as the field widens.
-    double least = 0;
-    for (int i = 0, settled = 0; i < 100 && settled < 4; ++i) {
-        const double distance = std::max(least, std::min(limit, filling_distance(box, camera, camera.pose.look_at_m)));
-        stand_back(camera, backward, distance);
-        if (request.focus_distance_m) {
-            ++settled;
-            continue;
-        }
+    const ViewAxes axes(subject, request.up);
+    const bool is_closed = subject.is_room() && axes.has_wall(subject, axes.front);
+    const BoundingBox& shown = is_closed && !subject.content.empty() ? subject.content : subject.box;
+    camera.pose.look_at_m = request.look_at_m.value_or(shown.middle());
+    if (is_closed) {
+        Camera inside = camera;
         try {
-            focus(axis, -dot(camera.pose.position_m - camera.pose.look_at_m, backward));
-            ++settled;
+            stand_inside(inside, assembly, subject.box, axes, request.focus_distance_m);
+            camera = std::move(inside);
+            return nullptr;
         } catch (const InputError&) {
-            if (i == 99) throw;
-            least = 1.2 * distance;
-            limit = kInfinity;
-            settled = 0;
+            // A room that is too small for the lens is seen from outside.
         }
     }
+    stand_outside(camera, assembly, subject.box, subject.is_room() && !is_closed, direction_to_camera(subject, axes),
+                  request.focus_distance_m);
     return nullptr;
 }
 

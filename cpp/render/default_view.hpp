@@ -21,15 +21,17 @@ struct ViewRequest {
 };
 
 /// Sets camera.pose and focuses camera.lens, for the scene when the shutter opens. What the request gives is taken.
-/// Else, where the scene has a camera, its place, direction and motion are taken. Else the view is chosen so.
-/// - subject: the scene without its surroundings (Surroundings): not the wide floor, the sky or what is far away.
-/// - look_at: the middle of the subject's bounding box.
-/// - position: in front of look_at along +z (along -y where up is the z axis), so far away that the subject's box fills
-///   nine tenths of the film; nearer where a surface would be in between; and in a room (is_room) inside, at its front
-///   wall.
+/// Else, where the scene has a camera, its place, direction and motion are taken. Else the view is chosen by these
+/// rules, which docs/scenes.md states for users:
+/// - subject: the scene without its surroundings (Subject).
+/// - front: +z (-y where up is z), or the first of the right, the left and the back side where the front is a wall that
+///   is seen from inside.
+/// - an object is seen from its front and slightly above (half of the elevation of its diagonal), so far away that its
+///   box fills nine tenths of the film, or nearer where a surface would be in between;
+/// - an open room is seen level through its open side, which fills the film;
+/// - a closed room is seen from that corner, near half of its height, from which the view to its content is longest.
 /// - focus: the first surface on the camera's axis, or the depth of the subject's middle where the axis meets nothing.
-/// A
-///   camera whose place was chosen steps back where its lens cannot focus that near.
+///   A camera whose position was chosen steps back where its lens cannot focus that near.
 /// Returns the scene's camera whose view was taken; null: none. Throws InputError where the lens cannot focus as asked
 /// for, for a scene without triangles, and for a camera that the scene has not.
 const SceneCamera* set_view(Camera& camera, const Assembly& assembly, const ViewRequest& request);

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+
+#include "../number_text.hpp"
 
 namespace realcam {
 
@@ -39,22 +40,17 @@ void look_for_lamps(ReachedNoise& reached, double share, std::int64_t samples) {
 std::string shortfall_of(const ReachedNoise& reached, const NoiseGoal& goal) {
     if (reached.is_reached) return "";
     if (!(reached.noise >= 0)) return "too few samples were taken to know how large the noise is";
-    const char* unit = goal.unit == NoiseUnit::codes ? " codes" : "";
-    char text[300];
-    if (reached.missed_share < 1) {
-        std::snprintf(text, sizeof text,
-                      "lamps fill down to 1/%.2g of what a pixel sees, and may be missing from the picture, because "
-                      "light is not traced from them: that takes the camera model full and light_tracing on; without, "
-                      "about %.2g samples a pixel are wanted",
-                      1 / reached.missed_share, reached.samples_wanted);
-        return text;
-    }
-    std::snprintf(
-        text, sizeof text,
-        "the noise is %.2g%s where the picture is noisiest, not %.2g%s; about %.2g samples a pixel are wanted "
-        "there",
-        reached.noise, unit, goal.noise, unit, reached.samples_wanted);
-    return text;
+    const std::string wanted = counted(rounded(reached.samples_wanted, 2), "sample");
+    if (reached.missed_share < 1)
+        return "lamps fill down to 1/" + number_text(1 / reached.missed_share, 2) +
+               " of what a pixel sees, and may be missing from the picture, because light is not traced from them: "
+               "that takes the camera model full and light_tracing on; without, a pixel needs about " +
+               wanted;
+    const auto noise = [&](double value) {
+        return goal.unit == NoiseUnit::codes ? counted(value, "code", 2) : number_text(value, 2);
+    };
+    return "the noise is " + noise(reached.noise) + " where the picture is noisiest, not " + noise(goal.noise) +
+           "; a pixel there needs about " + wanted;
 }
 
 }  // namespace realcam

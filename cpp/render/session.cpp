@@ -47,7 +47,7 @@ void Session::add(int spp, const Progress& progress) {
                          (settings_.layers.has_any(kSampledLayers) ? 2 : 1);
     const auto work = [&] {
         expose(spp, [&](const SampleRange& range) { take(range, {}, true, done, stop); });
-        mean_samples_ += spp;
+        mean_samples_ = stop ? mean_of(count_samples()) : mean_samples_ + spp;
         see_what_is_missing(done, stop);
     };
     const auto begin = std::chrono::steady_clock::now();
@@ -97,12 +97,12 @@ std::shared_ptr<const LiveFrame> Session::shoot(const Assembly& scene, const Cam
     return frames_.back();
 }
 
-Image Session::picture(const KeepGoing& keep_going) {
+Image Session::picture(const KeepGoing& keep_going, std::int64_t most_layer_samples) {
     return of_all_collected(keep_going, [&] {
-        if (lacks_layers()) {
+        if (lacks_layers(most_layer_samples)) {
             OwnStop stop(*this);
             std::atomic<std::int64_t> done{0};
-            run_heeding([&] { see_what_is_missing(done, stop); }, keep_going, stop);
+            run_heeding([&] { see_what_is_missing(done, stop, most_layer_samples); }, keep_going, stop);
             if (stop) throw Cancelled();
         }
         Image image = develop();
@@ -303,13 +303,13 @@ void Session::forget_layers() {
     layer_samples_ = 0;
 }
 
-bool Session::lacks_layers() const {
-    return (settings_.layers.has_any(kSampledLayers) && layer_samples_ < mean_samples_) ||
+bool Session::lacks_layers(std::int64_t most) const {
+    return (settings_.layers.has_any(kSampledLayers) && layer_samples_ < std::min(mean_samples_, most)) ||
            (settings_.layers.has_any(kMiddleLayers) && layer_film_.middle.empty());
 }
 
-void Session::see_what_is_missing(std::atomic<std::int64_t>& done, OwnStop& stop) {
-    if (!lacks_layers() || stop) return;
+void Session::see_what_is_missing(std::atomic<std::int64_t>& done, OwnStop& stop, std::int64_t most) {
+    if (!lacks_layers(most) || stop) return;
     try {
         if (settings_.layers.has_any(kMiddleLayers) && layer_film_.middle.empty()) {
             layer_film_.middle.resize(pixel_count());
@@ -317,8 +317,9 @@ void Session::see_what_is_missing(std::atomic<std::int64_t>& done, OwnStop& stop
         }
         if (settings_.layers.has_any(kSampledLayers)) {
             layer_film_.sums.resize(pixel_count());
-            while (layer_samples_ < mean_samples_ && !stop) {
-                const SampleRange range = next_samples(settings_.seed, layer_samples_, mean_samples_);
+            const std::int64_t wanted = std::min(mean_samples_, most);
+            while (layer_samples_ < wanted && !stop) {
+                const SampleRange range = next_samples(settings_.seed, layer_samples_, wanted);
                 layer_samples_ += range.count;
                 see_layers(whole_film(), range, layer_film_.sums, done, stop);
             }
@@ -377,6 +378,7 @@ ReachedNoise Session::take_until(const NoiseGoal& goal, std::atomic<double>& sha
         });
     };
     const bool is_new = is_blank_;
+    noise_so_far_ = {};
     if (is_new) {
         mean_samples_ = AdaptiveSampling::first_samples(goal);
         // A count for each pixel, though it is the same: what the two halves of a tile find must be independent, so
@@ -403,16 +405,21 @@ ReachedNoise Session::take_until(const NoiseGoal& goal, std::atomic<double>& sha
         const std::uint32_t most = *std::max_element(counts.begin(), counts.end());
         if (most == 0) break;
         take_round(most, counts.data(), tiles.traces_lights());
+        if (stop) {
+            mean_samples_ = mean_of(count_samples());
+            return noise_so_far_;  // differences of half a round are no measure
+        }
         double round = 0;
         for (const std::uint32_t count : counts) round += count;
         mean_samples_ += static_cast<std::int64_t>(std::ceil(round / pixels));
         taken += round;
         tiles.add(develop().exposure, counts, tiles.traces_lights() ? develop_traced() : std::vector<float>());
+        noise_so_far_ = tiles.reached();
         share = std::max(share.load(), std::min(1.0, taken / (taken + tiles.left())));
     }
-    ReachedNoise reached = tiles.reached();
-    look_for_lamps(reached, least_lamp_share(), std::ranges::min(count_samples()));
-    return reached;
+    noise_so_far_ = tiles.reached();
+    look_for_lamps(noise_so_far_, least_lamp_share(), std::ranges::min(count_samples()));
+    return noise_so_far_;
 }
 
 }  // namespace realcam

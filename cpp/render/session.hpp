@@ -2,6 +2,7 @@
 #include <atomic>
 #include <cstddef>
 #include <deque>
+#include <limits>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -57,6 +58,8 @@ public:
     void set(const Assembly& scene, const Camera& camera, const RenderSettings& settings,
              const KeepGoing& keep_going = {});
 
+    static constexpr std::int64_t kAllSamples = std::numeric_limits<std::int64_t>::max();
+
     /// Gives up all samples.
     void restart(const KeepGoing& keep_going = {});
 
@@ -67,6 +70,9 @@ public:
     /// Takes samples of the pixels that are noisier than wanted, until none is (see AdaptiveSampling). Throws
     /// InputError where nothing is set, and Cancelled: what was taken until then stays.
     ReachedNoise add_until(const NoiseGoal& goal, const Progress& progress = {});
+
+    /// What the last `add_until` knew of the noise when it ended, or was stopped.
+    ReachedNoise noise_so_far() const { return noise_so_far_; }
 
     /// `set`, and starts to take settings.spp samples more of each pixel and to develop them; returns while that goes
     /// on. The next frame may be shot before this one is there: where the device has as many under way as it takes,
@@ -79,8 +85,8 @@ public:
 
     /// All that was collected, developed with the camera's exposure time, and the layers of the settings; waits for
     /// frames under way. Throws InputError where there is nothing, and Cancelled where another thread stops it
-    /// meanwhile.
-    Image picture(const KeepGoing& keep_going = {});
+    /// meanwhile. `most_layer_samples`: layers that lack samples get no more than these.
+    Image picture(const KeepGoing& keep_going = {}, std::int64_t most_layer_samples = kAllSamples);
 
     /// What some samples of a region's pixels collect, apart from this picture, which stays as it is: those with
     /// numbers from `first`, at most kSamplesPerSum of them. On a CPU, such sums of all regions and samples, added in
@@ -242,10 +248,10 @@ private:
 
     void forget_layers();
 
-    bool lacks_layers() const;
+    bool lacks_layers(std::int64_t most) const;
 
     /// Brings the layers that are wanted up to the samples of the picture. Where it is stopped they begin anew.
-    void see_what_is_missing(std::atomic<std::int64_t>& done, OwnStop& stop);
+    void see_what_is_missing(std::atomic<std::int64_t>& done, OwnStop& stop, std::int64_t most = kAllSamples);
 
     /// `besides`, `counts`: functions that make these of the same film.
     template <class Besides, class Counts>
@@ -288,6 +294,7 @@ private:
     std::int64_t mean_samples_ = 0;  ///< of all pixels, rounded up
     bool is_blank_ = true;  ///< no sample was begun
     LayerFilm layer_film_;
+    ReachedNoise noise_so_far_;
     std::int64_t layer_samples_ = 0;  ///< of mean_samples_, those that layer_film_.sums holds
     double setup_seconds_ = 0, exposing_seconds_ = 0;  ///< of the picture
     std::deque<std::shared_ptr<const LiveFrame>> frames_;  ///< under way

@@ -4,8 +4,10 @@
 namespace REALCAM_NAMESPACE {
 
 /// A whole picture, from its first sample on, and what it cost. Throws InputError for a camera, scene or settings that
-/// make no picture, Cancelled, and DeviceError.
+/// make no picture, Cancelled, and DeviceError. `finishes`: asked where `progress` has stopped a picture of which each
+/// pixel has samples, and while that is finished; where it returns true, what was taken is the picture, and
+/// Image::shortfall says so. Empty: a stopped picture is given up.
 Image take_picture(Session& session, const Assembly& scene, const Camera& camera, const RenderSettings& settings,
-                   const Progress& progress);
+                   const Progress& progress, const KeepGoing& finishes = {});
 
 }  // namespace REALCAM_NAMESPACE

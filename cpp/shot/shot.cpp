@@ -110,7 +110,7 @@ void settle_keys(ShotRequest& request) {
 
 Camera camera_of(const ShotRequest& request) {
     Camera camera;
-    camera.lens = io::read_lens(request.lens, request.lens_options);
+    camera.lens = request.lens_in_memory ? *request.lens_in_memory : io::read_lens(request.lens, request.lens_options);
     if (!request.zoom.empty()) camera.lens = zoomed(camera.lens, request.zoom);
     camera.lens = with_blades_of(request, std::move(camera.lens));
     if (request.focal_length_mm) camera.lens = zoomed_to_focal_length(camera.lens, *request.focal_length_mm);
@@ -130,8 +130,13 @@ Camera camera_of(const ShotRequest& request) {
 }
 
 Assembly scene_of(const ShotRequest& request, const PictureReaders& readers, const KeepGoing& keep_going) {
-    Assembly scene = with_request(io::read_scene(request.scene, {request.scale, {}, keep_going}, readers.texture),
-                                  request.additions, readers, keep_going);
+    return scene_of(request, io::read_scene(request.scene, {request.scale, {}, keep_going}, readers.texture), readers,
+                    keep_going);
+}
+
+Assembly scene_of(const ShotRequest& request, Assembly scene, const PictureReaders& readers,
+                  const KeepGoing& keep_going) {
+    scene = with_request(std::move(scene), request.additions, readers, keep_going);
     if (request.texture.empty() && !request.chooses_environment()) return scene;
     return with_static_geometry(std::move(scene), [&](Scene& changed) {
         if (!request.texture.empty()) add_texture(changed, request.texture, readers);

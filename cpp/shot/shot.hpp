@@ -35,6 +35,10 @@ Camera camera_of(const ShotRequest& request);
 /// Cancelled where `keep_going` returns false.
 Assembly scene_of(const ShotRequest& request, const PictureReaders& readers, const KeepGoing& keep_going = {});
 
+/// The same of a scene that is in memory, in place of the request's file.
+Assembly scene_of(const ShotRequest& request, Assembly scene, const PictureReaders& readers,
+                  const KeepGoing& keep_going = {});
+
 /// Places and focuses the camera as asked for, and otherwise as set_view says; brings daylight where there is no light.
 /// An environment that was asked for counts as light even where it is dark. Throws InputError.
 Shot set_up(const ShotRequest& request, Camera camera, Assembly scene);

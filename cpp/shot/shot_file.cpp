@@ -5,6 +5,8 @@
 #include <fstream>
 #include <iterator>
 #include <limits>
+#include <string_view>
+#include <vector>
 
 #include "../error.hpp"
 #include "../io/files/readable_file.hpp"
@@ -240,6 +242,45 @@ private:
     ShotTable table_;
 };
 
+/// Keys of a shot that say the same thing in two ways, so that one takes the place of the others.
+struct Replaced {
+    std::string_view key;
+    std::vector<std::string_view> gone;
+};
+const Replaced kReplaced[] = {
+    {"lens", {"zoom", "focal_length_mm"}},
+    {"zoom", {"focal_length_mm"}},
+    {"focal_length_mm", {"zoom"}},
+    {"environment", {"environment_cd_m2", "environment_layer"}},
+    {"environment_cd_m2", {"environment", "environment_layer"}},
+    {"camera", {"position_m", "look_at_m", "pose"}},
+    {"position_m", {"camera", "pose"}},
+    {"look_at_m", {"camera", "pose"}},
+    {"pose", {"camera", "position_m", "look_at_m"}},
+    {"spp", {"noise", "noise_codes", "seconds", "max_spp"}},
+    {"noise", {"noise_codes", "spp"}},
+    {"noise_codes", {"noise", "spp"}},
+    {"iso", {"iso_follows_s"}},
+};
+
+/// The changes have no lines in messages: toml++ copies a node without its source.
+void change(toml::table& shot, const toml::table& changes) {
+    const auto forget = [&](std::string_view key) {
+        shot.erase(key);
+        if (toml::array* const keys = shot["key"].as_array())
+            for (toml::node& of_time : *keys)
+                if (toml::table* const table = of_time.as_table()) table->erase(key);
+    };
+    for (const auto& [key, value] : changes) {
+        forget(key.str());
+        for (const Replaced& replaced : kReplaced)
+            if (replaced.key == key.str())
+                for (const std::string_view other : replaced.gone)
+                    if (!changes.contains(other)) forget(other);
+    }
+    for (const auto& [key, value] : changes) shot.insert_or_assign(key, value);
+}
+
 }  // namespace
 
 void check_environment_change(const ShotRequest& request) {
@@ -257,18 +298,28 @@ void check_environment(Vec3f v) {
         throw InputError("an environment's radiance must lie between 0 and 1e20 cd/m^2");
 }
 
-ShotRequest parse_shot(std::string_view text, const std::string& path) {
-    const toml::table table = io::parse_toml(text, path, ShotTable::fail_at);
+bool is_shot_file(const std::string& path) {
+    return fs::path(path).extension() == ".toml";
+}
+
+ShotRequest parse_shot(std::string_view text, const std::string& path, std::string_view changes) {
+    toml::table table = io::parse_toml(text, path, ShotTable::fail_at);
+    if (!changes.empty()) change(table, io::parse_toml(changes, path, ShotTable::fail_at));
     return ShotReader(table, path).read();
 }
 
-ShotRequest read_shot_file(const std::string& path) {
+ShotRequest read_shot(const std::string& path, std::string_view changes) {
+    if (!is_shot_file(path) && !fs::is_directory(path)) {
+        ShotRequest request = parse_shot("format = 1\nscene = \"scene\"\n", path, changes);
+        request.scene = path;
+        return request;
+    }
     const std::string why = io::why_unreadable(path);
     if (!why.empty()) throw InputError(path + ": " + why);
     if (fs::file_size(path) > kMostBytes) throw InputError(path + ": is too large for a shot file");
     std::ifstream stream(path, std::ios::binary);
     const std::string text{std::istreambuf_iterator<char>(stream), {}};
-    return parse_shot(text, path);
+    return parse_shot(text, path, changes);
 }
 
 }  // namespace realcam::shot

@@ -39,6 +39,7 @@ struct ShotRequest {
     SceneRequest additions;
 
     std::string lens = "double-gauss-50mm";  ///< a bundled one, or a file
+    std::optional<LensSystem> lens_in_memory;  ///< in its place
     io::LensReadOptions lens_options;
     std::string zoom;  ///< a position of the lens; empty: as its file gives it
     std::optional<double> focal_length_mm;  ///< of a zoom lens, in place of a position

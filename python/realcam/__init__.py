@@ -93,7 +93,7 @@ from .raw_image import RawImage
 from .render import render
 from .rig import Rig, RigCamera
 from .session import ReachedNoise, Session
-from .shot import Shot
+from .shot import Shot, photograph
 from .tolerance import (
     CopyFigures,
     ElementShift,
@@ -213,6 +213,7 @@ __all__ = [
     "nearest_glasses",
     "optical_flow",
     "optimised",
+    "photograph",
     "photographic_figures",
     "plan",
     "random_copy",

@@ -1519,7 +1519,15 @@ def _followed_isos(
     device: str,
 ) -> list[float]: ...
 def _read_toml(text: str, file: str) -> tuple[dict[str, Any], dict[str, int]]: ...
-def _read_shot(path: str | os.PathLike[str], device: str, progress: _Progress | None) -> _Shot: ...
+def _read_shot(
+    path: str | os.PathLike[str],
+    changes: str,
+    scene: Scene | None,
+    lens: Lens | None,
+    denoises: bool,
+    device: str,
+    progress: _Progress | None,
+) -> tuple[_Shot, bool]: ...
 
 class _SettingWords(TypedDict, total=False):
     spp: int | str
@@ -1662,7 +1670,12 @@ class Device(_Value):
     def description(self) -> str: ...
 
 def _render(
-    scene: Scene, camera: Camera, settings: RenderSettings, device: str, progress: _Progress | None
+    scene: Scene,
+    camera: Camera,
+    settings: RenderSettings,
+    device: str,
+    progress: _Progress | None,
+    keeps_stopped: bool,
 ) -> _Picture: ...
 def _effect_notices(lens: Lens, settings: RenderSettings) -> list[str]: ...
 
@@ -1699,8 +1712,9 @@ class Plan(_Value):
     def summary(self) -> str: ...
 
 def _plan(scene: Scene, camera: Camera, settings: RenderSettings, device: str, times: bool) -> Plan: ...
+def _number_text(value: float, digits: int) -> str: ...
 def _plan_film(
-    scene: Scene, cameras: Sequence[Camera], settings: RenderSettings, device: str
+    scene: Scene, camera: Camera, others: list[Camera], settings: RenderSettings, device: str
 ) -> tuple[str, list[str], int, str]: ...
 
 @final

@@ -13,6 +13,10 @@ from ._core import InputError
 GUIDES = ("albedo", "normal", "traced_light")  #: the layers that it goes by, and what is kept out of it
 
 
+def is_installed() -> bool:
+    return bool(denoiser_library())
+
+
 def opened(device: str = "auto") -> _core._Denoiser:
     """A denoiser, for one thread. device: as Image.denoised has it. Raises InputError, which says what to install."""
     return _core._Denoiser(device, 0, denoiser_library())

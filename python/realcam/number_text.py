@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from decimal import Decimal
+
+from . import _core
 
 
 def number_text(value: float, digits: int = 4, infinite: str = "infinity") -> str:
@@ -11,13 +12,7 @@ def number_text(value: float, digits: int = 4, infinite: str = "infinity") -> st
     below a millionth and from 1e15 on."""
     if math.isinf(value):
         return infinite if value > 0 else f"-{infinite}"
-    size = abs(value)
-    if math.isnan(value) or 0 < size < 1e-6 or size >= 1e15:
-        return f"{value:.{digits}g}"
-    text = f"{Decimal(f'{value:.{max(digits, len(str(int(size))))}g}'):f}"
-    whole, point, fraction = text.partition(".")
-    grouped = f"{int(whole):,}".replace(",", " ") if size >= 9999.5 else whole
-    return grouped + point + fraction
+    return _core._number_text(value, digits)
 
 
 def percent_text(share: float, digits: int = 2, *, signed: bool = False) -> str:

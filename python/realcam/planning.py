@@ -76,7 +76,7 @@ def settled_film(
         return Settled(camera, settings, "")
     summary, max_bounces = "", settings.max_bounces
     try:
-        model, effects, max_bounces, summary = _core._plan_film(scene, cameras, settings, device)
+        model, effects, max_bounces, summary = _core._plan_film(scene, camera, list(cameras[1:]), settings, device)
         camera = camera if model == camera.model else camera.replace(model=model)
     except NothingToPlan as nothing:
         warnings.warn(f"{nothing}; the picture has the effects that are named", stacklevel=stacklevel + 1)

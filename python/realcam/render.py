@@ -7,7 +7,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from . import _core
-from ._core import Camera, RenderSettings, Scene
+from ._core import Camera, InputError, RenderSettings, Scene
 from .image import Image
 from .planning import settled
 from .settings import settings_of
@@ -44,6 +44,7 @@ def render(
     *,
     device: str = "auto",
     progress: bool | ProgressCallback = False,
+    on_stop: str = "raise",
     **changes: Unpack[_SettingWords],
 ) -> Image:
     """Photographs a scene: every sample is a ray from the film, through the lens, to the scene and its lights.
@@ -54,15 +55,19 @@ def render(
     device: "auto" (a GPU if there is one), "cpu", "cuda" (all GPUs), "cuda:1" or "cuda:0,1".
     progress: True for a bar on stderr, or a function that is called about 20 times a second with the share done,
     0 to 1, and stops the render where it returns False. Warns of a scene without light.
+    on_stop: what becomes of a picture that progress has stopped: "raise" gives it up, with Cancelled; "keep" returns
+    the samples that were taken, if each pixel has some, and Image.shortfall says so.
 
     Raises InputError, SceneFileError, DeviceError; Cancelled where progress stopped it; KeyboardInterrupt on Ctrl-C.
     """
+    if on_stop not in ("raise", "keep"):
+        raise InputError(f'on_stop must be "raise" or "keep"; it is {on_stop!r:.60}')
     warn_of_no_light(scene)
     camera, wanted, plan = settled(scene, camera, settings_of(settings, changes), device, stacklevel=2)
     warn_of_effects(camera, wanted)
 
     def taken(callback: ProgressCallback | None) -> Image:
-        picture = _core._render(scene, camera, wanted, device, callback)
+        picture = _core._render(scene, camera, wanted, device, callback, on_stop == "keep")
         return Image(**picture, camera=camera, seed=wanted.seed, settings=wanted, plan=plan)
 
     if progress is True:

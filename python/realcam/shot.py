@@ -5,13 +5,13 @@ from __future__ import annotations
 import json
 import math
 import os
-import tempfile
-from collections.abc import Sequence
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import Any
 
-from . import _core
-from ._core import Camera, CameraKey, InputError, RealcamError, RenderSettings, Scene, Shake
+from . import _core, denoiser
+from ._core import Camera, CameraKey, InputError, Lens, RenderSettings, Scene, Shake
 from .bundled_scenes import bundled_file
 from .image import Image
 from .planning import settled_film
@@ -26,8 +26,31 @@ def is_shot_file(path: str | os.PathLike[str]) -> bool:
 
 def text_of_shot_of(scene: str) -> str:
     """The text of a shot file that names a scene file alone."""
-    quoted = json.dumps(scene, ensure_ascii=False).replace("\x7f", "\\u007f")  # JSON's strings are TOML's, but for this
-    return f"format = 1\nscene = {quoted}\n"
+    return f"format = 1\nscene = {toml_value('scene', scene)}\n"
+
+
+def toml_value(name: str, value: Any) -> str:
+    """A value of a shot file as TOML. Raises InputError, with the name, for what no shot file holds."""
+    if isinstance(value, os.PathLike):
+        value = os.fsdecode(value)
+    if isinstance(value, str):
+        return json.dumps(value, ensure_ascii=False).replace(
+            "\x7f", "\\u007f"
+        )  # JSON's strings are TOML's, but for this
+    if isinstance(value, Mapping):
+        return "{" + ", ".join(f"{toml_value(name, str(k))} = {toml_value(name, v)}" for k, v in value.items()) + "}"
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, int):
+        return str(int(value))
+    if isinstance(value, float):
+        return repr(float(value))
+    if isinstance(value, Sequence) or hasattr(value, "tolist"):
+        items = value.tolist() if hasattr(value, "tolist") else value
+        if isinstance(items, (list, tuple)):
+            return "[" + ", ".join(toml_value(name, item) for item in items) + "]"
+        return toml_value(name, items)  # numpy's numbers
+    raise InputError(f"{name} must be a value of a shot file (a number, a text or a list); it is {value!r:.60}")
 
 
 @dataclass(frozen=True)
@@ -65,26 +88,18 @@ class Shot:
     illuminant = setting("illuminant")
 
     @classmethod
-    def load(cls, path: str | os.PathLike[str], *, device: str = "auto") -> Shot:
+    def load(cls, path: str | os.PathLike[str] | Scene, *, device: str = "auto", **values: Any) -> Shot:
         """Reads a shot file and its scene, a scene file alone, or a bundled shot by its name: Shot.load("demo").
 
-        Paths in a shot file are relative to it. A name is that of a bundled shot if no file or folder here has it.
-        What a shot leaves out is chosen as the command `realcam render` chooses it: `device` meters the light where the
-        file gives no exposure time. Raises InputError naming file, line and key, and what scene and lens raise.
+        path may also be a Scene. Paths in a shot file are relative to it. A name is that of a bundled shot if no file
+        or folder here has it. What a shot leaves out is chosen as the command `realcam render` chooses it: `device`
+        meters the light where the file gives no exposure time.
+        values: by the names of the keys of shot files (docs/shot-files.md), as in
+        Shot.load("demo", lens="tessar-50mm", f_number=5.6, focus_m=2); they take the place of those in the file, and of
+        those that they exclude, also in its tables [[key]]. lens may also be a Lens. Paths are relative to the current
+        folder. Raises InputError naming file, line and key, and what scene and lens raise.
         """
-        path = bundled_file(path, (".toml",))
-        named = os.fsdecode(path)
-        if is_shot_file(path) or Path(named).is_dir():
-            return cls(**_core._read_shot(path, device, None))
-        scene = str(Path(named).absolute())
-        with tempfile.TemporaryDirectory(prefix="realcam-") as folder:
-            file = Path(folder) / "scene.toml"
-            file.write_bytes(os.fsencode(text_of_shot_of(scene)))
-            try:
-                return cls(**_core._read_shot(file, device, None))
-            except RealcamError as error:
-                told = str(error).replace(f"{file}:2: ", "").replace(str(file), named).replace(scene, named)
-                raise type(error)(told) from None
+        return _read_shot(path, device, values, denoises=False)[0]
 
     def frames(
         self, numbers: Sequence[int], *, frames_per_second: float = 24.0, name: str = "frame", device: str = "auto"
@@ -130,7 +145,12 @@ class Shot:
         return _core._camera_at(self.camera, self.keys, self.shake, time_s)
 
     def render(
-        self, *, device: str = "auto", threads: int | None = None, progress: bool | ProgressCallback = False
+        self,
+        *,
+        device: str = "auto",
+        threads: int | None = None,
+        progress: bool | ProgressCallback = False,
+        on_stop: str = "raise",
     ) -> Image:
         """Takes the photograph: realcam.render with the shot's own settings, when its shutter opens.
 
@@ -138,4 +158,49 @@ class Shot:
         """
         camera = self.camera if self.shake is None else self.camera_at(self.camera.shutter_opens_s)
         settings = self.settings if threads is None else self.settings.with_(threads=threads)
-        return render(self.scene, camera, settings, device=device, progress=progress)
+        return render(self.scene, camera, settings, device=device, progress=progress, on_stop=on_stop)
+
+
+def _read_shot(
+    path: str | os.PathLike[str] | Scene, device: str, values: Mapping[str, Any], *, denoises: bool
+) -> tuple[Shot, bool]:
+    """The shot, and whether nobody has said how many samples it has or how little noise."""
+    scene = path if isinstance(path, Scene) else None
+    lens = values.get("lens") if isinstance(values.get("lens"), Lens) else None
+    changes = {name: value for name, value in values.items() if value is not None and value is not lens}
+    for name in ("environment", "texture", "lens"):
+        if name in changes and Path(changes[name]).exists():
+            changes[name] = Path(changes[name]).absolute()
+    text = "".join(f"{toml_value(name, name)} = {toml_value(name, value)}\n" for name, value in changes.items())
+    named = "the shot" if isinstance(path, Scene) else bundled_file(path, (".toml",))
+    read, is_unsaid = _core._read_shot(named, text, scene, lens, denoises, device, None)
+    return Shot(**read), is_unsaid
+
+
+def photograph(
+    scene: str | os.PathLike[str] | Scene,
+    *,
+    device: str = "auto",
+    denoise: bool | None = None,
+    progress: bool | ProgressCallback = False,
+    **values: Any,
+) -> Image:
+    """Takes a picture as the command `realcam render` does, and chooses what is left out:
+
+    rc.photograph("scene.glb", lens="tessar-50mm", f_number=5.6, focus_m=2.5).save("picture.png")
+
+    scene: a scene file, a shot file, the name of a bundled shot, or a Scene. values: as for Shot.load. denoise: True
+    takes the noise that is left away; None does so where neither spp nor a noise goal is given, the picture missed that
+    of the command, and the extra realcam[denoise] is installed; the command does the same for all files but .exr.
+    device and progress: those of render. Raises what Shot.load, render and Image.denoised raise.
+    """
+    shot, is_unsaid = _read_shot(scene, device, values, denoises=bool(denoise))
+    may_denoise = denoise or (denoise is None and is_unsaid and denoiser.is_installed())
+    wanted = shot.settings.layers
+    if may_denoise:
+        shot = replace(shot, settings=shot.settings.with_(layers={*wanted, *denoiser.GUIDES}))
+    image = shot.render(device=device, progress=progress)
+    if denoise or (may_denoise and image.shortfall):
+        image = image.denoised(device=device)
+    layers = {name: layer for name, layer in image.layers.items() if name in wanted}
+    return replace(image, layers=layers, settings=image.settings.with_(layers=wanted))

@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+import signal
 import warnings
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
+from types import FrameType
 from typing import Annotated
 
 import typer
 
-from .._core import Camera, InputError
+from .._core import Camera, Cancelled, InputError
 from ..command_words import plain_number
+from ..image import Image
 from ..json_values import json_text
 from ..number_text import counted, number_text
 from ..progress import progress_bar
@@ -62,25 +67,36 @@ def compare(
     name = name.replace("-", "_")
     if f_number is not None and name == "f_number":
         raise InputError("--f-number: the f-number is what --vary names")
-    described = Shot.load(shot, device=device)
-    if f_number is not None:
-        described = variations(described, "f_number", [str(f_number)])[0].shot
+    described = Shot.load(shot, device=device, f_number=f_number)
     settings = described.settings.with_(spp="auto", noise_codes=noise_codes, seconds=seconds)
     if denoise:
         settings = settings.with_(layers=("albedo", "normal", "traced_light"))
-    pictures = []
+    pictures: list[tuple[str, Image]] = []
     kind = "F_NUMBER" if name == "f_number" else ""
     varied = variations(described, name, [plain_number(value, kind) for value in values.split(",")])
     check_figure_target(output)  # again: now the files are known that the pictures are made from
-    for variation in varied:
-        taken = Shot(described.scene, sized(variation, size), settings, described.tone)
-        with warnings.catch_warnings(record=True) as caught, progress_bar(variation.label, is_shown=not quiet) as bar:
-            warnings.simplefilter("always")
-            image = taken.render(device=device, threads=threads, progress=bar)
-        for warning in caught:
-            warnings.warn(f"{variation.label}: {warning.message}", stacklevel=1)
-        pictures.append((variation.label, image.denoised() if denoise else image))
-    save_sheet(pictures, output, columns, tone=described.tone, theme=theme)
+    with interrupt_noted() as is_interrupted:
+        for variation in varied:
+            taken = Shot(described.scene, sized(variation, size), settings, described.tone)
+            with (
+                warnings.catch_warnings(record=True) as caught,
+                progress_bar(variation.label, is_shown=not quiet) as bar,
+                suppress(Cancelled),
+            ):
+                warnings.simplefilter("always")
+
+                def goes_on(done: float, bar: Callable[[float], bool] = bar) -> bool:
+                    return bar(done) and not is_interrupted()
+
+                image = taken.render(device=device, threads=threads, progress=goes_on, on_stop="keep")
+                pictures.append((variation.label, image.denoised() if denoise else image))
+            for warning in caught:
+                warnings.warn(f"{variation.label}: {warning.message}", stacklevel=1)
+            if is_interrupted():
+                break
+        if not pictures:
+            raise KeyboardInterrupt
+        save_sheet(pictures, output, columns, tone=described.tone, theme=theme)
     if as_json:
         rows = [
             {
@@ -101,9 +117,30 @@ def compare(
             typer.echo(f"{label}, {number_text(image.camera.exposure_time_s, 3)} s, {counted(image.spp, 'sample')}")
         options.say_written(output)
 
+    if is_interrupted():
+        if len(pictures) < len(varied):
+            warnings.warn(f"the sheet has {len(pictures)} of {len(varied)} pictures", stacklevel=1)
+        raise KeyboardInterrupt
+
 
 def sized(variation: Variation, longer_side_px: int) -> Camera:
     camera = variation.shot.camera
     scale = longer_side_px / max(camera.film.resolution)
     width, height = (max(1, round(scale * side)) for side in camera.film.resolution)
     return camera.replace(film=camera.film.replace(resolution=(width, height)))
+
+
+@contextmanager
+def interrupt_noted() -> Iterator[Callable[[], bool]]:
+    """Whether Ctrl-C has been pressed, once; the second time it raises KeyboardInterrupt."""
+    seen: list[int] = []
+
+    def note(number: int, _: FrameType | None) -> None:
+        seen.append(number)
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+
+    before = signal.signal(signal.SIGINT, note)
+    try:
+        yield lambda: bool(seen)
+    finally:
+        signal.signal(signal.SIGINT, before)

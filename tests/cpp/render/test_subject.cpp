@@ -8,7 +8,7 @@
 #include "io/lens/lens_file.hpp"
 #include "render/axis_crossings.hpp"
 #include "render/default_view.hpp"
-#include "render/surroundings.hpp"
+#include "render/subject.hpp"
 #include "set_pieces.hpp"
 
 namespace {
@@ -19,7 +19,7 @@ using namespace realcam::test;
 constexpr Extent kObject = {{4, 0, -6}, {4.3, 0.3, -5.7}};
 
 void check_subject(const Assembly& scene, const Extent& wanted) {
-    const BoundingBox box = Surroundings(scene).box();
+    const BoundingBox box = Subject(scene).box;
     const double leave = 1e-9 * length(wanted.high - wanted.low);
     CHECK(length(box.low - wanted.low) <= leave);
     CHECK(length(box.high - wanted.high) <= leave);
@@ -134,37 +134,117 @@ TEST_CASE("ordinary objects are the subject as a whole") {
     check_whole(flat);
 }
 
-TEST_CASE("a room is seen from inside, and an open box from outside") {
-    const Extent walls = {{-2, 0, -3}, {2, 2.6, 3}};
-    const auto furnish = [](Scene& scene) {
-        add_box(scene, {{-1.5, 0, -2.5}, {-0.5, 1, -1.5}});
-        add_box(scene, {{0.4, 0, -2}, {1.6, 0.8, 0}});
-        add_box(scene, {{-1.9, 0, 1}, {-1.4, 2, 2.5}});
-    };
-    Scene room = grey_scene(), lit = grey_scene(), open = grey_scene(), crate = grey_scene();
-    add_box(room, walls, true);
-    add_box(open, walls, true, true);
-    add_box(lit, walls);
-    add_box(crate, walls);
-    for (Scene* scene : {&room, &open, &lit, &crate}) furnish(*scene);
-    lit.points.push_back({{0, 2.4, 0}, {100, 100, 100}});
+namespace {
 
+/// Where a point lies in the picture, from -1 to 1 on the film's width and height, by the ideal image of the lens's
+/// focal length; z: in front of the entrance pupil, m.
+Vec3d seen_at(const Camera& camera, Vec3d point_m) {
+    const auto axes = camera_detail::axes_of(camera.pose);
+    const FirstOrder data = first_order(camera.lens, camera.lens.wavelength_nm);
+    const double film_to_pupil_m = (camera.lens.film_position() - data.entrance_pupil_position) / 1000;
+    const Vec3d from = point_m - (camera.pose.position_m - film_to_pupil_m * axes.backward);
+    const double depth = -dot(from, axes.backward), scale = 2 * data.effective_focal_length / depth;
+    return {scale * dot(from, axes.right) / camera.film.width_mm, scale * dot(from, axes.up) / camera.film.height_mm,
+            depth};
+}
+
+/// A room of 4 x 2.6 x 6 m with three pieces of furniture.
+constexpr Extent kWalls = {{-2, 0, -3}, {2, 2.6, 3}};
+void furnish(Scene& scene) {
+    add_box(scene, {{-1.5, 0, -2.5}, {-0.5, 1, -1.5}});
+    add_box(scene, {{0.4, 0, -2}, {1.6, 0.8, 0}});
+    add_box(scene, {{-1.9, 0, 1}, {-1.4, 2, 2.5}});
+}
+
+}  // namespace
+
+TEST_CASE("a closed room is seen from a corner that shows its content") {
+    Scene room = grey_scene(), lit = grey_scene();
+    add_box(room, kWalls, true);
+    add_box(lit, kWalls);
+    lit.points.push_back({{0, 2.4, 0}, {100, 100, 100}});
+    for (Scene* scene : {&room, &lit}) furnish(*scene);
     check_whole(room);
-    for (const Scene& scene : {room, lit}) {
-        const Camera camera = framed(Assembly(scene));
-        CHECK(eye_z(camera) > 2.5);
-        CHECK(eye_z(camera) < 3);
-        CHECK(camera.pose.look_at_m.z == doctest::Approx(0));
-        // On the far wall, 6 m away.
-        CHECK(camera.lens.focus_distance / 1000 == doctest::Approx(camera.pose.position_m.z + 3));
-    }
-    for (const Scene& scene : {open, crate}) CHECK(eye_z(framed(Assembly(scene))) > 5);
-    // Where z is up, the camera stands along -y.
+    // Where z is up, the room lies on its side in the same numbers.
     Scene turned = room;
     for (Vec3d& p : turned.positions_m) p = {p.x, -p.z, p.y};
-    const Camera camera = framed(Assembly(turned), {0, 0, 1});
-    CHECK(camera.pose.position_m.y < -2.5);
-    CHECK(camera.pose.position_m.y > -3.2);
+    for (const bool z_is_up : {false, true})
+        for (const Scene& scene : {z_is_up ? turned : room, lit}) {
+            if (z_is_up && &scene == &lit) continue;
+            const Camera camera = framed(Assembly(scene), z_is_up ? Vec3d{0, 0, 1} : Vec3d{0, 1, 0});
+            const Vec3d p = camera.pose.position_m;
+            const Vec3d at = z_is_up && !scene.points.size() ? Vec3d{p.x, p.z, -p.y} : p;
+            CHECK(std::fabs(at.x) < 2);
+            CHECK(std::fabs(at.z) < 3);
+            CHECK(at.y > 1.3);
+            CHECK(at.y < 2.6);
+        }
+    for (const Scene& scene : {room, lit}) {
+        const Camera camera = framed(Assembly(scene));
+        // The box in the far corner is in the picture, and nothing hides the view for most of the way to it.
+        const Vec3d box = seen_at(camera, {-1, 0.5, -2});
+        CHECK(std::fabs(box.x) < 1);
+        CHECK(std::fabs(box.y) < 1);
+        CHECK(camera.lens.focus_distance / 1000 > 1.5);
+    }
+}
+
+TEST_CASE("an empty room is seen from one corner to the opposite one") {
+    Scene room = grey_scene();
+    add_box(room, kWalls, true);
+    const Camera camera = framed(Assembly(room));
+    CHECK(length(camera.pose.look_at_m - Vec3d{0, 1.3, 0}) < 1e-9);
+    CHECK(camera.pose.position_m.x * camera.pose.position_m.z != 0);
+}
+
+TEST_CASE("an open room fills the picture from its open side, whichever that is") {
+    Scene open = grey_scene();
+    add_box(open, kWalls, true, true);
+    furnish(open);
+    for (const int quarter : {0, 1, 2, 3}) {
+        CAPTURE(quarter);
+        Scene scene = open;
+        for (Vec3d& p : scene.positions_m)
+            for (int i = 0; i < quarter; ++i) p = {p.z, p.y, -p.x};
+        const Camera camera = framed(Assembly(scene));
+        const auto to_opening = [&](Vec3d p) {
+            for (int i = 0; i < quarter; ++i) p = {p.z, p.y, -p.x};
+            return seen_at(camera, p);
+        };
+        // 4 m by 2.6 m at 36 by 24: the width is cut by the film's edge, by 3% of distortion at most the height, too.
+        const Vec3d corner = to_opening({2, 2.6, 3});
+        CHECK(corner.z > 1);
+        CHECK(std::fabs(corner.x) > 1);
+        CHECK(std::fabs(corner.x) < 1.1);
+        CHECK(std::fabs(corner.y) == doctest::Approx(1).epsilon(0.03));
+    }
+}
+
+TEST_CASE("an object is seen from slightly above, and no side of it edge on") {
+    Scene crate = grey_scene(), floor = grey_scene(), poster = grey_scene();
+    add_box(crate, {{-1, 0, -1}, {1, 2, 1}});
+    add_patch(floor, {-1, 0, -1}, {0, 0, 2}, {2, 0, 0});
+    add_patch(poster, {-1, 0, 0}, {2, 0, 0}, {0, 1, 0});
+    const auto elevation_deg = [](const Scene& scene) {
+        const Pose pose = framed(Assembly(scene)).pose;
+        const Vec3d view = pose.position_m - pose.look_at_m;
+        CHECK(view.z > 0);
+        CHECK(view.x == doctest::Approx(0));
+        return std::atan2(view.y, view.z) * 180 / std::numbers::pi;
+    };
+    CHECK(elevation_deg(crate) == doctest::Approx(22.5));  // half of 45 degrees
+    CHECK(elevation_deg(floor) == doctest::Approx(45));  // half of 90
+    CHECK(elevation_deg(poster) == doctest::Approx(0));
+    for (const Scene& scene : {crate, floor, poster}) {
+        const Camera camera = framed(Assembly(scene));
+        const BoundingBox box = bounding_box(Assembly(scene));
+        double farthest = 0;
+        for (int i = 0; i < 8; ++i) {
+            const Vec3d corner = seen_at(camera, box.corner(i));
+            farthest = std::max({farthest, std::fabs(corner.x), std::fabs(corner.y)});
+        }
+        CHECK(farthest == doctest::Approx(0.9).epsilon(0.03));  // the lens's distortion
+    }
 }
 
 TEST_CASE("no wall is between the camera and its subject") {

@@ -1,0 +1,53 @@
+#include "number_text.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+
+namespace realcam {
+namespace {
+
+enum class Notation { general, exponent, fixed };
+
+std::string printed(Notation notation, int digits, double value) {
+    char text[64];
+    switch (notation) {
+        case Notation::general: std::snprintf(text, sizeof text, "%.*g", digits, value); break;
+        case Notation::exponent: std::snprintf(text, sizeof text, "%.*e", digits, value); break;
+        case Notation::fixed: std::snprintf(text, sizeof text, "%.*f", digits, value); break;
+    }
+    return text;
+}
+
+}  // namespace
+
+std::string number_text(double value, int digits) {
+    if (std::isinf(value)) return value > 0 ? "infinity" : "-infinity";
+    const double size = std::fabs(value);
+    if (std::isnan(value) || (0 < size && size < 1e-6) || size >= 1e15)
+        return printed(Notation::general, digits, value);
+    // Rounded first, because 999.96 has three digits before the point and 1000 four.
+    const double shown = rounded(size, digits);
+    const int exponent = shown > 0 ? static_cast<int>(std::floor(std::log10(shown))) : 0;
+    std::string text = printed(Notation::fixed, std::max(0, digits - 1 - exponent), size);
+    if (text.find('.') != std::string::npos) {
+        text.erase(text.find_last_not_of('0') + 1);
+        if (text.back() == '.') text.pop_back();
+    }
+    if (exponent >= 4)
+        for (std::ptrdiff_t at = static_cast<std::ptrdiff_t>(std::min(text.find('.'), text.size())) - 3; at > 0;
+             at -= 3)
+            text.insert(static_cast<std::size_t>(at), 1, ' ');
+    return (value < 0 ? "-" : "") + text;
+}
+
+double rounded(double value, int digits) {
+    return std::strtod(printed(Notation::exponent, digits - 1, value).c_str(), nullptr);
+}
+
+std::string counted(double count, const std::string& noun, int digits) {
+    return number_text(count, digits) + ' ' + noun + (count == 1 ? "" : "s");
+}
+
+}  // namespace realcam
