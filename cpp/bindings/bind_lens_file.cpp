@@ -1,6 +1,7 @@
 #include <pybind11/stl.h>
 
 #include <map>
+#include <tuple>
 
 #include "../io/files/file_suffix.hpp"
 #include "../io/lens/lens_format.hpp"
@@ -27,9 +28,13 @@ std::pair<LensSystem, std::vector<std::string>> read_unlocked(const std::string&
     return {std::move(lens), std::move(notes)};
 }
 
-LensSystem load_lens(const py::object& name, const std::optional<std::map<std::string, py::object>>& glass, bool force,
-                     const std::optional<std::string>& pbrt_thickness, const py::object& glass_catalogue) {
+/// The lens, and the field angles in degrees and wavelengths in nm of another program's file.
+std::tuple<LensSystem, std::vector<double>, std::vector<double>> load_with_light(
+    const py::object& name, const std::optional<std::map<std::string, py::object>>& glass, bool force,
+    const std::optional<std::string>& pbrt_thickness, const py::object& glass_catalogue) {
     io::LensReadOptions options;
+    io::DesignLight light;
+    options.design_light = &light;
     if (py::isinstance<py::list>(glass_catalogue) || py::isinstance<py::tuple>(glass_catalogue))
         for (const py::handle file : glass_catalogue)
             io::read_glass_catalogue(path_from(py::reinterpret_borrow<py::object>(file)), options.catalogue);
@@ -41,7 +46,12 @@ LensSystem load_lens(const py::object& name, const std::optional<std::map<std::s
     if (pbrt_thickness) options.pbrt_thickness = io::pbrt_thickness_named(*pbrt_thickness);
     auto [lens, notes] = read_unlocked(path_from(name), std::move(options));
     for (const std::string& note : notes) warn(note);
-    return std::move(lens);
+    return {std::move(lens), std::move(light.fields_deg), std::move(light.wavelengths_nm)};
+}
+
+LensSystem load_lens(const py::object& name, const std::optional<std::map<std::string, py::object>>& glass, bool force,
+                     const std::optional<std::string>& pbrt_thickness, const py::object& glass_catalogue) {
+    return std::get<0>(load_with_light(name, glass, force, pbrt_thickness, glass_catalogue));
 }
 
 std::pair<LensSystem, std::vector<std::string>> read_lens_with_notes(const py::object& path) {
@@ -86,6 +96,8 @@ file does not have. What a file leaves out and is computed or assumed is a UserW
 (Optiland) or .roa (ray-optics), with a UserWarning for all that these cannot say; .osl, a camera of Blender
 5. Raises InputError, also for a lens that OSL cannot express, and ImageFileError where no file can be
 made.)")
+        .def_static("_load_with_light", &load_with_light, "name_or_path"_a, py::kw_only(), "glass"_a = py::none(),
+                    "force"_a = false, "pbrt_thickness"_a = py::none(), "glass_catalogue"_a = py::none())
         .def_static("_load_with_notes", &read_lens_with_notes, "path"_a)
         .def("_file_content", &file_content, "path"_a);
 }

@@ -1,5 +1,6 @@
 #include "shot_file.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -277,6 +278,17 @@ void change(toml::table& shot, const toml::table& changes) {
             if (replaced.key == key.str())
                 for (const std::string_view other : replaced.gone)
                     if (!changes.contains(other)) forget(other);
+    }
+    if (toml::array* const keys = shot["key"].as_array(); keys && !changes.contains("key")) {
+        const auto says_nothing = [](const toml::node& key) {
+            const toml::table* const table = key.as_table();
+            return table && std::ranges::all_of(*table, [](const auto& entry) {
+                       return entry.first == "time_s" || entry.first == "interpolation";
+                   });
+        };
+        for (auto key = keys->begin(); key != keys->end();)
+            key = says_nothing(*key) ? keys->erase(key) : std::next(key);
+        if (keys->empty()) shot.erase("key");
     }
     for (const auto& [key, value] : changes) shot.insert_or_assign(key, value);
 }

@@ -38,8 +38,8 @@ GROUPS = {
     "Camera": ("Camera", "Film", "CameraKey", "Shake", "CameraRays", "RayChunks", "Autofocus", "autofocus"),
     "Scene": ("Scene", "Material", "read_environment"),
     "Pictures": (
-        "render", "RenderSettings", "RenderStats", "Image", "Shot", "Session", "ReachedNoise", "LiveView", "LiveFrame",
-        "Device", "DeviceArray", "devices",
+        "render", "photograph", "RenderSettings", "RenderStats", "Image", "Shot", "Session", "ReachedNoise", "LiveView",
+        "LiveFrame", "Device", "DeviceArray", "devices",
     ),
     "Many machines": ("Job", "JobStatus", "FilmPart"),
     "Effects and accuracy": (

@@ -190,8 +190,8 @@ def photograph(
     rc.photograph("scene.glb", lens="tessar-50mm", f_number=5.6, focus_m=2.5).save("picture.png")
 
     scene: a scene file, a shot file, the name of a bundled shot, or a Scene. values: as for Shot.load. denoise: True
-    takes the noise that is left away; None does so where neither spp nor a noise goal is given, the picture missed that
-    of the command, and the extra realcam[denoise] is installed; the command does the same for all files but .exr.
+    takes the noise that is left away; None does so where spp is not given, the picture has missed the goal of its
+    noise, and the extra realcam[denoise] is installed; the command does the same for all files but .exr.
     device and progress: those of render. Raises what Shot.load, render and Image.denoised raise.
     """
     shot, is_unsaid = _read_shot(scene, device, values, denoises=bool(denoise))

@@ -138,7 +138,10 @@ def test_the_noise_of_lamps_is_told(scene: rc.Scene, focus_m: float, resolution:
 
 
 def test_what_cannot_be_reached_is_said(device: str) -> None:
-    with pytest.warns(UserWarning, match=r"noise is .* where the picture is noisiest, not 0\.001; about .* samples"):
+    with pytest.warns(
+        UserWarning,
+        match=r"noise is .* where the picture is noisiest, not 0\.001; a pixel there needs about .* samples",
+    ):
         image = rc.render(half_noisy(), camera(), effects=(), spp="auto", noise=0.001, max_spp=64, device=device)
     assert image.shortfall
     assert 8 < image.spp <= 64

@@ -59,6 +59,7 @@ def names(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
         return accuracy_cost(scene, camera, size=12, most_spp=4, reference_spp=4, samplings=False)
 
     monkeypatch.setattr(rc, "render", rendered)
+    monkeypatch.setattr("realcam.shot.render", rendered)
     monkeypatch.setattr(rc, "accuracy_cost", cost)
     monkeypatch.chdir(tmp_path)
 
@@ -72,7 +73,8 @@ def names(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
     there[0, 3] = 0.1
 
     (tmp_path / "scenes").symlink_to(ROOT / "scenes")
-    shutil.copy(ROOT / "scenes" / "demo.glb", tmp_path / "terrace.glb")
+    for name in ("terrace.glb", "scene.glb"):
+        shutil.copy(ROOT / "scenes" / "demo.glb", tmp_path / name)
     terrace = 'format = 1\nscene = "terrace.glb"\nresolution = [24, 16]\nspp = 2\nexposure_time_s = 0.02\n'
     (tmp_path / "terrace.toml").write_text(terrace)
     write_radiance(tmp_path / "evening.hdr", np.full((4, 8, 3), 20.0))

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 import warnings
 
 import numpy as np
 import pytest
 import realcam as rc
+from pytest import approx
 
 from . import scenes
 
@@ -24,14 +26,20 @@ def test_the_film_of_a_lens() -> None:
 
 
 def test_framing_puts_the_scene_into_the_picture() -> None:
-    """Every corner, seen from the entrance pupil, lies inside the field of view, and the widest fills most of it."""
+    """The corners of its box, seen from the entrance pupil, lie in the field of view, and the widest fills most of it."""
     camera = rc.Camera(LENS, iso=800).framing(CHAIR)
     pupil, field = np.array(camera.entrance_pupil_position_m), camera.field_of_view_deg
     assert camera.iso == 800
     assert camera.look_at == pytest.approx((0, 0.5, 0))
-    away = np.array(CORNERS) - pupil
-    across = np.degrees(np.arctan2(np.abs(away[:, 0]), -away[:, 2])).max()
-    upward = np.degrees(np.arctan2(np.abs(away[:, 1]), -away[:, 2])).max()
+    # Slightly from above: half of the elevation of the diagonal from the lower front edge to the upper back edge.
+    elevation = 0.5 * math.atan2(1, 1)
+    view = np.array([0, -math.sin(elevation), -math.cos(elevation)])
+    assert np.subtract(camera.look_at, camera.position) / math.dist(camera.look_at, camera.position) == approx(view)
+    box = np.array(list(itertools.product((-1, 1), (0, 1), (-0.5, 0.5))))
+    away = box - pupil
+    depth, up = away @ view, away @ np.array([0, math.cos(elevation), -math.sin(elevation)])
+    across = np.degrees(np.arctan2(np.abs(away[:, 0]), depth)).max()
+    upward = np.degrees(np.arctan2(np.abs(up), depth)).max()
     assert max(across / (field.horizontal / 2), upward / (field.vertical / 2)) == pytest.approx(0.9, abs=0.02)
     assert math.isfinite(camera.lens.focus_distance_m)
 

@@ -280,7 +280,7 @@ def test_the_command_takes_a_film_to_raw(
     for name, value in raw.metadata().items():
         assert picture.spec().getattribute(name) == value, name
     for words, why in (
-        (["film.exr", "-o", "x.jpg"], ".dng, .npy (raw) or .png"),
+        (["film.exr", "-o", "x.bmp"], ".dng, .npy (raw) or .png"),
         (["film.exr", "-o", "x.dng", "--sensor", "idael"], 'unknown sensor "idael"'),
         (["film.exr", "-o", "x.dng", "--sensor", "sony-imx174-mono"], "iso must lie between"),
         (["a.png", "-o", "x.dng"], "holds no exposure"),

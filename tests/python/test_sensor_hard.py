@@ -204,8 +204,8 @@ def test_other_mistakes_are_told() -> None:
     color = rc.Sensor.load("ideal").expose(film)
     with pytest.raises(rc.InputError, match="unknown demosaicing 'magic'"):
         color.exposure("magic")
-    with pytest.raises(rc.InputError, match=r"raw\.jpg: \.dng, \.npy .* is wanted"):
-        color.save("raw.jpg")
+    with pytest.raises(rc.InputError, match=r"raw\.bmp: \.dng, \.npy .* is wanted"):
+        color.save("raw.bmp")
 
 
 def test_what_is_not_installed_is_told_in_one_line(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:

@@ -353,7 +353,8 @@ def test_no_thread_to_be_had_is_told() -> None:
         import resource
         lit, small = room(), camera.replace(film=rc.Film(36, 24, (3, 2)))
         try:
-            rc.render(lit, small.replace(model="thin"), effects=["ghosts"], device="cpu")  # starts Embree alone
+            # Starts Embree alone.
+            rc.render(lit, small.replace(model="thin"), effects=["ghosts"], max_bounces=1, device="cpu")
         except rc.InputError:
             pass
         size = int(open("/proc/self/statm").read().split()[0]) * resource.getpagesize()

@@ -99,3 +99,66 @@ def test_the_same_mean_as_mitsuba(name: str) -> None:
     mean, largest = compare(name, spp=1024, rounds=8)
     assert abs(mean) < 0.005
     assert largest < LARGEST
+
+
+def parallel_mirrors() -> scenes.Shot:
+    """A ball between two mirrors, which show it in each other."""
+    material = rc.Material(diffuse=(0, 0, 0), mirror=(0.9, 0.9, 0.9), fresnel=False)
+    bsdf = {"type": "conductor", "material": "none", "specular_reflectance": {"type": "rgb", "value": 0.9}}
+    mirrors = [
+        scenes.Part(scenes.quad([x, 0, 1.5], [0, 0, -3], [0, 2.2, 0]), material, {"type": "twosided", "bsdf": bsdf})
+        for x in (-1.1, 1.1)
+    ]
+    ball = scenes.Part(scenes.sphere([0, 0.6, 0], 0.4), *scenes.diffuse((0.8, 0.5, 0.2)))
+    return scenes.Shot([*scenes.room(), *mirrors, ball])
+
+
+def white_room() -> scenes.Shot:
+    """Six walls that reflect 0.8 of the light, and a lamp below the ceiling."""
+    white, (x, y, z) = scenes.diffuse((0.8, 0.8, 0.8)), (4, 3, 7)
+    low, high = [-2, 0, -2], [2, 3, 5]
+    sides = [([x, 0, 0], [0, y, 0]), ([x, 0, 0], [0, 0, z]), ([0, y, 0], [0, 0, z])]
+    walls = [
+        scenes.Part(scenes.quad(corner, [s * c for c in u], [s * c for c in v]), *white)
+        for corner, s in ((low, 1), (high, -1))
+        for u, v in sides
+    ]
+    return scenes.Shot([*walls, scenes.room()[2]], sky=0.0)
+
+
+@pytest.mark.parametrize("shot", [scenes.SHOTS["smooth glass"], parallel_mirrors, white_room])
+def test_planned_bounces_show_what_mitsuba_sees_at_depth_64(shot: Callable[[], scenes.Shot]) -> None:
+    """Within the threshold of a photograph, 1 code of 8 bits in the mean of 8 x 8 pixels, and the noise of both."""
+    from mitsuba_scene import sensor as mitsuba_sensor
+
+    rounds, spp = 8, 128
+    mine = scenes.realcam_scene(shot())
+    taken = camera().metered(mine, device="cpu")
+    sensor, falloff = mi.load_dict(mitsuba_sensor("perspective", taken)), falloff_of(taken)
+    integrator = mi.load_dict({"type": "path", "max_depth": 64 + 2})
+    peer = scenes.mitsuba_scene(shot())
+
+    def codes(luxes: np.ndarray) -> np.ndarray:
+        # 10 / ISO lux seconds are middle grey, 18% of white (ISO 12232).
+        linear = np.clip(0.018 * taken.iso * taken.exposure_time_s * np.asarray(blocks(luxes)), 0, 1)
+        return 255 * np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
+
+    def of(pictures: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+        all_codes = np.array([codes(picture) for picture in pictures])
+        return codes(np.mean(pictures, axis=0)), all_codes.std(axis=0, ddof=1) / rounds**0.5
+
+    theirs, their_error = of(
+        [
+            np.array(mi.render(peer, sensor=sensor, integrator=integrator, spp=spp, seed=seed), float) * falloff
+            for seed in range(rounds)
+        ]
+    )
+
+    def largest(**bounces: int) -> float:
+        images = [rc.render(mine, taken, effects=(), spp=spp, seed=s, device="cpu", **bounces) for s in range(rounds)]
+        ours, our_error = of([np.asarray(image.pixels, float) / taken.exposure_time_s for image in images])
+        print(images[0].settings.max_bounces, np.abs(ours - theirs).max(), np.hypot(our_error, their_error).max())
+        return float((np.abs(ours - theirs) - LARGEST * np.hypot(our_error, their_error)).max())
+
+    assert largest() < 1
+    assert largest(max_bounces=1) > 10

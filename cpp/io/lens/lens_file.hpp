@@ -23,6 +23,12 @@ std::string_view bundled_lens_text(const std::string& name);
 /// The row of a pbrt lens table in which a thickness stands: that of the surface behind it, or in front of it.
 enum class PbrtThickness { by_first_row, after, before };
 
+/// The light that a lens was designed for, as another program's file states it.
+struct DesignLight {
+    std::vector<double> fields_deg;  ///< of the chief rays, by first-order optics; empty: the file states none
+    std::vector<double> wavelengths_nm;
+};
+
 /// What a reader may be told of another program's file.
 struct LensReadOptions {
     /// Glasses by the names that the file gives them: for those that no catalogue has, or several.
@@ -36,6 +42,7 @@ struct LensReadOptions {
     std::function<void(const std::string&)> warn;
     /// Long files take seconds; where it returns false, reading ends by throwing Cancelled.
     KeepGoing keep_going;
+    DesignLight* design_light = nullptr;  ///< receives it
 };
 
 /// Whether `name` means a file. It does if it is no bundled lens, and has a '/' or the suffix of a lens file, or if a

@@ -283,6 +283,16 @@ private:
             fail(error.detail, error.surface > 0 && index < kept_.size() ? &row_of(index) : nullptr);
         }
         lens_.allow_crossing = crosses();
+        if (options_.design_light) *options_.design_light = {field_angles_deg(), p_.wavelengths_nm};
+    }
+
+    std::vector<double> field_angles_deg() const {
+        std::vector<double> angles;
+        for (const PrescriptionField& field : p_.fields)
+            angles.push_back(180 / std::numbers::pi *
+                             field_angle_of(states_.front().lens, states_.front().object_distance, p_.field_kind,
+                                            hypotenuse(field.x, field.y)));
+        return angles;
     }
 
     void check_all() {

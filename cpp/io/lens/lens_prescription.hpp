@@ -74,6 +74,7 @@ struct Prescription {
     double image_curvature = 0;  ///< of the image surface
     SurfacePlacement image_placement;  ///< as seen from the axis that leads to it
     double wavelength_nm = kLineD_nm;
+    std::vector<double> wavelengths_nm;  ///< all of the file; empty: it states none
 
     /// Zoom positions: their names, and what changes: by row (-1: the object's distance), a value for each.
     std::vector<std::string> zoom_names;

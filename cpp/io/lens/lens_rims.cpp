@@ -21,19 +21,6 @@ double size_of(const PrescriptionField& field) {
     return hypotenuse(field.x, field.y);
 }
 
-/// The angle at which the chief ray of a field comes, by first-order optics.
-double angle_of(const LensSystem& lens, double object_distance, FieldKind kind, double size) {
-    if (kind == FieldKind::angle_deg) return size * std::numbers::pi / 180;
-    const FirstOrder data = first_order(lens, lens.wavelength_nm);
-    const double to_pupil = object_distance + data.entrance_pupil_position;
-    if (kind == FieldKind::object_height) return std::atan(size / to_pupil);
-    if (std::isinf(object_distance)) return std::atan(size / std::fabs(data.effective_focal_length));
-    // The magnification of the object plane: n u of the marginal ray in front of the lens over that behind it.
-    const ParaxialRay end =
-        trace_paraxial(lens, lens.wavelength_nm, {object_distance, 1}, 0, static_cast<int>(lens.surfaces.size()));
-    return std::atan(std::fabs(size * data.image_index * end.slope / to_pupil));
-}
-
 /// With rims that stop no ray which the surfaces allow: an asphere is searched for its rays within its rim.
 LensSystem with_wide_rims(LensSystem lens, double largest_angle) {
     const FirstOrder data = first_order(lens, lens.wavelength_nm);
@@ -64,7 +51,7 @@ public:
     FieldBundles(const LensSystem& lens, double object_distance, FieldKind kind, double largest, bool passing,
                  Checkpoint& checkpoint)
         : lens_(lens),
-          open_(with_wide_rims(lens, angle_of(lens, object_distance, kind, largest))),
+          open_(with_wide_rims(lens, field_angle_of(lens, object_distance, kind, largest))),
           object_distance_(object_distance),
           kind_(kind),
           checkpoint_(checkpoint),
@@ -77,7 +64,7 @@ public:
     void add(double field, const std::vector<Vec2<double>>& places) {
         try {
             const RayAimer aim(open_, lens_.wavelength_nm,
-                               {angle_of(lens_, object_distance_, kind_, field), object_distance_});
+                               {field_angle_of(lens_, object_distance_, kind_, field), object_distance_});
             for (const Vec2<double> place : places) {
                 checkpoint_.pass(1000 * lens_.surfaces.size());
                 const AimedRay ray = aim(place);
@@ -127,6 +114,18 @@ double largest_of(const std::vector<PrescriptionField>& fields) {
 
 }  // namespace
 
+double field_angle_of(const LensSystem& lens, double object_distance, FieldKind kind, double size) {
+    if (kind == FieldKind::angle_deg) return size * std::numbers::pi / 180;
+    const FirstOrder data = first_order(lens, lens.wavelength_nm);
+    const double to_pupil = object_distance + data.entrance_pupil_position;
+    if (kind == FieldKind::object_height) return std::atan(size / to_pupil);
+    if (std::isinf(object_distance)) return std::atan(size / std::fabs(data.effective_focal_length));
+    // The magnification of the object plane: n u of the marginal ray in front of the lens over that behind it.
+    const ParaxialRay end =
+        trace_paraxial(lens, lens.wavelength_nm, {object_distance, 1}, 0, static_cast<int>(lens.surfaces.size()));
+    return std::atan(std::fabs(size * data.image_index * end.slope / to_pupil));
+}
+
 RayRims rims_of_rays(const LensSystem& lens, double object_distance, FieldKind kind,
                      const std::vector<PrescriptionField>& fields, Checkpoint& checkpoint) {
     FieldBundles bundles(lens, object_distance, kind, largest_of(fields), false, checkpoint);
@@ -163,7 +162,7 @@ double largest_image_height(const LensSystem& lens, double object_distance, Fiel
                             const std::vector<PrescriptionField>& fields) {
     const double largest = largest_of(fields);
     if (largest == 0 || kind == FieldKind::image_height) return largest;
-    const double angle = angle_of(lens, object_distance, kind, largest);
+    const double angle = field_angle_of(lens, object_distance, kind, largest);
     try {
         const LensSystem open = with_wide_rims(lens, angle);
         const AimedRay chief = RayAimer(open, lens.wavelength_nm, {angle, object_distance}).chief_ray();

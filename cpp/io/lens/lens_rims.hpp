@@ -22,6 +22,9 @@ RayRims rims_of_rays(const LensSystem& lens, double object_distance, FieldKind k
 RayRims reach_of_rays(const LensSystem& lens, double object_distance, FieldKind kind,
                       const std::vector<PrescriptionField>& fields, Checkpoint& checkpoint);
 
+/// The angle at which the chief ray of a field of this size comes, radians, by first-order optics.
+double field_angle_of(const LensSystem& lens, double object_distance, FieldKind kind, double size);
+
 /// The largest image height of the fields, mm, by real chief rays. Where there is no such ray, first-order optics is
 /// used.
 double largest_image_height(const LensSystem& lens, double object_distance, FieldKind kind,

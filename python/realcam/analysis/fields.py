@@ -88,6 +88,18 @@ def three_fields(lens: Lens, fields_deg: ArrayLike | None, bundles: Bundles) -> 
     return field_angles_deg(lens, [0, 0.7, 1], bundles) if fields_deg is None else numbers_of(fields_deg, "fields_deg")
 
 
+def three_of(values: Sequence[float], middle: float | None = None) -> Doubles:
+    """The least, one between and the largest of the values of a lens file; fewer where there are not so many.
+
+    middle: the one between; None is the one nearest to 0.7 of the largest, but of two alone this number itself.
+    """
+    least, largest = min(values), max(values)
+    between = [value for value in values if least < value < largest]
+    if middle is None:
+        middle = min(between, key=lambda value: abs(value - 0.7 * largest), default=0.7 * largest)
+    return np.unique([least, middle, largest])
+
+
 def film_points_of(film_mm: ArrayLike) -> list[FieldPlace]:
     """(x, y) of each of (F, 2) film points. Raises InputError."""
     points = np.asarray(film_mm, dtype=float)

@@ -9,7 +9,6 @@ import os
 import re
 import zipfile
 from collections.abc import Callable, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
@@ -46,8 +45,7 @@ def write_extension(
         expressible += [lens.zoomed(position) for position in lens.zoom_positions] or [lens]
     if not expressible:
         raise InputError("none of the lenses can be written as OSL")
-    with ThreadPoolExecutor(os.cpu_count()) as threads:
-        shaders = list(threads.map(shader_text, expressible))
+    shaders = [shader_text(lens) for lens in expressible]  # not in threads, which Ctrl-C would wait for
     figures = {_key(lens): _figures(lens, text) for lens, text in zip(expressible, shaders, strict=True)}
     if len(figures) < len(expressible):
         raise InputError("two of the lenses have the same name")

@@ -67,7 +67,9 @@ def compare(
     name = name.replace("-", "_")
     if f_number is not None and name == "f_number":
         raise InputError("--f-number: the f-number is what --vary names")
-    described = Shot.load(shot, device=device, f_number=f_number)
+    described = Shot.load(shot, device=device)
+    if f_number is not None:  # at the brightness of the shot
+        described = variations(described, "f_number", [str(f_number)])[0].shot
     settings = described.settings.with_(spp="auto", noise_codes=noise_codes, seconds=seconds)
     if denoise:
         settings = settings.with_(layers=("albedo", "normal", "traced_light"))

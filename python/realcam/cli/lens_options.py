@@ -98,8 +98,12 @@ class File:
     ] = None
 
     def lens(self, name: str) -> Lens:
+        return self.lens_and_light(name)[0]
+
+    def lens_and_light(self, name: str) -> tuple[Lens, list[float], list[float]]:
+        """The lens, and the field angles in degrees and the wavelengths in nm that another program's file states."""
         add_to_lens_path(self.lens_path)
-        return Lens.load(
+        return Lens._load_with_light(
             name,
             glass=options.glasses(self.glass or ()),
             force=self.force,

@@ -146,17 +146,28 @@ def report(
     ] = None,
     quiet: options.Quiet = False,
 ) -> None:
-    """Write all about a lens on four pages: the lens, rays, contrast and colour, waves and light."""
-    from ..analysis import save_report
+    """Write all about a lens on four pages: the lens, rays, contrast and colour, waves and light.
 
-    lens = rings.set(file.lens(name))
+    Where no option says others, fields and wavelengths are those of another program's file, three of each, if it states
+    a field off the axis and several wavelengths.
+    """
+    from ..analysis import save_report
+    from ..analysis.fields import three_of
+
+    stated, file_fields, file_wavelengths = file.lens_and_light(name)
+    lens = rings.set(stated)
+    fields_deg, wavelengths_nm = _numbers(fields, "--fields-deg"), _numbers(wavelengths, "--wavelengths")
+    if fields_deg is None and lens.is_rotational and lens.zoom_position == stated.zoom_position and any(file_fields):
+        fields_deg = three_of([0.0, *file_fields])
+    if wavelengths_nm is None and len(file_wavelengths) > 1:
+        wavelengths_nm = three_of(file_wavelengths, lens.wavelength_nm)
     target = output or lens_options.output_of(name, ".pdf")
     lens_options.check_not_the_lens(target, name)
     save_report(
         lens,
         target,
-        fields_deg=_numbers(fields, "--fields-deg"),
-        wavelengths_nm=_numbers(wavelengths, "--wavelengths"),
+        fields_deg=fields_deg,
+        wavelengths_nm=wavelengths_nm,
         object_distance_m=_distance(object_distance),
         theme=theme,
     )

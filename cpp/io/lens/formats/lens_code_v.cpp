@@ -215,6 +215,7 @@ void CodeVReader::finish_wavelength() {
             fail_file("the reference wavelength (REF) is number " + std::to_string(number) + " of " +
                       std::to_string(wavelengths_.size()));
         p_.wavelength_nm = wavelengths_[number - 1];
+        p_.wavelengths_nm = wavelengths_;
     }
 }
 

@@ -464,11 +464,11 @@ private:
             return;
         }
         for (std::size_t i = 0; i < list.size(); ++i) {
-            if (i > 0 && !list[i]["is_primary"].is_true()) continue;
             const std::string unit = list[i]["unit"].text();
             const double scale = unit == "nm" ? 1 : unit == "um" || unit.empty() ? 1000 : unit == "mm" ? 1e6 : 0;
             if (scale == 0) json_.fail("the wavelength's unit is " + in_quotes(unit) + "; nm or um is wanted");
-            p_.wavelength_nm = scale * json_.number(list[i]["value"], "the wavelength");
+            p_.wavelengths_nm.push_back(scale * json_.number(list[i]["value"], "the wavelength"));
+            if (i == 0 || list[i]["is_primary"].is_true()) p_.wavelength_nm = p_.wavelengths_nm.back();
         }
     }
 

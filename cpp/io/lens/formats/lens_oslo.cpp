@@ -189,6 +189,7 @@ std::vector<double> OsloReader::wavelengths_um() const {
 void OsloReader::finish() {
     if (rows_.size() < 3) throw LensFileError("has no surface between object and image", p_.file);
     p_.wavelength_nm = 1000 * wavelengths_um().front();
+    for (const auto& [i, um] : wavelengths_) p_.wavelengths_nm.push_back(1000 * um);
     if (wavelengths_.empty()) p_.remarks.push_back("it states no wavelength: that of the d line is taken");
     resolve_pickups();
     for (const OsloSurface& s : rows_) media_.push_back(medium_of(s));

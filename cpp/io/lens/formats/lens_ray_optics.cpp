@@ -229,6 +229,8 @@ private:
         const std::size_t reference = region["reference_wvl"].index(0);
         if (reference >= wavelengths.size()) json_.fail("the reference wavelength is none of the list");
         p_.wavelength_nm = json_.number(wavelengths[reference], "the wavelength");
+        for (std::size_t i = 0; i < wavelengths.size(); ++i)
+            p_.wavelengths_nm.push_back(json_.number(wavelengths[i], "the wavelength"));
         p_.defocus = unit_ * json_.number_or(attributes(spec["defocus"])["focus_shift"], "the focus shift", 0);
         read_aperture(attributes(spec["pupil"]));
         read_fields(attributes(spec["field_of_view"]));

@@ -227,6 +227,13 @@ private:
                                     ", which the file does not have",
                                 p_.file);
         p_.wavelength_nm = 1000 * found->second;
+        for (const auto& [number, um] : file_.wavelengths) p_.wavelengths_nm.push_back(1000 * um);
+        // Of the 24 rows of a file, those that are not used repeat one value behind the others.
+        std::vector<double>& all = p_.wavelengths_nm;
+        const double unused = all.back();
+        if (all.size() < 2 || all[all.size() - 2] != unused) return;
+        while (all.size() > 1 && all.back() == unused) all.pop_back();
+        if (std::ranges::find(all, p_.wavelength_nm) == all.end()) all.push_back(p_.wavelength_nm);
     }
 
     void set_zoom() {
