@@ -106,21 +106,10 @@ double AdaptiveSampling::left() const {
     double sum = 0;
     for (std::size_t h = 0; h < halves_.size(); ++h) {
         if (halves_[h].is_finished) continue;
-        const double end = std::min(usual_end_of(other(h)), static_cast<double>(goal_.most_samples));
+        const double end = std::min(end_of(other(h)), static_cast<double>(goal_.most_samples));
         sum += halves_[h].pixels * std::max(0.0, end - halves_[h].samples);
     }
     return sum;
-}
-
-double AdaptiveSampling::usual_end_of(std::size_t half) const {
-    double logarithms = 0, count = 0;
-    for_neighbours(half, [&](std::size_t near) {
-        if (halves_[near].doublings == 0 || halves_[near].pixels == 0) return;
-        logarithms += std::log(std::max(excess_of(near), 1e-6));
-        ++count;
-    });
-    if (count == 0) return std::numeric_limits<double>::infinity();
-    return halves_[half].samples * std::pow(std::exp(logarithms / count) / kMargin, 1 / decay_of(half));
 }
 
 void AdaptiveSampling::Half::add(double change, double taken) {
@@ -150,14 +139,16 @@ float AdaptiveSampling::value_of(float exposure) const {
 }
 
 double AdaptiveSampling::decay_of(std::size_t half) const {
+    const int tile = static_cast<int>(half / 2), row = tile / across_, column = tile % across_;
     double last = 0, before = 0, numbers = 0;
-    for_neighbours(half, [&](std::size_t index) {
-        const Half& near = halves_[index];
-        if (near.doublings < 2) return;
-        last += near.square * near.pixels;
-        before += near.square_before * near.pixels;
-        numbers += 3 * near.pixels;
-    });
+    for (int y = std::max(0, row - 1); y <= std::min(down_ - 1, row + 1); ++y)
+        for (int x = std::max(0, column - 1); x <= std::min(across_ - 1, column + 1); ++x) {
+            const Half& near = halves_[half_at(y, x, half % 2)];
+            if (near.doublings < 2) continue;
+            last += near.square * near.pixels;
+            before += near.square_before * near.pixels;
+            numbers += 3 * near.pixels;
+        }
     if (!(last > 0) || !(before > 0)) return 1;
     // Two deviations of the logarithm of a quotient of mean squares over so many numbers.
     return std::clamp(std::log2(before / last) - 2 * std::numbers::log2e * 2 / std::sqrt(numbers), 1.0, kMostDecay);

@@ -87,15 +87,6 @@ private:
         }
     }
 
-    /// f(half) of the same colour of its tile and those about it.
-    template <class F>
-    void for_neighbours(std::size_t half, F&& f) const {
-        const int tile = static_cast<int>(half / 2), row = tile / across_, column = tile % across_;
-        for (int y = std::max(0, row - 1); y <= std::min(down_ - 1, row + 1); ++y)
-            for (int x = std::max(0, column - 1); x <= std::min(across_ - 1, column + 1); ++x)
-                f(half_at(y, x, half % 2));
-    }
-
     std::size_t half_at(int row, int column, std::size_t half) const;
 
     std::size_t other(std::size_t half) const;
@@ -115,10 +106,6 @@ private:
 
     /// Samples of a pixel with which the goal is reached, by what these have shown.
     double end_of(std::size_t half) const;
-
-    /// The same for a forecast: by the geometric mean over the neighbours. Single bright samples make a half look
-    /// noisier than it is for most of the time, and it is finished as soon as it does not look so.
-    double usual_end_of(std::size_t half) const;
 
     /// As many as there are, or fewer where that is expected to be enough.
     double next_of(const Half& half, double end) const;

@@ -26,7 +26,7 @@ def test_the_film_of_a_lens() -> None:
 
 
 def test_framing_puts_the_scene_into_the_picture() -> None:
-    """The corners of its box, seen from the entrance pupil, lie in the field of view, and the widest fills most of it."""
+    """All corners of its box, from the entrance pupil, lie in the field of view, and the widest fills most of it."""
     camera = rc.Camera(LENS, iso=800).framing(CHAIR)
     pupil, field = np.array(camera.entrance_pupil_position_m), camera.field_of_view_deg
     assert camera.iso == 800
