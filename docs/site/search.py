@@ -15,7 +15,7 @@ PAGES = {
     "blurred": "docs/troubleshooting",
     "Ctrl-C": "docs/troubleshooting",
     "image simulation": "docs/image-simulation",
-    "bpy": "docs/blender",
+    "headless Blender": "docs/blender",
 }
 NAMES = ("Lens.focused", "image_simulation", "Shot.load")
 
