@@ -62,6 +62,8 @@ def all_steps(folder: Path) -> float:
     return sum(run(words, folder)[0] for words in programs)
 
 
+@pytest.mark.slow
+@pytest.mark.picture_files
 def test_the_first_steps_run_in_an_empty_folder_without_grain(tmp_path: Path) -> None:
     if run([PYTHON, "-c", "from realcam_command import denoiser_library as d; print(d())"], tmp_path)[1] == "\n":
         pytest.skip("pictures are denoised, and the extra realcam[denoise] is not installed")
