@@ -1,7 +1,7 @@
 """Makes a wheel of realcam that runs where nothing of it is installed: `./run wheel`, and the workflow of wheels.
 
 It holds the shared libraries that the extension needs, and their licences. With --cuda it is the wheel realcam-cuda13,
-the plug-in for GPUs.
+the plug-in for GPUs. `--pythons` lists the CPythons of this machine for which a wheel can be made.
 """
 
 from __future__ import annotations
@@ -12,34 +12,76 @@ import re
 import shutil
 import subprocess
 import sys
+import sysconfig
 import tempfile
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
 PLATFORM = "manylinux_2_34_x86_64"
+# The minor versions of CPython 3 that have wheels: those of tool.cibuildwheel in pyproject.toml.
+MINORS = range(10, 15)
+# Prints the executable of a CPython with a GIL, headers and virtual environments; fails in any other.
+ASKED = """
+import ensurepip, os, platform, sys, sysconfig, venv
+os.stat(os.path.join(sysconfig.get_path("include"), "Python.h"))
+assert platform.python_implementation() == "CPython" and not sysconfig.get_config_var("Py_GIL_DISABLED")
+print(sys.version_info[1], sys.executable)
+"""
 # Debian's files refer to it. They name the GPL, too: for the packaging, and for files that are no part of the library.
 APACHE = Path("/usr/share/common-licenses/Apache-2.0")
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("folder", type=Path, help="where the wheel goes")
+    parser.add_argument("folder", type=Path, nargs="?", help="where the wheel goes")
+    parser.add_argument("--pythons", action="store_true", help="list the Pythons that wheels can be made for, and end")
+    parser.add_argument("--python", default=sys.executable, help="the Python that the wheel is for")
     parser.add_argument("--cuda", action="store_true", help="the plug-in for GPUs, which nvcc compiles")
     parser.add_argument("--repair", type=Path, metavar="WHEEL", help="a wheel that is built already")
     arguments = parser.parse_args()
+    if arguments.pythons:
+        for minor, python in installed_pythons().items():
+            print(f"3.{minor}", python or "")
+        return
+    if arguments.folder is None:
+        parser.error("the folder where the wheel goes is missing")
     arguments.folder.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory() as scratch:
-        built = arguments.repair or build(Path(scratch, "built"), arguments.cuda)
+        built = arguments.repair or build(Path(scratch, "built"), arguments.python, arguments.cuda)
         repaired = repair(built, Path(scratch, "repaired"))
         print(with_licences(repaired, Path(scratch, "open"), arguments.folder))
 
 
-def run(*words: str | Path) -> str:
-    return subprocess.run([*map(str, words)], check=True, stdout=subprocess.PIPE, text=True, cwd=ROOT).stdout
+def run(*words: str | Path, env: dict[str, str] | None = None) -> str:
+    return subprocess.run([*map(str, words)], check=True, stdout=subprocess.PIPE, text=True, cwd=ROOT, env=env).stdout
 
 
-def build(folder: Path, cuda: bool) -> Path:
-    """With the packages of this Python, so that CMake's build folder serves the next time, too."""
+def installed_pythons() -> dict[int, str]:
+    """The executable for each of MINORS; empty: there is none. PATH comes first, then what pyenv has."""
+    pyenv = Path(os.environ.get("PYENV_ROOT", Path.home() / ".pyenv"))
+    found = {}
+    for minor in MINORS:
+        name = f"python3.{minor}"
+        in_path = [Path(folder, name) for folder in os.environ.get("PATH", "").split(os.pathsep)]
+        candidates = [*in_path, *sorted(pyenv.glob(f"versions/3.{minor}.*/bin/{name}"))]
+        found[minor] = next(filter(None, (executable_of(each, minor) for each in candidates)), "")
+    return found
+
+
+def executable_of(python: Path, minor: int) -> str:
+    """The program that `python` starts, if it is CPython 3.`minor` with all that a wheel needs; else empty."""
+    if not os.access(python, os.X_OK):
+        return ""
+    told = subprocess.run([python, "-c", ASKED], capture_output=True, text=True).stdout.strip().partition(" ")
+    return told[2] if told[0] == str(minor) else ""
+
+
+def build(folder: Path, python: str, cuda: bool) -> Path:
+    """The wheel for a Python, which works with the packages of this one.
+
+    All Pythons share CMake's build folder, where only the bindings are compiled for each. scikit-build-core keeps it
+    for as long as its own folder stays the same.
+    """
     if cuda:
         asked = {
             "CMAKE_CUDA_ARCHITECTURES": os.environ.get("REALCAM_CUDA_ARCHITECTURES", ""),
@@ -48,10 +90,15 @@ def build(folder: Path, cuda: bool) -> Path:
         settings = [f"cmake.define.{name}={value}" for name, value in asked.items() if value]
     else:
         sets = os.environ.get("REALCAM_INSTRUCTION_SETS", "v2;v3;v4")
-        settings = ["cmake.define.REALCAM_CUDA=OFF", f"cmake.define.REALCAM_INSTRUCTION_SETS={sets}"]
+        settings = [
+            "build-dir=build/wheel",
+            "cmake.define.REALCAM_CUDA=OFF",
+            f"cmake.define.REALCAM_INSTRUCTION_SETS={sets}",
+        ]
     words = [word for setting in settings for word in ("--config-settings", setting)]
     pip_wheel = ["-m", "pip", "wheel", "./cuda13" if cuda else ".", "--no-deps", "--no-build-isolation"]
-    run(sys.executable, *pip_wheel, "--wheel-dir", folder, *words)
+    packages = {**os.environ, "PYTHONPATH": sysconfig.get_path("purelib")}
+    run(python, *pip_wheel, "--wheel-dir", folder, *words, env=packages)
     return next(folder.glob("*.whl"))
 
 

@@ -18,6 +18,7 @@ import cpp_pages
 import effect_pages
 import lens_pages
 from links import broken_links
+from search import not_found
 from sphinx.cmd.build import main as sphinx
 
 HERE = Path(__file__).resolve().parent
@@ -80,7 +81,7 @@ def main() -> int:
     words: list[str | Path] = [] if has_pictures else ["-D", "plot_gallery=0"]  # read by sphinx-gallery
     words += ["-W", "--keep-going", "-q", "-b", "html", "-c", HERE, "-d", WORK / "doctrees", PAGES, arguments.output]
     status = sphinx([str(word) for word in words])
-    broken = [] if status else list(broken_links(arguments.output))
+    broken = [] if status else [*broken_links(arguments.output), *not_found(arguments.output)]
     print(*broken, sep="\n", end="\n" if broken else "", file=sys.stderr)
     if status == 0 and not broken:
         print(f"The site is in {arguments.output}: open index.html")

@@ -17,7 +17,8 @@ def main() -> None:
     # Python's own handler would end an import in a traceback, and would not be called while C++ is at work.
     signal.signal(signal.SIGINT, signal.SIG_DFL)
     arguments = sys.argv[1:]
-    if "--denoise" in arguments and (library := denoiser_library()):
+    # Also without --denoise: pictures whose noise goal is not reached are denoised where the library is installed.
+    if arguments[:1] == ["render"] and "--no-denoise" not in arguments and (library := denoiser_library()):
         os.environ["REALCAM_OIDN"] = library
     try:
         if any(arguments[: len(command)] == command for command in _IN_CPP):

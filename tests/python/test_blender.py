@@ -1,4 +1,4 @@
-"""The extension for Blender, its zip file everywhere and its panel in bpy, where that is installed (Python 3.11)."""
+"""The extension for Blender, its zip file everywhere and its panel in bpy, where that is installed."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ def test_the_command(tmp_path: Path) -> None:
 
 @pytest.fixture
 def scene(extension: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Any:
-    bpy = pytest.importorskip("bpy", reason="bpy is for Python 3.11 alone, and not among the packages of realcam")
+    bpy = pytest.importorskip("bpy", reason="bpy is installed apart (docs/blender.md)")
     folder = tmp_path / "realcam_lenses"
     zipfile.ZipFile(extension).extractall(folder)
     monkeypatch.syspath_prepend(tmp_path)

@@ -207,10 +207,13 @@ def test_the_command_denoises_as_python_does(tmp_path: Path) -> None:
 
 @wants_it
 @pytest.mark.picture_files
-def test_the_command_of_the_package_finds_the_library(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("words", [("--denoise", "--spp", "1"), ("--seconds", "1e-3")], ids=" ".join)
+def test_the_command_of_the_package_finds_the_library(
+    words: tuple[str, ...], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.delenv("REALCAM_OIDN", raising=False)
     (tmp_path / "quad.obj").write_text(QUAD)
-    command = [sys.executable, "-m", "realcam", "render", "quad.obj", "-o", "a.png", "--denoise", "--spp", "1"]
+    command = [sys.executable, "-m", "realcam", "render", "quad.obj", "-o", "a.png", *words]
     done = subprocess.run(
         [*command, "--resolution", "24x16", "--device", "cpu"], capture_output=True, text=True, cwd=tmp_path
     )

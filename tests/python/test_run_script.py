@@ -1,7 +1,8 @@
-"""./run in a folder that was moved after its build."""
+"""./run in a folder that was moved after its build, and which wheels it makes."""
 
 from __future__ import annotations
 
+import re
 import shutil
 import subprocess
 import sys
@@ -73,3 +74,16 @@ def test_a_copy_is_set_up_anew_and_its_original_kept(built: Path) -> None:
     assert forget_what_was_moved(new)
     assert not (new / "build/dev").exists() and not (new / ".venv").exists()
     assert is_set_up(built)
+
+
+def test_a_wheel_is_made_for_each_python_that_is_installed(built: Path) -> None:
+    (built / "tools").mkdir()
+    pythons = "3.10 /opt/python3.10\n3.11 \n3.12 /a folder/python3.12\n"
+    (built / "tools/make_wheel.py").write_text(f"print({pythons!r}, end='')")
+    stubs = 'install_packages() { :; }; install_python() { :; }; make_wheel() { say "for $1"; }'
+    said = run("bash", "-c", f'source "$0" help; {stubs}; run_wheel all', built / "run")
+    assert re.findall(r"(?:for|no Python) .*", said) == [
+        "for /opt/python3.10",
+        "no Python 3.11 is installed here",
+        "for /a folder/python3.12",
+    ]

@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 import importlib.util
+import json
 import re
 import subprocess
 from fnmatch import fnmatch
@@ -70,6 +71,22 @@ def test_broken_links_are_told(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) 
         "a.html: there is no gone.png",
         "a.html: there is no heading sub/b.html#gone",
         "sub/b.html: there is no ../c.html",
+    ]
+
+
+def test_what_the_search_does_not_find_is_told(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    search = module_of("search", monkeypatch)
+    monkeypatch.setattr(search, "PAGES", {"glass black": "docs/a", "Ctrl-C": "docs/a", "simulations": "docs/b"})
+    monkeypatch.setattr(search, "NAMES", ("Lens.focused", "Lens.load"))
+    index = {
+        "docnames": ["docs/a", "docs/b"],
+        "titleterms": {"glass": [0, 1], "black": 1, "ctrl": 0, "simul": [1]},
+        "objects": {"realcam.Lens": [[0, 1, 1, "", "focused"]], "realcam": [[0, 1, 1, "", "Lens"]]},
+    }
+    (tmp_path / "searchindex.js").write_text(f"Search.setIndex({json.dumps(index)})")
+    assert list(search.not_found(tmp_path)) == [
+        'the search for "glass black" does not lead to a heading of docs/a',
+        'the search for "Lens.load" does not lead to the API',
     ]
 
 
