@@ -14,9 +14,10 @@ from .._core import RealcamError
 from .access import Folders
 from .camera_panel import CameraPanel
 from .comparison import NOTHING
-from .elements import CostPanel, HelpDialog, LensDrawing, PictureCanvas
-from .files_panel import FilesPanel
+from .elements import CostPanel, HelpDialog, LensDrawing, PictureCanvas, TabbedPanels
+from .lens_panel import ComparisonPanel, LensPanel
 from .plots_panel import PlotsPanel
+from .save_panel import SavePanel
 from .server_loop import call_on_loop
 from .shot_source import ShotSource
 from .window import Window
@@ -35,27 +36,43 @@ def build_page(client: Client, window: Window, folders: Folders, source: ShotSou
         except RealcamError as error:
             ui.notify(str(error), type="negative")
 
-    with ui.row().classes("w-full items-center"):
+    with ui.element("header").classes("rc-header"):
         ui.label(f"realcam: {source.name}").classes("text-lg")
         ui.space()
-        again = ui.button("Start again", color=None).props("flat no-caps dense").classes("rc-flat")
+        again = ui.button("Start again", color=None).props("outline no-caps").classes("rc-flat")
         again.on("click", js_handler="() => [...window.realcamStreams.values()][0].startAgain()")
         again.tooltip("Camera, lens and effects as the shot file has them")
         HelpDialog()
         ui.toggle({None: "Auto", False: "Light", True: "Dark"}, value=None).bind_value_to(dark, "value").props(
-            'dense no-caps aria-label="Colours of the page" data-testid="theme"'
+            'no-caps aria-label="Colours of the page" data-testid="theme"'
         )
+    camera = CameraPanel(window, run)
     with ui.element("main").classes("rc-page"):
         with ui.element("div").classes("rc-column"):
             canvas = PictureCanvas(window.path)
-            drawing = LensDrawing(window.path)
-        with ui.element("div").classes("rc-column"):
-            camera = CameraPanel(window, run)
-            files = FilesPanel(window, folders, source, run)
-            with ui.element("section").classes("rc-controls"):
+            camera.add_rings()
+        with TabbedPanels("Lens", "Camera", "Effects", "Plots", "Save").classes("rc-column") as panels:
+            said = ui.label().classes("rc-said").props('aria-live="polite" data-testid="said"')
+
+            def say(text: str, is_problem: bool) -> None:
+                said.set_text(text)
+                said.classes(add="rc-problem" if is_problem else "", remove="" if is_problem else "rc-problem")
+
+            with panels.panel("Lens"):
+                lens = LensPanel(window, run, say)
+                drawing = LensDrawing(window.path)
+            with panels.panel("Camera"):
+                camera.add_settings()
+                ComparisonPanel(window, run)
+            with panels.panel("Effects"):
                 CostPanel(window.path)
-            plots = PlotsPanel(window)
-    files.update()
+            with panels.panel("Plots"):
+                plots = PlotsPanel(window)
+            with panels.panel("Save"):
+                save = SavePanel(window, folders, source, say)
+    camera.update()
+    lens.update()
+    panels.on("shown", lambda: plots.show(panels.shown == "Plots"))
     canvas.on("picked", lambda event: _pick(event, plots))
 
     waiting = False
@@ -72,7 +89,8 @@ def build_page(client: Client, window: Window, folders: Folders, source: ShotSou
         waiting = False
         with client:
             camera.update()
-            files.update()
+            lens.update()
+            save.update()
             plots.update()
             drawing.run_method("setHistory", bench.history.can_undo, bench.history.can_redo)
             canvas.run_method("setComparison", bench.comparison.kind != NOTHING)
