@@ -81,7 +81,7 @@ class RingSlider(Element, component="static/ring.js"):
             self._props["answered"] = turn
             self.update()
 
-        self.on("turned", take, throttle=0.03)
+        self.on("turned", take, throttle=0.09)
 
     def set(self, step: int, last: int, text: str) -> None:
         """text: what is engraved there."""

@@ -8,6 +8,7 @@ from typing import Any
 
 from nicegui import ui
 from nicegui.client import Client
+from nicegui.element import Element
 from nicegui.events import GenericEventArguments
 
 from .._core import RealcamError
@@ -76,6 +77,13 @@ def build_page(client: Client, window: Window, folders: Folders, source: ShotSou
     canvas.on("picked", lambda event: _pick(event, plots))
 
     waiting = False
+    told: dict[str, tuple[bool, ...]] = {"setHistory": (False, False), "setComparison": (False,)}
+
+    def tell(element: Element, method: str, *values: bool) -> None:
+        """Calls a method of a component if its values have changed: a browser draws the component again for each call."""
+        if told[method] != values:
+            told[method] = values
+            element.run_method(method, *values)
 
     def update_soon() -> None:
         """Once for all changes of the same moment."""
@@ -92,8 +100,8 @@ def build_page(client: Client, window: Window, folders: Folders, source: ShotSou
             lens.update()
             save.update()
             plots.update()
-            drawing.run_method("setHistory", bench.history.can_undo, bench.history.can_redo)
-            canvas.run_method("setComparison", bench.comparison.kind != NOTHING)
+            tell(drawing, "setHistory", bench.history.can_undo, bench.history.can_redo)
+            tell(canvas, "setComparison", bench.comparison.kind != NOTHING)
 
     bench.listeners.controls = lambda: call_on_loop(loop, update_soon)
     bench.listeners.sharp_range = lambda sharp: call_on_loop(loop, camera.show_sharp_range, sharp)
