@@ -300,7 +300,7 @@ class LensBench:
         """How long the picture takes to be refined, in words."""
         frame = self._frame
         if self.is_refined:
-            return "done"
+            return "none"
         if frame is None or frame.serial < self._loops["a"].serial or frame.left_s is None:
             return "not known yet"
         return f"about {duration_text(frame.left_s)}"

@@ -80,7 +80,7 @@ def build_page(client: Client, window: Window, folders: Folders, source: ShotSou
     told: dict[str, tuple[bool, ...]] = {"setHistory": (False, False), "setComparison": (False,)}
 
     def tell(element: Element, method: str, *values: bool) -> None:
-        """Calls a method of a component if its values have changed: a browser draws the component again for each call."""
+        """Calls a method of a component if its values have changed: each call draws the component again."""
         if told[method] != values:
             told[method] = values
             element.run_method(method, *values)

@@ -54,7 +54,7 @@ class SavePanel:
     def update(self) -> None:
         """On the server's loop."""
         self._refine.set_text(f"Save to {grey_levels(self._bench.noise_codes)}")
-        self._time_left.set_text(self._bench.time_left)
+        self._time_left.set_text(f"Time left: {self._bench.time_left}")
 
     def _propose(self) -> None:
         self._name.set_value(_PROPOSED.get(self._what.value, ""))
