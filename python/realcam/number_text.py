@@ -24,3 +24,11 @@ def percent_text(share: float, digits: int = 2, *, signed: bool = False) -> str:
 def counted(count: int, noun: str) -> str:
     """ "1 sample", "10 000 samples"."""
     return f"{number_text(count)} {noun}{'' if count == 1 else 's'}"
+
+
+def duration_text(seconds: float) -> str:
+    """A duration in its largest unit of which there are two or more: 95 seconds, 36 minutes."""
+    for size, name in ((86400.0, "day"), (3600.0, "hour"), (60.0, "minute")):
+        if seconds >= 2 * size:
+            return counted(round(seconds / size), name)
+    return counted(round(seconds), "second")

@@ -203,6 +203,13 @@ _TO_THE_TOP = """
     document.body.removeAttribute("tabindex");
 }
 """
+# Clicks the tab of the panel that holds an element.
+_REVEAL = """
+(element) => {
+    const panel = element.closest("[role=tabpanel]");
+    if (panel && panel.style.display === "none") document.getElementById(panel.getAttribute("aria-labelledby")).click();
+}
+"""
 _LOOK = """
 () => {
     const all = (selector, of) => [...document.querySelectorAll(selector)].map(of);
@@ -273,6 +280,7 @@ class BenchPage:
         """
         assert self.first_look is not None
         self.page.set_viewport_size(VIEWPORT)
+        self.page.get_by_role("tab", name="Lens").evaluate("tab => tab.click()")  # a dialog may be before it
         self.page.mouse.move(0, 0)
         self.page.evaluate(_TO_THE_TOP)
         if self.look()["lasting"] != self.first_look["lasting"]:
@@ -300,15 +308,27 @@ class BenchPage:
 
     # What is seen.
 
+    def revealed(self, found: Any) -> Any:
+        """A locator, after the tab of its panel was clicked if that is not the one that is shown."""
+        if found.count():
+            found.first.evaluate(_REVEAL)
+        return found
+
     def test_id(self, name: str) -> Any:
+        return self.revealed(self._named(name))
+
+    def button(self, name: str) -> Any:
+        return self.revealed(self.page.get_by_role("button", name=name, include_hidden=True))
+
+    def _named(self, name: str) -> Any:
         return self.page.locator(f'[data-testid="{name}"]')
 
     def text(self, name: str) -> str:
-        return self.test_id(name).text_content() or ""
+        return self._named(name).text_content() or ""
 
     @property
     def status(self) -> str:
-        found = self.test_id("status")
+        found = self._named("status")
         return (found.text_content() or "") if found.count() else ""
 
     def picture(self) -> np.ndarray:
@@ -359,7 +379,7 @@ class BenchPage:
 
     def choose(self, name: str, text: str) -> None:
         """An entry of a list."""
-        self.page.locator(f'.q-field:has([data-testid="{name}"])').click()
+        self.revealed(self.page.locator(f'.q-field:has([data-testid="{name}"])')).click()
         option = self.page.locator(".q-menu .q-item").filter(has_text=re.compile(rf"^\s*{re.escape(text)}\s*$"))
         option.click()
         self.page.locator(".q-menu").wait_for(state="detached")
@@ -385,7 +405,7 @@ class BenchPage:
         until(filled, lambda shown: shown == name, "the name that is filled in")
 
     def cell(self, surface: int, field: str) -> Any:
-        return self.page.locator(f'[data-cell="{surface}-{field}"]')
+        return self.revealed(self.page.locator(f'[data-cell="{surface}-{field}"]'))
 
     def edit(self, surface: int, field: str, value: str) -> None:
         self.cell(surface, field).fill(value)

@@ -51,7 +51,7 @@ def test_the_page_follows_the_rules(bench: BenchPage, theme: str) -> None:
     # What the lenses look like does not matter, and to draw all of them takes the server some seconds.
     blank = {"body": '<svg xmlns="http://www.w3.org/2000/svg"/>', "content_type": "image/svg+xml"}
     bench.page.route("**/realcam-lenses/*", lambda route: route.fulfill(**blank))
-    bench.page.get_by_role("button", name="Gallery").click()
+    bench.button("Gallery").click()
     bench.page.locator(".rc-gallery img").first.wait_for()
     bench.page.wait_for_timeout(500)  # it is faded in
     check(bench)

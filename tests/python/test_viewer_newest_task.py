@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import logging
 import threading
+import time
 from collections.abc import Iterator
+from itertools import pairwise
 
 import pytest
 import realcam as rc
@@ -56,3 +58,23 @@ def test_a_task_that_fails_is_logged_and_the_next_is_done(
         tasks.submit(ended.set)
         assert ended.wait(WAIT_S)
     assert len(caplog.records) == logged
+
+
+def test_tasks_take_no_more_than_their_share_of_the_time() -> None:
+    tasks, ended, times = NewestTask("realcam-test", share=0.25), threading.Event(), []
+
+    def task() -> None:
+        times.append(time.monotonic())
+        time.sleep(0.05)
+        if len(times) < 4:
+            tasks.submit(task)
+        else:
+            ended.set()
+
+    try:
+        tasks.submit(task)
+        assert ended.wait(WAIT_S)
+    finally:
+        tasks.close()
+    # Each begins four times as long after the one before as that has taken, 0.05 s or more.
+    assert all(after - before >= 0.2 for before, after in pairwise(times))

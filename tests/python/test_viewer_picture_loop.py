@@ -99,6 +99,20 @@ def test_a_picture_is_refined_to_the_noise_that_is_asked_for(watched: Watched) -
     assert finer.samples > last.samples
 
 
+def test_the_time_that_is_left_is_told_truly(watched: Watched) -> None:
+    """In the second half within a factor of two: the square of the noise is estimated to two fifths, and the load of a
+    machine varies."""
+    told: list[tuple[float, float | None]] = []
+    take = watched._take
+    watched.loop._encoder._on_frame = lambda frame: (told.append((time.monotonic(), frame.left_s)), take(frame))
+    watched.photograph(PictureRequest(camera(film=rc.Film(36, 24, (240, 160))), noise_codes=0.5))
+    (begun, _), (ended, last) = told[0], told[-1]
+    assert last == 0
+    late = [(ended - at, left) for at, left in told if left and 0.5 < (at - begun) / (ended - begun) < 0.8]
+    assert late
+    assert 0.5 < np.median([left / truth for truth, left in late]) < 2, told
+
+
 def test_no_more_samples_than_wanted(watched: Watched) -> None:
     last = watched.photograph(PictureRequest(camera(), noise_codes=0.0, max_spp=40))
     assert last.samples == 40

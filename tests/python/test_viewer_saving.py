@@ -113,28 +113,46 @@ def error_of(path: Path, reference: rc.Image) -> float:
 
 
 def test_a_picture_is_saved_with_the_noise_that_is_asked_for(bench: BenchPage, server: Server, folder: Path) -> None:
-    """Though it is saved as soon as the page is there, when it has one sample."""
+    """By its own button, though that is clicked as soon as the page is there, when the picture has one sample."""
     shot = rc.Shot.load(server.shot)
     bench.choose("refine to", "2 grey levels")
-    ask_to_save(bench, "picture", f"{folder.name}/refined.png")
+    bench.until_text("save-refined", lambda text: text == "Save to 2 grey levels")
+    ask_to_save(bench, "picture", f"{folder.name}/refined.png", "save-refined")
     until(lambda: bench.text("said"), lambda text: text == "Wrote refined.png", "saved", 240)
+    bench.until_text("time-left", lambda text: text == "Time left: none")
     reference = rc.render(shot.scene, shot.camera, effects=(), spp=512, seed=9, device="cpu")
     # The noise that is told is that of the error or more, to a fifth (test_viewer_picture_loop.py); 0.4 is that of the
     # rounding of both, and 1.6 that of the reference. One sample has 36, and the picture that was not asked for 3.3.
     assert error_of(folder / "refined.png", reference) < 2.9
 
 
-def test_a_picture_that_is_being_refined_is_saved_as_it_is_or_not(bench: BenchPage, folder: Path) -> None:
+def test_a_picture_is_saved_as_it_is_seen_now(bench: BenchPage, folder: Path) -> None:
+    """With all its pixels, denoised or not, and without waiting for the noise that is asked for."""
+    oiio = pytest.importorskip("OpenImageIO")
     bench.choose("resolution", "960 pixels across")
     bench.choose("refine to", "half a grey level (fine)")
-    ask_to_save(bench, "picture", f"{folder.name}/soon.png")
-    bench.until_text("save-progress", lambda text: "sample" in text)
+    until(bench.shown, lambda picture: picture.shape[1] == 960 and "preview" not in bench.status, "all pixels")
+    ask_to_save(bench, "picture", f"{folder.name}/seen.png")
+    seen = bench.shown()
+    bench.until_text("said", lambda text: text == "Wrote seen.png")
+    assert "done" not in bench.status
+    saved = oiio.ImageBuf(str(folder / "seen.png")).get_pixels(oiio.UINT8)
+    assert saved.shape[:2] == (640, 960)
+    # JPEG of the least quality, and the samples of a second, change less than the noise of one sample, 36 levels.
+    assert np.abs(saved[..., :3].astype(float) - seen).mean() < 10
+
+
+def test_saving_a_refined_picture_is_given_up_or_cut_short(bench: BenchPage, folder: Path) -> None:
+    bench.choose("resolution", "960 pixels across")
+    bench.choose("refine to", "half a grey level (fine)")
+    ask_to_save(bench, "picture", f"{folder.name}/soon.png", "save-refined")
+    bench.until_text("save-progress", lambda text: "sample" in text and "Time left" in text)
     answer(bench, "Do not save")
     bench.until_text("said", lambda text: text == "not saved")
     assert list(folder.iterdir()) == []
-    ask_to_save(bench, "picture", f"{folder.name}/soon.png")
+    ask_to_save(bench, "picture", f"{folder.name}/soon.png", "save-refined")
     bench.until_text("save-progress", lambda text: "sample" in text)
-    answer(bench, "Save it as it is")
+    answer(bench, "Save it as it is now")
     bench.until_text("said", lambda text: text == "Wrote soon.png")
     assert (folder / "soon.png").stat().st_size > 1000
 

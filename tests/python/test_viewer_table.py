@@ -53,8 +53,8 @@ def test_what_was_entered_stays_until_the_server_has_answered(bench: BenchPage) 
     cell.press_sequentially("4.5")
     assert cell.input_value() == "4.5"
     cell.press("Enter")
-    until(bench.page.get_by_role("button", name="Undo").is_enabled, bool, "edited")
-    bench.page.get_by_role("button", name="Undo").click()
+    until(bench.button("Undo").is_enabled, bool, "edited")
+    bench.button("Undo").click()
     until(cell.input_value, lambda value: value == "4.2", "undone")
 
 
@@ -71,8 +71,8 @@ def test_what_cannot_be_stays_to_be_mended_until_its_cell_is_left(bench: BenchPa
 def test_another_copy_is_one_of_the_lens_as_drawn(bench: BenchPage) -> None:
     """Whatever copies have been before it: a radius is within the grade's 0.01% or 0.5% of that of the drawing."""
     cell, page = bench.cell(0, "radius_mm"), bench.page
-    grade, button = page.get_by_label("Grade of copies"), page.get_by_role("button", name="Another copy")
-    undo = page.get_by_role("button", name="Undo")
+    grade, button = page.get_by_label("Tolerance class"), bench.button("Make a production sample")
+    undo = bench.button("Undo")
 
     def after(action: Callable[[], None]) -> str:
         before = cell.input_value()

@@ -17,7 +17,7 @@ import typer
 from .._core import InputError
 from ..image_file import DEVELOPED
 from ..json_values import json_text
-from ..number_text import counted, number_text, percent_text
+from ..number_text import counted, duration_text, number_text, percent_text
 from ..progress import progress_bar
 from ..shot import Shot
 from . import options
@@ -183,7 +183,7 @@ def status(folder: Folder, as_json: options.AsJson = False) -> None:
     if found.is_done:
         lines.append("done")
     elif found.seconds_left < float("inf"):
-        lines.append(f"about {_duration(found.seconds_left)} left at the pace of the last units")
+        lines.append(f"about {duration_text(found.seconds_left)} left at the pace of the last units")
     typer.echo(", ".join(lines))
 
 
@@ -300,10 +300,3 @@ def _tile(text: str | None) -> tuple[int, int] | None:
     if not (across.isdecimal() and down.isdecimal()):
         raise InputError(f'--tile: "{text:.40}": pixels are wanted, 128 or 128x64')
     return int(across), int(down)
-
-
-def _duration(seconds: float) -> str:
-    for size, name in ((86400.0, "day"), (3600.0, "hour"), (60.0, "minute")):
-        if seconds >= 2 * size:
-            return counted(round(seconds / size), name)
-    return counted(round(seconds), "second")

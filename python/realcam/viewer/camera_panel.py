@@ -25,7 +25,7 @@ MODELS = {
     "pinhole": "pinhole",
 }
 WIDTHS = (320, 480, 640, 960, 1280, 1920)
-NOISES = {4.0: "4 grey levels (draft)", 2.0: "2 grey levels", 1.0: "1 grey level", 0.5: "half a grey level (fine)"}
+NOISES = (4.0, 2.0, 1.0, 0.5)
 FILMS = {
     (36.0, 24.0): "36 × 24 mm (full frame)",
     (23.6, 15.7): "23.6 × 15.7 mm (APS-C)",
@@ -35,95 +35,107 @@ FILMS = {
     (56.0, 56.0): "56 × 56 mm (6 × 6)",
     (127.0, 101.6): "127 × 101.6 mm (4 × 5 inches)",
 }
+_ASIDES = {4.0: " (draft)", 0.5: " (fine)"}
 _FOCUS_STEPS = 400  # of the slider, even in the inverse distance, as the travel of a focusing lens is
 
 
+def grey_levels(codes: float) -> str:
+    """A noise in words."""
+    return "half a grey level" if codes == 0.5 else f"{codes:g} grey level{'' if codes == 1 else 's'}"
+
+
+def _noise_texts(noise: float) -> dict[Any, str]:
+    return {codes: grey_levels(codes) + _ASIDES.get(codes, "") for codes in dict.fromkeys((*NOISES, noise))}
+
+
 class CameraPanel:
-    """Shows how the camera stands, and turns it. update() brings it up to date after changes from elsewhere."""
+    """Shows how the camera stands, and turns it: the rings, which stand below the picture, and the settings.
+
+    update() brings both up to date after changes from elsewhere.
+    """
 
     def __init__(self, window: Window, run: Callable[..., Awaitable[Any]]) -> None:
         self._window, self._bench, self._run = window, window.bench, run
         self._sharp = SharpRange(math.nan, math.nan)
-        self._build()
-        self.update()
 
-    def _build(self) -> None:
-        with ui.element("section").classes("rc-controls").props('aria-label="Camera"'):
-            self._zoom_text = ui.label().props('data-testid="zoom-text"')
-            self._zoom = self._ring("Zoom", "A longer focal length sees less, and that larger", self._set_zoom)
-            self._position = self._choice(
-                "Zoom position",
-                {},
-                lambda value: self._run(self._bench.set_zoom, value),
-                "Where the lens's file describes the zoom",
-            )
-            self._focus_text = ui.label().props('data-testid="focus-text"')
-            self._focus = self._ring("Focus", "Distance from the film to the plane that is sharp", self._set_focus)
-            self._scale = ui.html("", sanitize=False).classes("rc-scale")
-            self._sharp_text = ui.label().classes("rc-note").props('data-testid="sharp-text"')
-            self._aperture_text = ui.label().props('data-testid="aperture-text"')
-            self._aperture = self._ring(
-                "Aperture", "A smaller opening is a larger f-number: darker, and sharp over more", self._set_aperture
-            )
-            self._shutter_text = ui.label().props('data-testid="shutter-text"')
-            self._shutter = self._ring("Shutter", "How long the film is exposed", self._set_shutter)
-            self._iso_text = ui.label().props('data-testid="iso-text"')
-            self._iso = self._ring("ISO", "How little light makes middle grey", self._set_iso)
-            with ui.row().classes("items-center w-full"):
+    def add_rings(self) -> None:
+        """The rings and dials that a camera has outside."""
+        with ui.element("section").classes("rc-controls rc-rings").props('aria-label="Rings"'):
+            with ui.element("div").classes("rc-ring-group"):
+                self._focus_text = ui.label().props('data-testid="focus-text"')
+                self._focus = self._ring("Focus", "Distance from the film to the plane that is sharp", self._set_focus)
+                self._scale = ui.html("", sanitize=False).classes("rc-scale")
+                self._sharp_text = ui.label().classes("rc-note").props('data-testid="sharp-text"')
+                self._zoom_text = ui.label().props('data-testid="zoom-text"')
+                self._zoom = self._ring("Zoom", "A longer focal length sees less, and that larger", self._set_zoom)
+                self._position = self._choice(
+                    "Zoom position",
+                    {},
+                    lambda value: self._run(self._bench.set_zoom, value),
+                    "Focal lengths at which the lens file describes the zoom",
+                )
+            with ui.element("div").classes("rc-ring-group"):
+                self._aperture_text = ui.label().props('data-testid="aperture-text"')
+                self._aperture = self._ring(
+                    "Aperture",
+                    "A larger f-number is a smaller opening: darker, and sharp over more",
+                    self._set_aperture,
+                )
+                self._shutter_text = ui.label().props('data-testid="shutter-text"')
+                self._shutter = self._ring("Shutter", "How long the film is exposed", self._set_shutter)
+                self._iso_text = ui.label().props('data-testid="iso-text"')
+                self._iso = self._ring("ISO", "Sensitivity of the film: a larger number is brighter", self._set_iso)
+            with ui.element("div").classes("rc-ring-row"):
                 self._automatic = ui.switch("Automatic exposure").props('data-testid="automatic"')
                 self._automatic.on("update:model-value", lambda e: self._change(is_automatic=bool(_value(e))))
                 self._automatic.tooltip("The exposure time follows the mean brightness of the picture")
                 self._compensation_ev = 0.0  # as it was told last
-                self._compensation = ui.number("Correction (EV)", value=0, min=-5, max=5, step=1 / 3, format="%.2f")
+                self._compensation = ui.number("Compensation (EV)", value=0, min=-5, max=5, step=1 / 3, format="%.2f")
                 self._compensation.on("update:model-value", self._set_compensation, throttle=0.1)
                 self._compensation.tooltip(
                     "Brighter (+) or darker (-) than metered, in stops: by automatic exposure or a click with Meter"
-                ).classes("w-32")
-            self._model = self._choice(
-                "Camera model", MODELS, lambda value: self._change(model=value), "How much of the lens is simulated"
+                ).classes("w-40")
+
+    def add_settings(self) -> None:
+        """What is chosen once for many pictures."""
+        self._model = self._choice(
+            "Camera model", MODELS, lambda value: self._change(model=value), "How much of the lens is simulated"
+        )
+        self._width = self._choice(
+            "Resolution",
+            {w: f"{w} pixels across" for w in WIDTHS},
+            lambda value: self._run(self._bench.set_resolution, int(value)),
+            "Of the refined picture",
+        )
+        self._noise = self._choice(
+            "Refine to",
+            _noise_texts(self._bench.noise_codes),
+            lambda value: self._run(self._bench.set_noise, float(value)),
+            "The noise at which the picture is done, of the 255 grey levels from black to white",
+        )
+        self._denoise = ui.switch("Denoise while refining").props('data-testid="denoise"')
+        self._denoise.on("update:model-value", lambda e: self._run(self._bench.set_denoising, bool(_value(e))))
+        self._denoise.tooltip("Until it is done, the picture is shown and saved as Open Image Denoise cleans it")
+        if self._bench.why_no_denoiser:
+            self._denoise.disable()
+            ui.label(self._bench.why_no_denoiser).classes("rc-note").props('data-testid="why-no-denoiser"')
+        self._film = self._choice(
+            "Film",
+            FILMS,
+            lambda value: self._run(self._bench.set_film_mm, *value),
+            "Size of the film or sensor; the number of pixels across stays as it is",
+        )
+        with ui.row().classes("items-center w-full no-wrap"):
+            self._film_width = self._number("Film width (mm)", "film-width", self._set_film, "Of the exposed area")
+            self._film_height = self._number("Film height (mm)", "film-height", self._set_film, "Of the exposed area")
+        with ui.row().classes("items-center w-full no-wrap"):
+            self._blades = self._number("Aperture blades", "blades", self._set_iris, "0 for a round aperture")
+            self._rounding = self._number(
+                "Blade rounding", "rounding", self._set_iris, "0 for straight sides of the aperture, 1 for a circle"
             )
-            self._width = self._choice(
-                "Resolution",
-                {w: f"{w} pixels across" for w in WIDTHS},
-                lambda value: self._run(self._bench.set_resolution, int(value)),
-                "Of the refined picture",
+            self._rotation = self._number(
+                "Rotation (°)", "rotation", self._set_iris, "Angle by which the aperture's blades are rotated"
             )
-            self._noise = self._choice(
-                "Refine to",
-                NOISES,
-                lambda value: self._run(self._bench.set_noise, float(value)),
-                "How much noise the picture may have when it is done, of the 255 levels from black to white",
-            )
-            self._denoise = ui.switch("Denoise while refining").props('data-testid="denoise"')
-            self._denoise.on("update:model-value", lambda e: self._run(self._bench.set_denoising, bool(_value(e))))
-            self._denoise.tooltip(
-                "Until it is done the picture is shown without its noise, as Open Image Denoise guesses"
-            )
-            if self._bench.why_no_denoiser:
-                self._denoise.disable()
-                ui.label(self._bench.why_no_denoiser).classes("rc-note").props('data-testid="why-no-denoiser"')
-            self._film = self._choice(
-                "Film",
-                FILMS,
-                lambda value: self._run(self._bench.set_film_mm, *value),
-                "Its pixels across stay as many",
-            )
-            with ui.row().classes("items-center w-full no-wrap"):
-                self._film_width = self._number("Film width (mm)", "film-width", self._set_film, "Of what is exposed")
-                self._film_height = self._number(
-                    "Film height (mm)", "film-height", self._set_film, "Of what is exposed"
-                )
-            with ui.row().classes("items-center w-full no-wrap"):
-                self._blades = self._number("Blades", "blades", self._set_iris, "0 for a round aperture")
-                self._rounding = self._number(
-                    "Rounding",
-                    "rounding",
-                    self._set_iris,
-                    "Of the aperture's sides: 0 for straight ones, 1 for a circle",
-                )
-                self._rotation = self._number(
-                    "Turned (°)", "rotation", self._set_iris, "By how much the blades are turned"
-                )
 
     def update(self) -> None:
         """On the server's loop."""
@@ -159,7 +171,7 @@ class CameraPanel:
         width = now.film.resolution[0]
         show_choice(self._width, {w: f"{w} pixels across" for w in sorted({*WIDTHS, width})}, width)
         noise = self._bench.noise_codes
-        show_choice(self._noise, NOISES if noise in NOISES else {**NOISES, noise: f"{noise:g} grey levels"}, noise)
+        show_choice(self._noise, _noise_texts(noise), noise)
         self._denoise.set_value(self._bench.denoises)
         size = now.film.width_mm, now.film.height_mm
         texts = FILMS if size in FILMS else {**FILMS, size: f"{size[0]:g} × {size[1]:g} mm"}

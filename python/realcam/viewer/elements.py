@@ -8,6 +8,7 @@ from typing import Any
 from nicegui import ui
 from nicegui.element import Element
 from nicegui.events import GenericEventArguments
+from nicegui.slot import Slot
 
 from .._core import effects, glass_names
 from .effect_switches import EFFECTS
@@ -39,6 +40,23 @@ class LensGallery(Element, component="static/lens_gallery.js"):
         self._props["lenses"] = lens_cards()
 
 
+class TabbedPanels(Element, component="static/tabbed_panels.js"):
+    """A row of tabs. panel(name) is the context of a panel's content; what is in none of them stands below the tabs."""
+
+    def __init__(self, *names: str) -> None:
+        """The first panel is shown at first."""
+        super().__init__()
+        self._props["names"] = list(names)
+        self.shown = names[0]
+        self.on("shown", self._take_shown)
+
+    def panel(self, name: str) -> Slot:
+        return self.add_slot(name)
+
+    def _take_shown(self, event: GenericEventArguments) -> None:
+        self.shown = event.args
+
+
 class HelpDialog(Element, component="static/help_dialog.js"):
     """A button, and what mouse and keys do in a dialog that it opens."""
 
@@ -63,7 +81,7 @@ class RingSlider(Element, component="static/ring.js"):
             self._props["answered"] = turn
             self.update()
 
-        self.on("turned", take, throttle=0.03)
+        self.on("turned", take, throttle=0.09)
 
     def set(self, step: int, last: int, text: str) -> None:
         """text: what is engraved there."""

@@ -22,12 +22,12 @@ class FollowUps:
 
     def __init__(self, shot: Shot, device: str, listeners: Listeners) -> None:
         self._shot, self._device, self._listeners = shot, device, listeners
-        self._drawing = NewestTask("realcam-drawing", delay_s=0.02)
-        self._tracing = NewestTask("realcam-rays", delay_s=0.02)
-        # What takes as long as some frames of the picture.
+        self._drawing = NewestTask("realcam-drawing", delay_s=0.02, share=0.2)
+        self._tracing = NewestTask("realcam-rays", delay_s=0.02, share=0.2)
+        # These take as long as some frames of the picture, and wait for the end of a movement.
         self._planning = NewestTask("realcam-planning", quiet_s=0.4)
         self._measuring_levels = NewestTask("realcam-levels")
-        self._measuring_depth = NewestTask("realcam-depth-of-field", quiet_s=0.1)
+        self._measuring_depth = NewestTask("realcam-depth-of-field", quiet_s=0.3)
         self._keeping = NewestTask("realcam-state", quiet_s=0.5)
 
     def close(self) -> None:

@@ -9,9 +9,9 @@ from dataclasses import replace
 from typing import Any
 
 from .._core import Film, InputError, Lens, LensFileError, Plan, RealcamError, RenderSettings
-from ..denoiser import GUIDES
 from ..drawing.cut import PLANES
 from ..image import Image
+from ..number_text import counted, duration_text
 from ..shot import Shot
 from ..tolerance import random_copy
 from .bench_state import restored
@@ -25,7 +25,7 @@ from .lens_view import drawn_heights_mm
 from .light_meter import middle_grey_lx_s
 from .listeners import Listeners, Problem
 from .picture_loop import PictureLoop
-from .picture_request import MOST_SPP, Frame, PictureRequest
+from .picture_request import Frame, PictureRequest
 from .preview_denoiser import why_missing
 from .ring_scales import Ring
 
@@ -269,11 +269,9 @@ class LensBench:
 
     # What comes of it.
 
-    def image(self, slot: str = "a", *, is_denoised: bool = False) -> Image:
-        """The picture with the samples that it has at its whole resolution; waits for the first of them."""
-        if not is_denoised:
-            return self._loops[slot].image().result()
-        return self._loops[slot].image(GUIDES).result().denoised(device=self._device)
+    def image(self, slot: str = "a") -> Image:
+        """The picture as it is shown, denoised or not, with all its pixels; waits for the first samples of them."""
+        return self._loops[slot].image().result()
 
     @property
     def asked(self) -> dict[str, int]:
@@ -292,17 +290,20 @@ class LensBench:
         frame = self._frame
         if frame is None or frame.serial < self._loops["a"].serial:
             return "it has just begun"
-        samples = f"{frame.samples} sample{'' if frame.samples == 1 else 's'} per pixel"
+        samples = f"{counted(frame.samples, 'sample')} per pixel"
         if frame.noise_codes is None:
             return samples
-        wanted = (
-            frame.samples * (frame.noise_codes / self.noise_codes) ** 2
-        )  # noise falls with the root of their number
-        left_s = frame.seconds * max(0.0, min(wanted, MOST_SPP) / frame.samples - 1)
-        return (
-            f"{samples}, noise {frame.noise_codes:.1f} of 255 grey levels where {self.noise_codes:g} is asked for, "
-            f"about {f'{left_s:.0f} s' if left_s < 100 else f'{left_s / 60:.0f} minutes'} to go"
-        )
+        return f"{samples}, noise {frame.noise_codes:.1f} of 255 grey levels where {self.noise_codes:g} is wanted"
+
+    @property
+    def time_left(self) -> str:
+        """How long the picture takes to be refined, in words."""
+        frame = self._frame
+        if self.is_refined:
+            return "none"
+        if frame is None or frame.serial < self._loops["a"].serial or frame.left_s is None:
+            return "not known yet"
+        return f"about {duration_text(frame.left_s)}"
 
     def show_again(self) -> None:
         """Sends the picture as it is once more."""

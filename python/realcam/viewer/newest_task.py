@@ -18,10 +18,11 @@ class NewestTask:
     Tasks report what they find by themselves. An exception is logged, and the next task is done as ever.
     quiet_s: a task is begun when none has come for so long, so that what is costly waits for the end of a movement.
     delay_s: a task is begun so much later, so that what is more urgent is done first.
+    share: of the time, at most, that tasks take, so that the rest is left to what is more urgent.
     """
 
-    def __init__(self, name: str, *, quiet_s: float = 0.0, delay_s: float = 0.0) -> None:
-        self._quiet_s, self._delay_s = quiet_s, delay_s
+    def __init__(self, name: str, *, quiet_s: float = 0.0, delay_s: float = 0.0, share: float = 1.0) -> None:
+        self._quiet_s, self._delay_s, self._rest = quiet_s, delay_s, 1 / share - 1
         self._wake = threading.Condition()
         self._task: Callable[[], None] | None = None
         self._is_closed = False
@@ -52,9 +53,12 @@ class NewestTask:
                 task, self._task = self._task, None
                 if self._is_closed or task is None:
                     return
+            begun = time.perf_counter()
             try:
                 task()
             except Cancelled:
                 pass  # Python ends, and stops all work
             except Exception:
                 _log.exception("a task of thread %s failed", self._name)
+            if self._rest:
+                time.sleep(self._rest * (time.perf_counter() - begun))

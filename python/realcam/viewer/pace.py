@@ -9,7 +9,7 @@ from itertools import pairwise
 
 _PREVIEW_S = 0.032  # what the first frame of a change may take, so that 25 of them fit into a second
 _LEAST_PREVIEW = 240 * 160  # pixels that it has, as long as it does not take more than this
-_MOST_PREVIEW_S = 0.07
+_MOST_PREVIEW_S = 0.09  # so that 10 of them fit into a second
 _QUICK_S = 0.008  # for so long it takes more than one sample, on a GPU: 60 frames a second remain
 _REFINING_S = 0.040  # what a frame may take that only refines, as long as it is more than a sample
 _MOST_REFINING_S = 1.0  # and one that adds no more than an eighth of the samples, of which little is seen
@@ -51,7 +51,7 @@ class Pace:
         """The next size of a picture that has begun with fewer pixels, in as few steps as the whole resolution
         takes."""
         coarse = (min(2 * size[0], whole[0]), min(2 * size[1], whole[1]))
-        is_nearly_whole = coarse[0] > 0.7 * whole[0]
+        is_nearly_whole = coarse[0] > 0.6 * whole[0]
         return whole if is_nearly_whole or self._seconds(1, whole) < 8 * _PREVIEW_S else coarse
 
     def refining_spp(self, size: Size, samples: int) -> int:

@@ -8,15 +8,17 @@ from typing import Any
 
 from nicegui import ui
 from nicegui.client import Client
+from nicegui.element import Element
 from nicegui.events import GenericEventArguments
 
 from .._core import RealcamError
 from .access import Folders
 from .camera_panel import CameraPanel
 from .comparison import NOTHING
-from .elements import CostPanel, HelpDialog, LensDrawing, PictureCanvas
-from .files_panel import FilesPanel
+from .elements import CostPanel, HelpDialog, LensDrawing, PictureCanvas, TabbedPanels
+from .lens_panel import ComparisonPanel, LensPanel
 from .plots_panel import PlotsPanel
+from .save_panel import SavePanel
 from .server_loop import call_on_loop
 from .shot_source import ShotSource
 from .window import Window
@@ -35,30 +37,53 @@ def build_page(client: Client, window: Window, folders: Folders, source: ShotSou
         except RealcamError as error:
             ui.notify(str(error), type="negative")
 
-    with ui.row().classes("w-full items-center"):
+    with ui.element("header").classes("rc-header"):
         ui.label(f"realcam: {source.name}").classes("text-lg")
         ui.space()
-        again = ui.button("Start again", color=None).props("flat no-caps dense").classes("rc-flat")
+        again = ui.button("Start again", color=None).props("outline no-caps").classes("rc-flat")
         again.on("click", js_handler="() => [...window.realcamStreams.values()][0].startAgain()")
         again.tooltip("Camera, lens and effects as the shot file has them")
         HelpDialog()
         ui.toggle({None: "Auto", False: "Light", True: "Dark"}, value=None).bind_value_to(dark, "value").props(
-            'dense no-caps aria-label="Colours of the page" data-testid="theme"'
+            'no-caps aria-label="Colours of the page" data-testid="theme"'
         )
+    camera = CameraPanel(window, run)
     with ui.element("main").classes("rc-page"):
         with ui.element("div").classes("rc-column"):
             canvas = PictureCanvas(window.path)
-            drawing = LensDrawing(window.path)
-        with ui.element("div").classes("rc-column"):
-            camera = CameraPanel(window, run)
-            files = FilesPanel(window, folders, source, run)
-            with ui.element("section").classes("rc-controls"):
+            camera.add_rings()
+        with TabbedPanels("Lens", "Camera", "Effects", "Plots", "Save").classes("rc-column") as panels:
+            said = ui.label().classes("rc-said").props('aria-live="polite" data-testid="said"')
+
+            def say(text: str, is_problem: bool) -> None:
+                said.set_text(text)
+                said.classes(add="rc-problem" if is_problem else "", remove="" if is_problem else "rc-problem")
+
+            with panels.panel("Lens"):
+                lens = LensPanel(window, run, say)
+                drawing = LensDrawing(window.path)
+            with panels.panel("Camera"):
+                camera.add_settings()
+                ComparisonPanel(window, run)
+            with panels.panel("Effects"):
                 CostPanel(window.path)
-            plots = PlotsPanel(window)
-    files.update()
+            with panels.panel("Plots"):
+                plots = PlotsPanel(window)
+            with panels.panel("Save"):
+                save = SavePanel(window, folders, source, say)
+    camera.update()
+    lens.update()
+    panels.on("shown", lambda: plots.show(panels.shown == "Plots"))
     canvas.on("picked", lambda event: _pick(event, plots))
 
     waiting = False
+    told: dict[str, tuple[bool, ...]] = {"setHistory": (False, False), "setComparison": (False,)}
+
+    def tell(element: Element, method: str, *values: bool) -> None:
+        """Calls a method of a component if its values have changed: each call draws the component again."""
+        if told[method] != values:
+            told[method] = values
+            element.run_method(method, *values)
 
     def update_soon() -> None:
         """Once for all changes of the same moment."""
@@ -72,10 +97,11 @@ def build_page(client: Client, window: Window, folders: Folders, source: ShotSou
         waiting = False
         with client:
             camera.update()
-            files.update()
+            lens.update()
+            save.update()
             plots.update()
-            drawing.run_method("setHistory", bench.history.can_undo, bench.history.can_redo)
-            canvas.run_method("setComparison", bench.comparison.kind != NOTHING)
+            tell(drawing, "setHistory", bench.history.can_undo, bench.history.can_redo)
+            tell(canvas, "setComparison", bench.comparison.kind != NOTHING)
 
     bench.listeners.controls = lambda: call_on_loop(loop, update_soon)
     bench.listeners.sharp_range = lambda sharp: call_on_loop(loop, camera.show_sharp_range, sharp)

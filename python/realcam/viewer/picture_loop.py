@@ -50,8 +50,8 @@ class PictureLoop:
     """Photographs a scene for one window.
 
     on_frame and on_error (with the request's serial and a message) are called on threads of the loop. submit() may be
-    called as often as a mouse moves. Every request that is begun gets its first frame. Of those that come meanwhile the
-    newest is next.
+    called as often as a mouse moves. Every request that is begun gets its first frame; of those that come meanwhile the
+    newest is next. No frame has fewer pixels than the one before it of the same view.
     """
 
     def __init__(
@@ -85,7 +85,7 @@ class PictureLoop:
             self._pending = _Pending(request, serial, time.perf_counter())
             picture = self._picture
             self._wake.notify()
-            if self._refines and picture and not picture.request.is_same_picture(request):
+            if self._refines and picture and not picture.request.is_same_view(request):
                 picture.is_given_up = True
                 self._live.cancel()  # while the lock holds the other thread in the frame that is meant
         return serial
@@ -103,9 +103,9 @@ class PictureLoop:
     def jpeg_quality(self, quality: int) -> None:
         self._encoder.quality = quality
 
-    def image(self, layers: tuple[str, ...] = ()) -> Future[Image]:
-        """The picture as it stands, at its whole resolution with all its samples."""
-        return self._ask(lambda: self._image(layers), True)
+    def image(self) -> Future[Image]:
+        """The picture as it is shown, denoised or not, with all its pixels."""
+        return self._ask(self._image, True)
 
     def point(self, u: float, v: float) -> Future[Point]:
         """What is at u, v (0 to 1, from the upper left corner)."""
@@ -211,18 +211,22 @@ class PictureLoop:
         if picture and picture.samples and picture.can_be(request):
             self._develop_for(picture, pending)
             return
+        has_samples = picture and not picture.is_given_up and (picture.samples or picture.kept)
+        if picture and has_samples and picture.request.is_same_view(request):
+            self._picture = self._taker.with_other_settings(picture, request, pending.serial)
+            return
         self._picture = picture = self._taker.new_picture(request, pending.serial, pending.begun)
         codes = self._taker.shoot(picture, self._taker.pace.first_spp(picture.size))
         is_moving = pending.begun - self._begun < _MOVING_S
         self._begun = pending.begun
         picture.refines_from = time.perf_counter() + (_MOVING_S if is_moving else _RESTING_S)
         if request.is_automatic and self._taker.meter(picture):
-            self._show(picture, self._taker.developed(picture))
-        else:
-            self._show(picture, codes)
+            codes = self._taker.developed(picture)
+        self._show(picture, codes, is_hurried=True)
 
     def _refine(self, picture: GrowingPicture) -> None:
-        """Once more of its samples, after as few steps as the whole resolution takes."""
+        """Takes once more of its samples, after as few steps as the whole resolution takes."""
+        start = time.perf_counter()
         request, pace = picture.request, self._taker.pace
         is_new_size = picture.size != picture.whole
         if is_new_size:
@@ -240,6 +244,7 @@ class PictureLoop:
             self._refines = True
         if is_new_size:
             picture.samples, picture.spent_s = 0, 0.0
+            picture.steps.clear()
         try:
             codes = self._taker.shoot(picture, spp)
         finally:
@@ -251,6 +256,7 @@ class PictureLoop:
             self._show(picture, self._taker.developed(picture))
         else:
             self._show(picture, codes)
+        picture.steps.append((picture.samples - samples, time.perf_counter() - start))
 
     def _wait_for(self, frame: LiveFrame, picture: GrowingPicture) -> None:
         """Meanwhile what asks for no new samples is done with those of the frame before."""
@@ -287,7 +293,7 @@ class PictureLoop:
             picture.is_final = True
             self._show(picture, self._taker.developed(picture))
 
-    def _image(self, layers: tuple[str, ...]) -> Image:
+    def _image(self) -> Image:
         picture = self._picture
         if picture is None:
             raise InputError("there is no picture yet")
@@ -295,7 +301,7 @@ class PictureLoop:
             self._refine(picture)
             if self._pending:
                 raise Cancelled("another picture is wanted")
-        return self._taker.image(picture, layers)
+        return self._taker.image(picture, is_denoised=self._is_denoised(picture))
 
     def _point(self, u: float, v: float) -> Point:
         picture = self._picture
@@ -304,13 +310,27 @@ class PictureLoop:
             raise InputError("there is no picture yet")
         return point_at(u, v, *self._taker.arrays(picture), picture.exposure_time_s)
 
-    def _show(self, picture: GrowingPicture, codes: NDArray[np.uint8], *, is_free: bool = True) -> None:
-        is_denoised = picture.request.denoises and not picture.is_final
+    @staticmethod
+    def _is_denoised(picture: GrowingPicture) -> bool:
+        """True if the picture is shown and saved without its noise."""
+        return picture.request.denoises and not picture.is_final
+
+    def _show(
+        self,
+        picture: GrowingPicture,
+        codes: NDArray[np.uint8],
+        *,
+        is_free: bool = True,
+        is_hurried: bool = False,
+    ) -> None:
+        is_denoised = self._is_denoised(picture)
         if is_denoised:
-            without_noise = self._taker.without_noise(picture, is_free=is_free)
-            if without_noise is None:
+            without_noise = self._taker.without_noise(picture, is_free=is_free, is_hurried=is_hurried)
+            is_denoised = picture.denoised_lx is not None
+            if without_noise is not None:
+                codes = without_noise
+            elif is_denoised:
                 return  # the frame before stands
-            codes = without_noise
         frame_of = picture.frame_of(codes, self._taker.camera(picture).exposure_time_s, is_denoised)
         try:
             self._encoder.submit(codes, frame_of)

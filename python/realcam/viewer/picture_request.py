@@ -22,13 +22,14 @@ class PictureRequest:
     max_spp: int = MOST_SPP
     denoises: bool = False  #: frames are shown without their noise, but for the last one
 
-    def is_same_picture(self, other: PictureRequest) -> bool:
-        """Whether the samples of one can be developed for the other."""
+    def is_same_view(self, other: PictureRequest) -> bool:
+        """True if both have the same camera, apart from its exposure."""
         mine, others = self.camera, other.camera
-        return (
-            mine.replace(exposure_time_s=1, iso=100) == others.replace(exposure_time_s=1, iso=100)
-            and self.settings == other.settings
-        )
+        return bool(mine.replace(exposure_time_s=1, iso=100) == others.replace(exposure_time_s=1, iso=100))
+
+    def is_same_picture(self, other: PictureRequest) -> bool:
+        """True if the samples of one can be developed for the other."""
+        return self.is_same_view(other) and self.settings == other.settings
 
 
 @dataclass(frozen=True)
@@ -77,6 +78,7 @@ class Frame:
     costs: Costs | None
     noise_tiles: list[list[float]] | None = None  #: the noise of parts of the picture, rows from above
     is_denoised: bool = False
+    left_s: float | None = None  #: until nothing will be added; None if it is not known yet
 
 
 @dataclass(frozen=True)

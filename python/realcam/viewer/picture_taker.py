@@ -21,6 +21,7 @@ from .pace import Pace
 from .picture_request import Costs, PictureRequest
 from .preview_denoiser import PreviewDenoiser
 
+_FIRST_FRAME_S = 0.1  # which the first frame of a change may take, denoised, so that 10 of them fit into a second
 _FEW_PIXELS = 50_000  # are developed here sooner than one more sample of them is taken
 
 
@@ -49,6 +50,14 @@ class PictureTaker:
         """Without samples yet."""
         self._metered_s = self._metered_s or request.camera.exposure_time_s
         return GrowingPicture(request, serial, begun, self.pace.preview_size(request.camera.film.resolution))
+
+    def with_other_settings(self, picture: GrowingPicture, request: PictureRequest, serial: int) -> GrowingPicture:
+        """The same view with other settings, as fine as the picture that is shown, whose samples it has until its own
+        first ones come."""
+        new = replace(self.new_picture(request, serial, time.perf_counter()), size=picture.size)
+        new.kept, new.exposure_time_s = self.arrays(picture), picture.exposure_time_s
+        new.denoised_lx = picture.denoised_lx
+        return new
 
     def camera(self, picture: GrowingPicture) -> Camera:
         return picture.camera(self._metered_s)
@@ -90,27 +99,31 @@ class PictureTaker:
             return self.shoot(picture, 1)  # the device takes a sample and develops in less time
         return self._developed_here(picture)
 
-    def without_noise(self, picture: GrowingPicture, *, is_free: bool) -> NDArray[np.uint8] | None:
+    def without_noise(
+        self, picture: GrowingPicture, *, is_free: bool, is_hurried: bool = False
+    ) -> NDArray[np.uint8] | None:
         """The samples that are there, denoised. is_free: no frame is under way, whose end this would have to wait for.
+        is_hurried: only if it is quick, as for the first frame of a change.
 
-        None: nothing that a frame has not shown, and no time for more. The first frame of a change may have fewer
-        pixels than the picture. Later ones have all, so that none is coarser than the one before. Raises Cancelled
-        where another picture is wanted.
+        Returns None if there is nothing that a frame has not shown, or no time for it. Raises Cancelled if another
+        picture is wanted.
         """
-        is_new = picture.denoised_lx is None or picture.denoised_of != picture.size
-        if is_free and (is_new or self._denoiser.is_due):
-            image = self._live.image(GUIDES)
-            if picture.denoised_lx is None:  # the first frame of a change is shown, whatever is wanted by then
-                exposure = self._denoiser.denoised(image, is_hurried=True)
-            else:
-                exposure = self._denoiser.denoised(image, is_wanted=self._is_wanted)
-            picture.denoised_lx = exposure / np.float32(image.camera.exposure_time_s)
-            picture.denoised_of = picture.size
+        is_new = picture.denoised_of != picture.size
+        is_quick = not is_hurried or self._denoiser.foreseen_s(picture.size) < _FIRST_FRAME_S - picture.spent_s
+        if is_free and is_quick and (is_new or self._denoiser.is_due):
+            # The first frame of a change is shown, whatever is wanted by then.
+            self._denoise(picture, (lambda: True) if is_hurried else self._is_wanted)
         elif picture.denoised_lx is None or picture.denoised_serial == picture.serial:
             return None
+        assert picture.denoised_lx is not None
         picture.denoised_serial = picture.serial
         camera = self.camera(picture)
         return develop(picture.denoised_lx * np.float32(camera.exposure_time_s), camera.iso, picture.request.tone)
+
+    def _denoise(self, picture: GrowingPicture, is_wanted: Callable[[], bool]) -> None:
+        image = self._denoiser.denoised(lambda: self._live.image(GUIDES), is_wanted)
+        picture.denoised_lx = image.pixels / np.float32(image.camera.exposure_time_s)
+        picture.denoised_of = picture.size
 
     @cached_property
     def _denoiser(self) -> PreviewDenoiser:
@@ -126,9 +139,16 @@ class PictureTaker:
                 picture.costs = Costs.of(self._live.image().stats, picture.spent_s)
         picture.is_final = picture.is_good_enough()
 
-    def image(self, picture: GrowingPicture, layers: tuple[str, ...]) -> Image:
-        """All samples, with the exposure time that is wanted now."""
-        image, camera = self._live.image(layers), self.camera(picture)
+    def image(self, picture: GrowingPicture, *, is_denoised: bool) -> Image:
+        """All pixels, with the exposure time that is wanted now. is_denoised: as denoised last. Raises Cancelled if
+        another picture is wanted."""
+        image, camera = self._live.image(), self.camera(picture)
+        if is_denoised:
+            if picture.denoised_of != picture.size:
+                self._denoise(picture, self._is_wanted)
+            assert picture.denoised_lx is not None
+            pixels = picture.denoised_lx * np.float32(camera.exposure_time_s)
+            return replace(image, pixels=pixels, camera=camera, denoiser=self._denoiser.name)
         ratio = np.float32(camera.exposure_time_s / image.camera.exposure_time_s)
         return replace(image, pixels=image.pixels * ratio, camera=camera)
 

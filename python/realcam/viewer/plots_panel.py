@@ -21,15 +21,16 @@ plotter = WorkerProcess()
 
 
 class PlotsPanel:
-    """One plot at a time, drawn while the lens is changed. Until it is, none is shown in its place."""
+    """One plot at a time, while the panel is shown, of the lens when it has come to rest; none until it is drawn."""
 
     def __init__(self, window: Window) -> None:
         self._bench = window.bench
         self._loop = asyncio.get_running_loop()
-        self._task = NewestTask("realcam-plots")
+        self._task = NewestTask("realcam-plots", quiet_s=0.3)  # a movement's pictures need the processor
         self._at = (0.5, 0.5)
         self._look: Look | None = None
-        with ui.element("section").classes("rc-controls").props('aria-label="A closer look"'):
+        self._is_shown = False
+        with ui.element("section").props('aria-label="Plots of the lens"'):
             self._kind = ui.select({kind: title for kind, (title, _) in PLOTS.items()}, value="spot", label="Plot")
             self._kind.classes("w-full").props('data-testid="plot"').on("update:model-value", self.update)
             self._help = ui.label().classes("rc-note")
@@ -39,7 +40,11 @@ class PlotsPanel:
                 self._busy = ui.row().classes("rc-busy").props('data-testid="plot-busy" role="status"')
                 with self._busy:
                     ui.spinner(size="1.5rem")
-                    ui.label("is being drawn")
+                    ui.label("Drawing the plot ...")
+
+    def show(self, is_shown: bool) -> None:
+        """Says whether the panel is shown. On the server's loop."""
+        self._is_shown = is_shown
         self.update()
 
     def close(self) -> None:
@@ -52,6 +57,8 @@ class PlotsPanel:
 
     def update(self) -> None:
         """On the server's loop."""
+        if not self._is_shown:
+            return
         controls = self._bench.controls
         lens = controls.lens_on_film
         plots = plots_of(lens)
@@ -60,8 +67,10 @@ class PlotsPanel:
         kind = self._kind.value
         self._help.set_text(plots[kind][1])
         height = height_of(*self._at, controls.film)
-        place = f"{height:.3g} mm from the lens's axis" if lens.is_rotational else "over the film"
-        self._place.set_text(f"{place}; in the plane in focus")
+        place = (
+            f"The point is {height:.3g} mm from the lens's axis on the film" if lens.is_rotational else "Over the film"
+        )
+        self._place.set_text(f"{place}, in the plane in focus. Click the picture to choose a point.")
         look = Look(kind, lens, height)
         if look != self._look:
             self._look = look
@@ -76,7 +85,7 @@ class PlotsPanel:
             except WorkError:  # by no fault of this plot, perhaps
                 content = plotter.call(plot_svg, look, seconds=_LONGEST_S)
         except WorkError as error:
-            content = f'<p class="rc-problem">The plot is not there: drawing it {error}</p>'
+            content = f'<p class="rc-problem">There is no plot: drawing it {error}</p>'
         except RealcamError as error:
             content = f'<p class="rc-problem">{html.escape(str(error))}</p>'
         call_on_loop(self._loop, self._show, look, content)

@@ -1,4 +1,7 @@
-"""Saves pictures, shots and lenses: into the server's folders, or as downloads of the browser."""
+"""Saves pictures, shots and lenses: into the server's folders, or as downloads of the browser.
+
+A picture is always saved as the bench shows it at that moment, denoised or not, with all its pixels.
+"""
 
 from __future__ import annotations
 
@@ -12,6 +15,7 @@ from nicegui import ui
 from .._core import InputError, RealcamError
 from ..files import check_target, write_whole
 from .access import Folders
+from .camera_panel import grey_levels
 from .saving import SUFFIXES, check_suffix, lens_content, picture_content, shot_contents
 from .shot_source import ShotSource
 from .window import Window
@@ -20,7 +24,7 @@ _PROPOSED = {"picture": "picture.png", "shot": "shot.toml", "lens": "lens.toml"}
 
 
 class SavePanel:
-    """say: shows a text; its second argument is whether it tells of a problem."""
+    """say: shows a text; its second argument is true if it tells of a problem."""
 
     def __init__(self, window: Window, folders: Folders, source: ShotSource, say: Callable[[str, bool], None]) -> None:
         self._window, self._bench, self._folders, self._source, self._say = window, window.bench, folders, source, say
@@ -30,18 +34,30 @@ class SavePanel:
             self._name.tooltip(f"A picture is {kinds['picture']}; a shot {kinds['shot']}; a lens {kinds['lens']}")
             self._what = ui.select(list(_PROPOSED), value="picture").props('data-testid="save-what"')
             self._what.on("update:model-value", self._propose)
-            self._denoised = ui.checkbox("Denoised").props('data-testid="save-denoised"')
-            self._denoised.tooltip("Without the noise that it has, as Open Image Denoise guesses; its metadata say so")
-            self._denoised.set_visibility(not self._bench.why_no_denoiser)
+        with ui.row().classes("items-center w-full"):
             save = ui.button("Save", on_click=lambda: self._try(self._save)).props('no-caps data-testid="save"')
-            save.tooltip(f"In {folders.first}, or in another folder that was named when the lens bench was started")
-            download = ui.button("Download", color=None).props('no-caps flat data-testid="download"').classes("rc-flat")
-            download.on("click", lambda: self._try(self._download))
-            download.tooltip("To where the browser keeps its downloads")
+            save.tooltip(f"As it is now, in {folders.first} or another folder that the lens bench was started with")
+            download = ui.button("Download", color=None).props('no-caps outline data-testid="download"')
+            download.classes("rc-flat").on("click", lambda: self._try(self._download))
+            download.tooltip("As it is now, to where the browser keeps its downloads")
+        with ui.row().classes("items-center w-full") as refined:
+            self._refine = ui.button(on_click=lambda: self._try(self._save_refined), color=None)
+            self._refine.props('no-caps outline data-testid="save-refined"').classes("rc-flat")
+            self._refine.tooltip("Waits until the noise is what Refine to says (panel Camera), and saves then")
+            self._time_left = ui.label().props('data-testid="time-left"').classes("rc-note")
+        refined.bind_visibility_from(self._what, "value", lambda what: what == "picture")
+        note = ui.label("A picture is saved as you see it now, with all its pixels.").classes("rc-note")
+        note.bind_visibility_from(self._what, "value", lambda what: what == "picture")
+        self.update()
+        ui.timer(1.0, self.update)
+
+    def update(self) -> None:
+        """On the server's loop."""
+        self._refine.set_text(f"Save to {grey_levels(self._bench.noise_codes)}")
+        self._time_left.set_text(f"Time left: {self._bench.time_left}")
 
     def _propose(self) -> None:
         self._name.set_value(_PROPOSED.get(self._what.value, ""))
-        self._denoised.set_visibility(self._what.value == "picture" and not self._bench.why_no_denoiser)
 
     async def _try(self, action: Callable[[str, str], Any]) -> None:
         name, what = self._name.value, self._what.value
@@ -53,7 +69,10 @@ class SavePanel:
         except (RealcamError, OSError) as error:
             self._say(str(error), True)
 
-    async def _save(self, what: str, name: str) -> None:
+    async def _save_refined(self, what: str, name: str) -> None:
+        await self._save(what, name, is_refined=True)
+
+    async def _save(self, what: str, name: str, *, is_refined: bool = False) -> None:
         path = self._folders.inside(name)
         contents, left_out = (None, []) if what == "picture" else await self._window.do(self._contents, what, path)
         # A file beside the one that was named is looked at as that one is: it could be a link that leads elsewhere.
@@ -63,6 +82,8 @@ class SavePanel:
         agreed: set[Path] = set()
         if not await self._agree(targets, agreed):
             return
+        if is_refined:
+            await self._refined()
         if contents is None:
             contents = {path: await self._picture(name)}
         if await self._write({target: contents[file] for target, file in targets.items()}, agreed):
@@ -120,21 +141,20 @@ class SavePanel:
         return shot_contents(self._source, bench.controls, effects, path), []
 
     async def _picture(self, name: str) -> bytes:
-        """When it has the noise that is asked for, or the user wants it as it is. Raises Cancelled."""
-        await self._refined()
-        bench, is_denoised = self._bench, self._denoised.value is True
-        return await self._window.do(
-            lambda: picture_content(bench.image(is_denoised=is_denoised), name, bench.shot.tone)
-        )
+        """As it is shown now. Raises Cancelled."""
+        bench = self._bench
+        return await self._window.do(lambda: picture_content(bench.image(), name, bench.shot.tone))
 
     async def _refined(self) -> None:
+        """Returns when the picture has the noise that is asked for, or the user wants it as it is. Raises InputError if
+        the user wants no picture."""
         bench = self._bench
         if bench.is_refined:
             return
         with ui.dialog().props("persistent") as dialog, ui.card():
             progress = ui.label().props('data-testid="save-progress"')
             with ui.row():
-                ui.button("Save it as it is", on_click=lambda: dialog.submit(True)).props("no-caps")
+                ui.button("Save it as it is now", on_click=lambda: dialog.submit(True)).props("no-caps")
                 ui.button("Do not save", on_click=lambda: dialog.submit(False), color=None).props("no-caps flat")
 
         async def asked() -> Any:
@@ -143,7 +163,7 @@ class SavePanel:
         answer = asyncio.ensure_future(asked())
         try:
             while not (bench.is_refined or answer.done() or dialog.is_deleted):
-                progress.set_text(f"The picture is being refined: {bench.progress}")
+                progress.set_text(f"The picture is being refined: {bench.progress}. Time left: {bench.time_left}")
                 await asyncio.wait([answer], timeout=0.2)
         finally:
             answer.cancel()

@@ -21,9 +21,9 @@ from nicegui.client import Client
 from .._core import DeviceError, InputError, LensFileError
 from ..shot import Shot
 from .access import BodyLimit, Folders, Gate, is_local
-from .files_panel import MOST_UPLOADED, lens_preview
 from .left_requests import LeftRequests
 from .lens_bench import LensBench
+from .lens_panel import MOST_UPLOADED, lens_preview
 from .lens_reading import reader
 from .page import build_page
 from .plots_panel import plotter

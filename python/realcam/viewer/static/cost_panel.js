@@ -10,21 +10,20 @@ export default {
   props: { path: String, effects: Array },
   template: `
 <section class="rc-costs" aria-label="Effects and cost">
-  <table class="rc-effects"><caption class="rc-hidden">Effects, and what the planner says of them</caption>
-    <thead><tr><th scope="col">Effect</th><th scope="col">Simulated</th><th scope="col" title="By how much the effect changes this picture, and from how much on it is simulated">Size here</th></tr></thead>
-    <tbody>
-      <tr v-for="e in effects" :key="e.name" :title="e.help">
-        <th scope="row">{{ e.name.replaceAll('_', ' ') }}</th>
-        <td><select :aria-label="e.name" :data-effect="e.name" :value="states[e.name]" @change="choose(e.name, $event.target.value)">
-          <option value="auto">auto{{ planned(rows[e.name]) }}</option>
-          <option value="on">on</option><option value="off">off</option></select></td>
-        <td class="rc-size" :title="rows[e.name]?.reason">{{ size(e.name) }}</td>
-      </tr>
-      <tr v-for="row in others" :key="row.effect" :title="row.reason"><th scope="row">{{ row.effect }}</th><td>set by Camera model</td>
-        <td class="rc-size">{{ size(row.effect) }}</td></tr>
-    </tbody></table>
+  <p class="rc-note">An effect on "auto" is simulated if this picture shows it.</p>
+  <ul class="rc-effects">
+    <li v-for="e in effects" :key="e.name" :title="e.help">
+      <label :for="'rc-effect-' + e.name">{{ spoken(e.name) }}</label>
+      <select :id="'rc-effect-' + e.name" :data-effect="e.name" :value="states[e.name]" @change="choose(e.name, $event.target.value)">
+        <option value="auto">auto{{ planned(rows[e.name]) }}</option>
+        <option value="on">on</option><option value="off">off</option></select>
+      <span class="rc-size" :title="rows[e.name]?.reason">{{ size(e.name) }}</span>
+    </li>
+    <li v-for="row in others" :key="row.effect" :title="row.reason"><b>{{ spoken(row.effect) }}</b><span>by the camera model</span>
+      <span class="rc-size">{{ size(row.effect) }}</span></li>
+  </ul>
   <p v-if="note" class="rc-note">{{ note }}</p>
-  <details><summary>Reasons</summary><ul class="rc-reasons"><li v-for="row in all" :key="row.effect"><b>{{ row.effect }}</b>: {{ row.reason }}</li></ul></details>
+  <details><summary>Reasons of the planner</summary><ul class="rc-reasons"><li v-for="row in all" :key="row.effect"><b>{{ row.effect }}</b>: {{ row.reason }}</li></ul></details>
   <template v-if="costs">
     <div class="rc-bar" role="img" :aria-label="barText" :title="barText">
       <span class="rc-bar-lens" :style="{ flexGrow: costs.lens_share }"></span><span class="rc-bar-scene" :style="{ flexGrow: costs.scene_share }"></span><span class="rc-bar-other" :style="{ flexGrow: costs.other_share }"></span>
@@ -109,12 +108,16 @@ export default {
       return [LEFT + (W - LEFT) * share(t, t0, t1), (H - BOTTOM) * (1 - share(n, n0, n1))];
     },
     colour: (k) => COLOURS[k % COLOURS.length],
-    planned: (row) => (!row ? "" : row.is_kept ? " (on)" : row.size > row.threshold ? " (off: see reasons)" : " (off)"),
+    planned: (row) => (!row ? "" : row.is_kept ? " (on)" : " (off)"),
+    spoken: (name) => name[0].toUpperCase() + name.slice(1).replaceAll("_", " "),
+    /// A sentence on what the effect changes here.
     size(name) {
-      const row = this.rows[name], short = (x) => (x === null ? "∞" : Number(x.toPrecision(2))); // JSON has no infinity
+      const row = this.rows[name], short = (x) => (x === null ? "∞" : String(Number(x.toPrecision(2)))); // JSON has no infinity
       if (!row) return "";
-      const unit = row.unit === "px" ? "pixel" : "grey level";
-      return `${short(row.size)} ${unit}${row.size === 1 ? "" : "s"}, counts from ${short(row.threshold)}`;
+      const unit = row.unit === "px" ? "pixel" : "grey level", size = short(row.size);
+      const limit = `less than ${short(row.threshold)} would not be seen`;
+      const why = !row.is_kept && row.size > row.threshold ? ". See the reasons why it is off." : `; ${limit}.`;
+      return `It changes this picture by ${size} ${unit}${size === "1" ? "" : "s"}${why}`;
     },
     choose(effect, state) {
       this.states = { ...this.states, [effect]: state };

@@ -32,13 +32,6 @@ export default {
     <h2>{{ view ? view.title || view.name : "No lens yet" }}</h2>
     <button type="button" @click="send('undo')" :disabled="!history.can_undo" title="Take the last change of the lens back (Ctrl+Z)">Undo</button>
     <button type="button" @click="send('redo')" :disabled="!history.can_redo" title="Do it again (Ctrl+Y)">Redo</button>
-    <label title="Another copy of this lens, with errors as a shop of this grade makes them. Undo goes back to the one before">
-      <select v-model="grade" aria-label="Grade of copies"><option>commercial</option><option>precision</option><option>high</option></select>
-    </label>
-    <button type="button" @click="send('another_copy', { grade })">Another copy</button>
-    <label title="Blue faces have their centre of curvature on the film's side, red ones on the object's"><input type="checkbox" v-model="colours"> Signs of radii</label>
-    <label v-if="view && !view.is_rotational" title="The section in the plane of x and z, instead of that of y and z"><input type="checkbox" :checked="view.plane === 'xz'" @change="send('cut', { plane: $event.target.checked ? 'xz' : 'yz' })"> From above</label>
-    <label title="Pupils, principal planes and focal points"><input type="checkbox" v-model="showsMarks"> Marks</label>
   </div>
   <svg v-if="view" ref="svg" class="rc-section" :viewBox="box.join(' ')" preserveAspectRatio="xMidYMid meet"
       role="img" :aria-label="'Section of ' + view.name" @pointermove="drag" @pointerup="drop" @pointercancel="drop">
@@ -73,6 +66,12 @@ export default {
       <text v-for="m in view.marks" :key="'t' + m.label" :x="m.z" :y="-(m.half || 0.04 * box[3]) - 0.02 * box[3]" :font-size="0.05 * box[3]">{{ m.label }}</text>
     </g>
   </svg>
+  <div v-if="view" class="rc-lens-head">
+    <label title="Blue faces have their centre of curvature on the film's side, red ones on the object's"><input type="checkbox" v-model="colours"> Signs of the radii</label>
+    <label v-if="!view.is_rotational" title="The section in the plane of x and z, instead of that of y and z"><input type="checkbox" :checked="view.plane === 'xz'" @change="send('cut', { plane: $event.target.checked ? 'xz' : 'yz' })"> From above</label>
+    <label title="Pupils, principal planes and focal points"><input type="checkbox" v-model="showsMarks"> Pupils and planes</label>
+    <span class="rc-note">{{ handles.length ? "Drag a dot to change surface " + (chosen + 1) + "." : "Click a surface of the drawing to change it." }}</span>
+  </div>
   <p v-if="problem" class="rc-problem" role="alert" data-testid="problem">{{ problem.message }}</p>
   <p v-else-if="rays.note" class="rc-problem">{{ rays.note }}</p>
   <dl v-if="view" class="rc-figures">
@@ -92,7 +91,7 @@ export default {
         <td v-for="[key, label, unit] in columns" :key="key">
           <input v-if="has(row, key)" :value="typed?.cell === s + '-' + key ? typed.text : shown(row, key)"
             @input="typed = { cell: s + '-' + key, text: $event.target.value }" @blur="typed = null" :aria-label="label + ' of surface ' + (s + 1)" :data-cell="s + '-' + key"
-            :list="key === 'glass' ? 'rc-glasses' : null" :readonly="key === 'thickness_mm' && s + 1 === view.surfaces.length"
+            :style="{ minWidth: widths[key] }" :list="key === 'glass' ? 'rc-glasses' : null" :readonly="key === 'thickness_mm' && s + 1 === view.surfaces.length"
             @change="edit(s, key, $event.target.value)">
         </td>
         <td class="rc-row-buttons">
@@ -105,6 +104,12 @@ export default {
     </tbody>
   </table>
   <datalist v-once id="rc-glasses"><option v-for="name in glasses" :key="name" :value="name"></option></datalist>
+  </div>
+  <div v-if="view" class="rc-lens-head rc-sample" title="The lens as a workshop makes it: radii, thicknesses, glass and centring have random errors within the tolerances of the class">
+    <label>Tolerance class <select v-model="grade">
+      <option value="commercial">commercial</option><option value="precision">precision</option><option value="high">high precision</option></select></label>
+    <button type="button" @click="send('another_copy', { grade })">Make a production sample</button>
+    <span class="rc-note">The lens as a workshop makes it, with random errors within this class. Undo goes back.</span>
   </div>
 </section>`,
   data: () => ({
@@ -142,6 +147,11 @@ export default {
       const terms = [...powers].sort((a, b) => a - b);
       const radii = this.view?.surfaces.some((row) => "radius_x_mm" in row) ? [RADIUS, RADIUS_X] : [RADIUS];
       return [...radii, ...COLUMNS, ...terms.map((p) => [`a${p}`, `A${p}`, `mm^${1 - p}`, `Aspheric coefficient of r^${p}`])];
+    },
+    /// Of the columns, so that their longest values are shown whole.
+    widths() {
+      const longest = (key) => Math.max(6, ...this.view.surfaces.filter((row) => this.has(row, key)).map((row) => this.shown(row, key).length));
+      return Object.fromEntries(this.columns.map(([key]) => [key, `calc(${longest(key)}ch + 0.75rem)`]));
     },
   },
   mounted() {

@@ -12,7 +12,7 @@ const range = ([from, to], last = "below") =>
 export default {
   props: { lenses: Array },
   template: `
-<button type="button" class="rc-flat rc-link" @click="open">Gallery</button>
+<button type="button" class="rc-button" @click="open">Gallery</button>
 <dialog ref="dialog" class="rc-dialog rc-gallery" aria-labelledby="rc-gallery-title" data-testid="gallery">
   <div class="rc-dialog-head">
     <h2 id="rc-gallery-title">Lenses</h2>
@@ -35,7 +35,7 @@ export default {
       </button>
     </li>
   </ul>
-  <p v-if="!found.length">No lens is like that.</p>
+  <p v-if="!found.length">No lens fits these choices.</p>
 </dialog>`,
   data() {
     const kinds = [...new Set(this.lenses.map((lens) => lens.kind))].sort();

@@ -29,13 +29,13 @@ export default {
     nearer and farther. F focuses and M meters in the middle. [ and ] turn the aperture ring, comma and period the
     shutter dial, I and Shift I the ISO dial, Z and Shift Z the zoom ring.</p>
   <div class="rc-toolbar">
-    <fieldset><legend class="rc-hidden">A click in the picture</legend>
+    <fieldset aria-label="A click in the picture sets"><span>Click:</span>
       <label title="Bring the point that you click into focus"><input type="radio" value="focus" v-model="mode"> Focus</label>
       <label title="Expose so that the point that you click becomes middle grey"><input type="radio" value="meter" v-model="mode"> Meter</label>
     </fieldset>
-    <label title="Marks edges that are sharp in yellow"><input type="checkbox" v-model="peaking"> Peaking</label>
+    <label title="Marks sharp edges in yellow"><input type="checkbox" v-model="peaking"> Peaking</label>
     <label title="Stripes where the picture is as bright as it can show"><input type="checkbox" v-model="clipping"> Clipping</label>
-    <label title="Four times as large under the mouse"><input type="checkbox" v-model="magnifier"> Magnifier</label>
+    <label class="rc-for-mouse" title="Four times as large under the mouse"><input type="checkbox" v-model="magnifier"> Magnifier</label>
     <label v-if="compares" class="rc-wipe">Wipe <input type="range" min="0" max="1" step="0.005" v-model.number="wipe"
       aria-label="Where one picture ends and the other begins"></label>
     <canvas ref="histogram" class="rc-histogram" width="192" height="48" role="img"
@@ -60,7 +60,7 @@ export default {
     /// As wide as the column, but no higher than most of the window.
     stageStyle() {
       const h = this.header;
-      return h ? { width: `min(100%, ${(50 * h.whole_width) / h.whole_height}vh)` } : {};
+      return h ? { width: `min(100%, ${(75 * h.whole_width) / h.whole_height}vh)` } : {};
     },
     description() {
       return `The picture through the lens. ${this.status}`;
