@@ -152,9 +152,8 @@ void add_view(const OptionAdder& option) {
                r.view.position_m = r.view.look_at_m = std::nullopt;
                r.motion.clear();
            });
-    option("--position",
-           "Middle of the film, metres [in front of the scene, which fills the film: docs/scenes.md]", "X,Y,Z",
-           [is_given = option.is_given("--camera")](Request& r, Text o, Text w) {
+    option("--position", "Middle of the film, metres [in front of the scene, which fills the film: docs/scenes.md]",
+           "X,Y,Z", [is_given = option.is_given("--camera")](Request& r, Text o, Text w) {
                if (!is_given()) r.view.camera.clear();
                r.view.position_m = parse_point(o, w);
            });
