@@ -118,8 +118,7 @@ void bind_render(py::module_& m) {
         .def("__repr__", [](const RenderStats& s) {
             return "<realcam.RenderStats " + digits(s.seconds) + " s on " + s.device + '>';
         });
-    m.def("_render", &render, "scene"_a, "camera"_a, "settings"_a, "device"_a, "progress"_a,
-          "keeps_stopped"_a);
+    m.def("_render", &render, "scene"_a, "camera"_a, "settings"_a, "device"_a, "progress"_a, "keeps_stopped"_a);
     m.def(
         "_effect_notices",
         [](const LensSystem& lens, const RenderSettings& settings) { return effect_notices(settings.effects, lens); },
