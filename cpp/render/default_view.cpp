@@ -56,7 +56,7 @@ struct ViewAxes {
         right = cross(up, front);
     }
 
-    /// Whether the subject's side in this direction, which is nearly along an axis, is a wall.
+    /// Returns whether the side of the subject in this direction is a wall. The direction is nearly along an axis.
     static bool has_wall(const Subject& subject, Vec3d direction) {
         const auto along = coordinates(direction);
         const auto largest = std::ranges::max_element(along, {}, [](double c) { return std::fabs(c); });

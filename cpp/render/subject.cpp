@@ -99,15 +99,16 @@ bool lies_within(const BoundingBox& inner, const BoundingBox& outer, double leav
     return std::ranges::all_of(low, is_inside) && std::ranges::all_of(high, is_inside);
 }
 
-/// Whether a part may be surroundings of a subject: flat as a floor or a wall is, or simpler than the subject, as a
-/// studio's backdrop is. What is neither must stay away from the subject, as a sky does (stay_away).
+/// Returns true for a part that may surround a subject and touch it: it is flat, as a floor or a wall, or has fewer
+/// triangles than the subject, as the backdrop of a studio. Any other part must stay away, as a sky does (stay_away).
 bool is_simple(const Part& part, std::size_t subject_triangles) {
     constexpr double kFlat = 0.05;
     const auto size = coordinates(part.box.size());
     return std::ranges::min(size) <= kFlat * part.box.diagonal() || part.triangles <= subject_triangles;
 }
 
-/// Whether no triangle of these parts is nearer to the subject than its own length. `others`: by number.
+/// Returns true if no triangle of these parts is nearer to the subject than the subject is long. `others` has a flag
+/// for each part.
 bool stay_away(Parts& parts, const std::vector<bool>& others, const BoundingBox& subject) {
     bool any_is_near = false;
     parts.for_facets([&](std::size_t number, const Facet& facet) {
@@ -118,7 +119,7 @@ bool stay_away(Parts& parts, const std::vector<bool>& others, const BoundingBox&
     return !any_is_near;
 }
 
-/// Takes the surroundings that enclose or carry the rest from `chosen`, which is in the order of lengths.
+/// Removes the surroundings that enclose or carry the rest from `chosen`, which is sorted by length.
 bool take_enclosing(Parts& parts, std::vector<Part*>& chosen) {
     constexpr double kMuchLonger = 4;
     std::vector<BoundingBox> rest(chosen.size() + 1);  // of the parts from one on
@@ -146,7 +147,7 @@ bool take_enclosing(Parts& parts, std::vector<Part*>& chosen) {
     return false;
 }
 
-/// Takes small parts from them that are far from the large ones.
+/// Removes small parts that are far from the large ones.
 bool take_far(std::vector<Part*>& parts) {
     constexpr double kSmall = 0.1, kFar = 8;
     const double least = kSmall * parts.back()->box.diagonal();

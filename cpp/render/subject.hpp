@@ -6,25 +6,25 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// What a picture of a scene shows where nobody says it: the scene without its surroundings.
+/// The subject of a scene is the scene without its surroundings. The default view shows it.
 ///
 /// A scene consists of parts: triangles that share vertices, or instances where these have too many triangles to look
-/// at each (kMostTrianglesAsked). Parts are surroundings in two cases, which are looked for again in what is left:
-/// - they enclose or carry the rest, as a sky or a floor does: each of them is four times as long as all the rest, and
-///   flat, of fewer triangles than the rest, or at a distance from it;
-/// - they are small, and farther away than eight times the length of the large parts.
+/// at each (kMostTrianglesAsked). Two rules remove parts until neither finds any more:
+/// - Parts that enclose or carry the others, as a sky or a floor does. Each must be four times as long as all the
+///   others together, and be flat, or have fewer triangles than they, or keep away from them.
+/// - Small parts that are farther away than eight times the length of the large parts.
 struct Subject {
     explicit Subject(const Assembly& assembly);
 
-    /// A box whose walls are seen from inside: these face inwards, or the only light comes from within.
+    /// A room has at least five walls that are seen from inside.
     bool is_room() const { return count_walls() >= 5; }
     int count_walls() const;
 
     BoundingBox box;
-    /// Of the box: the low and the high side of each axis that a wall covers by half or more; none of what is seen from
-    /// outside, as a cube is.
+    /// The low and the high side of the box along each axis have a wall if triangles cover half of it or more. Walls
+    /// face inwards, or the only light comes from within; a cube, which is seen from outside, has none.
     std::array<bool, 6> has_wall{};
-    BoundingBox content;  ///< what does not lie in a wall; empty: nothing
+    BoundingBox content;  ///< holds all that does not lie in a wall
 };
 
 /// The coordinates of a vector, by the number of their axis.
