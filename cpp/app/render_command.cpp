@@ -154,15 +154,15 @@ private:
         LayerSet written_layers;
     };
 
-    /// One that the user asked for, or that .png may need (denoises_if_noisy). Where the library is missing, the latter
-    /// stay noisy.
+    /// One that the user asked for, or that .png may need (denoises_if_noisy). Where the library is missing or cannot
+    /// use the device, the latter stay noisy.
     std::optional<Denoiser> denoiser_for(const shot::ShotRequest& request) {
         if (!request.denoises && !denoises_if_noisy(request)) return std::nullopt;
         try {
             return std::optional<Denoiser>(std::in_place, words_.device, request.settings.threads);
-        } catch (const InputError& missing) {
+        } catch (const Error& error) {  // no library, or none for this device
             if (request.denoises) throw;
-            why_no_denoiser_ = missing.what();
+            why_no_denoiser_ = error.what();
             return std::nullopt;
         }
     }

@@ -88,7 +88,10 @@ class ImageSimulation(ShortText):
         return _codes(sheet[np.ix_(*nearest)])
 
     def save(self, path: str | os.PathLike[str], *, psfs: bool = False) -> None:
-        """Writes .png; psfs: with the grid of point spread functions to the right. Raises ImageFileError."""
+        """Writes .png, .jpg, .tif or .webp.
+
+        psfs: with the grid of point spread functions to the right. Raises ImageFileError.
+        """
         codes = self.developed()
         if psfs:
             codes = np.concatenate([codes, self.psf_sheet(codes.shape[0])], axis=1)

@@ -314,4 +314,4 @@ def test_the_command(command: Command, tmp_path: Path) -> None:
         assert done.returncode == 2 and done.stderr.count("\n") == 1 and message in done.stderr, done.stderr
         assert "latitude" not in done.stderr
     done = command("lens", "image", "double-gauss-50mm", chart, "-o", tmp_path / "seen.gif")
-    assert done.returncode == 2 and ".png is wanted" in done.stderr
+    assert done.returncode == 2 and ".tiff or .webp is wanted" in done.stderr

@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from .._core import InputError
+from ..image_file import DEVELOPED
 from ..progress import progress_bar
 from . import lens_options, lens_plots, options
 from .grouped_options import grouped
@@ -20,7 +21,7 @@ def image(
         Path, typer.Argument(help="A .png, .jpg, .tif, .webp, .bmp, .exr or .hdr file", metavar="PICTURE")
     ],
     *,
-    output: Annotated[Path, typer.Option("--output", "-o", metavar="FILE", help="A .png file")],
+    output: Annotated[Path, typer.Option("--output", "-o", metavar="FILE", help="A .png, .jpg, .tif or .webp file")],
     rings: lens_options.Rings,
     object_distance: lens_plots.ObjectDistance = None,
     height_deg: Annotated[
@@ -70,7 +71,7 @@ def image(
     from .. import files
     from ..image_simulation import image_simulation
 
-    lens_options.check_not_the_lens(files.check_target(output, (".png",)), name)
+    lens_options.check_not_the_lens(files.check_target(output, DEVELOPED), name)
     lens = rings.set(file.lens(name))
     with progress_bar("image simulation", is_shown=not quiet) as bar:
         seen = image_simulation(
