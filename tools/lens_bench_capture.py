@@ -1,4 +1,4 @@
-"""The animated picture of docs/lens-bench.md and the one of the README: a page of the lens bench, driven by a script.
+"""The animated picture of the README and of docs/lens-bench.md: a page of the lens bench, driven by a script.
 
     python tools/lens_bench_capture.py FOLDER
 
@@ -107,9 +107,6 @@ def main() -> None:
             capture = Capture(page)
             act_out(capture)
             capture.save(folder / "lens-bench.webp")
-            capture.refined(24)
-            still = Image.open(io.BytesIO(page.screenshot())).convert("RGB")
-            still.save(folder / "lens-bench.jpg", quality=85)
             browser.close()
         finally:
             server.terminate()

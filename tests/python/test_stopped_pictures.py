@@ -20,7 +20,7 @@ FILM = rc.Film(36, 24, (48, 32))
 # The small plate hides a part of the sky from the wall: alone, the wall would be without noise.
 WALL, PLATE = scenes.quad((0, 0, -3), 3, diffuse=0.6), scenes.quad((0, 0.4, -2.6), 0.3, up=(0, 0, 1), diffuse=0.6)
 SCENE = scenes.scene_of(WALL, PLATE).with_environment(100)
-CAMERA = rc.Camera(rc.Lens.load("tessar-50mm").focused(3.0), film=FILM, exposure_time_s=1)
+CAMERA = rc.Camera(rc.Lens.load("tessar-50mm").focused(3.0), film=FILM, exposure_time_s=1 / 30)
 
 
 @pytest.mark.parametrize("goal", [{"spp": 4096}, {"spp": "auto", "noise_codes": 0.001}], ids=["counted", "by noise"])
