@@ -20,16 +20,26 @@ void ProgressBar::clear() {
     drawn_ = false;
 }
 
-void ProgressBar::show(double done) {
+bool ProgressBar::is_due() {
     const auto now = Clock::now();
-    if (!is_shown_ || now - last_ < std::chrono::milliseconds(100)) return;
+    if (!is_shown_ || now - last_ < std::chrono::milliseconds(100)) return false;
     last_ = now;
-    drawn_ = true;
+    return drawn_ = true;
+}
+
+void ProgressBar::show_seconds() {
+    if (!is_due()) return;
+    std::fprintf(stderr, "\r%s %.0f s\x1b[K", what_.c_str(), std::chrono::duration<double>(last_ - start_).count());
+    std::fflush(stderr);
+}
+
+void ProgressBar::show(double done) {
+    if (!is_due()) return;
     constexpr int kWidth = 30;
     const int filled = std::clamp(static_cast<int>(done * kWidth), 0, kWidth);
     const std::string bar = std::string(static_cast<std::size_t>(filled), '#') +
                             std::string(static_cast<std::size_t>(kWidth - filled), '.');
-    const double elapsed = std::chrono::duration<double>(now - start_).count();
+    const double elapsed = std::chrono::duration<double>(last_ - start_).count();
     std::fprintf(stderr, "\r%s [%s] %3.0f%%", what_.c_str(), bar.c_str(), 100 * done);
     // An early guess is a wild one.
     if (done > 0.02) std::fprintf(stderr, ", %.0f s left", elapsed * (1 - done) / done);

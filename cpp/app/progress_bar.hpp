@@ -14,10 +14,15 @@ public:
 
     /// `done`: 0 to 1. Draws at most ten times a second.
     void show(double done);
+    /// Draws the seconds that have passed, for work of unknown length.
+    void show_seconds();
     /// Makes way for a line of text.
     void clear();
 
 private:
+    /// Whether it is time to draw again.
+    bool is_due();
+
     using Clock = std::chrono::steady_clock;
 
     std::string what_;

@@ -193,12 +193,24 @@ private:
         return shot;
     }
 
+    /// make(progress), which a signal stops, with the seconds that it takes on the terminal.
+    template <class Make>
+    auto planned(Make&& make) const {
+        return until_interrupted([&] {
+            ProgressBar planning("planning ", !words_.is_quiet);
+            return make([&](double) {
+                planning.show_seconds();
+                return is_wanted();
+            });
+        });
+    }
+
     /// Returns what was decided. What cannot be planned is taken as it stands.
     std::string follow_plan(Session& session, shot::Shot& shot, shot::ShotRequest& request) {
         try {
-            const Plan plan = until_interrupted([&] {
+            const Plan plan = planned([&](const Progress& progress) {
                 return make_plan(session, shot.scene, shot.camera, request.settings, false, fast_pupil_tracer(),
-                                 [](double) { return is_wanted(); });
+                                 progress);
             });
             apply(plan, shot.camera, request.settings);
             if (words_.explains && !words_.as_json && !words_.is_quiet)
@@ -216,9 +228,8 @@ private:
         for (const int frame : shot::frames_to_plan(frames, shot.camera, request.keys, words_.frames_per_second))
             cameras.push_back(camera_of_frame(shot.camera, request, frame));
         try {
-            const FilmPlan plan = until_interrupted([&] {
-                return plan_film(session, shot.scene, cameras, request.settings, fast_pupil_tracer(),
-                                 [](double) { return is_wanted(); });
+            const FilmPlan plan = planned([&](const Progress& progress) {
+                return plan_film(session, shot.scene, cameras, request.settings, fast_pupil_tracer(), progress);
             });
             apply({plan.model, plan.effects, plan.max_bounces, {}}, shot.camera, request.settings);
             return plan.summary;
