@@ -70,7 +70,7 @@ def test_it_ends_at_once_and_nothing_is_left(browser: playwright.Browser, own: S
         until(lambda: workers(own), lambda found: len(found) == 2, "both processes")
         bench.choose("refine to", "half a grey level (fine)")
         bench.choose("plot", "MTF")
-        bench.page.get_by_role("button", name="Measure the levels of simulation").click()
+        bench.button("Measure the levels of simulation").click()
         time.sleep(0.5)
         left = workers(own)
         own.process.send_signal(end)
