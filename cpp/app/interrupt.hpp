@@ -13,7 +13,7 @@ public:
 
     /// The last signal that came; 0: none.
     static int signal();
-    /// Whether nothing more is to be written: after a second Ctrl-C, or SIGTERM.
+    /// Returns true after a second Ctrl-C or SIGTERM: nothing more is to be written.
     static bool is_final();
 };
 

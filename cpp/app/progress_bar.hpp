@@ -20,7 +20,7 @@ public:
     void clear();
 
 private:
-    /// Whether it is time to draw again.
+    /// Returns true, and takes note of the time, if the line is to be drawn again.
     bool is_due();
 
     using Clock = std::chrono::steady_clock;

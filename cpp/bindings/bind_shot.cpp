@@ -212,9 +212,9 @@ z_m; but for the time any may be missing. Raises InputError naming file and line
         .def("__repr__", &text_of_shake);
 }
 
-/// What realcam.Shot is made of, by the names of its fields, and whether nobody has said how many samples it has or how
-/// little noise. `given`: a scene in place of a file, which messages call
-/// by the path; `lens`: in place of the request's; `denoises`: the picture is to be denoised.
+/// Returns the fields of realcam.Shot by their names, and whether nobody has said how many samples it has or how little
+/// noise. `given`: a scene in place of a file, which messages call by the path; `lens`: in place of the request's;
+/// `denoises`: the picture is to be denoised.
 py::tuple read_shot(const py::object& path, const std::string& changes, const std::optional<Assembly>& given,
                     std::optional<LensSystem> lens, bool denoises, const std::string& device,
                     const py::object& progress) {
@@ -226,8 +226,7 @@ py::tuple read_shot(const py::object& path, const std::string& changes, const st
     const std::string name = path_from(path);
     {
         const Unlocked unlocked;
-        request =
-            given ? shot::parse_shot("format = 1\nscene = \"scene\"\n", name, changes) : shot::read_shot(name, changes);
+        request = given ? shot::shot_of_scene(name, changes) : shot::read_shot(name, changes);
         request.lens_in_memory = std::move(lens);
         request.denoises = denoises;
         shot::settle_noise_goal(request);

@@ -83,7 +83,7 @@ inline void plan_bounces(Session& session, const Assembly& scene, Camera camera,
         plan.max_bounces = bounces;
         lacking = bounces == kMostBounces ? 0 : largest_difference(with(bounces), all);
     }
-    const auto codes = [](double size) { return number_text(size, 2) + " codes"; };
+    const auto codes = [](double size) { return counted(size, "code", 2); };
     plan.decisions.push_back(
         {"bounces", indirect, SizeUnit::codes, threshold, plan.max_bounces > 0, DecidedBy::planner, std::nullopt,
          plan.max_bounces == 0

@@ -71,7 +71,7 @@ public:
     /// InputError where nothing is set, and Cancelled: what was taken until then stays.
     ReachedNoise add_until(const NoiseGoal& goal, const Progress& progress = {});
 
-    /// What the last `add_until` knew of the noise when it ended, or was stopped.
+    /// Returns the noise that the last `add_until` had measured when it ended or was stopped.
     ReachedNoise noise_so_far() const { return noise_so_far_; }
 
     /// `set`, and starts to take settings.spp samples more of each pixel and to develop them; returns while that goes

@@ -320,12 +320,14 @@ ShotRequest parse_shot(std::string_view text, const std::string& path, std::stri
     return ShotReader(table, path).read();
 }
 
+ShotRequest shot_of_scene(const std::string& path, std::string_view changes) {
+    ShotRequest request = parse_shot("format = 1\nscene = \"scene\"\n", path, changes);
+    request.scene = path;
+    return request;
+}
+
 ShotRequest read_shot(const std::string& path, std::string_view changes) {
-    if (!is_shot_file(path) && !fs::is_directory(path)) {
-        ShotRequest request = parse_shot("format = 1\nscene = \"scene\"\n", path, changes);
-        request.scene = path;
-        return request;
-    }
+    if (!is_shot_file(path) && !fs::is_directory(path)) return shot_of_scene(path, changes);
     const std::string why = io::why_unreadable(path);
     if (!why.empty()) throw InputError(path + ": " + why);
     if (fs::file_size(path) > kMostBytes) throw InputError(path + ": is too large for a shot file");

@@ -14,6 +14,9 @@ bool is_shot_file(const std::string& path);
 /// that they exclude, also in its tables [[key]]. Throws InputError that names file, line and key.
 ShotRequest read_shot(const std::string& path, std::string_view changes = {});
 
+/// The request of a scene that has no shot file. `path`: as of read_shot.
+ShotRequest shot_of_scene(const std::string& path, std::string_view changes = {});
+
 /// The same from the text of a shot file. `path` is what messages call it, and what its paths are relative to.
 ShotRequest parse_shot(std::string_view text, const std::string& path, std::string_view changes = {});
 

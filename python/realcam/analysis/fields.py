@@ -89,9 +89,9 @@ def three_fields(lens: Lens, fields_deg: ArrayLike | None, bundles: Bundles) -> 
 
 
 def three_of(values: Sequence[float], middle: float | None = None) -> Doubles:
-    """The least, one between and the largest of the values of a lens file; fewer where there are not so many.
+    """Chooses the least, one middle and the largest of the values that a lens file states, sorted, each once.
 
-    middle: the one between; None is the one nearest to 0.7 of the largest, but of two alone this number itself.
+    middle: None is the value nearest to 0.7 of the largest or, where none lies between, 0.7 of the largest itself.
     """
     least, largest = min(values), max(values)
     between = [value for value in values if least < value < largest]

@@ -14,6 +14,7 @@ import typer
 
 from .._core import Camera, Cancelled, InputError
 from ..command_words import plain_number
+from ..denoiser import GUIDES
 from ..image import Image
 from ..json_values import json_text
 from ..number_text import counted, number_text
@@ -72,7 +73,7 @@ def compare(
         described = variations(described, "f_number", [str(f_number)])[0].shot
     settings = described.settings.with_(spp="auto", noise_codes=noise_codes, seconds=seconds)
     if denoise:
-        settings = settings.with_(layers=("albedo", "normal", "traced_light"))
+        settings = settings.with_(layers=GUIDES)
     pictures: list[tuple[str, Image]] = []
     kind = "F_NUMBER" if name == "f_number" else ""
     varied = variations(described, name, [plain_number(value, kind) for value in values.split(",")])
@@ -134,7 +135,7 @@ def sized(variation: Variation, longer_side_px: int) -> Camera:
 
 @contextmanager
 def interrupt_noted() -> Iterator[Callable[[], bool]]:
-    """Whether Ctrl-C has been pressed, once; the second time it raises KeyboardInterrupt."""
+    """Yields a function that tells whether Ctrl-C was pressed. Pressed again, it raises KeyboardInterrupt."""
     seen: list[int] = []
 
     def note(number: int, _: FrameType | None) -> None:

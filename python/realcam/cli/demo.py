@@ -11,10 +11,10 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from realcam_command import denoiser_library
 
 from .._core import Lens
 from ..bundled_scenes import scenes_folder
+from ..denoiser import is_installed
 from ..files import make_folder
 from . import options
 
@@ -38,7 +38,7 @@ def demo(
     from ..draw import save_cross_section  # brings matplotlib, which other commands need not load
 
     shot = scenes_folder() / "demo.toml"
-    denoises = bool(denoiser_library()) if denoise is None else denoise
+    denoises = is_installed() if denoise is None else denoise
     samples = spp or (24 if denoises else 48)
     words = ["--denoise"] if denoises else []
     new_folders = [folder for folder in (output, *output.parents) if not folder.exists()]
