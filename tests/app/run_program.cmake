@@ -58,7 +58,7 @@ expect(0 "f/4,.*focus 2 m.*at -1,2,3, looks at 0,0,0.*24 x 24 mm, 40 x 40 pixels
 expect(0 "as thin model.*% of the sampled rays pass" render quad.obj -o c.png ${small} --model thin --environment a.exr
        --film 30x20 --verbose)
 # Values of a shot file hold where no option says otherwise.
-expect(0 "Tessar.*focus 2 m.*36 x 36 mm, 20 x 20 pixels of 1 samples.*1/100 s, ISO 50" render shot.toml -o d.png --iso 50)
+expect(0 "Tessar.*focus 2 m.*36 x 36 mm, 20 x 20 pixels of 1 sample.*1/100 s, ISO 50" render shot.toml -o d.png --iso 50)
 expect(0 "focus 1 m.*exposure[^\n]*metered" render shot.toml -o e.png --position 0,0,1 --look-at 0,0,0 --focus auto
        --exposure-time auto)
 expect(0 "exposure +1/1e\\+37 s" render shot.toml -o e.png --exposure-time 1e-37)
