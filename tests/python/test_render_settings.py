@@ -143,7 +143,7 @@ def test_all_that_take_pictures_have_the_same_defaults() -> None:
 def test_shot_files_and_the_command_line_have_the_same_defaults(tmp_path: Path) -> None:
     (tmp_path / "quad.obj").write_text("v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nf 1 2 3 4\n")
     (tmp_path / "shot.toml").write_text('format = 1\nscene = "quad.obj"\nresolution = [6, 4]\n')
-    shot = rc.Shot.load(tmp_path / "shot.toml")
+    shot = rc.Shot.load(tmp_path / "shot.toml", device="cpu")
     # But for the samples: who takes one picture waits for its noise, and a program for as many samples each time.
     assert shot.settings == DEFAULTS.with_(spp="auto", noise_codes=2, seconds=60)
     image = shot.render(device="cpu")

@@ -1,4 +1,7 @@
-"""A picture that is stopped is what was taken until then, and says how noisy it is."""
+"""A picture that is stopped is what was taken until then, and says how noisy it is.
+
+A GPU takes these samples before it can be stopped.
+"""
 
 from __future__ import annotations
 
@@ -29,6 +32,7 @@ def test_what_was_taken_is_the_picture(goal: dict[str, object]) -> None:
         image = rc.render(
             SCENE,
             CAMERA,
+            device="cpu",
             effects=(),
             max_bounces=1,
             layers=("sample_count", "albedo"),
@@ -49,7 +53,14 @@ def test_what_was_taken_is_the_picture(goal: dict[str, object]) -> None:
 def test_the_noise_of_a_stopped_picture_is_told() -> None:
     with pytest.warns(UserWarning, match="stopped"):
         image = rc.render(
-            SCENE, CAMERA, effects=(), max_bounces=1, spp=4096, progress=lambda done: done < 0.1, on_stop="keep"
+            SCENE,
+            CAMERA,
+            device="cpu",
+            effects=(),
+            max_bounces=1,
+            spp=4096,
+            progress=lambda done: done < 0.1,
+            on_stop="keep",
         )
     words = image.shortfall.split()
     taken, times = int(words[words.index("after") + 1]), float(words[words.index("about") + 1])
@@ -60,7 +71,9 @@ def test_the_noise_of_a_stopped_picture_is_told() -> None:
 def test_a_stopped_picture_is_given_up_where_nobody_wants_it() -> None:
     for words in ({}, {"on_stop": "raise"}):
         with pytest.raises(rc.Cancelled):
-            rc.render(SCENE, CAMERA, effects=(), max_bounces=1, spp=4096, progress=lambda _: False, **words)
+            rc.render(
+                SCENE, CAMERA, device="cpu", effects=(), max_bounces=1, spp=4096, progress=lambda _: False, **words
+            )
     with pytest.raises(rc.InputError, match='on_stop must be "raise" or "keep"; it is \'write\''):
         rc.render(SCENE, CAMERA, effects=(), spp=1, on_stop="write")
 
@@ -87,7 +100,7 @@ def test_ctrl_c_writes_the_picture(program: list[str], tmp_path: Path) -> None:
         pytest.skip("the executable is not built")
     scene = DEMO
     files = [tmp_path / "a.png", tmp_path / "b.exr"]
-    words = ["render", scene, "--resolution", "96x64", "--noise-codes", "0.001"]
+    words = ["render", scene, "--resolution", "96x64", "--noise-codes", "0.001", "--device", "cpu"]
     code, said = interrupted([*program, *words, *(f"-o{file}" for file in files)], signal.SIGINT)
     assert code == 130
     assert "it was stopped; the noise is " in said
@@ -99,7 +112,7 @@ def test_ctrl_c_writes_the_picture(program: list[str], tmp_path: Path) -> None:
 @pytest.mark.picture_files
 def test_sigterm_and_films_leave_no_unfinished_picture(tmp_path: Path) -> None:
     scene = DEMO
-    words = ["render", scene, "--resolution", "96x64", "--noise-codes", "0.001"]
+    words = ["render", scene, "--resolution", "96x64", "--noise-codes", "0.001", "--device", "cpu"]
     for number, more, file in (
         (signal.SIGTERM, [], "a.png"),
         (signal.SIGINT, ["--frames", "1-2"], "b.####.png"),
@@ -113,8 +126,10 @@ def test_sigterm_and_films_leave_no_unfinished_picture(tmp_path: Path) -> None:
 @pytest.mark.picture_files
 def test_a_comparison_that_is_stopped_has_the_pictures_that_are_there(tmp_path: Path) -> None:
     sheet = tmp_path / "sheet.png"
-    words = ["compare", "demo", "--vary", "f_number=4,8,16", "--size", "64", "--noise-codes", "0.1", "-o", str(sheet)]
-    process = subprocess.Popen([*PYTHON, *words], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    words = ["compare", "demo", "--vary", "f_number=4,8,16", "--size", "64", "--noise-codes", "0.1", "--device", "cpu"]
+    process = subprocess.Popen(
+        [*PYTHON, *words, "-o", str(sheet)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
     with process:
         time.sleep(8)  # within the first picture, or one of the others
         process.send_signal(signal.SIGINT)
