@@ -92,6 +92,12 @@ class GrowingPicture:
         samples, seconds = map(sum, zip(*self.steps, strict=True))
         return max(0.0, min(self.expected_samples(), self.request.max_spp) - self.samples) * seconds / samples
 
+    def final_noise_codes(self) -> float | None:
+        """The noise when nothing will be added, which is more than is asked for where that takes too many samples."""
+        if self.noise_codes is None:
+            return None
+        return self.noise_codes * math.sqrt(self.noise.samples / min(self.expected_samples(), self.request.max_spp))
+
     def wants_measurement(self) -> bool:
         """Whether its samples have doubled, or are as many as are expected to be enough."""
         return self.noise.is_doubled(self.samples) or self.samples >= self.expected_samples()
@@ -119,4 +125,5 @@ class GrowingPicture:
             costs=self.costs,
             is_denoised=is_denoised,
             left_s=self.left_s(),
+            final_noise_codes=self.final_noise_codes(),
         )

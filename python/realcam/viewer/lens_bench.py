@@ -25,7 +25,7 @@ from .lens_view import drawn_heights_mm
 from .light_meter import middle_grey_lx_s
 from .listeners import Listeners, Problem
 from .picture_loop import PictureLoop
-from .picture_request import Frame, PictureRequest
+from .picture_request import MOST_SPP, Frame, PictureRequest
 from .preview_denoiser import why_missing
 from .ring_scales import Ring
 
@@ -303,7 +303,11 @@ class LensBench:
             return "none"
         if frame is None or frame.serial < self._loops["a"].serial or frame.left_s is None:
             return "not known yet"
-        return f"about {duration_text(frame.left_s)}"
+        text = f"about {duration_text(frame.left_s)}"
+        final = frame.final_noise_codes
+        if final is None or final < 1.1 * self.noise_codes:  # the forecast's own error
+            return text
+        return f"{text}, to about {final:.2g} grey levels: {counted(MOST_SPP, 'sample')} per pixel are the most here"
 
     def show_again(self) -> None:
         """Sends the picture as it is once more."""

@@ -79,6 +79,7 @@ class Frame:
     noise_tiles: list[list[float]] | None = None  #: the noise of parts of the picture, rows from above
     is_denoised: bool = False
     left_s: float | None = None  #: until nothing will be added; None if it is not known yet
+    final_noise_codes: float | None = None  #: by then, as far as it is known
 
 
 @dataclass(frozen=True)
