@@ -110,11 +110,11 @@ expect(2 "gone\\.hdr\": there is no such file" render quad.obj -o x.png --enviro
 expect(2 "empty\\.obj: is no picture" render quad.obj -o x.png --environment empty.obj)
 expect(2 "no exposure can be metered" render quad.obj -o x.png ${small} --position 0,0,9 --look-at 0,0,99 --environment 0)
 
-# Ctrl-C leaves nothing behind.
+# A signal other than Ctrl-C's leaves nothing behind.
 find_program(timeout_program timeout)
 if(timeout_program)
-  set(PREFIX ${timeout_program} --preserve-status -s INT 2)
-  expect(130 "" render quad.obj -o x.png --spp 1000000 --environment 1000)
+  set(PREFIX ${timeout_program} --preserve-status -s TERM 2)
+  expect(143 "" render quad.obj -o x.png --spp 1000000 --environment 1000)
 endif()
 expect_files(${files})
 
