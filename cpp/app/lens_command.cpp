@@ -17,14 +17,14 @@ namespace realcam::app {
 namespace {
 
 struct InfoOptions {
-    std::string lens, f_number, focus;
+    std::string lens, zoom, f_number, focus;
     LensWords file;
     bool as_json = false;
 };
 
 void run_info(const InfoOptions& options) {
     LensSystem lens = io::read_lens(options.lens, lens_options_of(options.file));
-    if (!options.file.zoom.empty()) lens = zoomed(lens, options.file.zoom);
+    if (!options.zoom.empty()) lens = zoomed(lens, options.zoom);
     if (!options.focus.empty()) lens = focused(lens, 1000 * parse_distance("--focus", options.focus));
     if (!options.f_number.empty()) lens = stopped_down(lens, parse_number("--f-number", options.f_number));
     std::fputs((options.as_json ? lens_as_json(lens) : lens_as_text(lens)).c_str(), stdout);
@@ -67,6 +67,9 @@ void add_lens_command(CLI::App& app) {
     info->add_option("--f-number", options->f_number, "Close the diaphragm to f/N")->type_name("N");
     info->add_option("--focus", options->focus, "Focus on an object plane this far from the film, or inf")
         ->type_name("METRES");
+    info->add_option("--zoom", options->zoom,
+                     "Zoom position, by its name in `realcam lens info` [as the lens's file gives it]")
+        ->type_name("NAME");
     add_lens_options(*info, options->file);
     info->add_flag("--json", options->as_json, "Print JSON; null stands for infinite, and for the radius of a plane");
     set_examples(*info, {

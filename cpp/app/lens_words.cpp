@@ -30,10 +30,6 @@ void set_lens_path(const std::vector<std::string>& folders) {
 
 void add_lens_options(CLI::App& command, LensWords& words) {
     command
-        .add_option("--zoom", words.zoom,
-                    "Zoom position, by its name in `realcam lens info` [as the lens's file gives it]")
-        ->type_name("NAME");
-    command
         .add_option("--glass", words.glasses,
                     "A glass that the lens's file names and no catalogue has, or several: by n_d and V_d, or as "
                     "NAME=schott:F4; may be repeated")

@@ -8,10 +8,10 @@
 
 namespace realcam::app {
 
-/// What the command line says of how a lens file is read, and which zoom position is taken.
+/// What the command line says of how a lens file is read.
 struct LensWords {
     std::vector<std::string> glasses, catalogues, folders;
-    std::string pbrt_thickness, zoom;
+    std::string pbrt_thickness;
     bool force = false;
 };
 
@@ -21,7 +21,7 @@ void add_lens_path_option(CLI::App& command, std::vector<std::string>& folders);
 /// Puts the folders into REALCAM_LENS_PATH.
 void set_lens_path(const std::vector<std::string>& folders);
 
-/// Adds --zoom, --glass, --glass-catalogue, --lens-path, --force and --pbrt-thickness.
+/// Adds --glass, --glass-catalogue, --lens-path, --force and --pbrt-thickness.
 void add_lens_options(CLI::App& command, LensWords& words);
 
 /// What of them settles an error of a lens file, as the end of its message; empty where none does.

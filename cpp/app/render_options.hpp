@@ -1,11 +1,10 @@
 #pragma once
 #include <CLI/CLI.hpp>
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "../shot/shot_request.hpp"
+#include "../shot/shot_file.hpp"
 #include "lens_words.hpp"
 
 namespace realcam::app {
@@ -13,7 +12,8 @@ namespace realcam::app {
 /// What was typed behind `render`.
 struct RenderWords {
     std::string scene, device = "auto";
-    std::vector<std::function<void(shot::ShotRequest&)>> changes;  ///< to what the shot file says, by the other options
+    shot::ShotChanges changes;  ///< to what the shot file says
+    bool denoises = false, keeps_noise = false;  ///< see ShotRequest
     std::vector<std::string> outputs;
     std::optional<std::string> frames;  ///< of a film; none: a single picture
     double frames_per_second = 24;
@@ -22,10 +22,10 @@ struct RenderWords {
     LensWords lens_file;
 };
 
-/// Those that say what is photographed and how.
 /// Whether the file holds linear exposure (.exr), and not developed codes for a screen.
 bool is_exr(const std::string& path);
 
+/// Those that say what is photographed and how.
 void add_shot_options(CLI::App& command, RenderWords& words);
 /// The same, and what to write.
 void add_render_options(CLI::App& command, RenderWords& words);

@@ -226,7 +226,7 @@ py::tuple read_shot(const py::object& path, const std::string& changes, const st
     const std::string name = path_from(path);
     {
         const Unlocked unlocked;
-        request = given ? shot::shot_of_scene(name, changes) : shot::read_shot(name, changes);
+        request = given ? shot::shot_of_scene(name, {changes, {}}) : shot::read_shot(name, {changes, {}});
         request.lens_in_memory = std::move(lens);
         request.denoises = denoises;
         shot::settle_noise_goal(request);

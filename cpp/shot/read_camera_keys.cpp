@@ -38,7 +38,7 @@ constexpr StillKey kStill[] = {{has<&CameraKey::focus_m>, "focus_m", "focus_m", 
                                {has<&CameraKey::film_right_mm>, "film_shift_mm", "film_shift_mm"}};
 
 void read_keys(const ShotTable& shot, ShotRequest& request) {
-    bool has_other_lens = false;
+    bool has_other_lens = shot.is_changed("lens");  // in place of those of its keys
     for (const ShotTable& table : shot.tables("key")) {
         table.allow({"time_s", "lens", "focus_m", "focal_length_mm", "f_number", "blades", "blade_rounding",
                      "blade_rotation_deg", "exposure_time_s", "iso", "film_shift_mm", "interpolation"});
@@ -102,9 +102,6 @@ std::string lens_of(const ShotTable& table) {
 void read_camera_keys(const ShotTable& shot, ShotRequest& request) {
     read_keys(shot, request);
     read_shake(shot, request.shake);
-    request.iso_follows_s = shot.number("iso_follows_s");
-    if (request.iso_follows_s && !(*request.iso_follows_s >= 0))
-        shot.fail("\"iso_follows_s\" must be a number of seconds, 0 or more", shot.find("iso_follows_s"));
 }
 
 }  // namespace realcam::shot

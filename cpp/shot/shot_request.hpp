@@ -70,11 +70,6 @@ struct ShotRequest {
     bool keeps_noise = false;
     ToneCurve tone = ToneCurve::film;
 
-    /// Takes a value out of the keys: something else was said of it.
-    template <class T>
-    void forget(std::optional<T> CameraKey::* value) {
-        for (CameraKey& key : keys) (key.*value).reset();
-    }
     /// What its keys say when the shutter opens.
     CameraKey opening_key() const { return key_at(keys, shutter.opens_s); }
     bool meters_exposure_time() const { return !exposure_time_s && !opening_key().exposure_time_s; }
@@ -88,9 +83,6 @@ void settle_noise_goal(ShotRequest& request);
 
 /// Throws InputError where the blades of a request are no diaphragm's.
 void check_blades(const ShotRequest& request);
-
-/// Throws InputError where an environment is to be changed, and none was asked for.
-void check_environment_change(const ShotRequest& request);
 
 /// Throws InputError unless it is a luminance that a scene can be lit with.
 void check_environment(Vec3f radiance_cd_m2);

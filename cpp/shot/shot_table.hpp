@@ -1,6 +1,7 @@
 #pragma once
 #include <cmath>
 #include <filesystem>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <string>
@@ -8,19 +9,35 @@
 
 #include "../error.hpp"
 #include "../io/text/toml_table.hpp"
+#include "../math/vec3.hpp"
 
 namespace realcam::shot {
 
+/// Values that take the place of those in a shot file, by their keys.
+struct Changes {
+    toml::table values;
+    std::function<std::string(std::string_view)> name;  ///< of a key in messages; empty: the key in quotes
+};
+
 /// A table of a shot file. Its complaints are InputErrors that name file and line; paths are relative to the file's
-/// folder.
+/// folder. Of keys that were changed they name the key alone, and their paths are relative to the current folder.
 class ShotTable : public io::TomlTable {
 public:
-    ShotTable(const toml::table& table, const std::string& path)
-        : TomlTable(table, path, 0, fail_at), folder_(std::filesystem::path(path).parent_path()) {}
-
-    [[noreturn]] static void fail_at(const std::string& message, const std::string& file, int line, int) {
-        throw InputError(file + (line > 0 ? ":" + std::to_string(line) : "") + ": " + message);
+    /// `changes`: of the keys of this table; null: none. Both must outlive it.
+    ShotTable(const toml::table& table, const std::string& path, const Changes* changes = nullptr)
+        : TomlTable(table, path, 0, fail_at), folder_(std::filesystem::path(path).parent_path()), changes_(changes) {
+        if (changes && changes->name)
+            name_ = [changes](std::string_view key) {
+                return changes->values.contains(key) ? changes->name(key) : '"' + std::string(key) + '"';
+            };
     }
+
+    /// A node without a line is of a change.
+    [[noreturn]] static void fail_at(const std::string& message, const std::string& file, int line, int) {
+        throw InputError((line > 0 ? file + ':' + std::to_string(line) + ": " : "") + message);
+    }
+
+    bool is_changed(std::string_view key) const { return changes_ && changes_->values.contains(key); }
 
     /// Where the table, or a key of it, stands: "shot.toml:12".
     std::string place(const char* key = nullptr) const {
@@ -59,13 +76,13 @@ public:
     }
     Vec3d point_wanted(const char* key) const {
         const std::optional<Vec3d> v = point(key);
-        if (!v) fail('"' + std::string(key) + "\" is missing: three numbers");
+        if (!v) fail(shown(key) + " is missing: three numbers");
         return *v;
     }
 
     double number_wanted(const char* key) const {
         const std::optional<double> v = number(key);
-        if (!v) fail('"' + std::string(key) + "\" is missing: a number");
+        if (!v) fail(shown(key) + " is missing: a number");
         return *v;
     }
 
@@ -83,7 +100,7 @@ public:
         const toml::node* node = find(key);
         if (!node || node->value<std::string>() == "auto") return std::nullopt;
         const double number = node->is_number() ? node->value_or(0.0) : std::nan("");
-        if (std::isnan(number)) fail('"' + std::string(key) + "\" must be " + wanted, node);
+        if (std::isnan(number)) fail(shown(key) + " must be " + wanted, node);
         return number;
     }
 
@@ -91,7 +108,7 @@ public:
     Value whole(const char* key, double number) const {
         constexpr Value kMost = std::numeric_limits<Value>::max();
         if (number != std::floor(number) || !(number >= 0) || !(number <= kMost))
-            fail('"' + std::string(key) + "\" wants whole numbers from 0 to " + std::to_string(kMost), find(key));
+            fail(shown(key) + " wants whole numbers from 0 to " + std::to_string(kMost), find(key));
         return static_cast<Value>(number);
     }
 
@@ -99,17 +116,16 @@ public:
     std::string path(const char* key) const {
         std::string text = name(key);
         if (text.empty()) {
-            if (find(key)) fail('"' + std::string(key) + "\" is empty", find(key));
+            if (find(key)) fail(shown(key) + " is empty", find(key));
             return text;
         }
-        return (folder_ / text).string();
+        return is_changed(key) ? text : (folder_ / text).string();
     }
 
     /// The system would take what stands before a null character for the name.
     std::string name(const char* key) const {
         const std::string value = text(key);
-        if (value.find('\0') != std::string::npos)
-            fail('"' + std::string(key) + "\" holds a null character", find(key));
+        if (value.find('\0') != std::string::npos) fail(shown(key) + " holds a null character", find(key));
         return value;
     }
 
@@ -118,7 +134,7 @@ public:
         const std::string value = text(key);
         if (!find(key)) return std::nullopt;
         const auto found = find_name(value);
-        if (!found) fail('"' + std::string(key) + "\" must be " + wanted, find(key));
+        if (!found) fail(shown(key) + " must be " + wanted + "; it is " + io::in_quotes(value), find(key));
         return found;
     }
 
@@ -134,6 +150,7 @@ public:
 
 private:
     std::filesystem::path folder_;
+    const Changes* changes_;
 };
 
 }  // namespace realcam::shot

@@ -133,7 +133,7 @@ def test_spelling() -> None:
         ("render demo --outptu y.png", 'unknown option --outptu (did you mean "--output"?)'),
         ("render demo \udcff.png", 'unexpected argument "?.png" (did you mean "-o ?.png"?)'),
         ("render dmo -o a.png", 'no file and no bundled shot is called "dmo" (did you mean "demo"?)'),
-        ("render demo -o a.png --focus 2s", '--focus: "2s" is not a number of metres, inf or auto'),
+        ("render demo -o a.png --focus 2s", '--focus must be a number of metres, inf or auto; it is "2s"'),
     ],
 )
 def test_mistakes_have_a_hint_in_one_line(

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <functional>
 #include <initializer_list>
 #include <optional>
 #include <string>
@@ -54,7 +55,7 @@ public:
     std::optional<double> number(std::string_view key) const {
         const toml::node* node = find(key);
         if (!node) return std::nullopt;
-        return as_number(*node, '"' + std::string(key) + '"');
+        return as_number(*node, shown(key));
     }
 
     double as_number(const toml::node& node, const std::string& what) const {
@@ -69,7 +70,7 @@ public:
     std::string text(std::string_view key) const {
         const toml::node* node = find(key);
         if (!node) return {};
-        if (!node->is_string()) fail('"' + std::string(key) + "\" must be a text in quotes", node);
+        if (!node->is_string()) fail(shown(key) + " must be a text in quotes", node);
         return *node->value<std::string>();
     }
 
@@ -77,7 +78,7 @@ public:
     std::string line(std::string_view key) const {
         std::string value = text(key);
         if (printable(value) != value)
-            fail('"' + std::string(key) + "\" must be one line of text, without control characters", find(key));
+            fail(shown(key) + " must be one line of text, without control characters", find(key));
         return value;
     }
 
@@ -91,7 +92,7 @@ public:
     bool flag(std::string_view key) const {
         const toml::node* node = find(key);
         if (!node) return false;
-        if (!node->is_boolean()) fail('"' + std::string(key) + "\" must be true or false", node);
+        if (!node->is_boolean()) fail(shown(key) + " must be true or false", node);
         return *node->value<bool>();
     }
 
@@ -100,7 +101,7 @@ public:
         const toml::node* node = find(key);
         if (!node) return {};
         const toml::array* array = node->as_array();
-        const std::string what = '"' + std::string(key) + '"';
+        const std::string what = shown(key);
         if (!array || array->empty() || (count && array->size() != count))
             fail(what + " must be an array of " + (count ? std::to_string(count) + " " : "") + "numbers", node);
         std::vector<double> values;
@@ -113,7 +114,7 @@ public:
         const toml::node* node = find(key);
         if (!node) return {};
         const toml::array* array = node->as_array();
-        const std::string what = '"' + std::string(key) + "\" must be an array of texts in quotes";
+        const std::string what = shown(key) + " must be an array of texts in quotes";
         if (!array) fail(what, node);
         std::vector<std::string> values;
         for (const toml::node& item : *array) {
@@ -126,7 +127,7 @@ public:
     std::optional<TomlTable> table(std::string_view key) const {
         const toml::node* node = find(key);
         if (!node) return std::nullopt;
-        if (!node->is_table()) fail('"' + std::string(key) + "\" must be a table", node);
+        if (!node->is_table()) fail(shown(key) + " must be a table", node);
         return TomlTable(*node->as_table(), file_, surface_, raise_);
     }
 
@@ -135,6 +136,12 @@ public:
 
     const toml::table& raw() const { return table_; }
     const std::string& file() const { return file_; }
+
+    /// A key as messages name it.
+    std::string shown(std::string_view key) const { return name_ ? name_(key) : '"' + std::string(key) + '"'; }
+
+protected:
+    std::function<std::string(std::string_view)> name_;  ///< of a key in messages, if it is not the key in quotes
 
 private:
     const toml::table& table_;

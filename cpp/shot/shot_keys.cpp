@@ -1,0 +1,313 @@
+#include "shot_keys.hpp"
+
+#include <filesystem>
+
+#include "../io/text/printable.hpp"
+#include "../render/effect_names.hpp"
+#include "names.hpp"
+#include "read_camera_keys.hpp"
+#include "shot_table.hpp"
+
+namespace realcam::shot {
+namespace {
+
+using Table = const ShotTable&;
+using Key = const ShotKey&;
+using Request = ShotRequest&;
+
+/// A member of a request, or of one of its members.
+template <auto... path>
+auto& at(Request r) {
+    return (r.*....*path);
+}
+
+template <class Value>
+struct ValueOf {
+    using type = Value;
+};
+template <class Value>
+struct ValueOf<std::optional<Value>> {
+    using type = Value;
+};
+
+template <auto... path>
+void to_number(Table t, Key key, Request r) {
+    at<path...>(r) = *t.number(key.name);
+}
+
+template <auto... path>
+void to_number_or_auto(Table t, Key key, Request r) {
+    at<path...>(r) = t.number_or_auto(key.name, key.wanted);
+}
+
+template <auto... path>
+void to_whole(Table t, Key key, Request r) {
+    using Value = typename ValueOf<std::remove_reference_t<decltype(at<path...>(r))>>::type;
+    at<path...>(r) = t.whole<Value>(key.name, *t.number(key.name));
+}
+
+template <auto... path>
+void to_text(Table t, Key key, Request r) {
+    std::string& value = at<path...>(r);
+    value = t.name(key.name);
+    if (value.empty()) t.fail(t.shown(key.name) + " is empty; " + key.wanted + " is wanted", t.find(key.name));
+}
+
+template <auto... path>
+void to_file(Table t, Key key, Request r) {
+    at<path...>(r) = t.path(key.name);
+}
+
+template <auto... path>
+void to_point(Table t, Key key, Request r) {
+    at<path...>(r) = *t.point(key.name);
+}
+
+template <auto... path>
+void to_pair(Table t, Key key, Request r) {
+    const std::vector<double> v = t.numbers(key.name, 2);
+    at<path...>(r) = {v[0], v[1]};
+}
+
+/// Work on the names that a key lists, before whose mistakes the key is named.
+template <class Work>
+void of_names(Table t, Key key, const Work& work) {
+    try {
+        work();
+    } catch (const InputError& error) {
+        t.fail(t.shown(key.name) + ": " + error.what(), t.find(key.name));
+    }
+}
+
+template <auto find, auto... path>
+void to_named(Table t, Key key, Request r) {
+    at<path...>(r) = *t.named(key.name, find, key.wanted);
+}
+
+/// A part of the goal of the noise, which is checked with what is known of it by then.
+template <auto read>
+void to_noise(Table t, Key key, Request r) {
+    read(t, key, r);
+    t.checked(key.name, [&] { goal_of(r.noise); });
+}
+
+void to_lens(Table t, Key, Request r) {
+    if (const std::string name = lens_of(t); !name.empty()) r.lens = name;
+}
+
+void to_resolution(Table t, Key key, Request r) {
+    const std::vector<double> v = t.numbers(key.name, 2);
+    r.resolution = {t.whole(key.name, v[0]), t.whole(key.name, v[1])};
+}
+
+/// On the command line a word that is no file may be a misspelt number.
+void to_environment(Table t, Key key, Request r) {
+    if (!t.find(key.name)->is_number()) {
+        r.environment_file = t.path(key.name);
+        std::error_code error;
+        if (t.is_changed(key.name) && !std::filesystem::exists(r.environment_file, error))
+            t.fail(t.shown(key.name) + " must be " + key.wanted + "; there is no file " +
+                       io::in_quotes(r.environment_file),
+                   t.find(key.name));
+        return;
+    }
+    const auto radiance = static_cast<float>(*t.number(key.name));
+    r.environment_cd_m2 = {radiance, radiance, radiance};
+}
+
+void to_spp(Table t, Key key, Request r) {
+    const std::optional<double> spp = t.number_or_auto(key.name, key.wanted);
+    r.sampling = spp ? Sampling::counted : Sampling::by_noise;
+    if (spp) r.settings.spp = t.whole(key.name, *spp);
+}
+
+void to_max_bounces(Table t, Key key, Request r) {
+    const std::optional<double> bounces = t.number_or_auto(key.name, key.wanted);
+    r.settings.max_bounces = bounces ? std::optional(t.whole(key.name, *bounces)) : std::nullopt;
+}
+
+void to_effects(Table t, Key key, Request r) {
+    const std::vector<std::string> names = t.texts(key.name);
+    of_names(t, key, [&] { r.settings.effects = effects_named(names); });
+}
+
+void to_layers(Table t, Key key, Request r) {
+    const std::vector<std::string> names = t.texts(key.name);
+    of_names(t, key, [&] { r.settings.layers = layers_named(names); });
+}
+
+/// A name, a wavelength, or [wavelength, power] of each point of a table.
+Illuminant illuminant_of(const toml::node& node) {
+    if (const auto* name = node.as_string()) return Illuminant::parse(name->get());
+    if (node.is_number()) return Illuminant::line(node.value_or(0.0));
+    std::vector<SpectrumPoint> points;
+    if (const toml::array* pairs = node.as_array()) {
+        for (const toml::node& item : *pairs) {
+            const toml::array* pair = item.as_array();
+            if (!pair || pair->size() != 2 || !(*pair)[0].is_number() || !(*pair)[1].is_number()) {
+                points.clear();
+                break;
+            }
+            points.push_back({(*pair)[0].value_or(0.0), (*pair)[1].value_or(0.0)});
+        }
+    }
+    if (points.empty())
+        throw InputError(std::string("illuminant: ") + Illuminant::kWanted +
+                         " is wanted; in a shot file a table is [[400, 0.5], [550, 1], [700, 0.2]]");
+    return Illuminant::table(std::move(points));
+}
+
+void to_illuminant(Table t, Key key, Request r) {
+    t.checked(key.name, [&] { r.settings.illuminant = illuminant_of(*t.find(key.name)); });
+}
+
+void to_iso_follows(Table t, Key key, Request r) {
+    to_number<&ShotRequest::iso_follows_s>(t, key, r);
+    if (!(*r.iso_follows_s >= 0))
+        t.fail(t.shown(key.name) + " must be a number of seconds, 0 or more", t.find(key.name));
+}
+
+constexpr const char *kCamera = "Camera", *kScene = "Scene", *kPicture = "Picture", *kNumber = "a number";
+
+using R = ShotRequest;
+using V = ViewRequest;
+using S = RenderSettings;
+
+// clang-format off
+std::vector<ShotKey> all_keys() {
+    using enum Syntax;
+    return {
+        {"lens", "--lens", kCamera, "LENS", text, "a lens",
+         "Bundled lens (`realcam lens list`), or a lens file: .toml, .zmx, .seq, .len, .dat, .json, .roa",
+         "double-gauss-50mm", {"zoom", "focal_length_mm"}, to_lens},
+        {"zoom", "--zoom", kCamera, "NAME", text, "the name of a zoom position of the lens",
+         "Zoom position, by its name in `realcam lens info`", "as the lens's file gives it", {"focal_length_mm"},
+         to_text<&R::zoom>},
+        {"focal_length_mm", "--focal-length", kCamera, "MM", number, kNumber,
+         "Of a zoom lens, between those of its positions", "that of its position", {"zoom"},
+         to_number<&R::focal_length_mm>},
+        {"film_mm", "--film", kCamera, "WxH", size, "a width and a height in mm, such as 36x24",
+         "Film in mm", "the lens's, in the shape of the resolution", {}, to_pair<&R::film_mm>},
+        {"film_shift_mm", "--film-shift", kCamera, "X,Y", two_numbers, "two lengths in mm, such as 0,8",
+         "The film's middle from the lens's axis, mm to the right and up as the picture shows it", "0,0", {},
+         to_pair<&R::film_shift_mm>},
+        {"resolution", "--resolution", kCamera, "WxH", size, "a width and a height in pixels, such as 960x640",
+         "Pixels", "960 along the longer side", {}, to_resolution},
+        {"camera", "--camera", kCamera, "NAME", text, "the name of a camera of the scene, or none,",
+         "Camera of a glTF whose place, direction and motion to take, by the name of its node; or none",
+         "the first, without position and direction", {"position_m", "look_at_m", "pose"}, to_text<&R::view, &V::camera>},
+        {"position_m", "--position", kCamera, "X,Y,Z", three_numbers, "three numbers, such as 0,1.5,-2",
+         "Middle of the film, metres", "in front of the scene, which fills the film: docs/scenes.md",
+         {"camera", "pose"}, to_point<&R::view, &V::position_m>},
+        {"look_at_m", "--look-at", kCamera, "X,Y,Z", three_numbers, "three numbers, such as 0,1.5,-2",
+         "Point in the middle of the picture", "middle of the scene", {"camera", "pose"},
+         to_point<&R::view, &V::look_at_m>},
+        {"up", "--up", kCamera, "X,Y,Z", three_numbers, "three numbers, such as 0,1,0",
+         "Direction that is up in the picture", "0,1,0", {}, to_point<&R::view, &V::up>},
+        {"focus_m", "--focus", kCamera, "METRES", distance_or_auto, "a number of metres, inf or auto",
+         "Object plane to film, inf, or auto", "auto: the first surface on the axis", {},
+         to_number_or_auto<&R::view, &V::focus_distance_m>},
+        {"f_number", "--f-number", kCamera, "N", number, kNumber, "Close the diaphragm to f/N", "wide open", {},
+         to_number<&R::f_number>},
+        {"blades", "--blades", kCamera, "N", whole, "a whole number",
+         "Of the diaphragm: 3 to 24, or 0 for a round one", "the lens's", {}, to_whole<&R::blades>},
+        {"blade_rounding", "--blade-rounding", kCamera, "SHARE", number, kNumber,
+         "0: straight edges; 1: the opening is a circle", "the lens's", {}, to_number<&R::blade_rounding>},
+        {"blade_rotation_deg", "--blade-rotation", kCamera, "DEGREES", number, kNumber,
+         "Degrees by which the blades are turned about the axis", "the lens's", {}, to_number<&R::blade_rotation_deg>},
+        {"exposure_time_s", "--exposure-time", kCamera, "TIME", number_or_auto,
+         "a number of seconds, such as 0.5 or 1/125, or auto",
+         "Seconds, such as 1/125, or auto", "auto: the average lands on middle grey", {},
+         to_number_or_auto<&R::exposure_time_s>},
+        {"shutter_opens_s", "--shutter-opens", kCamera, "SECONDS", number, kNumber,
+         "When, in seconds of a scene that moves", "0", {}, to_number<&R::shutter, &Shutter::opens_s>},
+        {"readout_time_s", "--readout-time", kCamera, "SECONDS", number, kNumber,
+         "Of a rolling shutter: seconds from the top row of pixels to the bottom", "0", {},
+         to_number<&R::shutter, &Shutter::readout_time_s>},
+        {"iso_follows_s", nullptr, kCamera, "SECONDS", number, kNumber,
+         "Of a film: the ISO number follows the meter, smoothed over so many seconds", "it stays", {},
+         to_iso_follows},
+        {"iso", "--iso", kCamera, "ISO", number, kNumber, "Sensitivity", "100", {"iso_follows_s"},
+         to_number<&R::iso>},
+        {"model", "--model", kCamera, "MODEL", text, kModelNames, kModelNames, "full", {},
+         to_named<model_named, &R::model>},
+        {"scale", "--scale", kScene, "METRES", number, kNumber, "Metres per unit of the scene's file", "1", {},
+         to_number<&R::scale>},
+        {"texture", nullptr, kScene, "FILE", text, "a picture", "A picture for all materials",
+         "the scene's own", {}, to_file<&R::texture>},
+        {"environment", "--environment", kScene, "CD_M2|FILE", number_or_file, "a picture, or a number of cd/m^2",
+         "Light from all around: cd/m^2, or a latitude-longitude picture",
+         "the scene's light; daylight if it has none", {"environment_cd_m2", "environment_layer"}, to_environment},
+        {"environment_cd_m2", nullptr, kScene, "CD_M2", number, "a number or three",
+         "The same light from all around, grey or of three colours", "environment",
+         {"environment", "environment_layer"},
+         [](Table t, Key key, Request r) { r.environment_cd_m2 = static_cast<Vec3f>(*t.number_or_three(key.name)); }},
+        {"environment_layer", "--environment-layer", kScene, "NAME", text, "a layer's name",
+         "Layer of an OpenEXR environment, such as beauty, where it has several", "the beauty or only layer", {},
+         to_text<&R::environment_layer>},
+        {"environment_scale", "--environment-scale", kScene, "FACTOR", number, kNumber,
+         "By which the environment's light is multiplied", "1", {},
+         to_number<&R::environment_change, &EnvironmentChange::scale>},
+        {"environment_rotation_deg", "--environment-rotation", kScene, "DEGREES", number, kNumber,
+         "Degrees by which the environment is turned about the vertical, counterclockwise from above", "0", {},
+         to_number<&R::environment_change, &EnvironmentChange::rotation_deg>},
+        {"spp", "--spp", kPicture, "N", whole_or_auto, "a whole number or auto",
+         "Samples per pixel, or auto: as many as the noise needs, by tile of the film, until it is 1 code",
+         "until it is 2 codes, for 60 seconds at most", {"noise", "noise_codes", "seconds", "max_spp"}, to_spp},
+        {"noise", "--noise", kPicture, "SHARE", number, kNumber,
+         "Unless spp is a number: noise as a share of a tile's light, such as 0.01", "", {"noise_codes", "spp"},
+         to_noise<to_number<&R::noise, &NoiseRequest::noise>>},
+        {"noise_codes", "--noise-codes", kPicture, "CODES", number, kNumber,
+         "The same in 8-bit codes of the developed picture", "", {"noise", "spp"},
+         to_noise<to_number<&R::noise, &NoiseRequest::noise_codes>>},
+        {"seconds", "--seconds", kPicture, "SECONDS", number, kNumber,
+         "After which no more samples are taken, unless spp is a number", "", {},
+         to_noise<to_number<&R::noise, &NoiseRequest::seconds>>},
+        {"max_spp", "--max-spp", kPicture, "N", whole, "a whole number",
+         "Samples that a pixel gets at most, unless spp is a number", "4096", {},
+         to_noise<to_whole<&R::noise, &NoiseRequest::max_spp>>},
+        {"seed", "--seed", kPicture, "N", whole, "a whole number", "Of the random numbers", "0", {},
+         to_whole<&R::settings, &S::seed>},
+        {"max_bounces", "--max-bounces", kPicture, "N", whole_or_auto, "a whole number or auto",
+         "Light that bounces this often is seen; 0: direct light only", "auto: what the shot calls for", {},
+         to_max_bounces},
+        {"transport", "--transport", kPicture, "NAME", text, kTransportNames,
+         "paths: all ways of light; whitted: direct light, and what mirrors and smooth glass show", "paths", {},
+         to_named<transport_named, &R::settings, &S::transport>},
+        {"clamp_cd_m2", "--clamp", kPicture, "CD_M2", number, kNumber,
+         "Cut off light above this that comes by a bounce: fewer bright dots, and a picture too dark", "0: never", {},
+         to_number<&R::settings, &S::clamp>},
+        {"tone", "--tone", kPicture, "CURVE", text, kToneNames,
+         "Tone mapping of developed pictures: film (soft highlights) or linear (clipped)", "film", {},
+         to_named<tone_named, &R::tone>},
+        {"layers", "--layers", kPicture, "NAMES", names, "names of layers",
+         "Also write to .exr, separated by commas: all, or some of " + layer_names(), "none", {}, to_layers},
+        {"effects", "--effects", kPicture, "NAMES", names, "names of effects",
+         "What else is simulated or, with a minus, left out, separated by commas after a \"=\": " + effect_names(),
+         "auto: what the shot calls for", {}, to_effects},
+        {"quality", "--quality", kPicture, "NAME", text, kQualityNames,
+         "What auto leaves out is smaller than that of draft (2 pixels, 4 codes), photo (0.5, 1) or reference (0.1, "
+         "0.25)", "photo", {"threshold_px", "threshold_codes"}, to_named<quality_named, &R::settings, &S::thresholds>},
+        {"threshold_px", "--threshold-px", kPicture, "PIXELS", number, kNumber,
+         "In pixels, in place of that of the quality", "", {},
+         to_number<&R::settings, &S::thresholds, &PlanThresholds::pixels>},
+        {"threshold_codes", "--threshold-codes", kPicture, "CODES", number, kNumber,
+         "In 8-bit codes, in place of that of the quality", "", {},
+         to_number<&R::settings, &S::thresholds, &PlanThresholds::codes>},
+        {"illuminant", "--illuminant", kPicture, "SPECTRUM", text, "a spectrum",
+         "Of " + effects_that(&EffectInfo::has_wavelengths) + ", the spectrum of all light: " +
+             std::string(Illuminant::kWanted), "D65", {}, to_illuminant},
+        {"threads", "--threads", kPicture, "N", whole, "a whole number", "0: all", "0", {},
+         to_whole<&R::settings, &S::threads>},
+    };
+}
+// clang-format on
+
+}  // namespace
+
+std::span<const ShotKey> shot_keys() {
+    static const std::vector<ShotKey> keys = all_keys();
+    return keys;
+}
+
+}  // namespace realcam::shot
