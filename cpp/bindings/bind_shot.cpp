@@ -1,6 +1,7 @@
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
+#include <map>
 #include <tuple>
 #include <utility>
 
@@ -212,12 +213,28 @@ z_m; but for the time any may be missing. Raises InputError naming file and line
         .def("__repr__", &text_of_shake);
 }
 
+/// Those of the command line.
+py::list listed_shot_keys() {
+    py::list keys;
+    for (const shot::ShotKey& key : shot::shot_keys())
+        keys.append(py::make_tuple(key.name, key.option, key.group, key.placeholder, key.text, key.initial));
+    return keys;
+}
+
+/// Options of the command line by the names of their keys.
+std::vector<std::pair<const shot::ShotKey*, std::string>> options_of(const std::map<std::string, std::string>& words) {
+    std::vector<std::pair<const shot::ShotKey*, std::string>> options;
+    for (const shot::ShotKey& key : shot::shot_keys())
+        if (const auto word = words.find(key.name); word != words.end()) options.emplace_back(&key, word->second);
+    return options;
+}
+
 /// Returns the fields of realcam.Shot by their names, and whether nobody has said how many samples it has or how little
-/// noise. `given`: a scene in place of a file, which messages call by the path; `lens`: in place of the request's;
-/// `denoises`: the picture is to be denoised.
-py::tuple read_shot(const py::object& path, const std::string& changes, const std::optional<Assembly>& given,
-                    std::optional<LensSystem> lens, bool denoises, const std::string& device,
-                    const py::object& progress) {
+/// noise. `changes` and `words`: those of shot::ShotChanges. `given`: a scene in place of a file, which messages call
+/// by the path; `lens`: in place of the request's; `denoises`: the picture is to be denoised.
+py::tuple read_shot(const py::object& path, const std::string& changes, const std::map<std::string, std::string>& words,
+                    const std::optional<Assembly>& given, std::optional<LensSystem> lens, bool denoises,
+                    const std::string& device) {
     shot::ShotRequest request;
     Camera camera;
     Assembly scene;
@@ -226,7 +243,8 @@ py::tuple read_shot(const py::object& path, const std::string& changes, const st
     const std::string name = path_from(path);
     {
         const Unlocked unlocked;
-        request = given ? shot::shot_of_scene(name, {changes, {}}) : shot::read_shot(name, {changes, {}});
+        const shot::ShotChanges changed{changes, options_of(words)};
+        request = given ? shot::shot_of_scene(name, changed) : shot::read_shot(name, changed);
         request.lens_in_memory = std::move(lens);
         request.denoises = denoises;
         shot::settle_noise_goal(request);
@@ -242,7 +260,8 @@ py::tuple read_shot(const py::object& path, const std::string& changes, const st
         if (PyErr_WarnEx(PyExc_UserWarning, note.c_str(), 1) < 0) throw py::error_already_set();
     shot::Shot shot = shot::set_up(request, std::move(camera), std::move(scene));
     if (request.meters_exposure_time()) {
-        const Progress report = progress_of(progress);
+        const py::none no_callback;
+        const Progress report = progress_of(no_callback);
         OwnedSession::shared(device).use([&](const auto& session) { meter(shot, request, *session, report); });
     }
     py::dict fields("scene"_a = shot.scene, "camera"_a = shot.camera, "settings"_a = request.settings,
@@ -276,7 +295,8 @@ void bind_shot(py::module_& m) {
     m.def("_frame_seed", &shot::frame_seed, "seed"_a, "number"_a);
     m.def("_followed_isos", &followed_isos, "scene"_a, "camera"_a, "keys"_a, "settings"_a, "numbers"_a,
           "frames_per_second"_a, "smoothing_s"_a, "device"_a);
-    m.def("_read_shot", &read_shot, "path"_a, "changes"_a, "scene"_a, "lens"_a, "denoises"_a, "device"_a, "progress"_a);
+    m.def("_shot_keys", &listed_shot_keys);
+    m.def("_read_shot", &read_shot, "path"_a, "changes"_a, "words"_a, "scene"_a, "lens"_a, "denoises"_a, "device"_a);
     m.def("_metadata", &metadata, "camera"_a, "settings"_a, "spp"_a, "seed"_a, "plan"_a, "denoiser"_a);
 }
 

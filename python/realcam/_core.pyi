@@ -1528,14 +1528,15 @@ def _followed_isos(
     device: str,
 ) -> list[float]: ...
 def _read_toml(text: str, file: str) -> tuple[dict[str, Any], dict[str, int]]: ...
+def _shot_keys() -> list[tuple[str, str | None, str, str, str, str]]: ...
 def _read_shot(
     path: str | os.PathLike[str],
     changes: str,
+    words: Mapping[str, str],
     scene: Scene | None,
     lens: Lens | None,
     denoises: bool,
     device: str,
-    progress: _Progress | None,
 ) -> tuple[_Shot, bool]: ...
 
 class _SettingWords(TypedDict, total=False):

@@ -161,6 +161,12 @@ class Shot:
         return render(self.scene, camera, settings, device=device, progress=progress, on_stop=on_stop)
 
 
+def shot_with_words(path: str | os.PathLike[str], words: Mapping[str, str], device: str) -> Shot:
+    """Shot.load with values in the words of the command line, by their keys, which messages call by their options."""
+    read, _ = _core._read_shot(bundled_file(path, (".toml",)), "", words, None, None, False, device)
+    return Shot(**read)
+
+
 def _read_shot(
     path: str | os.PathLike[str] | Scene, device: str, values: Mapping[str, Any], *, denoises: bool
 ) -> tuple[Shot, bool]:
@@ -168,12 +174,9 @@ def _read_shot(
     scene = path if isinstance(path, Scene) else None
     lens = values.get("lens") if isinstance(values.get("lens"), Lens) else None
     changes = {name: value for name, value in values.items() if value is not None and value is not lens}
-    for name in ("environment", "texture", "lens"):
-        if name in changes and Path(changes[name]).exists():
-            changes[name] = Path(changes[name]).absolute()
     text = "".join(f"{toml_value(name, name)} = {toml_value(name, value)}\n" for name, value in changes.items())
     named = "the shot" if isinstance(path, Scene) else bundled_file(path, (".toml",))
-    read, is_unsaid = _core._read_shot(named, text, scene, lens, denoises, device, None)
+    read, is_unsaid = _core._read_shot(named, text, {}, scene, lens, denoises, device)
     return Shot(**read), is_unsaid
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 from pathlib import Path
 
@@ -229,3 +230,30 @@ def test_all_pictures_of_a_comparison_have_an_f_number(
     times_s = [float(text) for text in re.findall(r", ([\d.]+) s,", done.stdout)]
     assert times_s == pytest.approx([0.025 * (n / 2.1) ** 2 for n in (4, 4.5)], rel=0.01)
     assert "--f-number: " in command(*sheet, "--vary", "f_number=2,4").stderr
+
+
+@pictures
+def test_commands_that_take_a_shot_share_its_options(
+    command: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "quad.obj").write_text("v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nf 1 2 3 4\n")
+    values = {"lens": "tessar-50mm", "focus_m": 2.5, "exposure_time_s": 1 / 60, "spp": 2, "environment_cd_m2": 100}
+    words = ["--lens", "tessar-50mm", "--focus", "250cm", "--exposure-time", "1/60s", "--spp", "2"]
+    words += ["--environment", "100cd/m2", "--device", "cpu"]
+    made = command("job", "make", "quad.obj", "-o", "a.job", *words, "--resolution", "20x10")
+    assert made.returncode == 0, made.stderr
+    job = rc.Job.load(tmp_path / "a.job")
+    job.work()
+    image = job.image()
+    shot = rc.Shot.load(tmp_path / "quad.obj", resolution=(20, 10), device="cpu", **values)
+    assert (image.camera.replace(model=shot.camera.model), image.spp) == (shot.camera, 2)
+    compared = command(
+        *("compare", "quad.obj", "--vary", "f_number=8", "--size", "20", "--json", "-o", "a.png"), *words
+    )
+    (picture,) = json.loads(compared.stdout)
+    assert (picture["lens"], picture["f_number"], picture["spp"]) == ("tessar-50mm", pytest.approx(8), 2)
+    assert picture["focus_m"] == pytest.approx(2.5)
+    # The brightness of the shot, which is wide open.
+    opened = shot.camera.lens.f_number
+    assert picture["exposure_time_s"] == pytest.approx(1 / 60 * (8 / opened) ** 2, rel=1e-6)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from pathlib import Path
 
@@ -68,6 +69,35 @@ def test_every_key_is_heard(tmp_path: Path) -> None:
     assert set(shot.render().layers) == {"depth", "normal"}
     lit = rc.render(shot.scene, camera, effects=(), spp=1, max_bounces=0).pixels[10, 0]
     np.testing.assert_allclose(lit / lit[0], [1, 2, 3], rtol=1e-5)
+
+
+def test_values_may_be_words_of_the_command_line(tmp_path: Path) -> None:
+    shot = load(
+        tmp_path,
+        "format = 1\nscene = 'quad.obj'\nexposure_time_s = '1/125'\nposition_m = '0,0.5,4'\nlook_at_m = '0,0,0'\n"
+        "focus_m = 'inf'\nresolution = '60x40'\nspp = '4'\neffects = 'dispersion,ghosts'\nlayers = 'depth'\n",
+    )
+    assert shot.camera.exposure_time_s == 1 / 125
+    assert shot.camera.position == (0, 0.5, 4)
+    assert shot.camera.lens.focus_distance_m == math.inf
+    assert shot.camera.film.resolution == (60, 40)
+    assert (shot.spp, shot.effects, shot.layers) == (4, ("dispersion", "ghosts"), ("depth",))
+
+
+def test_thresholds_and_threads_of_a_shot(tmp_path: Path) -> None:
+    scene = "format = 1\nscene = 'quad.obj'\nexposure_time_s = 0.01\n"
+    draft = load(tmp_path, scene + "quality = 'draft'\nthreshold_px = 3\nthreads = 2\n").settings
+    assert (draft.threshold_px, draft.threshold_codes, draft.threads) == (3, 4, 2)
+    (tmp_path / "shot.toml").write_text(scene + "threshold_px = 3\n")
+    again = rc.Shot.load(tmp_path / "shot.toml", quality="reference").settings  # in place of what the file says
+    assert (again.threshold_px, again.threshold_codes) == (0.1, 0.25)
+
+
+def test_the_page_has_every_key() -> None:
+    page = (Path(__file__).parents[2] / "docs" / "shot-files.md").read_text(encoding="utf-8")
+    rows = "\n".join(line.split("|")[1] for line in page.splitlines() if line.startswith("| `"))
+    for key, *_ in rc._core._shot_keys():
+        assert f"`{key}`" in rows, key
 
 
 def test_focus_and_stop(tmp_path: Path) -> None:
@@ -281,7 +311,10 @@ def test_what_is_wrong_with_an_addition_is_told_with_its_line(text: str, says: s
         ("format = 1\nscene = 'quad.obj'\ntexture = 'gone.png'", r"gone\.png: cannot be read as a texture"),
         ("format = 1\nscene = 'gone.obj'", r"gone\.obj: no such file"),
         ("format = 1\nscene = 'quad.obj'\nlens = 'gone'", "unknown lens"),
-        ("format = 1\nscene = 'quad.obj'\nlayers = ['colour']", r'shot\.toml:3: "layers": unknown layer "colour"; all, or'),
+        (
+            "format = 1\nscene = 'quad.obj'\nlayers = ['colour']",
+            r'shot\.toml:3: "layers": unknown layer "colour"; all, or',
+        ),
         ("format = 1\nscene = 'quad.obj'\nlayers = [1]", r':3: "layers" must be an array of texts'),
         ("format = 1\nscene = [", "shot.toml:2: not valid TOML"),
         ('format = 1\nscene = "a\\u0000b"', 'shot.toml:2: "scene" holds a null character'),

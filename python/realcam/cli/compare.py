@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from types import FrameType
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -22,8 +22,13 @@ from ..progress import progress_bar
 from ..shot import Shot
 from ..variations import Variation, variations
 from . import lens_options, options
+from .grouped_options import grouped
+from .shot_options import load_shot, shot_options
+
+ShotOptions = shot_options("ShotOptions", without=("f_number", "resolution", "layers"))
 
 
+@grouped
 def compare(
     shot: options.ShotName,
     vary: Annotated[
@@ -33,25 +38,20 @@ def compare(
     output: Annotated[
         Path, typer.Option("--output", "-o", metavar="FILE", help="The sheet, as .png, .jpg, .tif, .webp, .svg or .pdf")
     ],
+    changes: ShotOptions,  # type: ignore[valid-type]
     f_number: Annotated[
         float | None,
-        typer.Option("--f-number", metavar="N", help="Of all pictures, where it is not varied [the shot's]"),
+        typer.Option(
+            "--f-number", metavar="N", help="Of all pictures, at the brightness of the shot, where it is not varied"
+        ),
     ] = None,
     size: Annotated[
         int, typer.Option(metavar="PIXELS", help="Pixels of the longer side of each picture", min=8, max=4096)
     ] = 480,
     columns: Annotated[int, typer.Option(metavar="N", help="Pictures in a row", min=1, max=100)] = 3,
-    noise_codes: Annotated[
-        float, typer.Option(metavar="CODES", help="Noise of each picture, of 255 codes", min=0.1, max=50)
-    ] = 2.0,
-    seconds: Annotated[
-        float,
-        typer.Option(metavar="S", help="Longest time for each picture, with a warning if it is noisier then", min=0.1),
-    ] = 60.0,
     denoise: Annotated[bool, typer.Option("--denoise", help="Remove the noise (realcam[denoise])")] = False,
     theme: lens_options.ThemeName = "light",
     device: options.Device = "auto",
-    threads: options.Threads = 0,
     as_json: options.AsJson = False,
     quiet: options.Quiet = False,
 ) -> None:
@@ -68,12 +68,10 @@ def compare(
     name = name.replace("-", "_")
     if f_number is not None and name == "f_number":
         raise InputError("--f-number: the f-number is what --vary names")
-    described = Shot.load(shot, device=device)
+    described = load_shot(shot, changes, device, **_goal(changes))
     if f_number is not None:  # at the brightness of the shot
         described = variations(described, "f_number", [str(f_number)])[0].shot
-    settings = described.settings.with_(spp="auto", noise_codes=noise_codes, seconds=seconds)
-    if denoise:
-        settings = settings.with_(layers=GUIDES)
+    settings = described.settings.with_(layers=GUIDES) if denoise else described.settings
     pictures: list[tuple[str, Image]] = []
     kind = "F_NUMBER" if name == "f_number" else ""
     varied = variations(described, name, [plain_number(value, kind) for value in values.split(",")])
@@ -91,7 +89,7 @@ def compare(
                 def goes_on(done: float, bar: Callable[[float], bool] = bar) -> bool:
                     return bar(done) and not is_interrupted()
 
-                image = taken.render(device=device, threads=threads, progress=goes_on, on_stop="keep")
+                image = taken.render(device=device, progress=goes_on, on_stop="keep")
                 pictures.append((variation.label, image.denoised() if denoise else image))
             for warning in caught:
                 warnings.warn(f"{variation.label}: {warning.message}", stacklevel=1)
@@ -124,6 +122,14 @@ def compare(
         if len(pictures) < len(varied):
             warnings.warn(f"the sheet has {len(pictures)} of {len(varied)} pictures", stacklevel=1)
         raise KeyboardInterrupt
+
+
+def _goal(changes: Any) -> dict[str, str]:
+    """The noise of each picture in the words of the command line, as far as the options leave it out."""
+    if changes.spp is not None:
+        return {}
+    noise = {} if changes.noise or changes.noise_codes else {"noise_codes": "2"}
+    return {**noise, "seconds": "60"}
 
 
 def sized(variation: Variation, longer_side_px: int) -> Camera:

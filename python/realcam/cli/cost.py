@@ -9,12 +9,24 @@ import typer
 
 from ..files import check_target
 from ..progress import progress_bar
-from ..shot import Shot
 from . import options
+from .grouped_options import grouped
+from .shot_options import load_shot, shot_options
+
+# Samples, effects and camera models are what is compared.
+ShotOptions = shot_options(
+    "ShotOptions",
+    without=(
+        "resolution", "model", "spp", "noise", "noise_codes", "seconds", "max_spp", "transport", "clamp_cd_m2", "tone",
+        "layers", "effects", "quality", "threshold_px", "threshold_codes", "illuminant",
+    ),
+)  # fmt: skip
 
 
+@grouped
 def cost(
     shot: options.ShotName,
+    changes: ShotOptions,  # type: ignore[valid-type]
     figure: Annotated[
         list[Path] | None,
         typer.Option(
@@ -32,7 +44,6 @@ def cost(
         int, typer.Option(metavar="N", help="Samples of what they are compared with", min=16)
     ] = 4096,
     device: options.Device = "auto",
-    threads: options.Threads = 0,
     as_json: options.AsJson = False,
     quiet: options.Quiet = False,
 ) -> None:
@@ -41,13 +52,13 @@ def cost(
 
     for path in figure or []:
         check_target(path, (".svg", ".html"))
-    described = Shot.load(shot, device=device)
+    described = load_shot(shot, changes, device)
     with progress_bar("measuring", is_shown=not quiet) as bar:
         result = accuracy_cost(
             described.scene,
             described.camera,
             device=device,
-            threads=threads,
+            threads=described.settings.threads,
             seed=described.seed,
             max_bounces=described.max_bounces,
             size=size,

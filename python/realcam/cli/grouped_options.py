@@ -21,7 +21,9 @@ def grouped(command: Callable[..., None]) -> Callable[..., None]:
         groups[name] = group
         kinds = get_type_hints(group, include_extras=True)
         parameters += [
-            parameter.replace(name=field.name, default=field.default, annotation=kinds[field.name])
+            inspect.Parameter(
+                field.name, inspect.Parameter.KEYWORD_ONLY, default=field.default, annotation=kinds[field.name]
+            )
             for field in fields(group)
         ]
 

@@ -40,10 +40,14 @@ def finish(command: Any, words: tuple[str, ...] = ()) -> None:
 
 
 def _sections(command: Any, context: Any) -> Iterator[Section]:
-    for title, kind in (("Arguments", "argument"), ("Options", "option")):
-        parameters = [parameter for parameter in command.get_params(context) if parameter.param_type_name == kind]
-        records = [parameter.get_help_record(context) for parameter in parameters]
-        yield title, [(names, _as_in_cpp(text)) for names, text in filter(None, records)]
+    parts: dict[str, list[tuple[str, str]]] = {"Arguments": [], "Options": []}
+    for parameter in command.get_params(context):
+        usual = "Arguments" if parameter.param_type_name == "argument" else "Options"
+        if record := parameter.get_help_record(context):
+            names, text = record
+            title = getattr(parameter, "rich_help_panel", None) or usual
+            parts.setdefault(title, []).append((names, _as_in_cpp(text)))
+    yield from parts.items()
     # The first paragraph.
     commands = getattr(command, "commands", {})
     yield "Commands", [(name, below.help.partition("\n\n")[0]) for name, below in commands.items()]

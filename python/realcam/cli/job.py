@@ -7,9 +7,8 @@ import logging
 import os
 import re
 from collections.abc import Callable, Iterator
-from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 import typer
@@ -22,6 +21,8 @@ from ..progress import progress_bar
 from ..shot import Shot
 from . import options
 from .completions import completion_of
+from .grouped_options import grouped
+from .shot_options import load_shot, shot_options
 
 if TYPE_CHECKING:
     from ..job import Job
@@ -32,15 +33,17 @@ Folder = Annotated[Path, typer.Argument(help="The job's folder, as `realcam job 
 Threads = Annotated[int, typer.Option(metavar="N", help="Of each process; 0: all cores", min=0, max=4096)]
 
 
+ShotOptions = shot_options("ShotOptions", without=("threads",))  # which each process has its own of
+
+
 @app.command()
+@grouped
 def make(
     shots: Annotated[
         list[Path], typer.Argument(help="Shot files (.toml), scene files, or bundled shots", metavar="SCENE")
     ],
     output: Annotated[Path, typer.Option("--output", "-o", metavar="FOLDER", help="Of the job; it must not be there")],
-    spp: Annotated[
-        str | None, typer.Option("--spp", metavar="N", help="Samples per pixel, or auto [those of the shots]")
-    ] = None,
+    changes: ShotOptions,  # type: ignore[valid-type]
     device: Annotated[
         str,
         typer.Option(
@@ -95,7 +98,7 @@ def make(
     if len(files.check_targets([path for path, _, _ in asked])) < len(asked):
         raise InputError(f"one file each is wanted for {' and '.join(option for _, option, _ in asked)}")
     written = {path: os.fsencode(script(output, tasks)) for path, _, script in asked}
-    named = _named_shots(shots, spp, device)
+    named = _named_shots(shots, changes, device)
     files.check_targets(written)
     if numbers is not None:
         named = {
@@ -260,15 +263,12 @@ def _write_pictures(job: Job, targets: dict[str, list[Path]], device: str | None
                 options.say_written(path, quiet)
 
 
-def _named_shots(paths: list[Path], spp: str | None, device: str) -> dict[str, Shot]:
+def _named_shots(paths: list[Path], changes: Any, device: str) -> dict[str, Shot]:
     shots: dict[str, Shot] = {}
     for path in paths:
         if path.stem in shots:
             raise InputError(f"{path}: two shots are called {path.stem}; other names are wanted")
-        shot = Shot.load(path, device=device)
-        if spp is not None:
-            shot = replace(shot, settings=shot.settings.with_(spp=_samples(spp)))
-        shots[path.stem] = shot
+        shots[path.stem] = load_shot(path, changes, device)
     return shots
 
 
@@ -277,10 +277,6 @@ def _developed(job: Job, device: str | None, bar: Callable[[float], bool]) -> It
     for done, name in enumerate(job.names):
         bar(done / len(job.names))
         yield job.image(name, device=device).developed(tone=job.tone(name))
-
-
-def _samples(text: str) -> int | str:
-    return text if text == "auto" or not text.isdecimal() else int(text)
 
 
 def _part(text: str | None) -> tuple[int, int] | None:

@@ -1,0 +1,37 @@
+"""The options that say what is photographed and how, which all commands that take a shot share (cpp/shot/shot_keys)."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import asdict, make_dataclass
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from .. import _core
+from ..shot import Shot, shot_with_words
+from .completions import completion_of
+
+
+def shot_options(name: str, without: Collection[str] = ()) -> type:
+    """A group of options (grouped_options), but for those of some keys, which a command decides itself."""
+    group = []
+    for key, option, panel, placeholder, text, initial in _core._shot_keys():
+        if option is None or key in without:
+            continue
+        wanted = typer.Option(
+            option,
+            metavar=placeholder,
+            help=f"{text} [{initial}]" if initial else text,
+            rich_help_panel=panel,
+            autocompletion=completion_of(placeholder),
+        )
+        group.append((key, Annotated[str | None, wanted], None))
+    return make_dataclass(name, group, frozen=True)
+
+
+def load_shot(path: Path, options: Any, device: str, **unless_said: str) -> Shot:
+    """The shot with what the options say of it. unless_said: words of keys of which they say nothing."""
+    words = {key: word for key, word in asdict(options).items() if word is not None}
+    return shot_with_words(path, {**unless_said, **words}, device)
