@@ -17,8 +17,8 @@
 #include "../io/files/free_memory.hpp"
 #include "../io/files/readable_file.hpp"
 #include "../io/text/one_line.hpp"
-#include "../plan/plan_film.hpp"
 #include "../plan/plan_text.hpp"
+#include "../plan/settle_film.hpp"
 #include "../render/effect_names.hpp"
 #include "../render/pixel_sum.hpp"
 #include "../render/take_picture.hpp"
@@ -124,8 +124,7 @@ public:
         meter_exposure(*session, shot, request);
         if (!frames.empty()) return film(darkroom, shot, request, frames);
         shot.camera = shaken(std::move(shot.camera), request.shake);
-        std::string decisions;
-        if (request.settings.needs_plan()) decisions = follow_plan(*session, shot, request);
+        const std::string decisions = settle(*session, shot, request, {shot.camera});
         for (const std::string& notice : effect_notices(request.settings.effects, shot.camera.lens)) warn(notice);
         const std::string figures = take(darkroom, shot, request, decisions, words_.outputs, is_to_be_finished);
         if (!words_.is_quiet || words_.as_json) std::fputs(figures.c_str(), stdout);
@@ -193,55 +192,31 @@ private:
         return shot;
     }
 
-    /// make(progress), which a signal stops, with the seconds that it takes on the terminal.
-    template <class Make>
-    auto planned(Make&& make) const {
-        return until_interrupted([&] {
+    /// Decides what is left to the planner, for a picture or for some frames of a film; returns it in words.
+    std::string settle(Session& session, shot::Shot& shot, shot::ShotRequest& request,
+                       const std::vector<Camera>& cameras) {
+        SettledFilm film = until_interrupted([&] {
             ProgressBar planning("planning ", !words_.is_quiet);
-            return make([&](double) {
+            return settle_film(session, shot.scene, cameras, request.settings, fast_pupil_tracer(), [&](double) {
                 planning.show_seconds();
                 return is_wanted();
             });
         });
-    }
-
-    /// Returns what was decided. What cannot be planned is taken as it stands.
-    std::string follow_plan(Session& session, shot::Shot& shot, shot::ShotRequest& request) {
-        try {
-            const Plan plan = planned([&](const Progress& progress) {
-                return make_plan(session, shot.scene, shot.camera, request.settings, false, fast_pupil_tracer(),
-                                 progress);
-            });
-            apply(plan, shot.camera, request.settings);
-            if (words_.explains && !words_.as_json && !words_.is_quiet)
+        shot.camera.model = film.model;
+        request.settings = std::move(film.settings);
+        if (!film.warning.empty()) warn(film.warning);
+        if (words_.explains && !words_.as_json && !words_.is_quiet)
+            for (const Plan& plan : film.plans)
                 std::fputs((text_of(plan, io::name_of(plan.model)) + '\n').c_str(), stdout);
-            return summary_of(plan);
-        } catch (const NothingToPlan& nothing) {
-            return follow_nothing(nothing, request);
-        }
+        return film.summary;
     }
 
-    /// The same for all frames of a film, by some of them.
-    std::string follow_film_plan(Session& session, shot::Shot& shot, shot::ShotRequest& request,
-                                 const std::vector<int>& frames) {
+    std::vector<Camera> cameras_to_plan(const shot::Shot& shot, const shot::ShotRequest& request,
+                                        const std::vector<int>& frames) const {
         std::vector<Camera> cameras;
         for (const int frame : shot::frames_to_plan(frames, shot.camera, request.keys, words_.frames_per_second))
             cameras.push_back(camera_of_frame(shot.camera, request, frame));
-        try {
-            const FilmPlan plan = planned([&](const Progress& progress) {
-                return plan_film(session, shot.scene, cameras, request.settings, fast_pupil_tracer(), progress);
-            });
-            apply({plan.model, plan.effects, plan.max_bounces, {}}, shot.camera, request.settings);
-            return plan.summary;
-        } catch (const NothingToPlan& nothing) {
-            return follow_nothing(nothing, request);
-        }
-    }
-
-    std::string follow_nothing(const NothingToPlan& nothing, shot::ShotRequest& request) {
-        warn(std::string(nothing.what()) + "; the picture has the effects that are named");
-        request.settings.effects = without_plan(request.settings.effects);
-        return "";
+        return cameras;
     }
 
     Camera camera_of_frame(const Camera& camera, const shot::ShotRequest& request, int frame) const {
@@ -258,8 +233,7 @@ private:
 
     /// Frames that are done stay.
     void film(const Darkroom& darkroom, shot::Shot& shot, shot::ShotRequest& request, const std::vector<int>& frames) {
-        std::string decisions;
-        if (request.settings.needs_plan()) decisions = follow_film_plan(darkroom.session, shot, request, frames);
+        const std::string decisions = settle(darkroom.session, shot, request, cameras_to_plan(shot, request, frames));
         const Camera camera = shot.camera;
         // The last frame should not be the one to tell that a lens cannot be as its keys say.
         std::set<std::string> notices;

@@ -4,7 +4,7 @@
 
 #include "../embree/fast_pupil_tracer.hpp"
 #include "../io/files/image_metadata.hpp"
-#include "../plan/plan_film.hpp"
+#include "../plan/settle_film.hpp"
 #include "bindings.hpp"
 #include "owned_session.hpp"
 #include "short_text.hpp"
@@ -49,19 +49,19 @@ Planned plan(const Assembly& scene, const Camera& camera, const RenderSettings& 
     });
 }
 
-/// Model, effects, bounces and the summary of a film, given by its first camera and those of other frames.
-std::tuple<std::string, std::vector<std::string>, int, std::string> plan_of_film(const Assembly& scene,
-                                                                                 const Camera& camera,
-                                                                                 const std::vector<Camera>& others,
-                                                                                 const RenderSettings& settings,
-                                                                                 const std::string& device) {
-    std::vector<Camera> cameras = {camera};
-    cameras.insert(cameras.end(), others.begin(), others.end());
-    const FilmPlan plan = OwnedSession::shared(device).use([&](const auto& session) {
-        return plan_film(*session, scene, cameras, settings, fast_pupil_tracer(),
-                         [](double) { return heed_signals(); });
+/// The first camera with its model, the settings, the summary and a warning of a film, given by cameras of its frames.
+std::tuple<Camera, RenderSettings, std::string, std::string> settled_film(const Assembly& scene,
+                                                                          const std::vector<Camera>& cameras,
+                                                                          const RenderSettings& settings,
+                                                                          const std::string& device) {
+    if (!settings.needs_plan()) return {cameras.front(), settings, "", ""};  // without a session
+    SettledFilm film = OwnedSession::shared(device).use([&](const auto& session) {
+        return settle_film(*session, scene, cameras, settings, fast_pupil_tracer(),
+                           [](double) { return heed_signals(); });
     });
-    return {io::name_of(plan.model), names_of(plan.effects), plan.max_bounces, plan.summary};
+    Camera camera = cameras.front();
+    camera.model = film.model;
+    return {std::move(camera), std::move(film.settings), film.summary, film.warning};
 }
 
 }  // namespace
@@ -104,7 +104,7 @@ measured on the device; None: not measured.)")
             return "<realcam.Plan: model " + p.model + ", effects " + (names.empty() ? "none" : names) + '>';
         });
     m.def("_plan", &plan, "scene"_a, "camera"_a, "settings"_a, "device"_a, "times"_a);
-    m.def("_plan_film", &plan_of_film, "scene"_a, "camera"_a, "others"_a, "settings"_a, "device"_a);
+    m.def("_settle_film", &settled_film, "scene"_a, "cameras"_a, "settings"_a, "device"_a);
 }
 
 }  // namespace realcam::bindings

@@ -196,14 +196,6 @@ private:
 
 }  // namespace plan_shot_detail
 
-/// The camera and the settings of a picture that follows a plan.
-inline void apply(const Plan& plan, Camera& camera, RenderSettings& settings) {
-    camera.model = plan.model;
-    settings.effects = plan.effects;
-    settings.max_bounces = plan.max_bounces;
-    if (!settings.effects.have_wavelengths()) settings.illuminant.reset();
-}
-
 /// What is worth simulating of a shot. Of the settings' effects those that were named stay as they are.
 inline Plan plan_shot(const Camera& camera, const LensErrors& errors, const SceneFacts& facts,
                       const RenderSettings& settings) {

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 from . import _core
-from ._core import Camera, NothingToPlan, Plan, RenderSettings, Scene
+from ._core import Camera, Plan, RenderSettings, Scene
 from .settings import settings_of
 
 if TYPE_CHECKING:
@@ -60,7 +60,7 @@ class Settled(NamedTuple):
 
 
 def settled(scene: Scene, camera: Camera, settings: RenderSettings, device: str, stacklevel: int) -> Settled:
-    """Decides where "auto" is among the effects.
+    """Decides what is left to the planner.
 
     Warns, `stacklevel` calls up, where there is nothing to plan; raises what plan raises else.
     """
@@ -71,14 +71,7 @@ def settled_film(
     scene: Scene, cameras: Sequence[Camera], settings: RenderSettings, device: str, stacklevel: int
 ) -> Settled:
     """The same for frames of a film, given by their cameras, together. The camera is the first one."""
-    camera = cameras[0]
-    if "auto" not in settings.effects and settings.max_bounces != "auto":
-        return Settled(camera, settings, "")
-    summary, max_bounces = "", settings.max_bounces
-    try:
-        model, effects, max_bounces, summary = _core._plan_film(scene, camera, list(cameras[1:]), settings, device)
-        camera = camera if model == camera.model else camera.replace(model=model)
-    except NothingToPlan as nothing:
-        warnings.warn(f"{nothing}; the picture has the effects that are named", stacklevel=stacklevel + 1)
-        effects = [name for name in settings.effects if name != "auto"]
-    return Settled(camera, settings.with_(effects=effects, max_bounces=max_bounces), summary)
+    camera, settings, summary, warning = _core._settle_film(scene, list(cameras), settings, device)
+    if warning:
+        warnings.warn(warning, stacklevel=stacklevel + 1)
+    return Settled(camera, settings, summary)

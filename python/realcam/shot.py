@@ -108,8 +108,8 @@ class Shot:
 
         The shutter of frame 1 opens when that of the shot does, and those of the others so many frames later. Each
         frame has a seed of its own, a hash of the shot's and of its number, so that the noise does not stand still.
-        Effects "auto" are planned for the first, the middle and the last frame and after each cut to another lens
-        together, because one that comes and goes would show. The plan and the meter, where the ISO number follows it,
+        Effects and bounces that are "auto" are planned for the first, the middle and the last frame and after each cut
+        to another lens together, because one that comes and goes would show. The plan and the meter, where the ISO number follows it,
         work on `device`.
         Raises InputError for numbers below 0 and for what the lens cannot do at a frame, and what plan raises.
         """
@@ -121,12 +121,10 @@ class Shot:
             return self.camera_at(self.camera.shutter_opens_s + (number - 1) / frames_per_second)
 
         cameras = {number: camera_of(number) for number in numbers}
-        settings = self.settings
-        if "auto" in settings.effects:
-            some = _core._frames_to_plan(numbers, self.camera, self.keys, frames_per_second)
-            planned = settled_film(self.scene, [cameras[n] for n in some], settings, device, stacklevel=2)
-            settings = planned.settings
-            cameras = {number: camera.replace(model=planned.camera.model) for number, camera in cameras.items()}
+        some = _core._frames_to_plan(numbers, self.camera, self.keys, frames_per_second)
+        planned = settled_film(self.scene, [cameras[n] for n in some], self.settings, device, stacklevel=2)
+        settings = planned.settings
+        cameras = {number: camera.replace(model=planned.camera.model) for number, camera in cameras.items()}
         if self.iso_follows_s is not None:
             isos = _core._followed_isos(
                 self.scene, self.camera, self.keys, settings, numbers, frames_per_second, self.iso_follows_s, device

@@ -150,4 +150,4 @@ def test_shot_files_and_the_command_line_shift_the_film(tmp_path: Path) -> None:
         capture_output=True, text=True,
     )  # fmt: skip
     assert refused.returncode == 2
-    assert "two lengths in mm with a comma" in refused.stderr
+    assert "two lengths in mm, such as 0,8" in refused.stderr

@@ -337,4 +337,4 @@ def test_explanations_are_printed_and_kept(shot_file: Path, tmp_path: Path, comm
 def test_an_unknown_quality_is_said(shot_file: Path, command: Command) -> None:
     printed = command("plan", str(shot_file), "--quality", "best")
     assert printed.returncode == 2
-    assert printed.stderr == 'realcam: error: --quality: "best": draft, photo or reference is wanted\n'
+    assert printed.stderr == 'realcam: error: --quality must be draft, photo or reference; it is "best"\n'

@@ -123,3 +123,12 @@ def test_what_is_no_number_of_bounces_is_refused() -> None:
         with pytest.raises(rc.InputError, match="max_bounces"):
             rc.RenderSettings(max_bounces=wrong)  # type: ignore[arg-type]
     assert rc.RenderSettings().max_bounces == "auto"
+
+
+def test_all_frames_of_a_film_have_the_same_bounces() -> None:
+    """Also where the effects are named."""
+    scene = box(3, 6 * [rc.Material(diffuse=(0.5,) * 3, emission=(1.0,) * 3)])
+    film = rc.Shot(scene, camera(), rc.RenderSettings(effects=(), spp=1)).frames([1, 2, 3], device="cpu")
+    chosen = {frame.settings.max_bounces for frame in film.values()}
+    assert len(chosen) == 1
+    assert isinstance(chosen.pop(), int)

@@ -1,0 +1,63 @@
+#pragma once
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "../optics/pupil/pupil_grid.hpp"
+#include "make_plan.hpp"
+#include "plan_text.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// What a picture, or all frames of a film, are taken with once nothing is left to the planner.
+struct SettledFilm {
+    CameraModel model = CameraModel::full_lens;
+    RenderSettings settings;
+    std::vector<Plan> plans;  ///< of the frames that were planned
+    std::string summary;      ///< of the plans, in a line
+    std::string warning;      ///< why there was nothing to plan; empty: there was, or nothing was left to decide
+};
+
+/// Plans some frames, given by their cameras, together: all effects that any of them calls for, because one that comes
+/// and goes would show, but for those that the lens of another cannot show; and their camera model, or that of the
+/// cameras where they call for different ones. A frame that sees nothing has no say. Throws what make_plan throws, but
+/// for NothingToPlan.
+inline SettledFilm settle_film(Session& session, const Assembly& scene, const std::vector<Camera>& cameras,
+                               const RenderSettings& asked, const PupilTracer& tracer, const Progress& progress = {}) {
+    SettledFilm film{cameras.front().model, asked, {}, "", ""};
+    if (!asked.needs_plan()) return film;
+    for (const Camera& camera : cameras) {
+        try {
+            film.plans.push_back(make_plan(session, scene, camera, asked, false, tracer, progress));
+        } catch (const NothingToPlan& nothing) {
+            film.warning = std::string(nothing.what()) + "; the picture has the effects that are named";
+        }
+    }
+    EffectChoice& effects = film.settings.effects;
+    if (film.plans.empty()) {
+        effects = without_plan(effects);
+        return film;
+    }
+    film.warning.clear();
+    film.model = film.plans.front().model;
+    effects = film.plans.front().effects;
+    film.settings.max_bounces = 0;
+    for (const Plan& plan : film.plans) {
+        for (const EffectInfo& effect : kEffects)
+            effects.*effect.member = effects.*effect.member || plan.effects.*effect.member;
+        film.settings.max_bounces = std::max(*film.settings.max_bounces, plan.max_bounces);
+        if (plan.model != film.model) film.model = cameras.front().model;
+        const std::string summary = summary_of(plan);
+        if (film.summary.find(summary) == std::string::npos)
+            film.summary += (film.summary.empty() ? "" : "; ") + summary;
+    }
+    for (const Camera& camera : cameras)
+        for (const EffectInfo& effect : kEffects)
+            if (asked.effects.is_automatic && effect.needs_round_lens && !has_radial_pupil(camera.lens) &&
+                !(asked.effects.*effect.member))
+                effects.*effect.member = false;
+    if (!effects.have_wavelengths()) film.settings.illuminant.reset();
+    return film;
+}
+
+}  // namespace REALCAM_NAMESPACE
