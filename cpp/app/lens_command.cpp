@@ -6,8 +6,7 @@
 #include "../io/lens/lens_file.hpp"
 #include "../io/text/json_writer.hpp"
 #include "../io/text/printable.hpp"
-#include "../optics/lens/focus.hpp"
-#include "../optics/lens/zoom.hpp"
+#include "../optics/lens/rings.hpp"
 #include "help.hpp"
 #include "lens_report.hpp"
 #include "lens_words.hpp"
@@ -23,10 +22,11 @@ struct InfoOptions {
 };
 
 void run_info(const InfoOptions& options) {
-    LensSystem lens = io::read_lens(options.lens, lens_options_of(options.file));
-    if (!options.zoom.empty()) lens = zoomed(lens, options.zoom);
-    if (!options.focus.empty()) lens = focused(lens, 1000 * parse_distance("--focus", options.focus));
-    if (!options.f_number.empty()) lens = stopped_down(lens, parse_number("--f-number", options.f_number));
+    Rings rings;
+    if (!options.zoom.empty()) rings.zoom = options.zoom;
+    if (!options.f_number.empty()) rings.f_number = parse_number("--f-number", options.f_number);
+    if (!options.focus.empty()) rings.focus_distance = 1000 * parse_distance("--focus", options.focus);
+    const LensSystem lens = with_rings(io::read_lens(options.lens, lens_options_of(options.file)), rings);
     std::fputs((options.as_json ? lens_as_json(lens) : lens_as_text(lens)).c_str(), stdout);
 }
 

@@ -6,6 +6,7 @@
 #include "../optics/lens/best_focus.hpp"
 #include "../optics/lens/focus.hpp"
 #include "../optics/lens/parabasal.hpp"
+#include "../optics/lens/rings.hpp"
 #include "../optics/lens/zoom.hpp"
 #include "../optics/prescription/clearance.hpp"
 #include "../optics/prescription/surface_frames.hpp"
@@ -181,6 +182,22 @@ aperture make their smallest spot. Raises InputError where the lens cannot.)")
         .def("stopped_down", &stopped_down, "f_number"_a,
              R"(The lens with its diaphragm closed to an f-number: that of the lens focused at infinity, as it is
 engraved, whatever the lens is focused on. Raises InputError where it does not open that far.)")
+        .def(
+            "with_rings",
+            [](const LensSystem& lens, const std::optional<std::variant<std::string, double>>& zoom,
+               std::optional<double> f_number, std::optional<double> focus_m, bool opens_as_far_as_it_can) {
+                Rings rings;
+                rings.f_number = f_number;
+                rings.opens_as_far_as_it_can = opens_as_far_as_it_can;
+                if (zoom) std::visit([&](const auto& to) { rings.zoom = to; }, *zoom);
+                if (focus_m) rings.focus_distance = 1000 * *focus_m;
+                return with_rings(lens, rings);
+            },
+            py::kw_only(), "zoom"_a = py::none(), "f_number"_a = py::none(), "focus_m"_a = py::none(),
+            "opens_as_far_as_it_can"_a = false,
+            R"(The lens with its rings set, as by zoomed (without indices), stopped_down and focused; None: a ring stays.
+opens_as_far_as_it_can: a lens that is not as fast as the f-number is wide open. Raises InputError.)")
+        .def("wide_open", &wide_open, "With the diaphragm as wide as its opening.")
         .def(
             "best_focus_mm",
             [](const LensSystem& lens, std::optional<double> object_m, std::optional<double> nm) {

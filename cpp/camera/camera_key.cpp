@@ -9,8 +9,7 @@
 
 #include "../math/monotone_curve.hpp"
 #include "../optics/lens/focus.hpp"
-#include "../optics/lens/lens_changes.hpp"
-#include "../optics/lens/zoom.hpp"
+#include "../optics/lens/rings.hpp"
 #include "../optics/prescription/lens_checks.hpp"
 
 namespace realcam {
@@ -171,23 +170,12 @@ Camera with_key(Camera camera, const CameraKey& key) {
     LensSystem& lens = camera.lens;
     const std::optional<double> f_number = f_number_wanted(camera, key);
     const double focus_before = lens.focus_distance;
-    if (key.lens) {
-        lens = *key.lens;
-        lens.stop_semi_diameter = lens.stop().clear_semi_diameter;
-    }
-    if (key.blades || key.blade_rounding || key.blade_rotation_deg)
-        lens = with_iris(std::move(lens), key.blades, key.blade_rounding, key.blade_rotation_deg);
-    if (key.focal_length_mm) lens = zoomed_to_focal_length(lens, *key.focal_length_mm);
-    if (f_number) {
-        double wanted = *f_number;
-        if (key.focal_length_mm) {
-            LensSystem open = lens;
-            open.stop_semi_diameter = open.stop().clear_semi_diameter;
-            wanted = std::max(wanted, f_number_at_infinity(open));
-        }
-        lens = stopped_down(std::move(lens), wanted);
-    }
-    if (key.focus_m || key.lens) lens = focused(lens, key.focus_m ? 1000 * *key.focus_m : focus_before);
+    if (key.lens) lens = wide_open(*key.lens);
+    Rings rings{{}, key.blades, key.blade_rounding, key.blade_rotation_deg, f_number, key.focal_length_mm.has_value(),
+                {}};
+    if (key.focal_length_mm) rings.zoom = *key.focal_length_mm;
+    if (key.focus_m || key.lens) rings.focus_distance = key.focus_m ? 1000 * *key.focus_m : focus_before;
+    lens = with_rings(std::move(lens), rings);
     camera.exposure_time_s = key.exposure_time_s.value_or(camera.exposure_time_s);
     camera.iso = key.iso.value_or(camera.iso);
     camera.film.shift_mm = {key.film_right_mm.value_or(camera.film.shift_mm.x),

@@ -10,8 +10,7 @@
 #include "../io/lens/lens_file.hpp"
 #include "../math/hypotenuse.hpp"
 #include "../optics/lens/focus.hpp"
-#include "../optics/lens/lens_changes.hpp"
-#include "../optics/lens/zoom.hpp"
+#include "../optics/lens/rings.hpp"
 #include "../optics/prescription/lens_checks.hpp"
 #include "../render/daylight.hpp"
 #include "../render/metering.hpp"
@@ -28,9 +27,8 @@ void add_texture(Scene& scene, const std::string& path, const PictureReaders& re
     for (Material& material : scene.materials) material.diffuse_texture = {index, {1, 0, 0}, {0, 1, 0}};
 }
 
-LensSystem with_blades_of(const ShotRequest& request, LensSystem lens) {
-    if (!request.blades && !request.blade_rounding && !request.blade_rotation_deg) return lens;
-    return with_iris(std::move(lens), request.blades, request.blade_rounding, request.blade_rotation_deg);
+Rings blades_of(const ShotRequest& request) {
+    return {{}, request.blades, request.blade_rounding, request.blade_rotation_deg, {}, false, {}};
 }
 
 /// Throws InputError where the film was chosen for another lens, and this one is made for less of it.
@@ -100,7 +98,7 @@ void settle_keys(ShotRequest& request) {
     for (std::size_t i = 0; i < request.keys.size(); ++i)
         if (std::optional<LensSystem>& lens = request.keys[i].lens)
             at_place(request.key_places[i],
-                     [&] { lens = with_blades_of(request, io::read_lens(lens->name, options)); });
+                     [&] { lens = with_rings(io::read_lens(lens->name, options), blades_of(request)); });
     const auto cut = std::find_if(request.keys.begin(), request.keys.end(),
                                   [](const CameraKey& key) { return key.lens.has_value(); });
     const bool zooms =
@@ -111,10 +109,11 @@ void settle_keys(ShotRequest& request) {
 Camera camera_of(const ShotRequest& request) {
     Camera camera;
     camera.lens = request.lens_in_memory ? *request.lens_in_memory : io::read_lens(request.lens, request.lens_options);
-    if (!request.zoom.empty()) camera.lens = zoomed(camera.lens, request.zoom);
-    camera.lens = with_blades_of(request, std::move(camera.lens));
-    if (request.focal_length_mm) camera.lens = zoomed_to_focal_length(camera.lens, *request.focal_length_mm);
-    if (request.f_number) camera.lens = stopped_down(camera.lens, *request.f_number);
+    Rings rings = blades_of(request);
+    if (!request.zoom.empty()) rings.zoom = request.zoom;
+    if (request.focal_length_mm) rings.zoom = *request.focal_length_mm;
+    rings.f_number = request.f_number;
+    camera.lens = with_rings(std::move(camera.lens), rings);
     camera.film = default_film(camera.lens, request.film_mm, request.resolution);
     camera.film.shift_mm = {request.film_shift_mm[0], request.film_shift_mm[1]};
     camera.model = request.model;

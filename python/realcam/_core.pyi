@@ -573,6 +573,15 @@ class Lens(_Value):
     @property
     def zoom_focal_lengths_mm(self) -> list[float]: ...
     def zoomed(self, position: str | float) -> Lens: ...
+    def with_rings(
+        self,
+        *,
+        zoom: str | float | None = None,
+        f_number: float | None = None,
+        focus_m: float | None = None,
+        opens_as_far_as_it_can: bool = False,
+    ) -> Lens: ...
+    def wide_open(self) -> Lens: ...
     def draw(
         self,
         rays: int = 7,

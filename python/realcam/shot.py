@@ -109,8 +109,8 @@ class Shot:
         The shutter of frame 1 opens when that of the shot does, and those of the others so many frames later. Each
         frame has a seed of its own, a hash of the shot's and of its number, so that the noise does not stand still.
         Effects and bounces that are "auto" are planned for the first, the middle and the last frame and after each cut
-        to another lens together, because one that comes and goes would show. The plan and the meter, where the ISO number follows it,
-        work on `device`.
+        to another lens together, because one that comes and goes would show. The plan and the meter, where the ISO
+        number follows it, work on `device`.
         Raises InputError for numbers below 0 and for what the lens cannot do at a frame, and what plan raises.
         """
         numbers = list(numbers)

@@ -53,8 +53,8 @@ def _at_f_number(camera: Camera, value: str) -> Camera:
 
 
 def _with_lens(camera: Camera, value: str) -> Camera:
-    lens = Lens.load(value)
-    return _framed_alike(camera, lens.stopped_down(max(camera.lens.f_number, lens.f_number)))
+    lens = Lens.load(value).with_rings(f_number=camera.lens.f_number, opens_as_far_as_it_can=True)
+    return _framed_alike(camera, lens)
 
 
 def _zoomed(camera: Camera, value: str) -> Camera:

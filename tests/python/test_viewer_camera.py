@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 import realcam as rc
 from realcam.fields import angle_of_height
-from realcam.viewer.camera_controls import CameraControls, opened
+from realcam.viewer.camera_controls import CameraControls
 from realcam.viewer.focus_scale import distance_texts, focus_scale_svg
 from realcam.viewer.lens_view import ray_view
 from realcam.viewer.pose import Pose
@@ -22,7 +22,7 @@ POSE = Pose((0.0, 1.0, 4.0), (0.0, 1.0, 0.0))
 
 def controls(name: str = "double-gauss-50mm", **changes: object) -> CameraControls:
     lens = rc.Lens.load(name)
-    return CameraControls(lens=opened(lens), film=FILM, pose=POSE, zoom=lens.zoom_position, **changes)
+    return CameraControls(lens=lens.wide_open(), film=FILM, pose=POSE, zoom=lens.zoom_position, **changes)
 
 
 # The pose.

@@ -121,3 +121,24 @@ def test_a_focusing_group_finds_its_way_back_to_infinity(position: str, focus_m:
     for surface, there in zip(rest.surfaces, back.surfaces, strict=True):
         assert there.thickness_mm == pytest.approx(surface.thickness_mm, abs=1e-3)
     assert near.f_number == back.f_number == pytest.approx(rest.first_order().f_number, rel=1e-4)
+
+
+@pytest.mark.parametrize("name", ["zoom-70-200mm", "tessar-50mm"])
+def test_rings_are_set_together_as_one_by_one(name: str) -> None:
+    """Closing the diaphragm and focusing commute, but for the rounding of the search for the focus."""
+    lens = rc.Lens.load(name)
+    zoom = 100.0 if lens.zoom_positions else None
+    there = lens if zoom is None else lens.zoomed(zoom)
+    together = lens.with_rings(zoom=zoom, f_number=8, focus_m=3)
+    assert together == there.stopped_down(8).focused(3)
+    other = there.focused(3).stopped_down(8)
+    assert together.f_number == pytest.approx(8, rel=1e-9)
+    assert other.film_distance_mm == pytest.approx(together.film_distance_mm, rel=1e-9)
+    assert together.wide_open().f_number == pytest.approx(there.f_number, rel=1e-9)
+
+
+def test_a_ring_that_the_lens_does_not_reach() -> None:
+    lens = rc.Lens.load("tessar-50mm")
+    with pytest.raises(rc.InputError, match=r"f/1.4 is faster than lens"):
+        lens.with_rings(f_number=1.4)
+    assert lens.with_rings(f_number=1.4, opens_as_far_as_it_can=True) == lens.wide_open() == lens

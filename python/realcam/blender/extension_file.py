@@ -14,7 +14,7 @@ from typing import Any
 
 from .._core import InputError, Lens, lens_names
 from ..files import check_target, write_whole
-from ..osl import focus_range, shader_text, wide_f_number
+from ..osl import focus_range, shader_text
 from ..osl.expressible import check_expressible
 
 _FOLDER = Path(__file__).with_name("extension")
@@ -82,7 +82,7 @@ def _figures(lens: Lens, text: str) -> dict[str, Any]:
         "source": lens.source,
         "name": lens.name,
         "zoom": lens.zoom_position,
-        "f_number": round(wide_f_number(lens), 4),
+        "f_number": round(lens.wide_open().f_number, 4),
         "focal_length_mm": round(lens.focused(math.inf).first_order().effective_focal_length_mm, 3),
         "nearest_m": focus_range(lens).nearest_m,
         "film_mm": lens.film_mm,

@@ -125,14 +125,8 @@ class Rings:
     zoom: Zoom = None
 
     def set(self, lens: Lens) -> Lens:
-        if self.zoom is not None:
-            lens = lens.zoomed(self.zoom)
-        # The stop first: f-numbers are of the lens at infinity, and a focusing group that has moved makes another lens.
-        if self.f_number is not None:
-            lens = lens.stopped_down(self.f_number)
-        if self.focus is not None:
-            lens = lens.focused(options.number(self.focus, "--focus", "a number of metres or inf"))
-        return lens
+        focus_m = None if self.focus is None else options.number(self.focus, "--focus", "a number of metres or inf")
+        return lens.with_rings(zoom=self.zoom, f_number=self.f_number, focus_m=focus_m)
 
 
 @dataclass(frozen=True)

@@ -37,12 +37,9 @@ class RealcamSensor(mi.Sensor):  # type: ignore[misc]
                 "to_world of the sensor realcam has a scale; scene_unit_m says how long a unit of the scene is"
             )
         width, height = film_sides(lens, properties, self.film().size())
-        if "focus_distance_m" in properties:
-            lens = lens.focused(properties["focus_distance_m"])
-        if "f_number" in properties:
-            lens = lens.stopped_down(properties["f_number"])
+        lens = lens.with_rings(f_number=properties.get("f_number"), focus_m=properties.get("focus_distance_m"))
         self.focus_distance_m = mi.Float(lens.focus_distance_m)
-        self.f_number = mi.Float(lens.first_order().f_number)
+        self.f_number = mi.Float(lens.f_number)
         self.film_width_mm, self.film_height_mm = mi.Float(width), mi.Float(height)
         self.exposure_time_s = mi.Float(self.shutter_open_time())
         self.is_dispersive = mi.is_spectral
@@ -71,11 +68,10 @@ class RealcamSensor(mi.Sensor):  # type: ignore[misc]
 
     def parameters_changed(self, keys: Any = ()) -> None:
         super().parameters_changed(keys)
-        lens = self.lens
-        if "focus_distance_m" in keys:
-            lens = lens.focused(number(self.focus_distance_m))
-        if "f_number" in keys:
-            lens = lens.stopped_down(number(self.f_number))
+        lens = self.lens.with_rings(
+            f_number=number(self.f_number) if "f_number" in keys else None,
+            focus_m=number(self.focus_distance_m) if "focus_distance_m" in keys else None,
+        )
         if set(keys) & {"focus_distance_m", "f_number", "film_width_mm", "film_height_mm"}:
             self.set_lens(lens)
         if "to_world" in keys:

@@ -1,6 +1,6 @@
 """Lenses as cameras of Blender: shaders in OSL, the Open Shading Language."""
 
-from .focus_range import focus_range, wide_f_number
+from .focus_range import focus_range
 from .shader import shader_text
 
-__all__ = ["focus_range", "shader_text", "wide_f_number"]
+__all__ = ["focus_range", "shader_text"]

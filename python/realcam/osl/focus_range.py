@@ -42,7 +42,7 @@ class FocusRange:
 
 def focus_range(lens: Lens) -> FocusRange:
     """Raises InputError where the lens cannot be focused on distant things."""
-    wide = _opened(lens).focused(math.inf)
+    wide = lens.wide_open().with_iris(0).focused(math.inf)
     start_m = 1e-3 * (wide.film_position_mm - wide.first_order().front_focal_distance_mm)
     nearest_m = lens.nearest_focus_m or _nearest_m(wide, start_m)
     if math.isfinite(lens.focus_distance_m):
@@ -59,21 +59,6 @@ def focus_range(lens: Lens) -> FocusRange:
 def gaps_of(lens: Lens) -> list[float]:
     """Distances in mm from each vertex to the next one, and from the last one to the film."""
     return [*(surface.thickness_mm for surface in lens.surfaces[:-1]), lens.film_distance_mm]
-
-
-def _opened(lens: Lens) -> Lens:
-    full_mm = lens.surfaces[lens.stop_index].clear_semi_diameter_mm
-    if lens.stop_semi_diameter_mm < full_mm:
-        # The ring's own number for wide open: the f-number is one over the semi-diameter.
-        lens = lens.stopped_down(wide_f_number(lens))
-    return lens.with_iris(0)
-
-
-def wide_f_number(lens: Lens) -> float:
-    """The f-number at infinity with the diaphragm wide open. Raises InputError where there is none."""
-    far = lens if math.isinf(lens.focus_distance_m) else lens.focused(math.inf)
-    full_mm = lens.surfaces[lens.stop_index].clear_semi_diameter_mm
-    return far.first_order().f_number * far.stop_semi_diameter_mm / full_mm
 
 
 def _nearest_m(lens: Lens, start_m: float) -> float:

@@ -11,7 +11,7 @@ from .._core import Lens, _film_of_white
 from .aspheres import aspheres, is_asphere
 from .expressible import check_expressible
 from .figures import array_text, float_text, horner
-from .focus_range import FocusRange, focus_range, gaps_of, wide_f_number
+from .focus_range import FocusRange, focus_range, gaps_of
 from .functions import HOLE, MIRROR, PLANE, PUPIL, SPHERE, STOP
 from .glasses import POLE_NM, colour_scale, colour_variable, squared_indices
 from .pupil_table import STOPS, PupilTable, pupil_table
@@ -39,7 +39,7 @@ def shader_text(lens: Lens) -> str:
     shapes = aspheres(focusing, table, seen)
     numbers = {
         "reach": float_text(table.reach_mm),
-        "wide": float_text(wide_f_number(lens)),
+        "wide": float_text(lens.wide_open().f_number),
         "full": _full(lens),
         "length": float_text(_length(lens, focusing)),
         "moves": "".join(f" + gap_{i + 1}" for i in focusing.gaps_mm),
@@ -145,7 +145,7 @@ def _name(lens: Lens) -> str:
 def _parameters(lens: Lens, focusing: FocusRange, disperses: bool) -> str:
     focus_m = lens.focus_distance_m if math.isfinite(lens.focus_distance_m) else 0
     full_mm = lens.surfaces[lens.stop_index].clear_semi_diameter_mm
-    wide = wide_f_number(lens)
+    wide = lens.wide_open().f_number
     f_number = wide * full_mm / lens.stop_semi_diameter_mm if lens.stop_semi_diameter_mm < full_mm else 0
     nearest = f"{focusing.nearest_m:.3g}"
     rows = [

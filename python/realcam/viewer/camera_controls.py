@@ -63,7 +63,7 @@ class CameraControls:
                 zoom = data.effective_focal_length_mm
             lens = lens.zoomed(position)
         return cls(
-            lens=opened(lens),
+            lens=lens.wide_open(),
             film=camera.film,
             pose=Pose(*camera.pose_at(camera.shutter_opens_s)),
             zoom=zoom,
@@ -85,11 +85,7 @@ class CameraControls:
     @cached_property
     def set_lens(self) -> Lens:
         """With its rings set. Raises InputError where the lens cannot be focused so, or is none."""
-        # The stop first: f-numbers are of the lens at infinity, and a focusing group that has moved makes another lens.
-        lens = self.body
-        if self.f_number is not None and self.f_number > lens.first_order().f_number:
-            lens = lens.stopped_down(self.f_number)
-        return lens.focused(self.focus_m)
+        return self.body.with_rings(f_number=self.f_number, focus_m=self.focus_m, opens_as_far_as_it_can=True)
 
     @cached_property
     def lens_on_film(self) -> Lens:
@@ -194,14 +190,3 @@ class CameraControls:
                 raise
             return replace(self, focus_m=nearest)
         return self
-
-
-def opened(lens: Lens) -> Lens:
-    """With the diaphragm as wide as its opening."""
-    opening = lens.surfaces[lens.stop_index].clear_semi_diameter_mm
-    if lens.stop_semi_diameter_mm >= opening:
-        return lens
-    # The pupil grows with the diaphragm. A little more than there is is taken for wide open, and must not be a little
-    # less: a zoom lens that is wide open stays so at all positions.
-    widest = lens.first_order().f_number * lens.stop_semi_diameter_mm / opening
-    return lens.stopped_down(widest * (1 - 1e-9))

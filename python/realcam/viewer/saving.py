@@ -13,7 +13,7 @@ import tomlkit
 
 from .._core import InputError, Lens, RenderSettings, Sensor, lens_names
 from ..image import Image
-from .camera_controls import CameraControls, opened
+from .camera_controls import CameraControls
 from .shot_source import ShotSource
 
 PICTURE_SUFFIXES = (".png", ".jpg", ".jpeg", ".exr", ".dng")
@@ -106,7 +106,7 @@ def shot_contents(source: ShotSource, controls: CameraControls, effects: list[st
 
 def _is_bundled(lens: Lens) -> bool:
     """Not one that was edited under its old name; nor one with another diaphragm, which the shot file had."""
-    bundled = opened(Lens.load(lens.name))
+    bundled = Lens.load(lens.name).wide_open()
     if lens.zoom_position in bundled.zoom_positions:
         bundled = bundled.zoomed(lens.zoom_position)
     if bundled == lens:
