@@ -2,6 +2,7 @@
 
 laws: optics and light, and the rules of the source; no pictures of scenes, no browser. browser: the lens bench.
 pictures: all else, with those tests of the other files that are marked so. The labels of ctest are the same.
+What is slow for what it shows is marked so besides, and runs with `./run test all` alone.
 """
 
 from __future__ import annotations
@@ -20,6 +21,14 @@ LAWS = frozenset(
     environment exposure glass_scale lens_api lens_edits lens_files lens_limits mapped_lens materials opacity
     optimisation phong projection properties psf ray_chunks roots samplings sensor_color sensor_emva1288 sensor_hard
     sensor_noise shading sums texture trace_api transmission transport vision
+    """.split()
+)
+
+# Deaths of processes, signals, servers, what stands in pages and examples: minutes, of which one witness each is quick.
+SLOW = frozenset(
+    """
+    docs_blocks examples gpu_weather hostile_names inputs_stay interrupt notebook numerics_page pickled_states site
+    stopping tutorials viewer_endings viewer_worker_process
     """.split()
 )
 
@@ -47,3 +56,5 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     for item in items:
         if not item.get_closest_marker("pictures"):
             item.add_marker(tier_of(item.path))
+        if item.path.stem.removeprefix("test_") in SLOW:
+            item.add_marker("slow")

@@ -49,19 +49,21 @@ Planned plan(const Assembly& scene, const Camera& camera, const RenderSettings& 
     });
 }
 
-/// The first camera with its model, the settings, the summary and a warning of a film, given by cameras of its frames.
-std::tuple<Camera, RenderSettings, std::string, std::string> settled_film(const Assembly& scene,
-                                                                          const std::vector<Camera>& cameras,
-                                                                          const RenderSettings& settings,
-                                                                          const std::string& device) {
-    if (!settings.needs_plan()) return {cameras.front(), settings, "", ""};  // without a session
+/// The camera model, the settings, the summary and a warning of a film, given by its first camera and those of other
+/// frames.
+std::tuple<std::string, RenderSettings, std::string, std::string> settled_film(const Assembly& scene,
+                                                                               const Camera& camera,
+                                                                               const std::vector<Camera>& others,
+                                                                               const RenderSettings& settings,
+                                                                               const std::string& device) {
+    if (!settings.needs_plan()) return {io::name_of(camera.model), settings, "", ""};  // without a session
+    std::vector<Camera> cameras = {camera};
+    cameras.insert(cameras.end(), others.begin(), others.end());
     SettledFilm film = OwnedSession::shared(device).use([&](const auto& session) {
         return settle_film(*session, scene, cameras, settings, fast_pupil_tracer(),
                            [](double) { return heed_signals(); });
     });
-    Camera camera = cameras.front();
-    camera.model = film.model;
-    return {std::move(camera), std::move(film.settings), film.summary, film.warning};
+    return {io::name_of(film.model), std::move(film.settings), film.summary, film.warning};
 }
 
 }  // namespace
@@ -104,7 +106,7 @@ measured on the device; None: not measured.)")
             return "<realcam.Plan: model " + p.model + ", effects " + (names.empty() ? "none" : names) + '>';
         });
     m.def("_plan", &plan, "scene"_a, "camera"_a, "settings"_a, "device"_a, "times"_a);
-    m.def("_settle_film", &settled_film, "scene"_a, "cameras"_a, "settings"_a, "device"_a);
+    m.def("_settle_film", &settled_film, "scene"_a, "camera"_a, "others"_a, "settings"_a, "device"_a);
 }
 
 }  // namespace realcam::bindings

@@ -71,7 +71,8 @@ def settled_film(
     scene: Scene, cameras: Sequence[Camera], settings: RenderSettings, device: str, stacklevel: int
 ) -> Settled:
     """The same for frames of a film, given by their cameras, together. The camera is the first one."""
-    camera, settings, summary, warning = _core._settle_film(scene, list(cameras), settings, device)
+    camera, *others = cameras
+    model, settings, summary, warning = _core._settle_film(scene, camera, others, settings, device)
     if warning:
         warnings.warn(warning, stacklevel=stacklevel + 1)
-    return Settled(camera, settings, summary)
+    return Settled(camera if model == camera.model else camera.replace(model=model), settings, summary)

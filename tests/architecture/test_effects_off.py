@@ -87,6 +87,7 @@ def instructions(include: Path, folder: Path) -> list[str]:
     return body.splitlines()[2:]
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(shutil.which("nvcc") is None, reason="nvcc is not on the path")
 def test_the_kernel_without_effects_is_the_same_where_there_are_none(tmp_path: Path) -> None:
     without_effects(tmp_path / "cpp")

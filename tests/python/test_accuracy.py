@@ -111,6 +111,7 @@ def test_it_is_told_as_tables_and_json(cost: AccuracyCost) -> None:
     assert "difference" not in told["rungs"][0]
 
 
+@pytest.mark.slow
 def test_the_figure_is_one_file(cost: AccuracyCost, tmp_path: Path) -> None:
     cost.figure(tmp_path / "a.svg")
     drawing = ElementTree.parse(tmp_path / "a.svg").getroot()

@@ -316,6 +316,7 @@ def test_numbers_are_written(tmp_path: Path) -> None:
         analysis.save_numbers(data, tmp_path / "d.txt")
 
 
+@pytest.mark.slow
 @pytest.mark.pictures
 @pytest.mark.parametrize("name", ["fisheye-6mm-220deg", "mirror-telephoto-500mm"])
 def test_reports_of_unlike_lenses(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -367,6 +368,7 @@ def test_a_report_begins_with_the_lens(tmp_path: Path) -> None:
     assert lens.source in before
 
 
+@pytest.mark.slow
 @pytest.mark.pictures
 def test_a_report_follows_the_browser_and_prints_light(tmp_path: Path) -> None:
     analysis.save_report(LENS, tmp_path / "r.html")
@@ -392,6 +394,7 @@ def realcam(
     return lambda *words: said(["lens", *words], monkeypatch, capsys)
 
 
+@pytest.mark.slow
 @pytest.mark.pictures
 def test_commands(tmp_path: Path, realcam: Callable[..., tuple[int, str, str]]) -> None:
     code, _, errors = realcam("report", "tessar-50mm", "--focus", "2", "--f-number", "5.6", "-o", "r.pdf")

@@ -255,6 +255,7 @@ def test_a_shot_file_has_keys(folder: Path) -> None:
     assert pickle.loads(pickle.dumps(shot)).keys == shot.keys
 
 
+@pytest.mark.slow
 def test_a_shot_file_cuts_to_other_lenses(folder: Path) -> None:
     bundled = rc.Lens.load("double-gauss-50mm")
     (folder / "mine").mkdir()

@@ -315,6 +315,7 @@ def test_figures_of_a_picture_as_json(tmp_path: Path) -> None:
     assert figures["warnings"] == []
 
 
+@pytest.mark.slow
 @pictures
 def test_noise_that_was_asked_for_is_in_the_json(tmp_path: Path) -> None:
     reached, _ = render(tmp_path, "--spp", "auto", "--noise", "0.2", "--environment", "100")
@@ -325,6 +326,7 @@ def test_noise_that_was_asked_for_is_in_the_json(tmp_path: Path) -> None:
     assert missed["warnings"] == [missed["noise"]["shortfall"]]
 
 
+@pytest.mark.slow
 @pictures
 def test_without_a_number_of_samples_the_noise_and_the_time_decide(tmp_path: Path) -> None:
     (tmp_path / "quad.obj").write_text(QUAD)
@@ -365,6 +367,7 @@ def test_noise_and_time_that_are_out_of_reach_end_with_one_line(tmp_path: Path) 
         assert (tmp_path / "a.png").exists()
 
 
+@pytest.mark.slow
 @pictures
 def test_pictures_that_show_nothing_are_told(tmp_path: Path) -> None:
     """By how many stops, and what to change: the figures of the metered picture give both."""
@@ -438,6 +441,7 @@ def test_quiet_commands_say_nothing(
         assert said([*words, option], monkeypatch, capsys) == (0, "", "")
 
 
+@pytest.mark.slow
 @pictures
 def test_a_quiet_render_tells_warnings_alone(tmp_path: Path) -> None:
     """Daylight is brought without a word. The shutter of an hour is warned of."""

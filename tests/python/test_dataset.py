@@ -143,6 +143,7 @@ def test_what_is_there_is_not_made_again(made: Path, tmp_path: Path) -> None:
         make(one, folder, executor)
 
 
+@pytest.mark.slow
 def test_a_kill_leaves_whole_files_and_the_next_run_goes_on(tmp_path: Path) -> None:
     recipe, out = tmp_path / "recipe.toml", tmp_path / "out"
     recipe.write_text("format = 1\nsize = [60, 40]\ncount = 6\nspp = 2\nshard_size = 3\nlenses = ['tessar-50mm']\n")

@@ -230,6 +230,7 @@ class Truth:
 FILM_MM = (5.0, -4.0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("object_m", [np.inf, 0.4])
 def test_gradients_are_central_differences_in_fifty_digits(object_m: float) -> None:
     lens = tilted_anamorphic()

@@ -139,6 +139,7 @@ def test_memory_is_freed() -> None:
     assert torch.cuda.mem_get_info()[0] > before - 100e6
 
 
+@pytest.mark.slow
 @pytest.mark.gpu
 @needs_gpu
 def test_arrays_that_live_until_the_process_ends() -> None:

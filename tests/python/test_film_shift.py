@@ -131,6 +131,7 @@ def test_the_shift_moves_the_film_and_not_the_lens() -> None:
     assert np.abs(shifted.project(far)[0] - (50, 30)).max() < 10
 
 
+@pytest.mark.slow
 @pytest.mark.picture_files
 def test_shot_files_and_the_command_line_shift_the_film(tmp_path: Path) -> None:
     shot = tmp_path / "shot.toml"

@@ -118,6 +118,7 @@ def test_the_iso_number_follows_the_meter_smoothly(folder: Path) -> None:
     assert following.frames([7], frames_per_second=20, device="cpu")["frame.0007"].camera.iso == isos[6]
 
 
+@pytest.mark.slow
 def test_render_takes_numbered_frames_and_goes_on(folder: Path) -> None:
     words = ["render", "pan.toml", "-o", "pan.##.exr", "--frames", "1-25x8", "--fps", "24", "--device", "cpu"]
     done = subprocess.run([*PROGRAM, *words], capture_output=True, text=True, check=True)
@@ -281,6 +282,7 @@ def test_frames_that_are_no_range_are_refused(
         rc.Shot.load("pan.toml", device="cpu").frames([-1])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("suffix", [".png", ".exr"])
 def test_only_whole_frames_of_the_same_film_count_as_done(folder: Path, suffix: str) -> None:
     words = ["render", "pan.toml", "-o", f"f.#{suffix}", "--frames", "1-7", "--device", "cpu"]
@@ -309,6 +311,7 @@ def test_only_whole_frames_of_the_same_film_count_as_done(folder: Path, suffix: 
         assert "7 of 7 frames were there, but damaged" in done.stderr
 
 
+@pytest.mark.slow
 def test_no_frame_replaces_a_file_that_the_film_is_made_from(folder: Path) -> None:
     subprocess.run([*PROGRAM, "render", "pan.toml", "-o", "sky.0002.png", "--device", "cpu", "--quiet"], check=True)
     (folder / "lit.toml").write_text(SHOT.replace("environment_cd_m2 = 2000", 'environment = "sky.0002.png"'))

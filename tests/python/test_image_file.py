@@ -183,6 +183,7 @@ except rc.ImageFileError as error:
     assert [p.name for p in tmp_path.iterdir()] == [path.name]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("by", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
 @pytest.mark.parametrize("suffix", [".exr", ".png"])
 def test_a_signal_while_a_picture_is_written_leaves_nothing(tmp_path: Path, suffix: str, by: signal.Signals) -> None:

@@ -68,6 +68,7 @@ def test_threads_are_processes_enough(tmp_path: Path) -> None:
     assert job.image() == picture(shot(40))
 
 
+@pytest.mark.slow
 def test_processes_that_are_killed_lose_only_what_they_have_in_hand(tmp_path: Path) -> None:
     """Three processes, one of which is killed at a time, at any moment, and started again."""
     folder = tmp_path / "job"
@@ -89,6 +90,7 @@ def test_processes_that_are_killed_lose_only_what_they_have_in_hand(tmp_path: Pa
     assert job.image() == picture(shot(400))
 
 
+@pytest.mark.slow
 def test_a_full_disk_stops_work_in_one_line_and_loses_nothing(tmp_path: Path) -> None:
     """No file may be longer than a unit is: as on a disk that is full, a write ends before all is there."""
     folder = tmp_path / "job"

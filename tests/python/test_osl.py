@@ -90,6 +90,7 @@ def test_light_that_comes_back_along_a_ray_meets_its_film_point(
     assert np.nanpercentile(miss_mm, 99) < 0.6e-3
 
 
+@pytest.mark.slow
 @needs_compiler
 @pytest.mark.parametrize("name", [*LENSES, "fisheye-6mm-220deg", "zoom-11-24mm"])
 def test_the_film_gets_as_much_light(program: Callable[[str], Callable[..., Rays]], name: str) -> None:

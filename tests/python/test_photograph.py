@@ -95,12 +95,12 @@ def test_scenes_and_lenses_may_be_in_memory() -> None:
 @pytest.mark.parametrize(
     ("values", "told"),
     [
-        ({"fnumber": 4}, 'the shot: unknown key "fnumber" (did you mean "f_number"?)'),
-        ({"f_number": "wide"}, 'the shot: "f_number" must be a finite number'),
-        ({"focus_m": math.nan}, 'the shot: "focus_m" must be a number of metres, inf or "auto"'),
+        ({"fnumber": 4}, 'unknown key "fnumber" (did you mean "f_number"?)'),
+        ({"f_number": "wide"}, '"f_number" must be a number; it is "wide"'),
+        ({"focus_m": math.nan}, '"focus_m" must be a number of metres, inf or auto'),
         ({"iso": {1}}, "iso must be a value of a shot file (a number, a text or a list); it is {1}"),
         ({"noise": 0.1, "noise_codes": 2}, "noise (a share of the light) and noise_codes"),
-        ({'tone = "film"\nspp': 3}, "the shot: unknown key"),
+        ({'tone = "film"\nspp': 3}, "unknown key"),
     ],
     ids=lambda value: next(iter(value)) if isinstance(value, dict) else "",
 )

@@ -30,6 +30,7 @@ CODE_V = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore:not in the file")
 @pytest.mark.parametrize(("suffix", "changes"), [(".zmx", ZEMAX), (".seq", CODE_V)], ids=["zemax", "code v"])
 def test_fields_and_wavelengths_are_those_of_the_file(

@@ -109,6 +109,7 @@ def test_ctrl_c_writes_the_picture(program: list[str], tmp_path: Path) -> None:
         assert read(file).shape[:2] == (64, 96)
 
 
+@pytest.mark.slow
 @pytest.mark.picture_files
 def test_sigterm_and_films_leave_no_unfinished_picture(tmp_path: Path) -> None:
     scene = DEMO
@@ -123,6 +124,7 @@ def test_sigterm_and_films_leave_no_unfinished_picture(tmp_path: Path) -> None:
         assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.slow
 @pytest.mark.picture_files
 def test_a_comparison_that_is_stopped_has_the_pictures_that_are_there(tmp_path: Path) -> None:
     sheet = tmp_path / "sheet.png"

@@ -151,6 +151,7 @@ def test_a_point_out_of_focus_is_the_pupils_ellipse() -> None:
     assert math.sqrt(4 * (x2 - blur)) == pytest.approx(4.0 * abs(1 - d / 100), rel=0.01)
 
 
+@pytest.mark.slow
 def test_lens_info_says_forms_places_and_both_focal_lengths() -> None:
     def told(name: str) -> str:
         return subprocess.run([*PROGRAM, "lens", "info", name], capture_output=True, text=True, check=True).stdout
