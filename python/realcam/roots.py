@@ -22,8 +22,8 @@ def root_between(
             return low
         share = 0.5 if math.isnan(at_high) else at_low / (at_low - at_high)
         middle = low + share * (high - low)
-        if middle in (low, high):
-            return low
+        if middle in (low, high):  # the root is an end, to the last digit
+            return high if abs(at_high) < abs(at_low) else low
         value = function(middle)
         if value == 0:
             return middle
