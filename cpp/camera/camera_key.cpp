@@ -187,9 +187,9 @@ Camera with_key(Camera camera, const CameraKey& key) {
 void check_key(const Camera& camera, const CameraKey& key) {
     const double f_number = f_number_at_infinity(with_key(camera, key).lens);
     const std::optional<double> wanted = f_number_wanted(camera, key);
-    constexpr double kEngraved = 0.006;  // a little more than stopped_down takes for wide open
+    constexpr double kRounding = 1e-6;  // of setting the diaphragm
     // Without a focal length, with_key has refused it.
-    if (!wanted || !key.focal_length_mm || *wanted > (1 - kEngraved) * f_number) return;
+    if (!wanted || !key.focal_length_mm || *wanted > (1 - kEngravingError) * (1 - kRounding) * f_number) return;
     char text[120];
     std::snprintf(text, sizeof text, "f/%.4g is faster than the lens at %.4g mm, which opens to f/%.4g", *wanted,
                   *key.focal_length_mm, f_number);

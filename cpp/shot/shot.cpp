@@ -9,6 +9,7 @@
 #include "../error.hpp"
 #include "../io/lens/lens_file.hpp"
 #include "../math/hypotenuse.hpp"
+#include "../number_text.hpp"
 #include "../optics/lens/focus.hpp"
 #include "../optics/lens/rings.hpp"
 #include "../optics/prescription/lens_checks.hpp"
@@ -27,21 +28,24 @@ void add_texture(Scene& scene, const std::string& path, const PictureReaders& re
     for (Material& material : scene.materials) material.diffuse_texture = {index, {1, 0, 0}, {0, 1, 0}};
 }
 
+void tell(const ShotRequest& request, const std::string& notice) {
+    if (request.lens_options.warn) request.lens_options.warn(notice);
+}
+
 Rings blades_of(const ShotRequest& request) {
     return {{}, request.blades, request.blade_rounding, request.blade_rotation_deg, {}, false, {}};
 }
 
-/// Throws InputError where the film was chosen for another lens, and this one is made for less of it.
-void check_covers_film(const ShotRequest& request, const LensSystem& lens, const Film& film) {
-    if (request.film_mm ||
-        hypotenuse(lens.film_width, lens.film_height) >= 0.99 * hypotenuse(film.width_mm, film.height_mm))
-        return;
+/// What is said of a lens that is made for a film smaller than the camera's; empty: it is not.
+std::string film_notice(const LensSystem& lens, const Film& film) {
+    const double made_for = hypotenuse(lens.film_width, lens.film_height);
+    if (made_for >= 0.99 * hypotenuse(film.width_mm, film.height_mm)) return "";
     char text[160];
     std::snprintf(text, sizeof text,
                   "the lens is made for a film of %.4g x %.4g mm, and the shot has %.4g x %.4g mm; film_mm says which "
                   "is wanted",
                   lens.film_width, lens.film_height, film.width_mm, film.height_mm);
-    throw InputError(text);
+    return text;
 }
 
 /// Work on a key of a file, whose place goes before what is wrong with it.
@@ -57,11 +61,27 @@ void at_place(const std::string& place, Work&& work) {
     }
 }
 
+/// The lens with the rings of a shot. One that was chosen in place of the shot's own need not be as fast.
+LensSystem with_shot_rings(const ShotRequest& request, const LensSystem& lens) {
+    Rings rings = blades_of(request);
+    if (!request.zoom.empty()) rings.zoom = request.zoom;
+    if (request.focal_length_mm) rings.zoom = *request.focal_length_mm;
+    rings.f_number = request.f_number;
+    rings.opens_as_far_as_it_can = request.f_number_is_of_other_lens;
+    LensSystem set = with_rings(lens, rings);
+    if (rings.f_number && *rings.f_number < (1 - kEngravingError) * f_number_at_infinity(set))
+        tell(request, "the lens opens to f/" + number_text(f_number_at_infinity(set), 3) + ", and the shot has f/" +
+                          number_text(*rings.f_number, 3) + ": it is wide open");
+    return set;
+}
+
 /// Whether the camera can be as each of the keys says.
 void check_keys(const ShotRequest& request, const Camera& camera) {
     for (std::size_t i = 0; i < request.keys.size(); ++i)
         at_place(request.key_places[i], [&] {
-            if (request.keys[i].lens) check_covers_film(request, *request.keys[i].lens, camera.film);
+            const std::string notice =
+                request.keys[i].lens && !request.film_mm ? film_notice(*request.keys[i].lens, camera.film) : "";
+            if (!notice.empty()) throw InputError(notice);
             check_key(camera, key_at(request.keys, request.keys[i].time_s));
         });
 }
@@ -109,12 +129,10 @@ void settle_keys(ShotRequest& request) {
 Camera camera_of(const ShotRequest& request) {
     Camera camera;
     camera.lens = request.lens_in_memory ? *request.lens_in_memory : io::read_lens(request.lens, request.lens_options);
-    Rings rings = blades_of(request);
-    if (!request.zoom.empty()) rings.zoom = request.zoom;
-    if (request.focal_length_mm) rings.zoom = *request.focal_length_mm;
-    rings.f_number = request.f_number;
-    camera.lens = with_rings(std::move(camera.lens), rings);
+    camera.lens = with_shot_rings(request, camera.lens);
     camera.film = default_film(camera.lens, request.film_mm, request.resolution);
+    if (request.film_is_of_other_lens)
+        if (const std::string notice = film_notice(camera.lens, camera.film); !notice.empty()) tell(request, notice);
     camera.film.shift_mm = {request.film_shift_mm[0], request.film_shift_mm[1]};
     camera.model = request.model;
     camera.iso = request.iso;

@@ -93,6 +93,9 @@ void to_noise(Table t, Key key, Request r) {
 
 void to_lens(Table t, Key, Request r) {
     if (const std::string name = lens_of(t); !name.empty()) r.lens = name;
+    if (!t.is_changed("lens")) return;
+    r.f_number_is_of_other_lens = t.find("f_number") && !t.is_changed("f_number");
+    r.film_is_of_other_lens = t.find("film_mm") && !t.is_changed("film_mm");
 }
 
 void to_resolution(Table t, Key key, Request r) {

@@ -44,6 +44,8 @@ struct ShotRequest {
     std::string zoom;  ///< a position of the lens; empty: as its file gives it
     std::optional<double> focal_length_mm;  ///< of a zoom lens, in place of a position
     std::optional<double> f_number;
+    /// A lens was chosen in place of the one of which these were said.
+    bool f_number_is_of_other_lens = false, film_is_of_other_lens = false;
     std::optional<int> blades;  ///< of the diaphragm; this and the next two: the lens's where they are left out
     std::optional<double> blade_rounding, blade_rotation_deg;
     std::optional<std::array<double, 2>> film_mm;

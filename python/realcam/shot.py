@@ -171,7 +171,9 @@ def _read_shot(
     """The shot, and whether nobody has said how many samples it has or how little noise."""
     scene = path if isinstance(path, Scene) else None
     lens = values.get("lens") if isinstance(values.get("lens"), Lens) else None
-    changes = {name: value for name, value in values.items() if value is not None and value is not lens}
+    changes = {name: value for name, value in values.items() if value is not None}
+    if lens is not None:
+        changes["lens"] = "in memory"
     text = "".join(f"{toml_value(name, name)} = {toml_value(name, value)}\n" for name, value in changes.items())
     named = "the shot" if isinstance(path, Scene) else bundled_file(path, (".toml",))
     read, is_unsaid = _core._read_shot(named, text, {}, scene, lens, denoises, device)

@@ -362,3 +362,27 @@ def test_a_shot_is_rendered_with_all_its_settings() -> None:
     shot = rc.Shot(scene, view, settings)
     assert shot.render(device="cpu").settings == settings
     assert shot.render(device="cpu", threads=2).settings == settings.with_(threads=2)
+
+
+def test_another_lens_need_not_be_as_fast_as_the_one_of_the_shot(tmp_path: Path) -> None:
+    """What a shot says of its own lens is no mistake of another one; what is said of the other one is."""
+    text = "format = 1\nscene = 'quad.obj'\nlens = 'double-gauss-50mm'\nf_number = 2.1\nfilm_mm = [36, 24]\n"
+    load(tmp_path, text + "exposure_time_s = 0.01\n")
+    slow = rc.Lens.load("heliar-100mm")
+    for lens in ("heliar-100mm", slow):
+        with pytest.warns(UserWarning, match=r"opens to f/4\.5, and the shot has f/2\.1: it is wide open"):
+            shot = rc.Shot.load(tmp_path / "shot.toml", lens=lens)
+        assert shot.camera.lens.wide_open() == shot.camera.lens
+    with pytest.raises(rc.InputError, match=r"f/2\.1 is faster than lens"):
+        rc.Shot.load(tmp_path / "shot.toml", lens="heliar-100mm", f_number=2.1)
+    with pytest.warns(UserWarning) as told:
+        rc.Shot.load(tmp_path / "shot.toml", lens="phone-4mm")
+    assert any("is made for a film of" in str(warning.message) for warning in told)
+
+
+def test_an_engraved_f_number_is_wide_open() -> None:
+    """double-gauss-50mm is called f/2 and opens to f/2.03."""
+    lens = rc.Lens.load("double-gauss-50mm")
+    assert lens.stopped_down(2) == lens.wide_open()
+    with pytest.raises(rc.InputError, match=r"f/1\.9 is faster"):
+        lens.stopped_down(1.9)

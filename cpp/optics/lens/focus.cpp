@@ -237,7 +237,7 @@ LensSystem stopped_down(LensSystem lens, double f_number) {
                          (first_order(lens, lens.wavelength_nm).is_afocal()
                               ? "it is afocal, parallel light leaves it parallel"
                               : "its entrance pupil lies at infinity"));
-    if (f_number < 0.995 * fastest) {
+    if (f_number < (1 - kEngravingError) * fastest) {
         char text[160];
         std::snprintf(text, sizeof text, "f/%.4g is faster than lens \"%s\", which opens to f/%.4g", f_number,
                       lens.name.c_str(), fastest);

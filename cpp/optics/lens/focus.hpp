@@ -20,9 +20,12 @@ std::optional<double> film_distance_at_infinity(LensSystem lens);
 /// focused at infinity has the f-number that it has as it stands.
 double f_number_at_infinity(const LensSystem& lens);
 
+/// By how much the f-number that is engraved may lie below the lens's own: it has two digits, and makers round it down.
+inline constexpr double kEngravingError = 0.02;
+
 /// The lens with its diaphragm closed to an f-number, of the lens at infinity (exact for paraxial rays), whatever it is
-/// focused on: closing the diaphragm and focusing commute. Throws InputError where the lens is not as fast, or has no
-/// f-number. A number 0.5% below the lens's own counts as wide open: f-numbers are engraved with two digits.
+/// focused on: closing the diaphragm and focusing commute. A number below the lens's own by no more than
+/// kEngravingError is wide open. Throws InputError where the lens is not as fast, or has no f-number.
 LensSystem stopped_down(LensSystem lens, double f_number);
 
 }  // namespace REALCAM_NAMESPACE
