@@ -29,6 +29,8 @@ from .picture_request import MOST_SPP, Frame, PictureRequest
 from .preview_denoiser import why_missing
 from .ring_scales import Ring
 
+_BOUNCES_UNPLANNED = 8  # with which glass is no black, until the plan says how many
+
 
 class LensBench:
     """Holds a shot's scene before a camera that a user changes. Functions may be called from one thread at a time.
@@ -102,7 +104,7 @@ class LensBench:
     def pan(self, right: float, up: float) -> bool:
         """By shares of the picture's height, so that what is looked at follows the mouse."""
         height = self.controls.seen_height_m
-        return self.change(pose=self.controls.pose.panned(-right * height, up * height))
+        return self.change(pose=self.controls.pose.panned(-right * height, -up * height))
 
     def dolly(self, steps: float) -> bool:
         """Nearer by a tenth of the distance for each step."""
@@ -375,7 +377,7 @@ class LensBench:
         """Those of a picture: what is left to the plan as it says, or as pictures are taken until there is one."""
         settings = self.shot.settings.with_(effects=switches.named(self.plan))
         if settings.max_bounces == "auto":
-            settings = settings.with_(max_bounces=self.plan.max_bounces if self.plan else 1)
+            settings = settings.with_(max_bounces=self.plan.max_bounces if self.plan else _BOUNCES_UNPLANNED)
         return settings
 
     def _request(self, controls: CameraControls) -> PictureRequest:
