@@ -14,7 +14,7 @@ namespace {
 constexpr const char* kOfTheSystem = "libOpenImageDenoise.so.2";
 
 [[noreturn]] void fail(const std::string& why) {
-    throw InputError("Open Image Denoise is not here (" + why +
+    throw InputError("Open Image Denoise is not installed (" + why +
                      "); pip install realcam[denoise] brings it, or REALCAM_OIDN names its libOpenImageDenoise.so");
 }
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import warnings
+from typing import Any
 
 import numpy as np
 
@@ -20,6 +21,19 @@ def demosaiced(mosaic: np.ndarray, pattern: str, method: str) -> np.ndarray:
         raise InputError(f"unknown demosaicing {method!r:.60}; {', '.join(METHODS)} is wanted")
     if min(mosaic.shape) < 2:
         raise InputError("a mosaic of at least 2 x 2 pixels is wanted")
+    functions = _functions()
+    continued = np.pad(mosaic, MARGIN, mode="reflect")
+    colors = functions[method](continued, pattern)[MARGIN:-MARGIN, MARGIN:-MARGIN]
+    return np.array(colors, np.float32)
+
+
+def check_is_installed() -> None:
+    """Raises InputError."""
+    _functions()
+
+
+def _functions() -> dict[str, Any]:
+    """By the names of METHODS."""
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # of packages that colour-science would like to have
@@ -29,12 +43,9 @@ def demosaiced(mosaic: np.ndarray, pattern: str, method: str) -> np.ndarray:
                 demosaicing_CFA_Bayer_Menon2007,
             )
     except ImportError as error:
-        raise InputError(f"colour-demosaicing is not here ({error}); pip install realcam[raw] brings it") from None
-    by_name = {
+        raise InputError(f"colour-demosaicing is not installed ({error}); pip install realcam[raw] brings it") from None
+    return {
         "menon": demosaicing_CFA_Bayer_Menon2007,
         "malvar": demosaicing_CFA_Bayer_Malvar2004,
         "bilinear": demosaicing_CFA_Bayer_bilinear,
     }
-    continued = np.pad(mosaic, MARGIN, mode="reflect")
-    colors = by_name[method](continued, pattern)[MARGIN:-MARGIN, MARGIN:-MARGIN]
-    return np.array(colors, np.float32)

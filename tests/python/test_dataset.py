@@ -175,6 +175,15 @@ def test_a_camera_stands_outside_of_all_bodies() -> None:
         assert ((across > np.sqrt(0.5) * sizes) | (camera.position[1] > sizes)).all()
 
 
+def test_a_recipe_that_has_made_no_picture_may_be_mended(tmp_path: Path) -> None:
+    recipe = dataclasses.replace(Recipe(), count=1, size=(60, 40), spp=1, lenses=("no such lens",))
+    with pytest.raises(rc.InputError, match="no such lens"):
+        make(recipe, tmp_path / "out", Here(), device="cpu")
+    make(dataclasses.replace(recipe, lenses=("tessar-50mm",)), tmp_path / "out", Here(), device="cpu")
+    with pytest.raises(rc.InputError, match=r"another recipe \(lenses\)"):
+        make(recipe, tmp_path / "out", Here(), device="cpu")
+
+
 def test_models_of_files_are_bodies_of_their_category(tmp_path: Path) -> None:
     model = tmp_path / "wedge.obj"
     model.write_text("v 0 0 0\nv 40 0 0\nv 0 30 0\nv 0 0 20\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n")

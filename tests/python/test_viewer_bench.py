@@ -603,7 +603,7 @@ def test_another_copy_is_one_of_the_lens_and_is_undone(bench: LensBench) -> None
 @pytest.mark.parametrize(("right", "up"), [(0.1, 0.0), (0.0, 0.1)])
 @pytest.mark.parametrize("action", ["pan", "orbit"])
 def test_what_is_looked_at_follows_the_mouse(bench: LensBench, action: str, right: float, up: float) -> None:
-    """A pan moves the point in the picture's middle as far as the mouse; an orbit moves what lies before it that way."""
+    """A pan moves the middle of the picture as far as the mouse; an orbit moves what lies before it that way."""
     pose = bench.controls.pose
     middle, eye = np.array(pose.look_at_m), np.array(pose.position_m)
     point = middle if action == "pan" else middle + 0.1 * (eye - middle)

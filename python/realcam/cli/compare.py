@@ -78,6 +78,7 @@ def compare(
     check_figure_target(output)  # again: now the files are known that the pictures are made from
     with interrupt_noted() as is_interrupted:
         for variation in varied:
+            taken_away = ""  # of which the denoiser leaves little: how noisy the picture is
             taken = Shot(described.scene, sized(variation, size), settings, described.tone)
             with (
                 warnings.catch_warnings(record=True) as caught,
@@ -90,9 +91,11 @@ def compare(
                     return bar(done) and not is_interrupted()
 
                 image = taken.render(device=device, progress=goes_on, on_stop="keep")
+                taken_away = image.shortfall if denoise else ""
                 pictures.append((variation.label, image.denoised() if denoise else image))
             for warning in caught:
-                warnings.warn(f"{variation.label}: {warning.message}", stacklevel=1)
+                if not taken_away or str(warning.message) != taken_away:
+                    warnings.warn(f"{variation.label}: {warning.message}", stacklevel=1)
             if is_interrupted():
                 break
         if not pictures:

@@ -61,6 +61,8 @@ def demo(
     ):
         if not quiet:
             typer.echo(f"{output / name}: {what}")
+    if denoise is None and not denoises and not quiet:
+        typer.echo("pip install realcam[denoise] removes the noise that is left")
 
 
 def _render(shot: Path, spp: int, quiet: bool, *rest: Path | str) -> None:

@@ -14,11 +14,14 @@ from ..shot import Shot, shot_with_words
 from .completions import completion_of
 
 
-def shot_options(name: str, without: Collection[str] = ()) -> type:
-    """A group of options (grouped_options), but for those of some keys, which a command decides itself."""
+def shot_options(name: str, without: Collection[str] = (), panels: Collection[str] | None = None) -> type:
+    """A group of options (grouped_options), but for those of some keys, which a command decides itself.
+
+    panels: only those with these headings in help texts.
+    """
     group = []
     for key, option, panel, placeholder, text, initial in _core._shot_keys():
-        if option is None or key in without:
+        if option is None or key in without or (panels is not None and panel not in panels):
             continue
         wanted = typer.Option(
             option,
@@ -33,5 +36,9 @@ def shot_options(name: str, without: Collection[str] = ()) -> type:
 
 def load_shot(path: Path, options: Any, device: str, **unless_said: str) -> Shot:
     """The shot with what the options say of it. unless_said: words of keys of which they say nothing."""
-    words = {key: word for key, word in asdict(options).items() if word is not None}
-    return shot_with_words(path, {**unless_said, **words}, device)
+    return shot_with_words(path, {**unless_said, **words_of(options)}, device)
+
+
+def words_of(options: Any) -> dict[str, str]:
+    """By their keys, those that are given."""
+    return {key: word for key, word in asdict(options).items() if word is not None}

@@ -10,9 +10,16 @@ import typer
 from .._core import InputError
 from ..bundled_scenes import scenes_folder
 from . import options
+from .grouped_options import grouped
+from .shot_options import shot_options, words_of
+
+# A shot that the bench saves says all that is in its camera.
+ShotOptions = shot_options("ShotOptions", panels=("Camera",))
 
 
+@grouped
 def view(
+    changes: ShotOptions,  # type: ignore[valid-type]
     shot: Annotated[Path | None, typer.Argument(help=f"{options.SHOT_HELP} [demo]", metavar="SCENE")] = None,
     folder: Annotated[
         list[Path] | None,
@@ -40,7 +47,8 @@ def view(
     if quiet and not (is_local(host) or token):
         raise InputError("--quiet hides the token that is made for other machines: name one with --token")
     check_port(host, port)  # before the scene is read, which may take its time
-    source, opened = ShotSource.opened(scenes_folder() / "demo.toml" if shot is None else shot, device)
+    path = scenes_folder() / "demo.toml" if shot is None else shot
+    source, opened = ShotSource.opened(path, device, words_of(changes))
     folders = (Path.cwd(), *(folder or ()))
     settings = ServerSettings(folders, host, port, device, token, shows_browser=browser, tells_address=not quiet)
     serve(opened, source, settings)

@@ -9,6 +9,7 @@ from contextlib import ExitStack
 from multiprocessing import get_context
 from pathlib import Path
 
+from .. import demosaicing
 from .._core import InputError, RealcamError, devices
 from ..executing import Outcome, do_all
 from ..files import remove_leftovers
@@ -37,6 +38,7 @@ def make(
     A picture and a shard appear in the folder as a whole or not at all, so that make() goes on after whatever has ended
     it. Raises InputError, DeviceError, and ImageFileError where a disk is full, say; what is done stays.
     """
+    demosaicing.check_is_installed()  # not after the first picture
     target = DatasetFolder.open(folder, recipe)
     remove_leftovers(target.path)
     missing = target.missing()

@@ -17,6 +17,7 @@ from .recipe import Recipe
 
 RECIPE_FILE = "recipe.json"
 INDEX_FILE = "dataset.json"
+_PICTURES = ("samples/*", "shard-*.tar")
 
 
 class DatasetFolder:
@@ -36,7 +37,7 @@ class DatasetFolder:
         file = folder.path / RECIPE_FILE
         try:
             before = json.loads(file.read_bytes()) if file.exists() else None
-            foreign = folder._first_file() if before is None else None
+            foreign = folder._first_file(RECIPE_FILE, INDEX_FILE, *_PICTURES) if before is None else None
         except OSError as error:
             raise InputError(f"{error.filename}: {error.strerror}; a folder that can be written to is wanted") from None
         except ValueError as error:
@@ -49,7 +50,7 @@ class DatasetFolder:
         if not isinstance(before, dict) or "realcam" not in before or type(before.get("count")) is not int:
             raise InputError(f"{file}: is not of a data set of realcam; another folder is wanted")
         changed = [key for key in about if key != "count" and before.get(key) != about[key]]
-        if changed:
+        if changed and folder._first_file(*_PICTURES):  # a recipe that failed may be mended
             raise InputError(f"{folder.path}: made by another recipe ({', '.join(changed)}); another folder is wanted")
         if before["count"] > recipe.count:
             raise InputError(f"{folder.path}: this has {before['count']} pictures already; as many or more are wanted")
@@ -128,8 +129,7 @@ class DatasetFolder:
         index = {"images": images, "annotations": annotations, "categories": categories}
         write_whole(self.path / INDEX_FILE, json.dumps(index).encode())
 
-    def _first_file(self) -> Path | None:
-        names = [RECIPE_FILE, INDEX_FILE, "samples/*", "shard-*.tar"]
+    def _first_file(self, *names: str) -> Path | None:
         return next((path for name in names for path in sorted(self.path.glob(name))), None)
 
     def _held_by(self, shard: int) -> dict[int, dict[str, bytes]]:
