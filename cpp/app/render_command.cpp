@@ -304,9 +304,9 @@ private:
         }
         keep_layers(image, darkroom.written_layers);
         if (is_noisy)
-            inform(denoised ? "the noise that is left is taken from what is not .exr by " + denoiser_name +
-                                  "; --no-denoise keeps it"
-                            : "the noise that is left stays: " + why_no_denoiser_);
+            inform(denoised ? "the remaining noise was removed by " + denoiser_name +
+                                  ", except from .exr; --no-denoise keeps it"
+                            : "the remaining noise stays: " + why_no_denoiser_);
         const Image& shown = denoised ? *denoised : image;
         if (const std::string notice = exposure_notice(shown, shot.camera, request.tone); !notice.empty()) warn(notice);
         write(request.denoises ? shown : image, shown, shot, request, decisions, denoiser_name, files, goes_on);

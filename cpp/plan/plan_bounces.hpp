@@ -86,10 +86,10 @@ inline void plan_bounces(Session& session, const Assembly& scene, Camera camera,
     const auto codes = [](double size) { return counted(size, "code", 2); };
     plan.decisions.push_back(
         {"bounces", indirect, SizeUnit::codes, threshold, plan.max_bounces > 0, DecidedBy::planner, std::nullopt,
-         plan.max_bounces == 0
-             ? "light that has bounced brings " + codes(indirect)
-             : "max_bounces " + std::to_string(plan.max_bounces) + " lacks " + codes(lacking) + ", fewer would lack " +
-                   codes(lacking_before) + ", and direct light alone " + codes(indirect)});
+         plan.max_bounces == 0 ? "light that has bounced brings " + codes(indirect)
+                               : "with " + counted(plan.max_bounces, "bounce") + " the picture lacks " +
+                                     codes(lacking) + ", with fewer " + codes(lacking_before) +
+                                     " (half the threshold is allowed), with direct light alone " + codes(indirect)});
 }
 
 }  // namespace REALCAM_NAMESPACE

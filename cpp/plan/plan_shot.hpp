@@ -86,7 +86,8 @@ private:
                    unknown.begin(), unknown.end(),
                    [&](int i) { return surfaces[static_cast<std::size_t>(i)].type == SurfaceType::refracting; })
                    ? ""
-                   : "but nobody knows what covers the glass, and bare it is only where the effect is named";
+                   : "left out because the lens file does not say how the glass is coated; name the effect to have "
+                     "bare glass";
     }
 
     static std::string px(double size) { return short_size(size) + " px"; }
@@ -121,7 +122,8 @@ private:
                                "Airy disc of " +
                                    px(spread));
         else
-            decide("diffraction", star, SizeUnit::codes, "two pixels beside lamps stars bring " + codes(star));
+            decide("diffraction", star, SizeUnit::codes,
+                   "the stars of lamps bring " + codes(star) + " two pixels beside them");
     }
 
     /// Decides on the colour of glass, coatings and ghosts. Coatings are of one wavelength where neither dispersion nor

@@ -39,7 +39,8 @@ void look_for_lamps(ReachedNoise& reached, double share, std::int64_t samples) {
 
 std::string shortfall_of(const ReachedNoise& reached, const NoiseGoal& goal) {
     if (reached.is_reached) return "";
-    if (!(reached.noise >= 0)) return "too few samples were taken to know how large the noise is";
+    if (!(reached.noise >= 0))
+        return "too few samples were taken to know how large the noise is; more time or samples are needed";
     const std::string wanted = counted(rounded(reached.samples_wanted, 2), "sample");
     if (reached.missed_share < 1)
         return "lamps fill down to 1/" + number_text(1 / reached.missed_share, 2) +

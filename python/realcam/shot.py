@@ -207,3 +207,15 @@ def photograph(
         image = image.denoised(device=device)
     layers = {name: layer for name, layer in image.layers.items() if name in wanted}
     return replace(image, layers=layers, settings=image.settings.with_(layers=wanted))
+
+
+def _keys_as_text() -> str:
+    return "\n".join(
+        f"    {name}: {text[0].lower()}{text[1:]}{f' [{initial}]' if initial else ''}"
+        for name, _, _, _, text, initial in _core._shot_keys()
+    )
+
+
+for _function in (Shot.load.__func__, photograph):  # type: ignore[attr-defined]
+    if _function.__doc__:  # python -OO has none
+        _function.__doc__ += f"\n    The keys, with what holds without them:\n\n{_keys_as_text()}\n"

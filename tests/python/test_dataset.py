@@ -139,7 +139,7 @@ def test_what_is_there_is_not_made_again(made: Path, tmp_path: Path) -> None:
     assert (folder / "dataset.json").read_bytes() == (made / "dataset.json").read_bytes()
     with pytest.raises(rc.InputError, match=r"another recipe \(seed, spp\)"):
         make(dataclasses.replace(SMALL, seed=6, spp=3), folder, executor)
-    with pytest.raises(rc.InputError, match="has 3 pictures already"):
+    with pytest.raises(rc.InputError, match="made with 3 pictures"):
         make(one, folder, executor)
 
 

@@ -59,7 +59,7 @@ def test_a_furnace_has_as_many_as_its_series(albedo: float, device: str) -> None
     row = next(d for d in plan.decisions if d.effect == "bounces")
     assert (row.unit, row.by, row.is_kept) == ("codes", "planner", chosen > 0)
     assert row.size == pytest.approx(lacks(0), abs=0.1 * lacks(0) + 1)
-    assert f"max_bounces {chosen}" in row.reason or chosen == 0
+    assert f"with {chosen} bounce" in row.reason or chosen == 0
     assert rc.render(scene, shot, effects=(), spp=1, device=device).settings.max_bounces == chosen
 
 

@@ -51,7 +51,7 @@ def tolerance(
     as_json: options.AsJson = False,
     quiet: options.Quiet = False,
 ) -> None:
-    """Make copies of a lens with errors within tolerances, and tell what they are worth.
+    """Make copies of a lens with manufacturing errors within tolerances, and compare their images with the design.
 
     Ctrl-C ends the study with the copies that are done.
     """

@@ -53,7 +53,9 @@ class DatasetFolder:
         if changed and folder._first_file(*_PICTURES):  # a recipe that failed may be mended
             raise InputError(f"{folder.path}: made by another recipe ({', '.join(changed)}); another folder is wanted")
         if before["count"] > recipe.count:
-            raise InputError(f"{folder.path}: this has {before['count']} pictures already; as many or more are wanted")
+            raise InputError(
+                f"{folder.path}: the data set was made with {before['count']} pictures; the count may not be smaller"
+            )
         make_folder(folder.path / "samples")
         write_whole(file, json.dumps(about, indent=1).encode() + b"\n")
         return folder

@@ -70,7 +70,7 @@ def cross_section(
     rays_from: "object", bundles of an object point each, so that the lens's aberrations show at the film; or "film",
       the rays that film points send through the lens, as the camera samples them.
     fields: shares of the height of the film's corner, or, if the film is larger than the image, of the
-      last height that a quarter as many rays reach as the middle.
+      largest height that at least a quarter as many rays reach as the axis.
     fields_deg: field angles instead, as Lens.spot takes them; only from the object.
     wavelengths_nm: None is the design wavelength alone.
     object_distance_m: object plane to front vertex, inf allowed; None is the plane in focus.

@@ -191,7 +191,7 @@ class CameraPanel:
         now, sharp = self._bench.controls, self._sharp
         self._scale.set_content(focus_scale_svg(now.focus_m, sharp.near_m, sharp.far_m, self._nearest_m))
         if math.isnan(sharp.near_m):
-            text = "Aberrations blur more than the usual measure, the film's diagonal / 1500, whatever the distance"
+            text = "Nothing is sharp: the aberrations alone blur points to more than 1/1500 of the film's diagonal"
         else:
             text = "Sharp from {} to {}".format(*distance_texts(sharp.near_m, sharp.far_m))
         self._sharp_text.set_text(text)

@@ -116,7 +116,7 @@ export default {
       if (!row) return "";
       const unit = row.unit === "px" ? "pixel" : "grey level", size = short(row.size);
       const limit = `less than ${short(row.threshold)} would not be seen`;
-      const why = !row.is_kept && row.size > row.threshold ? ". See the reasons why it is off." : `; ${limit}.`;
+      const why = !row.is_kept && row.size > row.threshold ? ". It is off all the same: the reason stands with the effect." : `; ${limit}.`;
       return `It changes this picture by ${size} ${unit}${size === "1" ? "" : "s"}${why}`;
     },
     choose(effect, state) {
