@@ -139,11 +139,11 @@ double SensorSpeed::gain_dn_per_e(double iso) const {
     if (!(iso > 0) || !std::isfinite(iso)) throw InputError("iso must be a positive number");
     if (conversion_.gain_dn_per_e == 0) return range_dn() * iso / (kSaturation * electrons_per_lux_s_);
     constexpr double kRounded = 5e-3;  // of what users copy from a message or a table
-    if (iso < lowest_iso() * (1 - kRounded) || iso > highest_iso() * (1 + kRounded))
-        throw InputError("iso must lie between " + rounded(lowest_iso()) + " and " + rounded(highest_iso()) +
-                         " for this sensor; it is " + rounded(iso) +
-                         " (camera.replace(iso=...).metered(scene) and realcam render --iso expose for another)");
-    return conversion_.gain_dn_per_e * iso / lowest_iso();
+    if (iso < lowest_iso() * (1 - kRounded))
+        throw InputError("the lowest ISO of this sensor is " + rounded(lowest_iso()) + "; it is " + rounded(iso) +
+                         " here (camera.replace(iso=...).metered(scene), or the command realcam render with --iso, "
+                         "exposes for another)");
+    return conversion_.gain_dn_per_e * std::min(iso, highest_iso()) / lowest_iso();
 }
 
 std::string SensorSpeed::rounded(double value) {

@@ -59,8 +59,9 @@ public:
 
     /// 0 and infinite where the gain is whatever the ISO asks for.
     double lowest_iso() const;
-    double highest_iso() const;
-    /// Overall system gain, DN per electron. Throws InputError where the sensor has no such ISO number.
+    double highest_iso() const;  ///< by the gain
+    /// Overall system gain, DN per electron: the largest for ISO numbers above the highest, for which the picture is
+    /// brightened when it is developed. Throws InputError for one below the lowest.
     double gain_dn_per_e(double iso) const;
 
 private:

@@ -49,6 +49,7 @@ class Negative(ShortText):
     sensor: str
     exposure_time_s: float
     iso: float
+    extension: float  #: of the ISO above that of the largest gain, a factor; 1: none
     black_level_dn: float
     white_level_dn: int
     filters: ColorFilters | None
@@ -130,7 +131,7 @@ def _tags(raw: Negative) -> list[tuple[int, str, int, Any]]:
         (50719, LONG, 2, (0, 0)),  # DefaultCropOrigin
         (50720, LONG, 2, (width, height)),  # DefaultCropSize
         # BaselineExposure, in stops: where white lies below saturation.
-        rational(50730, np.log2(SATURATION_OVER_WHITE), signed=True),
+        rational(50730, np.log2(SATURATION_OVER_WHITE * raw.extension), signed=True),
         (50829, LONG, 4, (0, 0, height, width)),  # ActiveArea
     ]
     for code, name in ((33437, "realcam:f_number"), (37386, "realcam:focal_length_mm")):

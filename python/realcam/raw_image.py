@@ -179,6 +179,7 @@ class RawImage:
             sensor=self.sensor.name,
             exposure_time_s=self.exposure_time_s,
             iso=self.iso,
+            extension=max(1.0, self.iso / self.sensor.iso_range(self.pixel_pitch_um)[1]),
             black_level_dn=self.black_level_dn,
             white_level_dn=self.white_level_dn,
             filters=filters,
