@@ -1,6 +1,6 @@
 """What does it save to send rays where a lens lets them pass? For every bundled lens, at equal error.
 
-    python benchmarks/pupil_methods.py [--device cpu] [--size 96] [--most-spp 64]
+    python benchmarks/pupil_methods.py [--device cpu] [--size 96] [--max-spp 64]
 
 The time of the fitted outline over that of each other way to sample the pupil, to the error that the outline has with
 the most samples: random points all over the rear element (Kolb et al. 1995), the same stratified, the paraxial exit
@@ -21,7 +21,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--device", default="cpu")
     parser.add_argument("--size", type=int, default=96)
-    parser.add_argument("--most-spp", type=int, default=64)
+    parser.add_argument("--max-spp", type=int, default=64)
     parser.add_argument("--reference-spp", type=int, default=2048)
     words = parser.parse_args()
     warnings.simplefilter("ignore", UserWarning)
@@ -34,7 +34,7 @@ def main() -> None:
             camera,
             device=words.device,
             size=words.size,
-            most_spp=words.most_spp,
+            max_spp=words.max_spp,
             reference_spp=words.reference_spp,
             effects=(),
             levels=False,

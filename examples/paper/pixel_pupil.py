@@ -20,7 +20,7 @@ def experiment(device: str) -> Experiment:
         camera.metered(scene, device="cpu"),
         device=device,
         size=96,
-        most_spp=64,
+        max_spp=64,
         reference_spp=1024,
         effects=(),
         levels=False,

@@ -133,10 +133,10 @@ def _american(word: str) -> str:
 # What other programs and photographers call an option; the first that a command has is meant.
 _OTHER_NAMES = {
     **dict.fromkeys(("--aperture", "--f-stop", "--fstop", "--fnumber"), ("--f-number",)),
-    **dict.fromkeys(("--samples", "--num-samples", "--sample-count"), ("--spp", "--copies", "--most-spp")),
+    **dict.fromkeys(("--samples", "--num-samples", "--sample-count"), ("--spp", "--copies", "--max-spp")),
     **dict.fromkeys(("--shutter", "--shutter-speed", "--shutter-time", "--exposure"), ("--exposure-time",)),
     **dict.fromkeys(("--distance", "--focus-distance"), ("--focus", "--object-distance")),
-    **dict.fromkeys(("--out", "--outfile", "--save"), ("--output", "--figure")),
+    **dict.fromkeys(("--out", "--outfile", "--save"), ("--output",)),
     **dict.fromkeys(("--width", "--height", "--size"), ("--resolution", "--size", "--width")),
     **dict.fromkeys(("--bounces", "--depth", "--max-depth"), ("--max-bounces",)),
     "--sensitivity": ("--iso",),

@@ -32,7 +32,7 @@ def camera(lens: rc.Lens = LENS) -> rc.Camera:
 
 @pytest.fixture(scope="module")
 def cost() -> AccuracyCost:
-    return rc.accuracy_cost(scene(), camera(), device="cpu", size=24, most_spp=16, reference_spp=256)
+    return rc.accuracy_cost(scene(), camera(), device="cpu", size=24, max_spp=16, reference_spp=256)
 
 
 def test_all_levels_are_there(cost: AccuracyCost) -> None:
@@ -150,7 +150,7 @@ def test_an_interrupted_ladder_keeps_what_is_done() -> None:
             raise KeyboardInterrupt
 
     cost = rc.accuracy_cost(
-        scene(), camera(), device="cpu", size=12, most_spp=1, reference_spp=16, effects=(), progress=interrupt
+        scene(), camera(), device="cpu", size=12, max_spp=1, reference_spp=16, effects=(), progress=interrupt
     )
     assert [rung.name for rung in cost.rungs] == ["pinhole, gather filter", "pinhole, heat diffusion", "pinhole"]
     assert cost.missing[:2] == ("thin lens", "thin lens, distortion and vignetting")
@@ -162,7 +162,7 @@ def test_what_an_ideal_lens_cannot_show_is_named() -> None:
     lens = rc.Lens.load("fisheye-6mm-220deg")
     view = rc.Camera(lens, film=rc.Film(*lens.film_mm, (16, 16)), exposure_time_s=0.02)
     cost = rc.accuracy_cost(
-        scene(), view, device="cpu", size=16, most_spp=1, reference_spp=16, effects=(), samplings=False
+        scene(), view, device="cpu", size=16, max_spp=1, reference_spp=16, effects=(), samplings=False
     )
     assert "full lens" in {rung.name for rung in cost.rungs}
     assert set(cost.impossible).isdisjoint(rung.name for rung in cost.rungs)

@@ -56,7 +56,7 @@ def names(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
         return render(scene, small(camera), *settings, **{**words, **few, "progress": False})
 
     def cost(scene: rc.Scene, camera: rc.Camera) -> rc.AccuracyCost:
-        return accuracy_cost(scene, camera, size=12, most_spp=4, reference_spp=4, samplings=False)
+        return accuracy_cost(scene, camera, size=12, max_spp=4, reference_spp=4, samplings=False)
 
     monkeypatch.setattr(rc, "render", rendered)
     monkeypatch.setattr("realcam.shot.render", rendered)

@@ -21,7 +21,7 @@ def test_a_sharper_lens_is_written_and_keeps_its_focal_length(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     out = tmp_path / "sharper.toml"
-    words = ["cooke-triplet-50mm", "-o", str(out), "--steps", "5", "--field", "0", "--field", "14", "--json"]
+    words = ["cooke-triplet-50mm", "-o", str(out), "--steps", "5", "--fields-deg", "0,14", "--json"]
     code, text, _ = said(words, monkeypatch, capsys)
     assert code == 0
     figures = json.loads(text)
@@ -77,3 +77,16 @@ def test_mistakes_end_in_one_line(
     assert message in errors
     assert errors.count("\n") == 1
     assert not out.exists()
+
+
+def test_glass_does_not_become_thinner_than_can_be_made(tmp_path: Path) -> None:
+    """Unless it is thinner already; air may."""
+    from realcam.cli.optimise import Bounds
+
+    lens = rc.Lens.load("cooke-triplet-50mm")
+    bounds = Bounds()
+    glasses = [i for i, surface in enumerate(lens.surfaces) if bounds.least_thickness_of(lens, i) == 1.0]
+    assert len(glasses) == 3
+    thin = lens.with_surface(glasses[1], thickness_mm=0.6)
+    assert bounds.least_thickness_of(thin, glasses[1]) == pytest.approx(0.6)
+    assert bounds.least_thickness_of(lens, glasses[0] + 1) == 0.1

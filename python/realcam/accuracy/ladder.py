@@ -55,7 +55,7 @@ def accuracy_cost(
     seed: int = 0,
     max_bounces: int | str = "auto",
     size: int = 320,
-    most_spp: int = 256,
+    max_spp: int = 256,
     reference_spp: int = 4096,
     effects: Iterable[str] | None = None,
     levels: bool = True,
@@ -64,7 +64,7 @@ def accuracy_cost(
 ) -> AccuracyCost:
     """Takes a shot at all levels of simulation, from a blurred pinhole picture to every surface with all effects.
 
-    size: pixels of the longer side. most_spp: each level is taken with 1, 4, 16, ... samples up to these.
+    size: pixels of the longer side. max_spp: each level is taken with 1, 4, 16, ... samples up to these.
     reference_spp: of the picture that they are compared with: every surface, with `effects`; None: those of which the
     lens file says what they need. levels, samplings: whether to take the levels, and whether to compare ways to sample
     the pupil. Ctrl-C ends it early; what was measured until then is returned, and what is missing.
@@ -99,7 +99,7 @@ def accuracy_cost(
         for number, (level, against) in enumerate(climbs):
             tell((1 + number) / (1 + len(climbs)))
             try:
-                rung = _climb(level, scene, camera, against, most_spp, seed, settings)
+                rung = _climb(level, scene, camera, against, max_spp, seed, settings)
             except InputError:
                 # The reference was taken, so only this level is impossible. An ideal lens sees nothing at 90 degrees to
                 # the side, a GPU has no double precision, and an exit pupil may lie behind the film.
@@ -150,7 +150,7 @@ def _climb(
     scene: Scene,
     camera: Camera,
     reference: Reference,
-    most_spp: int,
+    max_spp: int,
     seed: int,
     settings: dict[str, object],
 ) -> Rung:
@@ -160,7 +160,7 @@ def _climb(
     while True:
         image, seconds = level.image(scene, camera, spp=spp, seed=seed, **settings)
         picture = codes(image)
-        is_last = 4 * spp > most_spp
+        is_last = 4 * spp > max_spp
         if is_last or not level.is_stratified:
             second = codes(level.image(scene, camera, spp=spp, seed=seed + 1, **settings)[0])
             noise2 = mean_square(picture, second) / 2

@@ -27,17 +27,17 @@ ShotOptions = shot_options(
 def cost(
     shot: options.ShotName,
     changes: ShotOptions,  # type: ignore[valid-type]
-    figure: Annotated[
+    output: Annotated[
         list[Path] | None,
         typer.Option(
-            "--figure",
+            "--output",
             "-o",
             metavar="FILE",
             help="Error over time as .svg, or as .html with the table; may be repeated",
         ),
     ] = None,
     size: Annotated[int, typer.Option(metavar="PIXELS", help="Pixels of the longer side", min=8, max=4096)] = 320,
-    most_spp: Annotated[
+    max_spp: Annotated[
         int, typer.Option(metavar="N", help="Each level is taken with 1, 4, 16, ... samples", min=4)
     ] = 256,
     reference_spp: Annotated[
@@ -50,7 +50,7 @@ def cost(
     """Take a shot at all levels of simulation, from a blurred pinhole picture to every surface with all effects."""
     from ..accuracy import accuracy_cost  # brings matplotlib, which other commands need not load
 
-    for path in figure or []:
+    for path in output or []:
         check_target(path, (".svg", ".html"))
     described = load_shot(shot, changes, device)
     with progress_bar("measuring", is_shown=not quiet) as bar:
@@ -62,13 +62,13 @@ def cost(
             seed=described.seed,
             max_bounces=described.max_bounces,
             size=size,
-            most_spp=most_spp,
+            max_spp=max_spp,
             reference_spp=reference_spp,
             progress=bar,
         )
     if as_json or not quiet:
         typer.echo(result.json() if as_json else str(result), nl=as_json)
-    for path in figure or []:
+    for path in output or []:
         result.figure(path)
     if result.missing:
         raise KeyboardInterrupt

@@ -35,7 +35,7 @@ EXAMPLES: dict[str, tuple[str, ...]] = {
     ),
     "lens optimise": (
         "realcam lens optimise tessar-50mm -o sharper.toml",
-        "realcam lens optimise mine.zmx -o better.zmx --vary radii --vary thickness:3 --field 0 --field 14 --glasses",
+        "realcam lens optimise mine.zmx -o better.zmx --vary radii --vary thickness:3 --fields-deg 0,14 --glasses",
     ),
     "lens tolerance": (
         "realcam lens tolerance double-gauss-50mm --f-number 2.8 --grade commercial -o report.html",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from itertools import pairwise
@@ -32,13 +33,24 @@ class Bounds:
     """Of what is varied, mm."""
 
     least_radius: Annotated[float, typer.Option(metavar="MM", help="No radius becomes smaller", min=0)] = 0.0
-    least_thickness: Annotated[float, typer.Option(metavar="MM", help="No thickness becomes smaller")] = 0.1
+    least_thickness: Annotated[float, typer.Option(metavar="MM", help="No thickness of air becomes smaller")] = 0.1
+    least_glass: Annotated[
+        float, typer.Option(metavar="MM", help="No thickness of glass becomes smaller, unless it is thinner already")
+    ] = 1.0
     most_thickness: Annotated[
         float | None, typer.Option(metavar="MM", help="No thickness becomes larger [three times the largest]")
     ] = None
     least_edge: Annotated[
         float | None, typer.Option(metavar="MM", help="No glass becomes thinner at its edge [0.5, or as it is]")
     ] = None
+
+    def least_thickness_of(self, lens: Lens, surface: int) -> float:
+        """Of what lies behind a surface."""
+        behind = lens.surfaces[surface]
+        is_glass = behind.type == "refracting" and behind.material.index(lens.wavelength_nm) > 1.1
+        return (
+            max(self.least_thickness, min(self.least_glass, behind.thickness_mm)) if is_glass else self.least_thickness
+        )
 
     def most_thickness_of(self, lens: Lens) -> float:
         return self.most_thickness or 3 * max(abs(s.thickness_mm) for s in lens.surfaces)
@@ -58,9 +70,13 @@ def optimise(
             "as lens info counts them, power); may be repeated [radii]",
         ),
     ] = None,
-    field_deg: Annotated[
-        list[float] | None,
-        typer.Option("--field", metavar="DEGREES", help="An angle whose spot is to be small; may be repeated [film]"),
+    fields_deg: Annotated[
+        str | None,
+        typer.Option(
+            "--fields-deg",
+            metavar="DEGREES",
+            help="Angles whose spots are to be small, with commas between [those of the lens's file; the film's]",
+        ),
     ] = None,
     focal_length: Annotated[
         float | None, typer.Option("--focal-length", metavar="MM", help="What it is to be [as it is]")
@@ -89,9 +105,10 @@ def optimise(
     lens_options.check_not_the_lens(files.check_target(output, (".toml", ".zmx", ".seq")), name)
     if glasses and global_looks:
         raise InputError("--glasses and --global cannot go together")
-    lens = rings.set(file.lens(name))
+    lens, stated_deg, _ = file.lens_and_light(name)
+    lens = rings.set(lens)
     variables = [v for text in vary or ["radii"] for v in _variables_of(text, lens, bounds)]
-    fields = tuple(field_deg) if field_deg else _fields(lens)
+    fields = tuple(lens_options.numbers(fields_deg, "--fields-deg") or stated_deg or _fields(lens))
     operands = _edges(lens, bounds.least_edge)
     if most_distortion is not None:
         outermost = max(fields, key=abs)
@@ -131,6 +148,8 @@ def optimise(
                 answers_interrupt=True,
             )
     found.lens.save(output)
+    if stated_deg and output.suffix.lower() != ".toml":
+        warnings.warn(f"{output}: the fields and wavelengths of {name} are not written; set them again", stacklevel=1)
     if as_json or not quiet:
         _print(found, changed, output, as_json)
     options.say_written(output, quiet or as_json)
@@ -156,7 +175,8 @@ def _variables_of(text: str, lens: Lens, bounds: Bounds) -> list[Variable]:
     if kind == "radius":
         return [Variable.radius(surface, bounds.least_radius)]
     if kind == "thickness":
-        return [Variable.thickness(surface, bounds.least_thickness, bounds.most_thickness_of(lens))]
+        least, most = bounds.least_thickness_of(lens, surface), bounds.most_thickness_of(lens)
+        return [Variable.thickness(surface, least, most)]
     if kind == "conic":
         return [Variable.conic(surface)]
     return [Variable.aspheric(surface, *power)]
@@ -171,7 +191,7 @@ def _of_surface(i: int, way: str, lens: Lens, bounds: Bounds) -> Iterator[Variab
         yield Variable.conic(i)
     elif way == "thicknesses" and i + 1 < len(lens.surfaces) and surface.thickness_mm > bounds.least_thickness:
         most = max(bounds.most_thickness_of(lens), 1.001 * surface.thickness_mm)
-        yield Variable.thickness(i, bounds.least_thickness, most)
+        yield Variable.thickness(i, bounds.least_thickness_of(lens, i), most)
 
 
 def _edges(lens: Lens, least: float | None) -> list[Operand]:

@@ -8,7 +8,7 @@ from typing import Any
 from .._core import Camera, RealcamError, Scene
 from ..accuracy import accuracy_cost
 
-_FEW: dict[str, Any] = {"size": 120, "most_spp": 16, "reference_spp": 256}  # some seconds on two cores
+_FEW: dict[str, Any] = {"size": 120, "max_spp": 16, "reference_spp": 256}  # some seconds on two cores
 
 
 def measured_levels(scene: Scene, camera: Camera, device: str) -> tuple[list[dict[str, Any]], str]:
