@@ -74,7 +74,7 @@ def _write_title(lens: Lens, axes: Axes, style: Style) -> None:
     # Names are text, and a dollar sign in one begins no formula.
     name = "".join(c for c in lens.name if c.isprintable())
     axes.set_title(
-        f"{name}\n{data.effective_focal_length_mm:.4g} mm  f/{data.f_number:.3g}",
+        f"{name}\n{data.effective_focal_length_mm:.4g} mm  f/{lens.f_number:.3g}",
         fontsize=7,
         color=style.theme.text,
         parse_math=False,

@@ -371,3 +371,18 @@ def test_a_drawing_takes_less_than_a_second(tmp_path: Path) -> None:
         save_cross_section(GAUSS, tmp_path / "a.svg")
         seconds.append(time.process_time() - start)
     assert min(seconds) < 1
+
+
+def test_titles_have_the_engraved_f_number_at_any_focus() -> None:
+    """A group that has moved to focus makes another lens, whose own f-number is not the one of the ring."""
+    from realcam.cli.options import title_of
+    from realcam.drawing.section import cross_section
+    from realcam.drawing.style import data_of
+
+    name = next(n for n in rc.lens_names() if rc.Lens.load(n).focus_group is not None)
+    lens = rc.Lens.load(name)
+    near = lens.focused(max(1.05 * lens.nearest_focus_m, 1.0))
+    assert near.first_order().f_number != pytest.approx(lens.f_number, rel=0.01)
+    engraved = f"f/{lens.f_number:.3g}"
+    assert title_of(near).endswith(engraved)
+    assert engraved in data_of(near, cross_section(near))

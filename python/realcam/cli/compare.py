@@ -106,7 +106,7 @@ def compare(
             {
                 "label": label,
                 "lens": image.camera.lens.name,
-                "f_number": image.camera.lens.first_order().f_number,
+                "f_number": image.camera.lens.f_number,
                 "focus_m": image.camera.lens.focus_distance_m,
                 "position_m": list(image.camera.position),
                 "exposure_time_s": image.camera.exposure_time_s,

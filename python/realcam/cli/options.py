@@ -94,6 +94,6 @@ def advice_on(error: LensFileError) -> str:
 def title_of(lens: Lens) -> str:
     """A line over a plot: the lens, its focal length and its f-number."""
     data = lens.first_order()
-    focal_length, f_number = number_text(data.effective_focal_length_mm), number_text(data.f_number, 3)
+    focal_length, f_number = number_text(data.effective_focal_length_mm), number_text(lens.f_number, 3)
     text = f"{lens.title or lens.name}   f = {focal_length} mm, f/{f_number}"
     return "".join(c for c in text if c.isprintable())  # titles come from files, and may hold any characters

@@ -167,7 +167,7 @@ def random_camera(recipe: Recipe, seen: RandomScene, rng: np.random.Generator) -
     from scipy.spatial.transform import Rotation  # slow to load
 
     lens = _lens(recipe.lenses[rng.integers(len(recipe.lenses))])
-    lens = lens.stopped_down(float(lens.first_order().f_number * rng.uniform(*recipe.f_stops)))
+    lens = lens.stopped_down(float(lens.f_number * rng.uniform(*recipe.f_stops)))
     film = Film.for_lens(lens, resolution=recipe.size)
     iso = float(np.exp(rng.uniform(*np.log(recipe.iso))))
     camera = Camera(lens, film=film, iso=iso, readout_time_s=recipe.readout_time_s)

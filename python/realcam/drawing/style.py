@@ -44,11 +44,9 @@ def data_of(lens: Lens, section: CrossSection) -> str:
     """Focal length, f-number and focus, as the line below the title of a drawing has them."""
     data = lens.first_order()
     words = [f"f = {number_text(data.effective_focal_length_mm)} mm"]
-    is_far = math.isinf(lens.focus_distance_m)
-    # An f-number is one of the lens at infinity, and a group that has moved makes another lens.
-    if is_far or lens.focus_group is None:
-        words.append(f"f/{data.f_number:.3g}")
-    if not is_far:
+    if math.isfinite(lens.f_number):
+        words.append(f"f/{lens.f_number:.3g}")
+    if not math.isinf(lens.focus_distance_m):
         words.append(f"focused at {number_text(lens.focus_distance_m)} m")
     if len(section.wavelengths_nm) == 1:
         words.append(f"{section.wavelengths_nm[0]:.4g} nm")

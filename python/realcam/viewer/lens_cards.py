@@ -24,7 +24,7 @@ def _card(name: str) -> dict[str, Any]:
         "title": lens.title or name,
         "kind": kind_of(lens, angle_deg),
         "focal_length_mm": data.effective_focal_length_mm,
-        "f_number": data.f_number,
+        "f_number": lens.f_number,
         "angle_deg": angle_deg,
         "year": year_of(lens.source),
     }

@@ -85,7 +85,7 @@ def shot_contents(source: ShotSource, controls: CameraControls, effects: list[st
         shot.pop(key, None)  # which go before what is said below
     if controls.zoom is not None:
         shot["zoom" if isinstance(controls.zoom, str) else "focal_length_mm"] = controls.zoom
-    widest = controls.body.first_order().f_number
+    widest = controls.body.f_number
     if controls.f_number is not None and controls.f_number > widest:
         shot["f_number"] = controls.f_number
     film, pose = controls.film, controls.pose

@@ -33,7 +33,7 @@ def camera_json(camera: Camera, fits: Iterable[CameraModelFit] = ()) -> dict[str
         "lens": {
             "name": lens.name,
             "focal_length_mm": _finite(data.effective_focal_length_mm),
-            "f_number": _finite(data.f_number),
+            "f_number": _finite(lens.f_number),
             "focus_distance_m": _finite(lens.focus_distance_m),
         },
         "model": camera.model,
