@@ -18,7 +18,7 @@ bool is_face_in_air(const LensSystem& lens, std::size_t index) {
 
 namespace {
 
-/// Whether light meets a face there of which the lens does not say how it is coated.
+/// True if the surface is a mirror or a face in air whose coating the lens does not specify.
 bool has_unknown_coating(const LensSystem& lens, std::size_t index) {
     const Surface& surface = lens.surfaces[index];
     return surface.coating.kind == CoatingKind::unknown &&

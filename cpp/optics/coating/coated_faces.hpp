@@ -7,19 +7,19 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// The medium in front of a surface, on the light's way to the film.
+/// Returns the medium in front of a surface, for light travelling to the film.
 const Glass& medium_before(const LensSystem& lens, std::size_t index);
 
-/// Whether a refracting surface has air on one side and something else on the other: the faces that are coated.
-/// Two glasses that touch are cemented, and so bare unless the lens says otherwise.
+/// True if a refracting surface has air on exactly one side; lens makers coat these faces. Two glasses in contact are
+/// cemented, and uncoated unless the lens specifies a coating.
 bool is_face_in_air(const LensSystem& lens, std::size_t index);
 
-/// The surfaces, counted from 0, of which the lens does not say how they are coated: glass in air, taken for bare, and
-/// mirrors, taken for perfect ones.
+/// Returns the surfaces, counted from 0, whose coating the lens does not specify: glass faces in air, assumed to be
+/// bare, and mirrors, assumed to be perfect.
 std::vector<int> surfaces_with_unknown_coating(const LensSystem& lens);
 
-/// What covers each face in air, each mirror and whatever else the lens says something of, with the numbers of the
-/// surfaces from 1: "bare: 1, 2; unknown, taken as bare: 5".
+/// Lists the coatings of all faces in air, all mirrors and all other surfaces with a specified coating, with surface
+/// numbers from 1: "bare: 1, 2; unknown, taken as bare: 5".
 std::string coating_summary(const LensSystem& lens);
 
 }  // namespace REALCAM_NAMESPACE

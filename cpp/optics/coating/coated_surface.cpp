@@ -22,7 +22,7 @@ CoatedSurface::CoatedSurface(const Coating& coating, bool is_mirror, double wave
 
 PolarisedResponse CoatedSurface::at(double cosine) const {
     if (!has_stated_reflectance_) return response_of(stack_, cosine);
-    // As a perfect conductor, which turns the electric field along the surface around.
+    // Phases of a perfect conductor, which reverses the tangential electric field.
     const double r = std::sqrt(stated_);
     return {{-r, 0, stated_, 0, 1 - stated_}, {r, 0, stated_, 0, 1 - stated_}};
 }
@@ -37,7 +37,8 @@ std::complex<double> CoatedSurface::known_index(const CoatingMaterial& material,
 
 namespace {
 
-/// Whether light on its way to the film meets the layers of a surface in the order of their list, from the air inwards.
+/// True if light travelling to the film crosses the layers of a surface in the order of their list, which starts at the
+/// medium of lower index (air).
 bool layers_listed_towards_film(const LensSystem& lens, std::size_t index) {
     const Surface& surface = lens.surfaces[index];
     return medium_before(lens, index).index(kLineD_nm) <= surface.material.index(kLineD_nm);

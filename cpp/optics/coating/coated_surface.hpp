@@ -9,17 +9,18 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// A coating between two media, or on a mirror, met by light of one wavelength from one side. An unknown coating is
-/// taken for none on glass and for a perfect mirror's on a mirror: whoever shows numbers of it has to say so.
+/// Coating between two media, or on a mirror, for light of one wavelength from one side. An unknown coating counts as
+/// bare glass on a refracting surface and as a perfect reflector on a mirror; callers that report its values must say
+/// so.
 class CoatedSurface {
 public:
-    /// `before`, `behind`: refractive indices of the media in the light's order, of a mirror both the same.
-    /// `as_listed`: whether the light meets the layers in the order of the list. Throws InputError where a layer's
-    /// index is not known at that wavelength.
+    /// `before`, `behind`: refractive indices of the media in the light's order, equal for a mirror. `as_listed`: true
+    /// if the light crosses the layers in the order of the list. Throws InputError if a layer's index is unknown at the
+    /// wavelength.
     CoatedSurface(const Coating& coating, bool is_mirror, double wavelength_nm, double before, double behind,
                   bool as_listed);
 
-    /// `cosine`: of the angle of incidence, in the medium from which the light comes.
+    /// `cosine`: cosine of the angle of incidence, in the incident medium.
     PolarisedResponse at(double cosine) const;
 
     bool is_mirror() const { return is_mirror_; }
@@ -32,13 +33,13 @@ private:
     double stated_;
 };
 
-/// One surface of a lens for light of one wavelength on its way to the film or to the scene. `indices`: of
-/// lens.indices(wavelength_nm). Throws InputError, with surface and material, where a layer's index is not known.
+/// Returns a surface of a lens for light of one wavelength travelling to the film or to the scene. `indices`:
+/// lens.indices(wavelength_nm). Throws InputError, naming surface and material, if a layer's index is unknown.
 CoatedSurface coated_surface(const LensSystem& lens, std::size_t index, double wavelength_nm, LightDirection direction,
                              const std::vector<double>& indices);
 
-/// All surfaces in the order in which the light meets them; none for stops and apertures, at which light is blocked or
-/// passes as it is. Throws InputError where an index is not known.
+/// Returns all surfaces in the order of the light; std::nullopt for stops and apertures, which block light or pass it
+/// unchanged. Throws InputError if an index is unknown.
 std::vector<std::optional<CoatedSurface>> coated_surfaces(const LensSystem& lens, double wavelength_nm,
                                                           LightDirection direction);
 

@@ -7,18 +7,18 @@
 namespace REALCAM_NAMESPACE {
 
 inline constexpr int kCosineTerms = 8;
-/// Numbers of terms for one wavelength and for a spectrum. Ghosts have more, because so little is reflected that an
-/// error of a thousandth of the transmitted light may be half of it.
+/// Numbers of wavelength terms: for one wavelength, for a spectrum, and for ghosts of a spectrum. Ghosts need more,
+/// because an error of a thousandth of the transmitted light may be half of the reflected light.
 inline constexpr int kOneWavelengthTerms = 1, kSpectrumTerms = 5, kGhostSpectrumTerms = 7;
 
-/// Shares of the power that a surface without a coating lets through, for polarisation across (s) and in (p) the plane
-/// of incidence.
+/// Power transmittance of an uncoated surface, for polarisation perpendicular (s) and parallel (p) to the plane of
+/// incidence.
 struct FresnelTransmittance {
     float s, p;
 };
 
-/// Fresnel's formulas. `before`, `behind`: index times cosine on both sides, the latter 0 under total reflection;
-/// `squared_quotient`: of the index behind over that before.
+/// Fresnel equations. `before`, `behind`: index times cosine on both sides, `behind` being 0 under total internal
+/// reflection; `squared_quotient`: (index behind / index before)^2.
 REALCAM_INLINE FresnelTransmittance fresnel_transmittance(float before, float behind, float squared_quotient) {
     const float sum_s = before + behind, sum_p = squared_quotient * before + behind;
     const float s = sum_s * sum_s, p = sum_p * sum_p, four = 4.0f * before * behind;
@@ -26,14 +26,14 @@ REALCAM_INLINE FresnelTransmittance fresnel_transmittance(float before, float be
     return {scale * p, scale * s * squared_quotient};
 }
 
-/// What a coating makes of Fresnel's transmittances, by which factor it changes them: a smooth function of the angle up
-/// to grazing light, where transmittances themselves fall steeply. Polynomials of the cosine in the medium of the lower
-/// index, and of the WavelengthVariable. For a mirror they hold its reflectances.
+/// Ratio of a coating's transmittances to the Fresnel transmittances of the bare surface: a smooth function of the
+/// angle up to grazing incidence, where the transmittances themselves fall steeply. Polynomials in the cosine in the
+/// medium of lower index and in the WavelengthVariable. For a mirror they hold its reflectances.
 template <int kWavelengthTerms>
 struct alignas(16) CoatingPolynomials {
     static constexpr int kTerms = kWavelengthTerms;
-    float s[kWavelengthTerms][kCosineTerms], p[kWavelengthTerms][kCosineTerms];  ///< the constant first
-    /// Makes the cosine's range [-1, 1]: scale * (index times cosine) - 1.
+    float s[kWavelengthTerms][kCosineTerms], p[kWavelengthTerms][kCosineTerms];  ///< constant terms first
+    /// Maps index times cosine to [-1, 1]: scale * (index times cosine) - 1.
     float scale;
     std::int32_t is_behind;  ///< 1: the medium of the lower index is behind the surface
     std::int32_t unused[2];
@@ -50,8 +50,8 @@ struct alignas(16) CoatingPolynomials {
         return sum;
     }
 
-    /// What is let through. `in`, `beyond`: index times cosine on both sides; `squared_quotient` as of
-    /// fresnel_transmittance; `wavelength`: the WavelengthVariable.
+    /// Returns the transmittances of the coated surface. `in`, `beyond`: index times cosine on both sides;
+    /// `squared_quotient` as in fresnel_transmittance; `wavelength`: the WavelengthVariable.
     REALCAM_INLINE FresnelTransmittance transmittance(float in, float beyond, float squared_quotient,
                                                       float wavelength) const {
         const FresnelTransmittance bare = fresnel_transmittance(in, beyond, squared_quotient);
@@ -60,8 +60,8 @@ struct alignas(16) CoatingPolynomials {
     }
 };
 
-/// What rays have kept of each polarisation: products over the surfaces. Planes of incidence are taken to be the same
-/// all the way.
+/// Accumulated transmittances of N rays, for each polarisation: products over the surfaces. The plane of incidence is
+/// assumed to be the same at all surfaces.
 template <int N>
 struct PassedPower {
     Lanes<float, N> s, p;
@@ -73,11 +73,11 @@ struct PassedPower {
     REALCAM_INLINE float of_unpolarised(int lane) const { return 0.5f * (s[lane] + p[lane]); }
 };
 
-/// Media with coatings between them. `Media`: OneWavelength or ManyWavelengths.
+/// Media of a trace with coated surfaces between them. `Media`: OneWavelength or ManyWavelengths.
 template <class Media, int kWavelengthTerms, int N>
 struct CoatedMedia {
     Media media;
-    const CoatingPolynomials<kWavelengthTerms>* surfaces;  ///< in the order in which the light meets them
+    const CoatingPolynomials<kWavelengthTerms>* surfaces;  ///< in the order of the light
     const float* variable;  ///< the WavelengthVariable of each ray; not read for one wavelength
     PassedPower<N>& passed;
 
@@ -88,7 +88,8 @@ struct CoatedMedia {
         PassedPower<N>& passed;
         static constexpr bool is_coated = true;
 
-        /// Takes note of a ray whose index times cosine is `before` in front of the surface and `behind` behind it.
+        /// Multiplies a ray's transmittances by those of the surface. `before`, `behind`: index times cosine on both
+        /// sides.
         REALCAM_INLINE void pass(int lane, float before, float behind) const {
             float wavelength = 0;
             if constexpr (kWavelengthTerms > 1) wavelength = variable[lane];

@@ -15,7 +15,7 @@ PolarisedFit fit_of(const CoatedSurface& surface, bool is_reflected, double befo
     std::vector<double> x, s, p;
     for (std::size_t j = 0; j < kNodes; ++j) {
         const double cosine = 0.5 + 0.5 * std::cos(std::numbers::pi * (static_cast<double>(j) + 0.5) / kNodes);
-        // If two indices are nearly equal, the other may be the lower one at this wavelength.
+        // `lower` is the lower index at the design wavelength; of two nearly equal indices the other may be lower here.
         const double lowest = std::min(before, beyond);
         const auto component_in = [&](double index) {
             return std::sqrt(lowest * lowest * cosine * cosine + (index - lowest) * (index + lowest));
@@ -27,7 +27,7 @@ PolarisedFit fit_of(const CoatedSurface& surface, bool is_reflected, double befo
             return is_reflected ? 1 - of.reflectance : of.transmittance;
         };
         const double quotient = beyond * beyond / (before * before), sum_s = in + out, sum_p = quotient * in + out;
-        const bool unbent = surface.is_mirror();  // Fresnel's transmittance of a border between two equal media is 1
+        const bool unbent = surface.is_mirror();  // equal indices: Fresnel transmittance 1
         x.push_back(scale * component_in(lower) - 1);
         s.push_back(kept(response.s) * (unbent ? 1 : sum_s * sum_s / (4 * in * out)));
         p.push_back(kept(response.p) * (unbent ? 1 : sum_p * sum_p / (4 * quotient * in * out)));

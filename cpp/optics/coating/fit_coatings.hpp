@@ -16,17 +16,17 @@ struct PolarisedFit {
     CosineFit s{}, p{};
 };
 
-/// The fit for one wavelength. `before`, `beyond`, `lower`: indices of the media on both sides, and of the one in which
-/// the cosine is measured. `scale`: as in CoatingPolynomials.
+/// Fits one wavelength. `before`, `beyond`, `lower`: indices of the media on both sides, and of the one in which the
+/// cosine is measured. `scale`: as in CoatingPolynomials.
 PolarisedFit fit_of(const CoatedSurface& surface, bool is_reflected, double before, double beyond, double lower,
                     double scale);
 
 }  // namespace fit_coatings_detail
 
-/// The polynomials of the surfaces on a way through the lens, in the order in which the light meets them; a stop
-/// changes nothing. For surfaces that reflect light which they could transmit, see GhostCoating. `wavelengths_nm`: to
-/// be fitted with equal weights; one where kWavelengthTerms is 1. `variable`: of the spectrum. An unknown coating
-/// counts as CoatedSurface has it. Throws InputError where an index is not known.
+/// Fits the coating polynomials of the surfaces along an optical path, in the order of the light; they are 1 at a stop.
+/// For surfaces that reflect light which they could transmit, see GhostCoating. `wavelengths_nm`: fitted with equal
+/// weights; a single one if kWavelengthTerms is 1. `variable`: the WavelengthVariable of the spectrum. Unknown coatings
+/// are treated as in CoatedSurface. Throws InputError if an index is unknown.
 template <int kWavelengthTerms>
 std::vector<CoatingPolynomials<kWavelengthTerms>> fit_coatings(const LensSystem& lens, const std::vector<Crossing>& way,
                                                                const std::vector<double>& wavelengths_nm,
@@ -40,7 +40,7 @@ std::vector<CoatingPolynomials<kWavelengthTerms>> fit_coatings(const LensSystem&
         fitted[k].is_behind = beyond < before;
     }
     std::vector<double> x;
-    std::vector<std::vector<PolarisedFit>> fits(way.size());  // of each crossing, by wavelength; none of a stop's
+    std::vector<std::vector<PolarisedFit>> fits(way.size());  // of each crossing and wavelength; empty for a stop
     for (const double wavelength : wavelengths_nm) {
         x.push_back(static_cast<double>(variable.at(static_cast<float>(wavelength))));
         const std::vector<double> indices = lens.indices(wavelength);
@@ -74,7 +74,7 @@ std::vector<CoatingPolynomials<kWavelengthTerms>> fit_coatings(const LensSystem&
     return fitted;
 }
 
-/// The polynomials for light on its way through the whole lens.
+/// Fits the polynomials for light that passes the whole lens.
 template <int kWavelengthTerms>
 std::vector<CoatingPolynomials<kWavelengthTerms>> fit_coatings(const LensSystem& lens, LightDirection direction,
                                                                const std::vector<double>& wavelengths_nm,

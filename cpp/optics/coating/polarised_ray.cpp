@@ -30,7 +30,7 @@ RayTransmittance PolarisedTrace::operator()(Vec3d origin, Vec3d direction) const
         if (all.free.frames && all.free.frames[i].before.changes) change(all.free.frames[i].before, ray, fields);
         const Vec3d before = normalized(ray.direction[0]);
         FreeParts<double> free = all.free.from(static_cast<int>(i));
-        free.frames = nullptr;  // which would also lead out of the surface's frame
+        free.frames = nullptr;  // the frame change would also leave the surface's frame
         trace_lens(LensView<double>{&surface, 1, all.kind, all.iris, free}, ray, PathRecord<double, 1>{});
         if (ray.status[0] != 0 || !surfaces_[i]) continue;
         const Vec3d normal = normal_at(all, static_cast<int>(i), ray.origin[0]);
@@ -70,7 +70,7 @@ PolarisedTrace::Fields PolarisedTrace::unpolarised(Vec3d direction) {
 PolarisedTrace::Fields PolarisedTrace::across(const Fields& fields, Vec3d before, Vec3d after, Vec3d normal,
                                               Complex to_s, Complex to_p) {
     const Vec3d across_plane = cross(before, normal);
-    // Nearer to the normal than this both polarisations are treated alike to all digits.
+    // Closer to normal incidence than this, both polarisations behave alike to double precision.
     const bool normal_incidence = dot(across_plane, across_plane) < 1e-18;
     const Vec3d s = normal_incidence ? some_perpendicular(before) : normalized(across_plane);
     const Vec3d p_before = cross(s, before), p_after = cross(s, after);

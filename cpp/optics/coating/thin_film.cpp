@@ -17,31 +17,31 @@ Complex expm1(Complex z) {
             std::exp(z.real()) * std::sin(z.imag())};
 }
 
-/// n cos(angle) in a medium of that index: the component of the wave vector along the normal, over that of vacuum. In a
-/// medium that absorbs, or in which light does not propagate, it is that of the wave that fades.
+/// n cos(angle) in a medium of refractive index `index`: the normal component of the wave vector over the vacuum wave
+/// number. In an absorbing medium, and for an evanescent wave, it is that of the decaying wave.
 Complex normal_component(Complex index, double index_before, double cosine) {
-    // n'^2 - n^2 sin^2 in a form that keeps its digits at grazing incidence.
+    // n'^2 - n^2 sin^2 in a form that does not cancel at grazing incidence.
     const Complex square =
         (index - index_before) * (index + index_before) + index_before * index_before * cosine * cosine;
     const Complex root = std::sqrt(square);
     return root.imag() < 0 ? -root : root;
 }
 
-/// The tangential fields at one plane: electric and magnetic for s, magnetic and electric for p. Their quotient is the
-/// admittance.
+/// Tangential fields at one plane: electric (u) and magnetic (v) for s, magnetic and electric for p. The admittance is
+/// v / u.
 struct TangentialFields {
     Complex u, v;
 };
 
-/// The fields in front of a film from those behind it, over exp(-i delta), which is their growth against an absorbing
-/// film's light: so no film is too thick. With h = (1 - exp(2 i delta)) / 2 the characteristic matrix
-/// {{cos d, -i sin d / y}, {-i y sin d, cos d}} over exp(-i d) is {{1 - h, h / y}, {y h, 1 - h}}.
+/// Returns the fields in front of a film from those behind it, divided by exp(-i delta), which grows without limit in a
+/// thick absorbing film. With h = (1 - exp(2 i delta)) / 2 the characteristic matrix {{cos d, -i sin d / y}, {-i y sin
+/// d, cos d}} over exp(-i d) is {{1 - h, h / y}, {y h, 1 - h}}.
 TangentialFields through_film(TangentialFields behind, const FilmStack::Film& film, double wave_number,
                               Complex component, Complex scale) {
     const Complex delta = wave_number * film.thickness_nm * component;
     const Complex h = -0.5 * expm1(Complex(0, 2) * delta);
     const Complex y = component * scale;
-    // At the film's critical angle both h and y are 0, and h / y is -i k d / scale.
+    // At the film's critical angle both h and y are 0, and h / y tends to -i k d / scale.
     const Complex quotient = component == Complex(0) ? Complex(0, -wave_number * film.thickness_nm) / scale : h / y;
     return {(1.0 - h) * behind.u + quotient * behind.v, y * h * behind.u + (1.0 - h) * behind.v};
 }
@@ -53,13 +53,13 @@ SurfaceResponse response(const FilmStack& stack, double cosine, bool is_p) {
     const Complex y_behind = behind * scale_in(stack.index_behind);
     const double y_before = is_p ? cosine / before : cosine * before;
     TangentialFields fields{1, y_behind};
-    Complex passed = 1;  // the transmitted field over what the fields in front have been divided by
+    Complex passed = 1;  // the transmitted field over the product of all divisors of `fields`
     for (std::size_t i = stack.films.size(); i-- > 0;) {
         const FilmStack::Film& film = stack.films[i];
         const Complex component = normal_component(film.index, before, cosine);
         fields = through_film(fields, film, wave_number, component, scale_in(film.index));
         passed *= std::exp(Complex(0, wave_number * film.thickness_nm) * component);
-        // A stack of some hundred films that reflects well would leave the range of double.
+        // A highly reflecting stack of some hundred films would otherwise leave the range of double.
         const double size = std::max(std::abs(fields.u), std::abs(fields.v));
         if (size > 1e100) {
             fields = {fields.u / size, fields.v / size};
@@ -75,7 +75,7 @@ SurfaceResponse response(const FilmStack& stack, double cosine, bool is_p) {
     if (is_p) result.t *= before / stack.index_behind;  // from the magnetic to the electric field
     result.reflectance = std::norm(y_before * fields.u - fields.v) / whole;
     result.transmittance = power * out;
-    // What flows in less what flows out. Rounding must not make a gain of it where nothing absorbs.
+    // Power flowing in minus power flowing out, clamped: rounding must not turn it into a gain in a lossless stack.
     result.absorptance = std::max(0.0, power * ((fields.u * std::conj(fields.v)).real() - out));
     return result;
 }
@@ -85,8 +85,8 @@ SurfaceResponse response(const FilmStack& stack, double cosine, bool is_p) {
 }  // namespace thin_film_detail
 
 PolarisedResponse response_of(const FilmStack& stack, double cosine) {
-    // At 0 exactly nothing flows through the surface, of which no share can be taken; this is closer to it than any
-    // ray.
+    // At cosine 0 no power flows through the surface, so that its shares are undefined; no ray comes closer to grazing
+    // than 1e-100.
     const double safe = std::clamp(cosine, 1e-100, 1.0);
     return {thin_film_detail::response(stack, safe, false), thin_film_detail::response(stack, safe, true)};
 }

@@ -6,27 +6,27 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Plane films between two media at one wavelength, in the order in which the light meets them. Refractive indices are
-/// n + ik, light going as exp(i (k x - omega t)), so that k > 0 absorbs.
+/// Plane films between two media at one wavelength, in the order of the light. Refractive indices are n + ik for waves
+/// exp(i (k x - omega t)), so that a positive imaginary part absorbs.
 struct FilmStack {
     struct Film {
         std::complex<double> index;
         double thickness_nm;
     };
     double wavelength_nm;
-    double index_before;  ///< of the medium from which the light comes: real, for else a wave there has no power of its
-                          ///< own
+    double index_before;  ///< of the incident medium: real, since in an absorbing medium the incident wave has no power
+                          ///< of its own
     std::vector<Film> films;
     std::complex<double> index_behind;
 };
 
-/// What one polarisation does at a coated surface.
+/// Response of a coated surface to one polarisation.
 struct SurfaceResponse {
-    /// Coefficients of the electric field (Fresnel's). For p its direction is s x k on every wave, where s is the
-    /// field's direction in the other polarisation and k the wave's. So at normal incidence r has opposite signs for s
-    /// and p.
+    /// Amplitude coefficients of the electric field (Fresnel's). The direction of the p field is s x k on every wave,
+    /// where s is the direction of the s field and k that of the wave. So at normal incidence r has opposite signs for
+    /// s and p.
     std::complex<double> r, t;
-    double reflectance, transmittance, absorptance;  ///< shares of the power through the surface
+    double reflectance, transmittance, absorptance;  ///< as shares of the incident power
 };
 
 struct PolarisedResponse {
@@ -43,8 +43,8 @@ using Complex = std::complex<double>;
 
 }  // namespace thin_film_detail
 
-/// Reflection and transmission of a film stack by the characteristic matrix of F. Abeles (H. A. Macleod, Thin-Film
-/// Optical Filters, chapter 2). `cosine`: of the angle of incidence, 0 to 1, in the medium from which the light comes.
+/// Returns the reflection and transmission of a film stack by the characteristic matrix of F. Abeles (H. A. Macleod,
+/// Thin-Film Optical Filters, chapter 2). `cosine`: cosine of the angle of incidence, 0 to 1, in the incident medium.
 PolarisedResponse response_of(const FilmStack& stack, double cosine);
 
 }  // namespace REALCAM_NAMESPACE

@@ -3,8 +3,8 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// The lens with its film as one more surface: a mirror of that reflectance, as it is curved and placed, open up to
-/// `radius` mm. For light that the film sends back into the lens.
+/// Returns the lens with its film appended as the last surface: a mirror with the film's curvature and placement, this
+/// reflectance and a clear semi-diameter of `radius` mm. For light that the film reflects back into the lens.
 LensSystem with_film_mirror(LensSystem lens, double reflectance, double radius);
 
 }  // namespace REALCAM_NAMESPACE

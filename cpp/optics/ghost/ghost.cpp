@@ -20,8 +20,8 @@ GhostPath ghost_path(const LensSystem& lens, double wavelength_nm, GhostPair pai
     const auto surface = [&](int i) -> const Surface& { return with_film.surfaces[static_cast<std::size_t>(i)]; };
     const std::vector<double> n = with_film.indices(wavelength_nm), z = with_film.vertices();
     ParaxialRay rays[] = {{1, 0}, {0, 1}};
-    double direction_sign = 1;  // of the light along z
-    double at = 0;              // z of the vertex that it met last
+    double direction_sign = 1;  // sign of the light's direction along z
+    double at = 0;              // z of the last vertex crossed
     std::vector<GhostPath::Meeting> meetings;
     for (const Crossing& crossing : crossings_of(lens, pair)) {
         const double here = z[static_cast<std::size_t>(crossing.surface)];

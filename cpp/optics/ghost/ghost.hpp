@@ -6,25 +6,27 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// First-order data of light that two surfaces reflect once each on its way to the film.
+/// First-order data of a ghost: light that is reflected once by each of two surfaces on its way to the film.
 struct GhostPath {
     double effective_focal_length;  ///< mm
-    double back_focal_distance;     ///< last vertex to where light from infinity is focused, mm; negative: before it
-    ParaxialRay of_height, of_slope;  ///< at the last vertex, what has height or slope 1 alone at the first one
-    /// A surface that it meets, and the heights there of those two rays.
+    double back_focal_distance;  ///< last vertex to the focus of light from infinity, mm; negative: in front of the
+                                 ///< vertex
+    ParaxialRay of_height, of_slope;  ///< at the last vertex: the rays with (height, slope) = (1, 0) and (0, 1) at the
+                                      ///< first vertex
+    /// A surface on the path, and the heights of these two rays there.
     struct Meeting {
         int surface;
         double of_height, of_slope;
     };
-    std::vector<Meeting> meetings;  ///< in its order; the film is none
+    std::vector<Meeting> meetings;  ///< in the order of the light, without the film
 };
 
-/// The ghost of a pair of surfaces.
+/// Returns the first-order data of the ghost of a pair of surfaces.
 ///
-/// A paraxial ray meets the surfaces one by one; at each reflection, a mirror's too, the index changes its sign (R. H.
-/// Abd El-Maksoud and J. M. Sasian, "Paraxial ghost image analysis", Proc. SPIE 7428, 742807, 2009). Throws InputError
-/// where the two are not refracting surfaces, or the film and one of these, in that order, and where the lens is no
-/// centred one of revolution.
+/// Traces paraxial rays surface by surface; at each reflection, including those at mirrors, the index changes its sign
+/// (R. H. Abd El-Maksoud and J. M. Sasian, "Paraxial ghost image analysis", Proc. SPIE 7428, 742807, 2009). Throws
+/// InputError unless the pair is two refracting surfaces, or the film and a refracting surface, in that order, and
+/// unless the lens is centred and rotationally symmetric.
 GhostPath ghost_path(const LensSystem& lens, double wavelength_nm, GhostPair pair);
 
 }  // namespace REALCAM_NAMESPACE

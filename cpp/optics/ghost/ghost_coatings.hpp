@@ -7,8 +7,9 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// The coatings of the crossings of a way, or of several. `coatings`: their fit_coatings; `wavelengths_nm`, `variable`:
-/// as cubics_over's, a single one if kWavelengthTerms is 1. Throws InputError where a glass has no index.
+/// Returns the coatings at the crossings of one or several ghost paths. `coatings`: fit_coatings of the same crossings;
+/// `wavelengths_nm`, `variable`: as in cubics_over, with a single wavelength if kWavelengthTerms is 1. Throws
+/// InputError if a glass has no index at one of the wavelengths.
 template <int kWavelengthTerms>
 std::vector<GhostCoating<kWavelengthTerms>> ghost_coatings(
     const LensSystem& lens, const std::vector<Crossing>& way,

@@ -4,24 +4,25 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// A crossing on a ghost's way: of a reflection, the polynomials are those of 1 - reflectance over Fresnel's
-/// transmittance.
+/// Coating at one crossing of a ghost path. At a reflection the polynomials are those of (1 - reflectance) / (Fresnel
+/// transmittance).
 template <int kWavelengthTerms>
 struct alignas(16) GhostCoating : CoatingPolynomials<kWavelengthTerms> {
-    // For the medium behind, into which a reflected ray does not go:
+    // Index changes to the medium on the other side of the surface, which a reflected ray does not enter:
     IndexCubic other_change;      ///< n'^2 / n^2 - 1
     IndexCubic other_difference;  ///< n'^2 - n^2
     std::int32_t is_reflected;
     std::int32_t unused[3];
 };
 
-/// Media on a ghost's way. `kWavelengthTerms`: of one wavelength, or of a spectrum, with one for each ray.
+/// Coated media along a ghost path. `kWavelengthTerms`: kOneWavelengthTerms for a single wavelength; more for a
+/// spectrum, with one wavelength for each ray.
 template <int kWavelengthTerms, int N>
 struct GhostMedia {
     static constexpr bool disperses = kWavelengthTerms > kOneWavelengthTerms;
     using Uncoated = std::conditional_t<disperses, ManyWavelengths::Boundary, OneWavelength::Boundary<float>>;
 
-    const IndexCubic* indices;  ///< in the order in which the light meets them; not read for one wavelength
+    const IndexCubic* indices;  ///< in the order of the light; not read for one wavelength
     const GhostCoating<kWavelengthTerms>* coatings;
     const float* variable;  ///< the WavelengthVariable of each ray; not read for one wavelength
     PassedPower<N>& passed;
@@ -38,7 +39,7 @@ struct GhostMedia {
             const bool reflects = coating.is_reflected != 0;
             const float change = disperses ? coating.other_change.at(x) : coating.other_change.c[0];
             const float difference = disperses ? coating.other_difference.at(x) : coating.other_difference.c[0];
-            // 0 under total reflection: then nothing is let through, and all is reflected.
+            // 0 under total internal reflection: the transmittance is then 0 and the reflectance 1.
             const float other = select(reflects, sqrt_or_zero(in * in + difference), behind);
             const FresnelTransmittance through = coating.transmittance(in, other, 1.0f + change, x);
             passed.s[lane] *= select(reflects, 1.0f - through.s, through.s);
