@@ -5,19 +5,19 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// The path of a lens, with its rims changed for aiming. Owns the memory of its views.
+/// Path of a lens with modified rims, for ray aiming. Owns the memory of its views.
 class AimingPath {
 public:
-    /// Without rims, blades, obstructions and apertures: what a ray is aimed through. Whether the real lens lets it
-    /// pass is asked afterwards. Aspheres stay searched for within their rim.
+    /// The path without rims, blades, obstructions and apertures, for aiming rays; whether the real lens passes a ray
+    /// is checked afterwards. Aspheres are still searched only within their search radius.
     static AimingPath open(const LensPath<double>& path);
-    /// As it is, but for the stop, the surface of that index in the lens: its plane is open.
+    /// The real path, except that the stop is unbounded. `stop`: its surface index in the lens.
     static AimingPath with_open_stop(const LensPath<double>& path, int stop);
-    /// The lens as it is.
+    /// The unmodified path.
     static AimingPath real(const LensPath<double>& path) { return AimingPath(path); }
 
     LensView<double> view() const;
-    /// The first `count` surfaces that the light meets. Rays end in the frame of the last of them.
+    /// The first `count` surfaces in the order of the light. Rays end in the frame of the last of them.
     LensView<double> first(int count) const;
 
 private:
@@ -25,7 +25,7 @@ private:
 
     LensKind kind_;
     std::vector<SurfaceView<double>> steps_;
-    std::vector<FrameChanges<double>> frames_, frames_in_place_;  ///< those without the change to where rays leave
+    std::vector<FrameChanges<double>> frames_, frames_in_place_;  ///< in_place: without exit frames
     std::vector<FreeformView<double>> freeforms_;
     std::vector<ApertureView<double>> apertures_;
     Iris<double> iris_;

@@ -6,7 +6,7 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// An ellipse or a rectangle, in a frame of its own: u = along . (point - middle), v across that.
+/// An ellipse or a rectangle in its own frame: u = along . (point - middle), v perpendicular to it.
 template <class T>
 struct AperturePiece {
     T middle_x, middle_y, cos, sin;
@@ -21,19 +21,19 @@ struct AperturePiece {
     }
 };
 
-/// What a surface leaves open inside its clear semi-diameter, where that is no circle about the vertex.
+/// Opening of a surface inside its clear semi-diameter, unless it is a circle centred on the vertex.
 template <class T>
 struct alignas(16) ApertureView {
-    std::int32_t is_shaped;  ///< 0: there is nothing but the circle
-    std::int32_t has_outer;  ///< whether `outer` bounds it
-    std::int32_t corners;    ///< of a polygon that bounds it; 0: none does
+    std::int32_t is_shaped;  ///< 0: only the circle bounds the opening
+    std::int32_t has_outer;  ///< 1: `outer` bounds the opening
+    std::int32_t corners;    ///< number of corners of a bounding polygon; 0: no polygon
     std::int32_t obscurations;
     AperturePiece<T> outer;
     AperturePiece<T> obscuration[kMaxObscurations];
     T corner_x[kMaxApertureCorners], corner_y[kMaxApertureCorners];
 };
 
-/// Blocks rays that do not pass, in the frame of the surface that they have just met.
+/// Blocks rays outside the opening. Origins lie on the surface, in its frame.
 template <class T, int N>
 REALCAM_HD inline void cross_aperture(const ApertureView<T>& aperture, const Vec3Lanes<T, N>& origin,
                                       Lanes<int, N>& status, int vignetted) {
@@ -47,7 +47,7 @@ REALCAM_HD inline void cross_aperture(const ApertureView<T>& aperture, const Vec
         for (int i = 0; i < N; ++i) open[i] &= static_cast<int>(!piece.holds(origin.x[i], origin.y[i]));
     }
     if (aperture.corners > 0) {
-        // Inside is where a line to one side meets an odd number of edges.
+        // Even-odd rule: a point is inside if a ray from it towards +x crosses an odd number of edges.
         Lanes<int, N> odd;
         REALCAM_LANES
         for (int i = 0; i < N; ++i) odd[i] = 0;

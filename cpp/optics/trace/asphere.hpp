@@ -9,26 +9,27 @@ namespace REALCAM_NAMESPACE {
 template <class T>
 struct Sag {
     T height;      ///< z of the surface, mm
-    T size;  ///< of the conic's part and of each term, added up: they may cancel, but their roundings do not, mm
+    T size;  ///< absolute values of the conic and of each term, added up, mm: the terms may cancel, their rounding
+             ///< errors do not
     T derivative;  ///< d height / d (r^2)
 };
 
 /// Even asphere: z(r) = c r^2 / (1 + sqrt(1 - (1+k) c^2 r^2)) + a4 r^4 + a6 r^6 + ...
-/// Outside the search radius the sag goes on as a constant, so that a search never meets a square root of a
-/// negative number or a polynomial run wild.
+/// Outside the search radius the sag continues as a constant, so that a search never meets the square root of a
+/// negative number or a diverging polynomial.
 template <class T>
 REALCAM_INLINE Sag<T> asphere_sag(const SurfaceView<T>& surface, T radius_squared) {
-    using std::fabs;  // dual numbers have a function of this name of their own
+    using std::fabs;  // dual numbers bring their own overload
     const T r2 = select(radius_squared < surface.search_squared, radius_squared, surface.search_squared);
     const T root = sqrt_or_zero(T(1) - surface.conic_factor * surface.curvature * surface.curvature * r2);
     const T u = r2 * surface.inverse_search_squared, from_middle = u - T(0.5);
-    T polynomial = 0, slope = 0, sizes = 0;  // Horner, of p(u) = a4 + a6 u + ... and its derivative; sizes of its terms
-    // Always all terms, zeros too: a constant count unrolls, and the loop over the lanes becomes vector code.
+    T polynomial = 0, slope = 0, sizes = 0;  // Horner scheme: p(u) = a4 + a6 u + ..., its derivative, term sizes
+    // All terms, zeros included: a constant trip count unrolls, so that the loop over the lanes vectorises.
     REALCAM_UNROLL
     for (int i = kMaxAsphericTerms - 1; i >= 0; --i) {
         slope = slope * from_middle + polynomial;
         polynomial = polynomial * from_middle + surface.aspheric[i];
-        sizes = sizes * T(0.5) + fabs(surface.aspheric[i]);  // at the axis and the rim; the same for all rays
+        sizes = sizes * T(0.5) + fabs(surface.aspheric[i]);  // the bound for all rays, at the axis and the rim
     }
     const T base = quotient(surface.curvature * r2, T(1) + root), departure = u * u * polynomial;
     const T derivative =
@@ -38,31 +39,33 @@ REALCAM_INLINE Sag<T> asphere_sag(const SurfaceView<T>& surface, T radius_square
 }
 
 /// Search state of N lanes: a root of f(t) = z(t) - sag(r^2(t)). `below` and `above` are ray parameters with f <= 0
-/// (the scene's side of the surface) and f >= 0 (the film's): a bracket, in whichever order the ray meets them. A
-/// crossing in the right direction lies between them. NaN: the ray does not meet the surface.
+/// (scene side of the surface) and f >= 0 (film side), in whichever order the ray reaches them. They bracket a crossing
+/// in the required direction. NaN: the ray misses the surface.
 template <class T, int N>
 struct AsphereSearch {
     Lanes<T, N> t, below, above;
-    Lanes<T, N> residual, tolerance;  ///< |f|, and what rounding alone can leave of it
+    Lanes<T, N> residual, tolerance;  ///< |f|, and the size that rounding alone can give it
 };
 
-/// Newton's steps are taken alone for as long as they suffice on a lens that can be made. Then every other step halves
-/// the bracket, which bounds their number for any surface: 2^-digits of a bracket that is at most 2^8 times the scale.
+/// Newton steps are taken alone for as many steps as suffice for lenses that can be made. After that every other step
+/// bisects the bracket, which bounds the number of steps for any surface: 2^-digits of a bracket that is at most 2^8
+/// times the scale.
 inline constexpr int kNewtonSteps = 6;
 template <class T>
 inline constexpr int kMaxAsphereSteps = kNewtonSteps + 2 * (std::numeric_limits<T>::digits + 8);
 
-/// Share of the scale by which rounding may move a height: 1 / (16 sqrt(epsilon)) roundings.
+/// Largest lateral rounding error counted in the tolerance, in units of the axial one: 1 / (16 sqrt(epsilon)).
 template <class T>
 inline constexpr T kSteepest = std::numeric_limits<T>::digits == 24 ? T(181) : T(4194304);
 
-/// More than any squared radius.
+/// Marks sideways rays in begin_search; larger than any squared radius.
 template <class T>
 inline constexpr T kSideways = std::numeric_limits<T>::max() / 4;
 
-/// For a ray that goes through the surface: the sag's bounds are planes on either side of it. Returns how far from the
-/// axis (squared, less the square of the search radius) the ray meets the plane of the surface's edge. Where that is
-/// positive, the only crossing in this bracket may be one with the plane outside.
+/// Starts the search for a ray that crosses the planes that bound the sag; these planes are its bracket. Returns the
+/// squared distance from the axis at which the ray crosses the plane of the surface's edge, minus the squared search
+/// radius. If it is positive, the only crossing in this bracket may be one with the continuation outside. Adds
+/// kSideways for sideways rays.
 template <class T>
 REALCAM_INLINE T begin_search(const SurfaceView<T>& surface, Vec3<T> o, Vec3<T> p, T& t, T& below, T& above) {
     const SurfaceHit<T> conic =
@@ -74,22 +77,23 @@ REALCAM_INLINE T begin_search(const SurfaceView<T>& surface, Vec3<T> o, Vec3<T> 
     t = select(conic.met() & inside, conic.parameter, T(0.5) * (below + above));
     const T to_edge = (surface.sag_edge - o.z) * per_z;
     const T x = o.x + to_edge * p.x, y = o.y + to_edge * p.y;
-    // Less than 3 degrees from the vertex plane, or backwards: out of a fisheye's front, say.
+    // Within 3 degrees of the vertex plane, or backwards, as for rays in front of a fisheye.
     const bool sideways = p.z * surface.direction_sign_in * std::fabs(p.z) < T(0.0025) * dot(p, p);
-    // A sum, because gcc would turn a choice into a branch.
+    // A sum, because gcc would compile a select to a branch.
     return x * x + y * y - surface.search_squared + select(sideways, kSideways<T>, T(0));
 }
 
-/// A place on a ray: how far it has passed the surface there, and the derivative of that.
+/// A point on a ray: its parameter, the signed axial distance by which it lies beyond the surface, and the derivative
+/// of that distance.
 template <class T>
 struct WaySample {
     T parameter, beyond, slope;
 };
 
-/// The first piece of a ray's way, from `middle` - `half` to `middle` + `half`, that begins on the near side of the
-/// surface and ends on its far side. In a piece that comes nearer to the surface and turns away again, the turning
-/// point may lie on its other side. `sample` makes the WaySample of a parameter. Leaves the bracket as it is where
-/// there is none.
+/// Finds the first sub-interval of a ray, between `middle` - `half` and `middle` + `half`, that begins on the near side
+/// of the surface and ends on its far side. If the ray approaches the surface and recedes again within a sub-interval,
+/// the turning point may lie on the other side and is searched for. `sample` returns the WaySample of a parameter.
+/// Returns false, with the bracket unchanged, if there is no crossing.
 template <class T, class Sample>
 REALCAM_HD inline bool find_bracket_on_way(T middle, T half, T direction_sign, Sample&& sample, T& t, T& below,
                                            T& above) {
@@ -120,7 +124,8 @@ REALCAM_HD inline bool find_bracket_on_way(T middle, T half, T direction_sign, S
     return false;
 }
 
-/// For the others: a bracket on their way through the search cylinder.
+/// Finds a bracket for a ray that goes sideways or crosses outside the search radius, along its path through the search
+/// cylinder. Returns false if there is no crossing.
 template <class T>
 REALCAM_HD inline bool find_bracket(const SurfaceView<T>& surface, Vec3<T> o, Vec3<T> p, T& t, T& below, T& above) {
     const T across = p.x * p.x + p.y * p.y;
@@ -128,7 +133,7 @@ REALCAM_HD inline bool find_bracket(const SurfaceView<T>& surface, Vec3<T> o, Ve
     const T x = o.x + middle * p.x, y = o.y + middle * p.y;
     const T room = surface.search_squared - x * x - y * y;
     if (!(room > T(0))) return false;
-    // A little inside: at the very edge the sag's slope is already that of its continuation.
+    // Slightly shortened: at the very edge the sag's slope is already that of its continuation.
     const T half = (T(1) - T(16) * std::numeric_limits<T>::epsilon()) * std::sqrt(room / across);
     const auto sample = [&](T parameter) -> WaySample<T> {
         const Vec3<T> at = o + parameter * p;
@@ -139,7 +144,7 @@ REALCAM_HD inline bool find_bracket(const SurfaceView<T>& surface, Vec3<T> o, Ve
     return find_bracket_on_way(middle, half, surface.direction_sign_in, sample, t, below, above);
 }
 
-/// One safeguarded Newton step. `halve`: not Newton's step but the middle of the bracket.
+/// One safeguarded Newton step. `halve`: bisects the bracket instead.
 template <class T>
 REALCAM_INLINE void improve_search(const SurfaceView<T>& surface, Vec3<T> o, Vec3<T> p, bool halve, T& t, T& below,
                                    T& above, T& residual, T& tolerance) {
@@ -148,18 +153,18 @@ REALCAM_INLINE void improve_search(const SurfaceView<T>& surface, Vec3<T> o, Vec
     const Sag<T> sag = asphere_sag(surface, at.x * at.x + at.y * at.y);
     const T f = at.z - sag.height;
     const T slope = p.z - T(2) * sag.derivative * (at.x * p.x + at.y * p.y);
-    // Rounding of z(t) and of the sag, and what rounding of x(t) and y(t) becomes where the surface is steep. A wall is
-    // as steep as one likes: there the bracket has to shrink until the height fits too. And a ray that starts on the
-    // vertex has no lengths at all but the surface's own.
+    // Axial: rounding errors of z(t) and of the sag. Lateral: the effect of rounding errors of x(t) and y(t) on a steep
+    // surface. It is capped, since a surface may be arbitrarily steep: there the bracket has to shrink until the height
+    // fits too. The sag range is included because for a ray that starts on the vertex all other lengths are 0.
     const T axial = std::fabs(o.z) + std::fabs(t * p.z) + sag.size + T(0.0625) * (surface.sag_max - surface.sag_min);
     const T lateral = std::fabs(T(2) * sag.derivative) * (std::fabs(at.x) * (std::fabs(o.x) + std::fabs(t * p.x)) +
                                                           std::fabs(at.y) * (std::fabs(o.y) + std::fabs(t * p.y)));
     const T most = kSteepest<T> * axial;
     tolerance = T(4) * eps * (axial + select(lateral < most, lateral, most));
-    // A root that is crossed in the wrong direction is none.
+    // A root that is crossed in the wrong direction does not count.
     const bool right_direction_sign = slope * surface.direction_sign_in >= T(0);
     residual = select(right_direction_sign, std::fabs(f), std::numeric_limits<T>::max());
-    // Not both where f is 0: a root in the wrong direction would be all that is left.
+    // At f == 0 only `below` moves: moving both would leave nothing but this root, even if its direction is wrong.
     below = select(f <= T(0), t, below);
     above = select(f > T(0), t, above);
     const T newton = t - f / slope;
@@ -168,8 +173,9 @@ REALCAM_INLINE void improve_search(const SurfaceView<T>& surface, Vec3<T> o, Vec
     t = select(residual <= tolerance, t, next);
 }
 
-/// `slack`: by how much the search ended within its tolerance. A hit counts where that is not negative and the ray
-/// crosses in the right direction; one number says both, because gcc does not vectorise a chain of truth values here.
+/// Returns the hit of a finished search. `slack`: tolerance minus residual. A hit counts if `slack` and the component
+/// of the crossing in the required direction are positive; the smaller of them is the discriminant, because gcc does
+/// not vectorise a chain of booleans here.
 template <class T>
 REALCAM_INLINE SurfaceHit<T> asphere_hit(const SurfaceView<T>& surface, Vec3<T> o, Vec3<T> p, T t, T slope, T slack) {
     const Vec3<T> at = o + t * p;

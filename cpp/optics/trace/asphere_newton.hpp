@@ -5,7 +5,7 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// A ray that crosses the vertex plane steeply, as a function of its height z over that plane:
+/// A ray that crosses the vertex plane steeply, as a function of its height z above that plane:
 /// r^2 = plane + 2 change z + spread z^2, in units of the squared search radius.
 template <class T>
 struct HeightRay {
@@ -24,9 +24,10 @@ REALCAM_INLINE HeightRay<T> height_ray(const SurfaceView<T>& surface, Vec3<T> o,
     return {per_height, unit * (x * x + y * y), unit * (x * dx + y * dy), unit * (dx * dx + dy * dy)};
 }
 
-/// Whether a ray crosses the surface once, and in the right direction. While its height lies between the sag's bounds,
-/// its distance from the axis is greatest at one of these. If it rises faster than the surface does anywhere inside,
-/// its height over the surface only grows. Of directions so long that their squares leave the range of T it says no.
+/// True if a ray crosses the surface exactly once, and in the required direction. While its height lies between the
+/// sag's bounds, its distance from the axis is largest at one of these bounds. If it rises faster than the surface
+/// anywhere inside, its height above the surface increases monotonically. False for directions whose squares leave the
+/// range of T.
 template <class T>
 REALCAM_INLINE bool crosses_once(const SurfaceView<T>& surface, const HeightRay<T>& ray) {
     const T at_min = ray.share(surface.sag_min), at_max = ray.share(surface.sag_max);
@@ -35,8 +36,8 @@ REALCAM_INLINE bool crosses_once(const SurfaceView<T>& surface, const HeightRay<
            (ray.per_height * surface.direction_sign_in > T(1e-18));
 }
 
-/// Height at which a ray meets a paraboloid, improved by two steps of Newton's method on the polynomial `start`.
-/// `inverse_rise`: about 1 / (d/dz of the height over the surface).
+/// Height at which a ray meets the starting paraboloid, improved by two Newton steps on the polynomial `start`.
+/// `inverse_rise`: about 1 / (d/dz of the height above the surface).
 template <class T>
 REALCAM_INLINE T start_height(const SurfaceView<T>& surface, const HeightRay<T>& ray, T& inverse_rise) {
     const T bend = T(2) * surface.start_parabola, rise = T(1) - bend * ray.change;
@@ -51,7 +52,7 @@ REALCAM_INLINE T start_height(const SurfaceView<T>& surface, const HeightRay<T>&
             slope = slope * u + polynomial;
             polynomial = polynomial * u + surface.start[i];
         }
-        // The second inverse is the first, improved by Newton's method.
+        // The second reciprocal is the first one refined by a Newton step.
         const T new_rise = T(1) - T(2) * (polynomial + u * slope) * ray.half_derivative(z);
         inverse_rise = step == 0 ? quotient(T(1), new_rise) : inverse_rise * (T(2) - new_rise * inverse_rise);
         z -= (z - u * polynomial) * inverse_rise;
@@ -59,7 +60,7 @@ REALCAM_INLINE T start_height(const SurfaceView<T>& surface, const HeightRay<T>&
     return z;
 }
 
-/// One or two see that the start was good, and two more do for float64.
+/// Newton steps at most: one or two confirm the starting height, and two more suffice for float64.
 inline constexpr int kHeightSteps = 4;
 
 }  // namespace REALCAM_NAMESPACE

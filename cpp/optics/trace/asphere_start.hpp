@@ -10,22 +10,22 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Sets the polynomial a4 + a6 u + ..., given by its terms at the search radius, mm. In long double, because sums
-/// cancel where the terms do.
+/// Sets the polynomial a4 + a6 u + ..., specified by its terms at the search radius, mm. In long double, because the
+/// sums cancel where the terms do.
 template <class T>
 void set_terms(SurfaceView<T>& view, const std::vector<long double>& terms) {
     std::vector<long double> about_middle = terms;
-    // Horner's scheme again and again, each time for the next power of u - 1/2.
+    // Taylor shift to u = 1/2 by repeated Horner schemes, one for each power of u - 1/2.
     for (std::size_t power = 0; power < terms.size(); ++power)
         for (std::size_t i = terms.size() - 1; i-- > power;) about_middle[i] += 0.5L * about_middle[i + 1];
     std::transform(about_middle.begin(), about_middle.end(), view.aspheric,
                    [](long double term) { return static_cast<T>(term); });
 }
 
-/// At most how steep an asphere is, as |d sag / d r|, from the axis to a share of the search radius; infinite where it
-/// stands on end. `terms` as for set_terms. A bound, not a sample: between two radii the conic's slope lies between
-/// those at both, and so do those of the terms that rise and of those that fall. The conic's numbers are the view's,
-/// whose roundings move an edge.
+/// Upper bound of |d sag / d r| from the axis to a share of the search radius; infinite if the surface becomes
+/// vertical. `terms` as in set_terms. A strict bound, not a sample: between two radii the conic's slope lies between
+/// its values at both, and so do the sums of the rising and of the falling terms. The conic's parameters are the
+/// view's, because their rounding moves the edge.
 template <class T>
 double steepest_slope(const SurfaceView<T>& view, const std::vector<long double>& terms, double share_of_radius) {
     constexpr int kSteps = 1024;
@@ -35,7 +35,7 @@ double steepest_slope(const SurfaceView<T>& view, const std::vector<long double>
     };
     const auto slopes_at = [&](double share) -> Slopes {
         const double r = share * reach;
-        // Rounding can take an edge past the conic's end.
+        // Rounding can put the edge beyond the end of the conic.
         const double radicand = std::max(0.0, 1 - static_cast<double>(view.conic_factor) * c * c * r * r);
         Slopes slopes{c * r / std::sqrt(radicand), 0, 0};
         double power = share * share * share / reach;
@@ -58,14 +58,14 @@ double steepest_slope(const SurfaceView<T>& view, const std::vector<long double>
     return steepest;
 }
 
-/// Where Newton's method starts, and for which rays it needs no bracket.
+/// Sets the starting polynomial of Newton's method, and the bounds for rays that need no bracket.
 template <class T>
 void set_start(SurfaceView<T>& view, const Surface& surface, const std::vector<long double>& terms) {
     const double search_squared = static_cast<double>(view.search_squared), reach = std::sqrt(search_squared);
     constexpr double kInnerRadius = 0.9;
-    // Less than 3 degrees from the vertex plane, a ray is no function of the height.
+    // Within 3 degrees of the vertex plane, a ray is not a function of the height.
     constexpr double kLeastSlope = 0.05;
-    // A ray that is nearly parallel to the surface would be placed by its roundings.
+    // With a margin of 2%: the crossing of a ray nearly parallel to the surface is dominated by rounding errors.
     const auto crossed_once = [&](double share_of_radius) {
         const double steepest = std::max(1.02 * steepest_slope(view, terms, share_of_radius), kLeastSlope);
         return static_cast<T>(1 / (steepest * steepest * search_squared));
@@ -76,8 +76,7 @@ void set_start(SurfaceView<T>& view, const Surface& surface, const std::vector<l
     constexpr int kPoints = 64;
     std::vector<double> u, height_over_u;
     for (int i = 0; i < kPoints; ++i) {
-        u.push_back(
-            0.5 - 0.5 * std::cos(std::numbers::pi * (i + 0.5) / kPoints));  // dense at both ends, where a fit is worst
+        u.push_back(0.5 - 0.5 * std::cos(std::numbers::pi * (i + 0.5) / kPoints));  // Chebyshev nodes
         height_over_u.push_back(surface.sag(reach * std::sqrt(u.back())) / u.back());
     }
     view.start_parabola = static_cast<T>(fit_polynomial<1>(u, height_over_u)[0]);

@@ -6,7 +6,7 @@ namespace realcam {
 
 namespace {
 
-/// -1 where light reaches the film against the last axis.
+/// Returns -1 if light reaches the film against the direction of the last axis, else 1.
 double direction_behind(const LensSystem& lens) {
     const std::vector<Crossing> way = crossings_of(lens);
     double sign = 1;
@@ -17,7 +17,8 @@ double direction_behind(const LensSystem& lens) {
     return sign;
 }
 
-/// On the axis, and behind the lens: not before a single mirror.
+/// True if lens and film are centred on one axis and the film lies behind the last vertex, not in front of it as for a
+/// single mirror.
 bool is_centred(const LensSystem& lens) {
     return !path_frames_detail::has_placements(lens) && lens.film_placement.is_in_place() && lens.film_distance >= 0;
 }

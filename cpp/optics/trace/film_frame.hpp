@@ -3,15 +3,15 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// The frame of the film, as seen from the lens frame: its vertex in the origin, and light comes with growing z.
+/// Frame of the film in the lens frame: the origin is the film's vertex, and light arrives with growing z.
 Affine<double> film_frame(const LensSystem& lens);
 
-/// Between the film's frame, where the film stands at film_distance, and the frame of a camera: its axes are the
-/// lens's, and its z axis goes through the middle of the film, whose z is camera_film_position(). For a centred lens
-/// both are the lens frame, and nothing is said.
+/// Path ends in the frame of the film, shifted such that the film stands at z = film_distance, and in the frame of the
+/// camera: its axes are parallel to the lens's, and its z axis passes through the film's centre, whose z is
+/// camera_film_position(). For a centred lens both are the lens frame, and the ends are empty.
 PathEnds film_path_ends(const LensSystem& lens, LightDirection direction);
 
-/// Of the film, from the plane of the front vertex along the lens's axis, mm.
+/// Position of the film along the lens's axis, from the plane of the front vertex, mm.
 double camera_film_position(const LensSystem& lens);
 
 }  // namespace REALCAM_NAMESPACE

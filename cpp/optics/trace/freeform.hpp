@@ -9,29 +9,29 @@ namespace REALCAM_NAMESPACE {
 
 inline constexpr int kXyCoefficients = (kMaxXyDegree + 1) * (kMaxXyDegree + 2) / 2;
 
-/// A surface that is no conic and no even asphere, made ready for the trace. Lengths in mm. The sag is searched for in
-/// the part of a rectangle that a circle about the vertex leaves; outside of it the surface goes on from its edge.
+/// A surface that is neither a conic nor an even asphere, prepared for tracing. Lengths in mm. The search region is the
+/// intersection of a rectangle with a circle about the vertex; outside it the surface continues from the region's edge.
 template <class T>
 struct alignas(16) FreeformView {
-    T middle_x, middle_y, half_x, half_y;  ///< of the rectangle
-    T reach, inverse_reach;                ///< radius of the circle
-    T sag_min, sag_max;                    ///< bounds of the sag inside
+    T middle_x, middle_y, half_x, half_y;  ///< centre and half-sides of the rectangle
+    T reach, inverse_reach;  ///< radius of the circle, and its inverse
+    T sag_min, sag_max;  ///< bounds of the sag in the search region
     T curvature_x, curvature_y, conic_factor_x, conic_factor_y;
-    T term_size;  ///< the coefficients' absolute values, added up: their terms may cancel, their roundings do not
-    std::int32_t is_toroid;  ///< else the base is a biconic
+    T term_size;  ///< sum of the coefficients' absolute values: the terms may cancel, their rounding errors do not
+    std::int32_t is_toroid;  ///< 0: the base is a biconic
     std::int32_t section_terms, radial_terms, forbes_terms;
-    std::int32_t xy_degree;  ///< -1: no terms
-    T section[kMaxAsphericTerms];  ///< toroid: of v^4, v^6, ..., v = y / reach
-    T radial[kMaxRadialTerms];     ///< of u, u^2, ..., u = r / reach
-    /// Forbes: of powers of 2 w - 1, w = r^2 forbes_scale. The sum is multiplied by w, and by (1 - w) / sqrt(1 - c^2
-    /// r^2) where is_bfs is 1, by w where it is 0.
+    std::int32_t xy_degree;  ///< -1: no xy terms
+    T section[kMaxAsphericTerms];  ///< toroid: coefficients of v^4, v^6, ..., v = y / reach
+    T radial[kMaxRadialTerms];  ///< coefficients of u, u^2, ..., u = r / reach
+    /// Forbes polynomial: coefficients of the powers of 2 w - 1, w = r^2 forbes_scale. The sum is multiplied by w, and
+    /// by (1 - w) / sqrt(1 - c^2 r^2) if is_bfs is 1, by w if it is 0.
     T forbes[kMaxForbesTerms];
     T forbes_scale, forbes_curvature_squared, is_bfs;
-    /// Of x^i y^j over reach^(i + j): for j from the degree down to 0, i from the degree - j down to 0.
+    /// Coefficients of x^i y^j / reach^(i + j): for j from the degree down to 0, i from the degree - j down to 0.
     T xy[kXyCoefficients];
 };
 
-/// The sag of N points, its derivatives by x and y, and the size of what was added up to it.
+/// Sag of N points, its derivatives with respect to x and y, and the sum of its terms' absolute values.
 template <class T, int N>
 struct FreeformSags {
     Lanes<T, N> height, slope_x, slope_y, size;
@@ -39,16 +39,16 @@ struct FreeformSags {
 
 namespace freeform_detail {
 
-// Dual numbers have functions of these names of their own.
+// Dual numbers bring their own overloads.
 using std::fabs;
 using std::sqrt;
 
-/// A point inside the region, for one that may lie outside, and what moving there does to the derivatives.
+/// A point clamped to the search region, and the effect of the clamping on the derivatives.
 template <class T>
 struct InsidePoint {
     T x, y;  ///< inside
-    T keeps_x, keeps_y;  ///< 0 where the rectangle has clamped it
-    T across;  ///< by how much the circle has shortened its distance from the vertex; 1: not
+    T keeps_x, keeps_y;  ///< 0 if the rectangle has clamped the coordinate
+    T across;  ///< factor by which the circle has shortened the distance from the vertex; 1: unchanged
 };
 
 template <class T>
@@ -62,7 +62,7 @@ REALCAM_INLINE InsidePoint<T> inside_point(const FreeformView<T>& form, T x, T y
     return {across * cx, across * cy, select(in_x == dx, T(1), T(0)), select(in_y == dy, T(1), T(0)), across};
 }
 
-/// The square root in a denominator: not 0, so that no slope is infinite.
+/// Square root for a denominator: bounded away from 0, so that no slope is infinite.
 template <class T>
 REALCAM_INLINE T root_of(T radicand) {
     const T least = std::numeric_limits<T>::epsilon();
@@ -105,7 +105,7 @@ REALCAM_HD inline void set_base(const FreeformView<T>& form, const T* x, const T
         const T section = quotient(cy * y[i] * y[i], T(1) + root) + v2 * v2 * terms[i];
         const T along =
             quotient(cy * y[i], root) + form.inverse_reach * T(2) * v * v2 * (T(2) * terms[i] + v2 * slopes[i]);
-        // The circle about the line, of the radius that the section leaves: nothing cancels where c_x is small.
+        // Circle of revolution, whose radius is reduced by the section's sag; this form does not cancel for small c_x.
         const T rest = T(1) - cx * section, ring = root_of(rest * rest - cx * cx * x[i] * x[i]);
         const T base = quotient(section * (T(1) + rest) + cx * x[i] * x[i], T(1) + ring);
         out.height[i] = base;
@@ -133,7 +133,7 @@ REALCAM_HD inline void add_radial(const FreeformView<T>& form, const T* x, const
     }
     REALCAM_LANES
     for (int i = 0; i < N; ++i) {
-        // sum + u slope is the derivative of u sum by u. In the tip of a cone the surface counts as level.
+        // sum + u slope is the derivative of u sum with respect to u. At the tip of a cone the slope counts as 0.
         const T per_r = form.inverse_reach * form.inverse_reach;
         const T over_u = quotient((sum[i] + u[i] * slope[i]) * per_r, select(u[i] > T(0), u[i], T(1)));
         out.height[i] += u[i] * sum[i];
@@ -172,7 +172,7 @@ REALCAM_HD inline void add_forbes(const FreeformView<T>& form, const T* x, const
     }
 }
 
-/// Horner's scheme in y, whose coefficients are Horner's schemes in x.
+/// Horner scheme in y, whose coefficients are Horner schemes in x.
 template <class T, int N>
 REALCAM_HD inline void add_xy(const FreeformView<T>& form, const T* x, const T* y, FreeformSags<T, N>& out) {
     Lanes<T, N> sum, by_x, by_y, row, row_slope;
@@ -208,7 +208,7 @@ REALCAM_HD inline void add_xy(const FreeformView<T>& form, const T* x, const T* 
 
 }  // namespace freeform_detail
 
-/// The sag of a freeform at N points.
+/// Computes the sag of a freeform at N points.
 template <class T, int N>
 REALCAM_HD inline void freeform_sags(const FreeformView<T>& form, const Lanes<T, N>& x, const Lanes<T, N>& y,
                                      FreeformSags<T, N>& out) {
@@ -227,7 +227,8 @@ REALCAM_HD inline void freeform_sags(const FreeformView<T>& form, const Lanes<T,
     REALCAM_LANES
     for (int i = 0; i < N; ++i) {
         const InsidePoint<T> at = inside_point(form, x[i], y[i]);
-        // Outside of the circle only what runs along it is left, and less of that the farther away.
+        // Outside the circle the sag is constant along the radius: only the tangential slope remains, and it decreases
+        // with the distance.
         const bool is_outside = at.across < T(1);
         const T outwards = quotient(out.slope_x[i] * at.x + out.slope_y[i] * at.y, form.reach * form.reach);
         const T along_x = at.across * (out.slope_x[i] - outwards * at.x);

@@ -5,17 +5,17 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Where N rays meet a freeform.
+/// Intersections of N rays with a freeform.
 template <class T, int N>
 struct FreeformHits {
     Lanes<T, N> parameter;
-    Lanes<T, N> slope_x, slope_y;  ///< of the sag there
-    Lanes<T, N> slack;  ///< by how much the search ended within its tolerance; NaN: no bracket
+    Lanes<T, N> slope_x, slope_y;  ///< slopes of the sag at the intersection
+    Lanes<T, N> slack;  ///< tolerance minus residual of the search; NaN: no bracket
 };
 
 namespace freeform_detail {
 
-/// Less than 3 degrees from the vertex plane, or backwards.
+/// True for rays within 3 degrees of the vertex plane, and for rays that travel backwards.
 template <class T>
 REALCAM_INLINE bool goes_sideways(T direction_sign, Vec3<T> p) {
     return p.z * direction_sign * std::fabs(p.z) < T(0.0025) * dot(p, p);
@@ -27,8 +27,8 @@ REALCAM_INLINE bool is_outside(const FreeformView<T>& form, T x, T y) {
     return (far_x > form.half_x) | (far_y > form.half_y) | (x * x + y * y > form.reach * form.reach);
 }
 
-/// Safeguarded Newton steps from brackets, as improve_search takes them, for rays in an array. Ends when no ray
-/// searches any more: those whose bracket is NaN do not.
+/// Safeguarded Newton steps from brackets, as in improve_search, for an array of rays. Ends when no ray is still
+/// searching; rays whose bracket is NaN do not search.
 template <class T, int N>
 REALCAM_HD inline void search_freeform(const FreeformView<T>& form, T direction_sign, const Vec3Lanes<T, N>& origin,
                                        const Vec3Lanes<T, N>& direction, AsphereSearch<T, N>& search,
@@ -75,7 +75,8 @@ REALCAM_HD inline void search_freeform(const FreeformView<T>& form, T direction_
     }
 }
 
-/// A bracket on the ray's way through the search region, between the planes that bound the sag there.
+/// Finds a bracket on the ray inside the search region, between the planes that bound the sag there. Returns false if
+/// there is no crossing.
 template <class T>
 REALCAM_HD inline bool find_bracket(const FreeformView<T>& form, T direction_sign, Vec3<T> o, Vec3<T> p, T& t, T& below,
                                     T& above) {
@@ -102,7 +103,7 @@ REALCAM_HD inline bool find_bracket(const FreeformView<T>& form, T direction_sig
         last = middle + half < last ? middle + half : last;
     }
     if (!(first < last)) return false;
-    // A little inside: at the very edge the sag's slope is already that of its continuation.
+    // Slightly shortened: at the very edge the sag's slope is already that of its continuation.
     const T half = (T(1) - T(16) * std::numeric_limits<T>::epsilon()) * T(0.5) * (last - first);
     const auto sample = [&](T parameter) -> WaySample<T> {
         const Vec3<T> at = o + parameter * p;
@@ -115,8 +116,8 @@ REALCAM_HD inline bool find_bracket(const FreeformView<T>& form, T direction_sig
     return find_bracket_on_way(T(0.5) * (first + last), half, direction_sign, sample, t, below, above);
 }
 
-/// For a ray that goes sideways, and for one that was found to meet what the surface is continued by: whether it has
-/// met the surface itself before or after.
+/// Searches the surface itself along the whole ray, for rays that go sideways and for rays whose search failed or ended
+/// on the surface's continuation. If there is no crossing, a hit on the continuation remains.
 template <class T, int N>
 REALCAM_HD inline void search_inside(const FreeformView<T>& form, T direction_sign, Vec3<T> o, Vec3<T> p, int lane,
                                      FreeformHits<T, N>& hits) {
@@ -138,7 +139,7 @@ REALCAM_HD inline void search_inside(const FreeformView<T>& form, T direction_si
 
 }  // namespace freeform_detail
 
-/// The crossings of N rays with a freeform. Rays that have ended already are left with a slack that is NaN.
+/// Intersects N rays with a freeform. The slack of rays that have already ended is NaN.
 template <class T, int N>
 REALCAM_HD inline void find_freeform_crossings(const SurfaceView<T>& surface, const FreeformView<T>& form,
                                                const LensRays<T, N>& rays, FreeformHits<T, N>& hits) {
@@ -168,7 +169,7 @@ REALCAM_HD inline void find_freeform_crossings(const SurfaceView<T>& surface, co
     }
 }
 
-/// As asphere_hit.
+/// The counterpart of asphere_hit for a freeform.
 template <class T>
 REALCAM_INLINE SurfaceHit<T> freeform_hit(T direction_sign, Vec3<T> p, T t, T slope_x, T slope_y, T slack) {
     const Vec3<T> normal = normalized(Vec3<T>{-slope_x, -slope_y, T(1)});

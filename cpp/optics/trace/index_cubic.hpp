@@ -3,8 +3,9 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// A variable in which refractive indices are nearly polynomials: like those of glass, it grows steeply towards the
-/// resonances in the ultraviolet. From -1 to 1 over the wavelengths of a picture; 0 where there is one alone.
+/// Function of the wavelength in which refractive indices are nearly polynomials: like the index of glass, it grows
+/// steeply towards the resonances in the ultraviolet. It runs from -1 to 1 over the wavelengths of a picture; 0 if
+/// there is a single one.
 struct WavelengthVariable {
     float scale, offset;
 
@@ -13,15 +14,15 @@ struct WavelengthVariable {
     REALCAM_INLINE float at(float wavelength_nm) const { return scale / (wavelength_nm - kPole_nm) + offset; }
 };
 
-/// What a surface does to light by its indices, a cubic of the WavelengthVariable: n'^2 / n^2 - 1, if nothing else is
-/// said.
+/// A surface's function of its refractive indices as a cubic of the WavelengthVariable: n'^2 / n^2 - 1, unless stated
+/// otherwise.
 struct alignas(16) IndexCubic {
     float c[4];
 
     REALCAM_INLINE float at(float x) const { return ((c[3] * x + c[2]) * x + c[1]) * x + c[0]; }
 };
 
-/// The media of a trace in which all rays have the wavelength of the lens's view.
+/// Media of a trace in which all rays have the wavelength of the LensView.
 struct OneWavelength {
     template <class T>
     struct Boundary {
@@ -35,10 +36,10 @@ struct OneWavelength {
     }
 };
 
-/// The media of a trace in which each ray has a wavelength of its own.
+/// Media of a trace in which each ray has its own wavelength.
 struct ManyWavelengths {
-    const IndexCubic* surfaces;  ///< in the order in which the light meets them
-    const float* variable;       ///< of each ray
+    const IndexCubic* surfaces;  ///< in the order of the light
+    const float* variable;       ///< WavelengthVariable of each ray
 
     struct Boundary {
         IndexCubic cubic;

@@ -11,17 +11,17 @@ namespace REALCAM_NAMESPACE {
 
 WavelengthVariable variable_over(WavelengthRange range);
 
-/// The surfaces, from 1, whose glass has one refractive index for all wavelengths.
+/// Returns the surfaces, counted from 1, whose glass has one refractive index for all wavelengths.
 std::vector<int> surfaces_with_one_index(const LensSystem& lens);
 
-/// Throws InputError where a glass is not known at all of these wavelengths, or the film lies in one that disperses:
-/// directions on the film are then another measure at each wavelength.
+/// Throws InputError if a glass is not known at all wavelengths of the range, or if the film lies in a dispersive
+/// glass: the measure of directions on the film would then differ between wavelengths.
 void check_dispersion(const LensSystem& lens, WavelengthRange range);
 
-/// A cubic for each crossing of a way, in the order in which the light meets them, of `value_of(crossing, indices)`;
-/// `indices`: those of LensSystem::indices. `wavelengths_nm`: to be fitted with equal weights. Where they are spread as
-/// light is, the cubics are right where most of it is: four times better than cubics that are as good at the ends of
-/// the spectrum as in its middle. Throws InputError where a glass has no index.
+/// Fits a cubic of `value_of(crossing, indices)` for each crossing of an optical path, in the order of the light;
+/// `indices`: those of LensSystem::indices. `wavelengths_nm`: fitted with equal weights. If they are distributed like
+/// the light, the cubics are accurate where most of it is: four times better than cubics that are as accurate at the
+/// ends of the spectrum as in its middle. Throws InputError if a glass has no index at a wavelength.
 template <class ValueOf>
 std::vector<IndexCubic> cubics_over(const LensSystem& lens, const std::vector<Crossing>& way,
                                     const std::vector<double>& wavelengths_nm, WavelengthVariable variable,
@@ -43,11 +43,11 @@ std::vector<IndexCubic> cubics_over(const LensSystem& lens, const std::vector<Cr
     return cubics;
 }
 
-/// What surfaces do to light on a way through the lens.
+/// Fits n'^2 / n^2 - 1 at the crossings of an optical path.
 std::vector<IndexCubic> index_cubics(const LensSystem& lens, const std::vector<Crossing>& way,
                                      const std::vector<double>& wavelengths_nm, WavelengthVariable variable);
 
-/// The cubics for light on its way through the whole lens.
+/// Fits n'^2 / n^2 - 1 at the surfaces, for light that passes the whole lens.
 std::vector<IndexCubic> index_cubics(const LensSystem& lens, LightDirection direction,
                                      const std::vector<double>& wavelengths_nm, WavelengthVariable variable);
 

@@ -15,19 +15,19 @@ namespace REALCAM_NAMESPACE {
 
 enum class LightDirection { to_film, to_scene };
 
-/// Frames in which rays enter a path and leave it, where these are not the lens frame: as seen from that.
+/// Frames in which rays enter and leave a path, in the lens frame; an empty one is the lens frame itself.
 struct PathEnds {
     std::optional<Affine<double>> entry, exit;
 };
 
-/// The surfaces of a lens in the order in which light of one wavelength meets them. Owns the memory of its view.
+/// Surfaces of a lens in the order in which light of one wavelength meets them. Owns the memory of its view.
 template <class T>
 class LensPath {
 public:
     LensPath(const LensSystem& lens, LightDirection direction, double wavelength_nm, const PathEnds& ends = {})
         : LensPath(lens, crossings_of(lens), direction, wavelength_nm, ends) {}
 
-    /// The path of light that takes this way to the film, or the same way back to the scene. Rays are relative to
+    /// Path of light along these crossings to the film, or in reverse to the scene. Rays are relative to
     /// `entry_position` and `exit_position` on the z axis of the lens frame, or to the origins of `ends`.
     LensPath(const LensSystem& lens, const std::vector<Crossing>& way, LightDirection direction, double wavelength_nm,
              const PathEnds& ends = {})
@@ -37,7 +37,7 @@ public:
         const auto vertex = [&](std::size_t crossing) { return z[static_cast<std::size_t>(way[crossing].surface)]; };
         const bool to_film = direction == LightDirection::to_film;
         const bool is_centred = !path_frames_detail::has_placements(lens) && !ends.entry && !ends.exit;
-        double direction_sign = 1;  // of light on its way to the film, along the z axis of the surface's frame
+        double direction_sign = 1;  // of light travelling to the film, along the z axis of the surface's frame
         for (std::size_t m = 0; m < way.size(); ++m) {
             const Surface& surface = lens.surfaces[static_cast<std::size_t>(way[m].surface)];
             if (!is_centred) direction_sign *= path_frames_detail::turn_before(lens, way, m);
@@ -59,7 +59,7 @@ public:
         }
         if (!to_film) std::reverse(views_.begin(), views_.end());
         entry_index = to_film ? n.front() : n.back();
-        // A few diameters: what a float32 of the first surface's size can square.
+        // A few diameters: squares of such distances keep enough digits in float32 for a surface of this size.
         entry_reach = 16 * (to_film ? lens.surfaces.front() : lens.surfaces.back()).clear_semi_diameter;
         entry_position = to_film ? z.front() : z.back();
         exit_position = to_film ? z.back() : z.front();
@@ -73,9 +73,9 @@ public:
         return {views_.data(), static_cast<int>(views_.size()), kind(), iris_, free};
     }
 
-    double entry_index = 1;  ///< of the medium from which rays enter: what their unit directions are multiplied by
-    double entry_reach = 0;     ///< rays from farther away than this are to start nearer (enter_lens), mm
-    double entry_position = 0;  ///< z of the vertex to which the origins of entering rays are relative
+    double entry_index = 1;  ///< of the medium from which rays enter; scales their unit directions
+    double entry_reach = 0;     ///< mm; origins farther away than this are to be moved nearer (enter_lens)
+    double entry_position = 0;  ///< z of the vertex to which origins of entering rays are relative, mm
     double exit_position = 0;  ///< the same for leaving rays
 
 private:
@@ -87,7 +87,7 @@ private:
         return plain ? LensKind::plain : LensKind::rotational;
     }
 
-    /// The frames in which rays meet the surfaces. Where the axis goes on, the shift of a centred lens says it all.
+    /// Sets the frame changes between surfaces. Where consecutive surfaces share an axis, the shift along it suffices.
     void set_frames(const LensSystem& lens, const PathEnds& ends) {
         const SurfaceFrames frames = surface_frames(lens);
         const std::vector<double> z = lens.vertices();
@@ -159,8 +159,8 @@ private:
     }
 
     std::vector<SurfaceView<T>> views_;
-    std::vector<FrameChanges<T>> frames_;  ///< empty: centred
-    std::vector<FreeformView<T>> freeforms_;  ///< empty: there are none
+    std::vector<FrameChanges<T>> frames_;  ///< empty: centred lens
+    std::vector<FreeformView<T>> freeforms_;  ///< empty: no freeforms
     std::vector<ApertureView<T>> apertures_;
     Iris<T> iris_;
 };

@@ -3,27 +3,27 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// A lens as polynomials that a film point and a point of the last vertex's plane are put into.
+/// A lens as polynomials in a film point and a point in the plane of the last vertex.
 ///
-/// A lens is the same from all sides, so that each vector that it makes of the film point x and the last point p is
-/// a x + b p, with a and b polynomials in x^2, p^2 and x p (J. Hanika and C. Dachsbacher, "Efficient Monte Carlo
-/// Rendering with Realistic Lenses", Computer Graphics Forum 33, 2014, with sparser variables).
+/// By rotational symmetry, each vector that the lens makes of the film point x and the last point p is a x + b p, with
+/// a and b polynomials in x^2, p^2 and x p (J. Hanika and C. Dachsbacher, "Efficient Monte Carlo Rendering with
+/// Realistic Lenses", Computer Graphics Forum 33, 2014, with sparser variables).
 struct LensPolynomialView {
     static constexpr int kVectors = 3;
 
-    /// Two coefficients for each product of powers and each vector. The power of x^2 changes slowest and that of x p
+    /// The coefficients (a, b) of each monomial for each vector. The power of x^2 changes slowest and that of x p
     /// fastest.
     const float* coefficients;
-    int terms;  ///< products of powers
-    int degree;  ///< of the highest products
-    float inverse_film_radius, inverse_last_radius;  ///< by which x and p become numbers up to 1
-    float plane;  ///< where positions are, mm from the front vertex
-    // The rims of the last and of the first surface, each from its vertex: radius squared, mm^2, and where it is, mm.
+    int terms;  ///< number of monomials
+    int degree;  ///< largest degree of a monomial
+    float inverse_film_radius, inverse_last_radius;  ///< scale x and p to at most 1
+    float plane;  ///< z of the plane in which positions are stated, mm from the front vertex
+    // Rims of the last and of the first surface: squared radius, mm^2, and sag at the rim, mm.
     float last_radius_squared, last_rim;
     float front_radius_squared, front_rim;
 };
 
-/// What comes of a ray: in front of the lens, and at its stop.
+/// Result for a ray: its line in front of the lens, and its point in the stop.
 struct LensPolynomialRay {
     Vec2f position;  ///< in the plane, mm
     Vec2f direction;  ///< x and y of the unit vector

@@ -11,21 +11,21 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// What a trace may write down besides the rays. `NoRecord` is for pictures: rays that end are only marked, as
-/// vignetted whatever the cause, and their origin and direction are then undefined (NaN at worst).
+/// Record of a trace, in addition to the rays. `NoRecord` is for rendering: rays that end are only marked, as vignetted
+/// whatever the cause, and their origin and direction are then undefined (NaN at worst).
 struct NoRecord {
     static constexpr bool enabled = false;
 };
 /// `PathRecord` is for analysis: exact causes, and a ray that ends keeps its last direction and lies on the last
-/// surface that it met.
+/// surface that it hit.
 template <class T, int N>
 struct PathRecord {
     static constexpr bool enabled = true;
-    Lanes<T, N> optical_path;     ///< sum of index times distance, mm; from the origin to the last surface met
+    Lanes<T, N> optical_path;  ///< sum of index times distance, mm; from the origin to the last surface hit
     Lanes<int, N> surface_index;  ///< surface at which the ray ended, in the lens system's order
 };
 
-/// Parameters beyond are those of rays that miss. Their squares still fit in float32.
+/// Rays with a larger parameter count as misses. Its square still fits in float32.
 template <class T>
 inline constexpr T kFarthest = T(1e18);
 
@@ -42,7 +42,7 @@ REALCAM_INLINE void cross_surface(const SurfaceView<T>& surface, const Boundary&
     const int before = rays.status[lane];
     const bool alive = before == static_cast<int>(RayStatus::ok);
     const bool clear = (r2 <= surface.rim_squared) & ((lens_kind == LensKind::plain) | (r2 >= surface.hole_squared));
-    // A ray along a plane meets it at infinity. Of plain lenses the rim and the near cap already say no to that.
+    // A ray parallel to a plane meets it at infinity. Plain lenses already reject it by rim and near cap.
     constexpr bool always_near = lens_kind == LensKind::plain && !Record::enabled;
     const bool met = alive & hit.met() & (always_near | (std::fabs(hit.parameter) <= kFarthest<T>));
     const bool passes = met & clear & (refracted.radicand >= T(0));
@@ -93,16 +93,16 @@ REALCAM_HD inline void cross_conic(const SurfaceView<T>& surface, const Boundary
     }
 }
 
-/// Where N rays meet an asphere.
+/// Intersections of N rays with an asphere.
 template <class T, int N>
 struct AsphereHits {
     Lanes<T, N> parameter;
     Lanes<T, N> slope;  ///< d height / d r, over r
-    Lanes<T, N> slack;  ///< by how much the search ended within its tolerance
+    Lanes<T, N> slack;  ///< tolerance minus residual of the search
 };
 
-/// Newton's method without a bracket, for the rays that cross the surface once. Leaves all others, and those that it
-/// has not brought within their tolerance, with a slack that is NaN or negative. Returns their number.
+/// Newton's method without a bracket, for the rays that cross the surface once. All other rays, and those that do not
+/// reach their tolerance, get a slack that is NaN or negative. Returns the number of these rays that are still alive.
 template <class T, int N>
 REALCAM_HD inline int find_single_crossings(const SurfaceView<T>& surface, const LensRays<T, N>& rays,
                                             AsphereHits<T, N>& hits) {
@@ -112,7 +112,7 @@ REALCAM_HD inline int find_single_crossings(const SurfaceView<T>& surface, const
         const HeightRay<T> ray = height_ray(surface, rays.origin[i], rays.direction[i]);
         T inverse = 0;
         const T z = start_height(surface, ray, inverse);
-        // NaN is never within its tolerance, nor does it keep the others searching.
+        // NaN never meets its tolerance, but does not keep the other lanes searching.
         height[i] = select(crosses_once(surface, ray), z, std::numeric_limits<T>::quiet_NaN());
         inverse_rise[i] = inverse;
         per_height[i] = ray.per_height;
@@ -126,16 +126,17 @@ REALCAM_HD inline int find_single_crossings(const SurfaceView<T>& surface, const
         for (int i = 0; i < N; ++i) {
             const HeightRay<T> ray{per_height[i], plane[i], change[i], spread[i]};
             const Vec3<T> o = rays.origin[i];
-            // The point that the ray is given, because the normal has to be that point's, however far o is.
+            // Evaluated at the point to which the ray will be moved: the normal has to belong to that point, however
+            // far away o is.
             const T parameter = (height[i] - o.z) * per_height[i];
             const Vec3<T> at = o + parameter * rays.direction[i];
             const T z = at.z, from = o.z;
             const Sag<T> sag = asphere_sag(surface, at.x * at.x + at.y * at.y);
             const T f = z - sag.height, slope = T(2) * sag.derivative;
             const T rise = T(1) - slope * surface.search_squared * ray.half_derivative(z);
-            // Newton's method for the inverse itself, instead of a division.
+            // A Newton step for the reciprocal, instead of a division.
             const T inverse = inverse_rise[i] * (T(2) - rise * inverse_rise[i]);
-            // The least that improve_search allows.
+            // The tolerance of improve_search without its lateral part.
             const T slack = T(4) * std::numeric_limits<T>::epsilon() *
                                 (std::fabs(from) + std::fabs(z - from) + sag.size +
                                  T(0.0625) * (surface.sag_max - surface.sag_min)) -
@@ -154,12 +155,12 @@ REALCAM_HD inline int find_single_crossings(const SurfaceView<T>& surface, const
     return left;
 }
 
-/// The search in a bracket, for the rays whose crossing is still to be found. They are brought together, so that few
-/// take little time and many are vector code.
+/// Bracketed search for the rays whose crossing is not yet found. They are compacted into consecutive lanes, so that a
+/// few rays take little time and many are vectorised.
 template <class T, int N>
 REALCAM_HD inline void search_in_brackets(const SurfaceView<T>& surface, const LensRays<T, N>& rays,
                                           AsphereHits<T, N>& hits) {
-    // Zeros, because gcc fears that a lane is read before it is written.
+    // Zero-initialised, because gcc warns of lanes that may be read before they are written.
     AsphereSearch<T, N> search{};
     Vec3Lanes<T, N> origin{}, direction{};
     Lanes<T, N> outside{};
@@ -177,7 +178,7 @@ REALCAM_HD inline void search_in_brackets(const SurfaceView<T>& surface, const L
         if (!(outside[i] > T(0))) continue;
         const bool found =
             find_bracket(surface, origin[i], direction[i], search.t[i], search.below[i], search.above[i]);
-        // One that goes through, though not inside: it meets the plane outside, and is vignetted there.
+        // A ray that passes outside the search radius hits the surface's continuation, and is vignetted there.
         const bool through = outside[i] < kSideways<T> / 2;
         if (!found && !through) search.t[i] = search.below[i] = search.above[i] = std::numeric_limits<T>::quiet_NaN();
     }
@@ -248,9 +249,9 @@ REALCAM_HD inline void cross_freeform(const SurfaceView<T>& surface, const Freef
     }
 }
 
-/// Blocks rays that lie on an iris blade. The opening is what n equal arcs leave open. The blade's edge has curvature q
-/// and distance h from the axis. A point is open where q (r^2 + h^2) + 2 (1 - q h) a - 2 h <= 0, where a is its largest
-/// extent towards any blade.
+/// Blocks rays that hit an iris blade. The opening is bounded by n equal arcs of curvature q, whose midpoints have the
+/// distance h from the axis. A point is open if q (r^2 + h^2) + 2 (1 - q h) a - 2 h <= 0, where a is its largest extent
+/// towards any blade.
 template <class T, int N>
 REALCAM_HD inline void cross_iris(const Iris<T>& iris, LensRays<T, N>& rays) {
     Lanes<T, N> extent;
@@ -284,12 +285,12 @@ REALCAM_HD inline void change_frame(const FrameChange<T>& change, LensRays<T, N>
 
 /// Traces N rays through a lens, surface by surface.
 ///
-/// Origins are given relative to the vertex of the first surface that the light meets, and returned relative to the
-/// vertex of the last one. Directions are optical ones in the lens frame, before and after (LensPath::entry_index). For
+/// Origins are relative to the vertex of the first surface in the order of the light on entry, and to the vertex of the
+/// last one on return. Directions are optical ones in the lens frame, before and after (LensPath::entry_index). For
 /// lenses that are not centred, and for other frames, see LensPath.
-/// Rays whose status is not ok on entry are left alone. Nothing here branches on a lane, so the compiler turns the
-/// loops into vector code. `lens_kind`: the lens's own, or one behind that in the list. `media`: OneWavelength,
-/// ManyWavelengths or CoatedMedia.
+/// Rays whose status is not ok on entry stay ended. There is no branch on a lane, so that the compiler vectorises the
+/// loops. `lens_kind`: the lens's own, or one further down in the enumeration. `media`: OneWavelength, ManyWavelengths
+/// or CoatedMedia.
 template <LensKind lens_kind, class T, int N, class Record = NoRecord, class Media = OneWavelength>
 REALCAM_HD inline void trace_lens(const LensView<T>& lens, LensRays<T, N>& rays, Record&& record = {},
                                   const Media& media = {}) {
@@ -320,7 +321,7 @@ REALCAM_HD inline void trace_lens(const LensView<T>& lens, LensRays<T, N>& rays,
                     cross_aperture(lens.free.apertures[k], rays.origin, rays.status,
                                    static_cast<int>(RayStatus::vignetted));
         }
-        // With a record, a ray that has ended still has to come to the last vertex.
+        // With a record, the origin of a ray that has ended must still become relative to the last vertex.
         if constexpr (N == 1 && !std::remove_reference_t<Record>::enabled)
             if (rays.status[0] != 0) return;
     }
@@ -332,7 +333,7 @@ REALCAM_HD inline void trace_lens(const LensView<T>& lens, LensRays<T, N>& rays,
     }
 }
 
-/// The same for a lens whose kind is not known where this is compiled.
+/// Traces N rays through a lens whose kind is known only at run time.
 template <class T, int N, class Record = NoRecord, class Media = OneWavelength>
 REALCAM_HD inline void trace_lens(const LensView<T>& lens, LensRays<T, N>& rays, Record&& record = {},
                                   const Media& media = {}) {

@@ -11,7 +11,8 @@ namespace REALCAM_NAMESPACE {
 
 namespace make_freeform_detail {
 
-/// The rectangle in which light can meet the surface, `margin` times as large.
+/// Sets the search region: the rectangle that bounds the surface's opening and the circle of its rim, `margin` times as
+/// large.
 template <class T>
 void set_rectangle(FreeformView<T>& view, const Surface& surface, double margin) {
     const double rim = surface.clear_semi_diameter;
@@ -24,7 +25,7 @@ void set_rectangle(FreeformView<T>& view, const Surface& surface, double margin)
     view.inverse_reach = static_cast<T>(1 / (margin * rim));
 }
 
-/// f(x, y) over a grid of the search region, its edge with it.
+/// Calls f(x, y) on a grid over the search region, including its edge.
 template <class T, class F>
 void over_region(const FreeformView<T>& view, F&& f) {
     constexpr int kHalf = 32;
@@ -99,7 +100,8 @@ void set_xy_terms(FreeformView<T>& view, const SurfaceForm& form, double reach, 
         }
 }
 
-/// Bounds of the sag, widened by more than it can change between two points of a surface that can be made.
+/// Sets the bounds of the sag, sampled and widened by more than the sag of a surface that can be made changes between
+/// two samples.
 template <class T>
 void set_sag_bounds(FreeformView<T>& view, double reach) {
     double low = 0, high = 0;
@@ -117,14 +119,14 @@ void set_sag_bounds(FreeformView<T>& view, double reach) {
 
 }  // namespace make_freeform_detail
 
-/// A surface with a form made ready for the trace.
+/// Returns a freeform surface prepared for tracing.
 template <class T>
 FreeformView<T> freeform_view(const Surface& surface) {
     using namespace make_freeform_detail;
     const SurfaceForm& form = surface.form;
     FreeformView<T> view{};
     bool is_finite = true;
-    // 2% past the rim, so that a ray that just misses it is seen to miss it, unless the surface ends before.
+    // 2% past the rim, so that a ray that just misses it is found to miss it, unless the surface ends before.
     set_rectangle(view, surface, 1.02);
     over_region(view, [&](T x, T y) {
         is_finite &= std::isfinite(surface.sag(static_cast<double>(x), static_cast<double>(y)));

@@ -13,8 +13,8 @@ double opening_radius(double apothem, double curvature, double cosine) {
 }
 
 double iris_area(const IrisShape& shape, double apothem, double rim) {
-    // The opening has 2n equal parts. One is integrated in polar form by the midpoint rule. Its error for this smooth
-    // function (one kink at the rim) is below 1e-6 of the area at 2048 points.
+    // The opening consists of 2n congruent parts. One is integrated in polar coordinates by the midpoint rule. Its
+    // error for this smooth function (one kink at the rim) is below 1e-6 of the area at 2048 points.
     constexpr int kPoints = 2048;
     const double q = shape.rounding / apothem;
     const double width = std::numbers::pi / shape.blades;
@@ -28,7 +28,8 @@ double iris_area(const IrisShape& shape, double apothem, double rim) {
 
 Iris<double> open_iris(const IrisShape& shape, double circle_radius, double rim) {
     const double wanted = std::numbers::pi * circle_radius * circle_radius;
-    // The area grows with the apothem; the opening holds the circle of its apothem, and lies in one of twice it.
+    // The area grows with the apothem; the opening contains the circle whose radius is the apothem, and lies inside one
+    // of twice that radius.
     double low = 0.5 * circle_radius, high = circle_radius > 0 && circle_radius < rim ? circle_radius : 2 * rim;
     for (int i = 0; i < 60; ++i) {
         const double middle = 0.5 * (low + high);

@@ -17,18 +17,19 @@ inline bool has_placements(const LensSystem& lens) {
     return false;
 }
 
-/// Whether a surface has what only the code for lenses of any kind knows.
+/// True if a surface needs the code for LensKind::any: it is a freeform, or its aperture is not a centred circle.
 inline bool is_free(const Surface& surface) {
     return !surface.form.is_none() || !surface.aperture_shape.is_plain();
 }
 
-/// From the frame of surface `to` to that of its neighbour `from`.
+/// Transform from the frame of surface `to` to that of its neighbour `from`.
 inline Affine<double> neighbour(const LensSystem& lens, int from, int to) {
     return to > from ? frame_of_next(lens, from) : inverse_motion(frame_of_next(lens, to));
 }
 
-/// -1 where the frame of a crossing's surface looks back, as seen from the surface met before it: light that goes to
-/// +z there goes to -z here. A frame at a right angle is taken for one that looks ahead.
+/// Returns -1 if the z axis of a crossing's surface points backwards in the frame of the surface crossed before, so
+/// that light that travels to +z there travels to -z here; else 1. A frame at a right angle counts as pointing
+/// forwards.
 inline double turn_before(const LensSystem& lens, const std::vector<Crossing>& way, std::size_t crossing) {
     const int to = way[crossing].surface;
     const Affine<double> frame = crossing == 0 ? lens.surfaces[static_cast<std::size_t>(to)].placement.frame()

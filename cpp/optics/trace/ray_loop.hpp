@@ -15,25 +15,28 @@ using RayTask = std::function<void(std::size_t first, std::size_t last)>;
 
 struct AimRequest;
 
-/// How an analysis goes through its rays: on the calling thread, and not to be stopped. A program that has threads
-/// brings a loop that uses them, and one whose user may lose patience asks him in `keep_going`.
+/// Loop of an analysis over its rays. The default runs on the calling thread and cannot be cancelled. A program with
+/// threads supplies a loop that uses them, and an interactive one supplies `keep_going`, which asks whether to
+/// continue.
 struct RayLoop {
-    KeepGoing keep_going = {};  ///< what it throws ends the analysis too
+    KeepGoing keep_going = {};  ///< exceptions that it throws end the analysis, too
     /// Calls the task for all of [first, last), in parts of any size and on any threads.
     std::function<void(std::size_t first, std::size_t last, const RayTask& task)> run =
         [](std::size_t first, std::size_t last, const RayTask& task) { task(first, last); };
-    /// aim_rays on the calling thread, built for the vectors that the machine has; none: as the caller is built.
+    /// aim_rays on the calling thread, compiled for the machine's vector instructions; empty: as compiled in the
+    /// caller.
     std::function<void(const AimRequest&)> aim_rays = {};
 
-    /// Throws Cancelled where the caller wants to stop.
+    /// Throws Cancelled if `keep_going` returns false.
     void heed() const {
         if (keep_going && !keep_going()) throw Cancelled();
     }
-    /// For work of a microsecond or more a ray. No ray's result may depend on another's.
+    /// Runs a task of at least a microsecond per ray. No ray's result may depend on another's.
     void for_all(std::size_t count, const RayTask& task) const {
         in_blocks(count, 1 << 14, [&](std::size_t first, std::size_t last) { run(first, last, task); });
     }
-    /// The same, with the results appended: large memory is taken block by block, because a stop has to wait for it.
+    /// Runs a task like for_all and appends the results: `results` grows block by block, because cancelling has to wait
+    /// for an allocation.
     template <class T>
     void append_all(std::vector<T>& results, std::size_t count, const RayTask& task) const {
         results.reserve(count);
@@ -42,7 +45,7 @@ struct RayLoop {
             run(first, last, task);
         });
     }
-    /// For work of nanoseconds a ray, on this thread and in order: sums come out the same whatever the threads.
+    /// Runs a task of nanoseconds per ray, on this thread and in order: sums do not depend on the number of threads.
     void in_order(std::size_t count, const RayTask& task) const { in_blocks(count, 1 << 20, task); }
 
 private:

@@ -3,13 +3,13 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// How a ray ended. Every ray ends in one of these; only `ok` rays left the lens on the far side.
+/// Status of a ray after a trace. Only `ok` rays left the lens on the far side.
 enum class RayStatus : int {
     ok = 0,
-    missed = 1,                     ///< does not meet the surface's near cap
-    vignetted = 2,                  ///< meets it outside the rim, inside a hole, or behind an iris blade
+    missed = 1,                     ///< does not hit the surface's near cap
+    vignetted = 2,                  ///< hits it outside the rim, inside a hole, or behind an iris blade
     total_internal_reflection = 3,  ///< no refracted ray
-    no_convergence = 4,             ///< the search on an asphere did not reach its tolerance
+    no_convergence = 4,             ///< the search on an asphere or freeform did not reach its tolerance
     bad_input = 5,                  ///< origin or direction not finite, or direction of length zero
 };
 

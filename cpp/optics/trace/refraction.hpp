@@ -5,37 +5,38 @@
 
 namespace REALCAM_NAMESPACE {
 
-// Rays carry optical directions: unit vectors times the refractive index of the medium, as in Hamilton's optics.
-// Snell's law then says that a surface changes the direction along its normal alone.
+// Rays carry optical directions: unit vectors times the refractive index of the medium, as in Hamilton's optics. By
+// Snell's law a surface then changes a direction only along its normal.
 //
-// Nothing here takes the length of p from the table. Rounding changes it a little at each surface; formulas in which
-// every term scales with p.p see the same ray, only longer, where a term n^2 would make an angle of it. So float32
-// images of a 200 mm f/1.9 are right to 0.06 um instead of 0.24.
+// The length of p is never replaced by the exact index. Rounding changes the length a little at each surface; formulas
+// in which every term scales with p.p then describe the same ray, only longer, whereas a term n^2 would turn the error
+// into an angle. So float32 images of a 200 mm f/1.9 are accurate to 0.06 um instead of 0.24.
 
-/// Where a ray meets a surface, in the frame of its vertex.
+/// Intersection of a ray with a surface, in the frame of the surface's vertex.
 template <class T>
 struct SurfaceHit {
     T parameter;  ///< t of o + t p: the distance over the index, mm; may be negative (surfaces overlapping at the rim)
     T along_normal;  ///< p . normal = n cos(incidence), signed: positive towards the film
     Vec3<T> normal;  ///< unit, z positive on the near cap
-    T discriminant;  ///< negative or NaN where the ray does not meet the surface
+    T discriminant;  ///< negative or NaN if the ray does not meet the surface
 
-    /// No flag is stored: gcc does not vectorise loops that keep a bool in an aggregate. An exact tangent is no
-    /// crossing, and a discriminant that left the range of T says nothing.
+    /// Computed, not stored: gcc does not vectorise loops that keep a bool in an aggregate. An exact tangent is not a
+    /// crossing, and a discriminant that left the range of T counts as a miss.
     REALCAM_INLINE bool met() const {
         return (discriminant > T(0)) & (discriminant <= std::numeric_limits<T>::max()) & (normal.z > T(0));
     }
 };
 
-/// Intersection with a conic of revolution (1 + k = conic_factor) around the z axis, vertex in the origin, for a ray
-/// o + t p.
+/// Intersection with a conic of revolution (1 + k = conic_factor) around the z axis, vertex in the origin, for a ray o
+/// + t p.
 ///
 /// Curvature form: F = c (o.o + k oz^2) - 2 oz, G = pz - c (o.p + k oz pz), A = c (p.p + k pz^2), and the roots of A
 /// t^2 - 2 G t + F = 0. At a root the gradient of the surface is (-cx, -cy, 1 - c(1+k)z), and its product with p is G -
-/// A t = +-sqrt(G^2 - A F). So the direction sign with which the ray must cross the surface picks the root; this holds
-/// for planes, past 90 degrees, and for light that goes back. The two forms of the root, F / (G + s) and (G - s) / A,
-/// are chosen such that nothing cancels. p . normal is G - A t of the t that was found. Near a tangent the
-/// discriminant's own root is off by the square root of a rounding, and would not fit the point and its normal.
+/// A t = +-sqrt(G^2 - A F). So the direction sign with which the ray must cross the surface selects the root, also for
+/// planes, past 90 degrees, and for light that travels backwards. Of the two forms of the root, F / (G + s) and (G - s)
+/// / A, the one that does not cancel is used. p . normal is computed as G - A t from the root: near a tangent the
+/// square root of the discriminant is off by the square root of a rounding error, and would not fit the point and its
+/// normal.
 template <class T>
 REALCAM_INLINE SurfaceHit<T> intersect_conic(Vec3<T> o, Vec3<T> p, T curvature, T conic_factor, T direction_sign) {
     const T k = conic_factor - T(1);
@@ -53,8 +54,9 @@ REALCAM_INLINE SurfaceHit<T> intersect_conic(Vec3<T> o, Vec3<T> p, T curvature, 
     return {t, (G - A * t) * inverse_length, inverse_length * gradient, discriminant};
 }
 
-/// Parameter at which a ray meets the vertex plane, or, where it runs along that plane, comes nearest to the vertex.
-/// From there a conic is met without the squares of the way to it: with k = 1000 they would drown the sag.
+/// Parameter at which a ray meets the vertex plane or, if nearly parallel to that plane, comes nearest to the vertex. A
+/// conic is intersected from this point, so that the squared distance to it does not enter: with k = 1000 it would
+/// drown the sag.
 template <class T>
 REALCAM_INLINE T to_vertex_plane(Vec3<T> o, Vec3<T> p) {
     const T squared = dot(p, p);
@@ -83,11 +85,11 @@ struct Refraction {
     T radicand;  ///< squared n' cos(refraction); negative: total internal reflection
 };
 
-/// Snell's law, p' = p + (s' - s) N with s = p.N and s'^2 = n'^2 - n^2 + s^2: the tangential part of n d stays.
-/// A mirror is n' = n with the direction sign of the outgoing ray turned.
-/// (The source paper's equation 3, for unit vectors, prints mu where mu^2 is needed.)
+/// Snell's law, p' = p + (s' - s) N with s = p.N and s'^2 = n'^2 - n^2 + s^2: the tangential part of n d is conserved.
+/// A mirror is n' = n with a reversed direction sign of the outgoing ray. (The source paper's equation 3, for unit
+/// vectors, prints mu where mu^2 is needed.)
 ///
-/// n'^2 - n^2 comes as squared_index_change = n'^2 / n^2 - 1, times p.p.
+/// n'^2 - n^2 is computed as squared_index_change = n'^2 / n^2 - 1, times p.p.
 template <class T>
 REALCAM_INLINE Refraction<T> refract(Vec3<T> p, Vec3<T> normal, T along_normal, T squared_index_change,
                                      T direction_sign_out) {

@@ -4,13 +4,13 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Rays to be traced with a record of their paths. Arrays lie where the trace runs, on the host or on a device.
+/// Rays to be traced with a PathRecord. Arrays lie in the memory of the tracing device, host or GPU.
 template <class T>
 struct TraceRequest {
     LensView<T> lens;
-    double entry_position, exit_position;  ///< z of the vertices to which the first and the last step are relative, mm
+    double entry_position, exit_position;  ///< z of the vertices to which origins are relative on entry and exit, mm
     double entry_index;  ///< of the medium from which the rays enter
-    double entry_reach;  ///< how far from the first vertex an origin may lie, mm
+    double entry_reach;  ///< origins farther than this from the first vertex are moved nearer (enter_lens), mm
     std::int64_t count;
     const double *origins, *directions;  ///< count x 3, lens frame, mm; directions of any length
     double *out_origins, *out_directions;  ///< count x 3, lens frame, mm; unit directions
@@ -18,7 +18,7 @@ struct TraceRequest {
     int *status, *surface_index;  ///< count; see PathRecord
 };
 
-/// Traces the N rays from `first` on; fewer at the end of the arrays.
+/// Traces N rays, starting at index `first`; fewer at the end of the arrays.
 template <int N, class T>
 REALCAM_HD inline void trace_rays_of(const TraceRequest<T>& request, std::int64_t first) {
     LensRays<T, N> rays;

@@ -9,17 +9,18 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// The shape of a surface, made ready for the trace.
+/// Shape of a surface, prepared for tracing.
 template <class T>
 struct TracedShape {
-    SurfaceView<T> view;       ///< without media and place
-    FreeformView<T> freeform;  ///< of a SurfaceShape::freeform
+    SurfaceView<T> view;       ///< without media and position
+    FreeformView<T> freeform;  ///< set if `view` is a SurfaceShape::freeform
 };
 
 namespace traced_shape_detail {
 
-/// The search goes 2% past the rim, so a ray that just misses it is seen to miss it. The sag's bounds there are
-/// sampled. They are widened by more than the sag can change between two samples of a surface that can be made.
+/// Sets the search radius, and the sag's polynomials and bounds inside it. The search extends 2% past the rim, so that
+/// a ray that just misses it is found to miss it. The sag's bounds are sampled, and widened by more than the sag of a
+/// surface that can be made changes between two samples.
 template <class T>
 void set_search_region(SurfaceView<T>& view, const Surface& surface) {
     double reach = 1.02 * surface.clear_semi_diameter;
@@ -35,7 +36,7 @@ void set_search_region(SurfaceView<T>& view, const Surface& surface) {
     view.sag_edge = static_cast<T>(surface.sag(reach));
     view.search_squared = static_cast<T>(reach * reach);
     view.inverse_search_squared = static_cast<T>(1 / (reach * reach));
-    // Not by std::pow, which would round the powers of a reach and of twice the reach differently.
+    // Products instead of std::pow, whose rounding would differ between the powers of a radius and of twice the radius.
     std::vector<long double> terms;
     long double power = static_cast<long double>(reach) * reach;
     for (const double coefficient : surface.aspheric)
@@ -59,7 +60,7 @@ SurfaceView<T> view_of(const Surface& surface) {
     view.rim_squared = static_cast<T>(rim * rim);
     view.hole_squared = static_cast<T>(hole > 0 ? hole * hole : -1.0);
     if (view.kind == SurfaceShape::asphere) set_search_region(view, surface);
-    // The sphere from which the search on a freeform starts.
+    // Curvature of the sphere from which the search on a freeform starts.
     if (view.kind == SurfaceShape::freeform && surface.form.base != BaseForm::conic)
         view.curvature = static_cast<T>(0.5 * (surface.curvature + surface.form.curvature_x));
     return view;
@@ -73,8 +74,9 @@ inline bool have_same_shape(const Surface& a, const Surface& b) {
 
 }  // namespace traced_shape_detail
 
-/// Each thread keeps the aspheres and freeforms that it asked for last: to find their bounds takes as long as hundreds
-/// of rays, and while a lens is focused or edited nearly all of its surfaces stay as they are.
+/// Returns the shape of a surface, prepared for tracing. Each thread caches the aspheres and freeforms that it used
+/// last: finding their bounds takes as long as tracing hundreds of rays, and while a lens is focused or edited nearly
+/// all of its surfaces remain unchanged.
 template <class T>
 TracedShape<T> traced_shape(const Surface& surface) {
     using namespace traced_shape_detail;
@@ -84,7 +86,7 @@ TracedShape<T> traced_shape(const Surface& surface) {
         Surface surface;
         TracedShape<T> shape;
     };
-    thread_local std::list<Kept> latest;  // the last one first
+    thread_local std::list<Kept> latest;  // most recently used first
     const auto found = std::find_if(latest.begin(), latest.end(),
                                     [&](const Kept& kept) { return have_same_shape(kept.surface, surface); });
     if (found != latest.end()) {
