@@ -14,8 +14,8 @@ struct FilmStack {
         double thickness_nm;
     };
     double wavelength_nm;
-    double index_before;  ///< of the incident medium: real, since in an absorbing medium the incident wave has no power
-                          ///< of its own
+    double index_before;  ///< index of the incident medium: real, since in an absorbing medium the incident wave has no
+                          ///< power of its own
     std::vector<Film> films;
     std::complex<double> index_behind;
 };
@@ -26,7 +26,7 @@ struct SurfaceResponse {
     /// where s is the direction of the s field and k that of the wave. So at normal incidence r has opposite signs for
     /// s and p.
     std::complex<double> r, t;
-    double reflectance, transmittance, absorptance;  ///< as shares of the incident power
+    double reflectance, transmittance, absorptance;  ///< shares of the incident power
 };
 
 struct PolarisedResponse {

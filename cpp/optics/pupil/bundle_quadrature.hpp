@@ -10,26 +10,27 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// How many rays an integral over a bundle takes: spokes about the middle of what passes, and Gauss's nodes on each.
+/// Resolution of an integral over a ray bundle: number of radial scan lines (spokes) about its centre, and of Gauss
+/// nodes on each lit interval.
 struct BundleSampling {
     int spokes, nodes;
 };
 
-/// A ray of an integral over the light, by its place in the plane in which the bundle is even.
+/// A ray of an integral over a bundle. Its entry is a point in the coordinates in which the bundle's density is
+/// uniform.
 struct EntryPart {
     Vec2<double> entry;
-    double area;  ///< in the units of the entry, squared
+    double area;  ///< quadrature weight, in the squared unit of the entry
 };
 
-/// A part of a spoke on which light passes, by its distances from the spokes' middle in units of the bundle's reach.
+/// A lit interval of a spoke: distances from the bundle's centre in units of its half-sides `reach`.
 struct Stretch {
     double from, to;
 };
 
 namespace bundle_quadrature_detail {
 
-/// One line from the middle of the light outwards, in units of the bundle's reach, and where the lens lets light pass
-/// on it.
+/// A radial scan line from the centre of a bundle outwards, with distances in units of the bundle's half-sides.
 template <class Bundle>
 class Spoke {
 public:
@@ -39,7 +40,8 @@ public:
         return {bundle_.middle.x + r * cos_ * bundle_.reach.x, bundle_.middle.y + r * sin_ * bundle_.reach.y};
     }
 
-    /// Looks at steps of a twentieth of the reach; edges are found within 1e-9 of it.
+    /// Returns the lit intervals. Samples in steps of a twentieth of the half-side, so that narrower intervals may be
+    /// missed; edges are found within 1e-9 of it.
     std::vector<Stretch> stretches() const {
         Vec2<double> entries[kSteps];
         bool passes[kSteps];
@@ -61,9 +63,10 @@ public:
 
 private:
     static constexpr int kSteps = 35;
-    static constexpr double kStep = 1.0 / 20;  // so to 1.7: past the corners of the rectangle
+    static constexpr double kStep = 1.0 / 20;  // up to 1.7: past the corners of the rectangle
 
-    /// By quarters, between a place that is like the step before it and one that is like the step beyond.
+    /// Finds the edge by division into quarters, between a point like the previous sample and one like the next
+    /// (`beyond`).
     double edge(double low, double high, bool beyond) const {
         while (high - low > 1e-9) {
             Vec2<double> entries[3];
@@ -83,7 +86,7 @@ private:
 
 }  // namespace bundle_quadrature_detail
 
-/// A spoke over the light, and where on it light passes.
+/// A spoke with its lit intervals.
 struct LitSpoke {
     double cos, sin;
     std::vector<Stretch> stretches;
@@ -94,8 +97,8 @@ struct LitSpoke {
     }
 };
 
-/// Spokes at even angles over the light, in the order of their angles from -90 degrees on. If a bundle is its own
-/// mirror image, only the half of x > 0 is taken; `count` is that of the whole.
+/// Returns spokes at equally spaced angles, in the order of their angles from -90 degrees on. For a bundle that is its
+/// own mirror image, only the half of x > 0 is returned; `count` is that of the whole bundle.
 template <class Bundle>
 std::vector<LitSpoke> lit_spokes(const Bundle& bundle, int count, const RayLoop& loop = {}) {
     using namespace bundle_quadrature_detail;
@@ -111,14 +114,14 @@ std::vector<LitSpoke> lit_spokes(const Bundle& bundle, int count, const RayLoop&
     return lit;
 }
 
-/// A rectangle in the plane in which a bundle is even.
+/// A rectangle in the entry coordinates of a bundle.
 struct EntryRectangle {
-    Vec2<double> middle, reach;  ///< half its sides
+    Vec2<double> middle, reach;  ///< `reach`: half-sides
 };
 
-/// A rectangle that holds all light of a bundle: its own, and what stands out of that by the edges on spokes. Between
-/// two of 128 spokes a corner of the light stands out further; hence the margin. It is 1.3% of the reach where two rims
-/// cut out a pointed oval, and 1.8% where a stop is a pentagon.
+/// Returns a rectangle that contains all light of a bundle: the bundle's own, extended to the edges found on spokes.
+/// Between two of 128 spokes a corner of the light protrudes further; hence the margin. The protrusion is 1.3% of the
+/// half-side where two rims cut out a pointed oval, and 1.8% for a pentagonal stop.
 template <class Bundle>
 EntryRectangle lit_rectangle(const Bundle& bundle, const RayLoop& loop = {}) {
     constexpr int kSpokes = 128;
@@ -135,9 +138,9 @@ EntryRectangle lit_rectangle(const Bundle& bundle, const RayLoop& loop = {}) {
     return {{0.5 * (low.x + high.x), 0.5 * (low.y + high.y)}, {0.5 * (high.x - low.x), 0.5 * (high.y - low.y)}};
 }
 
-/// Rays for integrals over what passes the lens: on each spoke Gauss's nodes between the edges of the light, wherever
-/// rims, blades and obstructions put them. So nothing is lost at edges, and smooth functions need few rays. Rays of a
-/// half bundle stand for twice their area.
+/// Returns quadrature rays for integrals over the light that passes the lens: Gauss nodes on each lit interval of each
+/// spoke, wherever rims, blades and obstructions put its edges. So edges cause no error, and smooth functions need few
+/// rays. In a half bundle each ray has twice its area, to stand for its mirror image.
 template <class Bundle>
 std::vector<EntryPart> entry_parts(const Bundle& bundle, const std::vector<LitSpoke>& spokes, int nodes) {
     std::vector<GaussNode> rule;

@@ -3,14 +3,15 @@
 
 namespace REALCAM_NAMESPACE {
 
-// How the light that an aperture diffracts is stored. Near the middle there are cells of frequency: rings cut into
-// sectors over half a turn (the other half is the same). Beyond, there are the aperture's edges. Frequencies are in
+// Storage of an aperture's diffraction pattern. Low frequencies are in cells: rings divided into sectors over half a
+// turn (the pattern is symmetric). Higher frequencies are represented by the aperture's edges. Frequencies are in
 // periods over the width of the aperture.
 
 inline constexpr int kDiffractionAzimuths = 48;
 inline constexpr int kDiffractionFineRings = 144;
 inline constexpr float kDiffractionFineStep = 1.0f / 24, kDiffractionReach = 6;
-/// Beyond these rings, three are one: the dark rings near the middle are narrower than those further out are bright.
+/// Beyond these rings, three are merged into one: the dark rings near the centre are narrower than the bright ones
+/// further out.
 inline constexpr int kDiffractionThinRings = 60, kDiffractionThickness = 3;
 inline constexpr int kDiffractionRings =
     kDiffractionThinRings + (kDiffractionFineRings - kDiffractionThinRings) / kDiffractionThickness;
@@ -22,10 +23,10 @@ constexpr int cell_of_fine_ring(int ring) {
                : kDiffractionThinRings + (ring - kDiffractionThinRings) / kDiffractionThickness;
 }
 
-/// A piece of an edge.
+/// A piece of the aperture's edge.
 struct DiffractionEdge {
-    float angle, turn;  ///< of the normal: where the piece begins, and by how much it turns along it; turns
-    float spread;       ///< one over the length of the smooth edge of which it is a part, in widths
+    float angle, turn;  ///< azimuth of the normal at the start of the piece, and its rotation along it; turns
+    float spread;       ///< 1 / length of the smooth edge that contains the piece, in widths of the aperture
 };
 
 }  // namespace REALCAM_NAMESPACE

@@ -31,14 +31,14 @@ struct DirectionBox {
     DirectionBox grown_by(double width, double height) const {
         return {l_min - width, l_max + width, m_min - height, m_max + height};
     }
-    /// Whether it ends inside the searched box, or where nothing can be any more.
+    /// True if each side lies inside the searched box, or the searched box reaches the widest one on that side.
     bool lies_in(const DirectionBox& searched, const DirectionBox& widest) const {
         return (l_min > searched.l_min || searched.l_min <= widest.l_min) &&
                (l_max < searched.l_max || searched.l_max >= widest.l_max) &&
                (m_min > searched.m_min || searched.m_min <= widest.m_min) &&
                (m_max < searched.m_max || searched.m_max >= widest.m_max);
     }
-    /// As far beyond this box as it is beyond another one: what moves evenly goes there next.
+    /// Linear extrapolation: this box, moved on from `before` by the same step once more.
     DirectionBox moved_on_from(const DirectionBox& before) const {
         return {2 * l_min - before.l_min, 2 * l_max - before.l_max, 2 * m_min - before.m_min, 2 * m_max - before.m_max};
     }

@@ -8,7 +8,7 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Finds, with real rays, the box of the directions that pass a lens of any kind from any film point.
+/// Finds, by tracing real rays, the bounding box of the directions that pass a lens of any kind from any film point.
 class DirectionSearch {
 public:
     static constexpr int kBlock = PupilTracer::kBlock;
@@ -18,31 +18,31 @@ public:
 
     const PupilLens& lens() const { return lens_; }
 
-    /// Nothing where no light arrives. `expected`: where it is looked for first.
+    /// Returns std::nullopt if no light arrives. `expected`: box near which the search begins.
     std::optional<DirectionBox> look(Vec2<double> film, const std::optional<DirectionBox>& expected) const;
 
 private:
-    static constexpr int kSide = 32, kPoints = kSide * kSide;  ///< of the grid of directions
+    static constexpr int kSide = 32, kPoints = kSide * kSide;  ///< side and number of points of the search grid
     static_assert(kPoints % kBlock == 0);
 
     struct Passing {
         int count = 0;
-        DirectionBox box = DirectionBox::none();  ///< whole cells of the grid, and one more to each side
+        DirectionBox box = DirectionBox::none();  ///< passing grid points, extended by one cell to each side
     };
 
     static PupilDirection grid_direction(const DirectionBox& box, int point);
 
-    /// trace(rays, first point) for each block of a grid over a box.
+    /// Calls trace(rays, index of the first point) for each block of a grid over a box.
     template <class Trace>
     void trace_grid(Vec2<double> film, const DirectionBox& box, Trace&& trace) const;
 
     Passing passing(Vec2<double> film, const DirectionBox& search) const;
 
-    /// A small aperture falls through any grid: where too few rays pass, goes to the ray that comes nearest to the
-    /// middle of the stop, in a smaller box.
+    /// A small aperture may fall between the points of any grid: if too few rays pass, searches a smaller box around
+    /// those that pass, or around the ray that comes nearest to the centre of the stop.
     std::optional<DirectionBox> find(Vec2<double> film, DirectionBox search, const DirectionBox& widest) const;
 
-    /// The searched box may have held a part of the region only: follows it as far as it goes.
+    /// Extends a box to the whole region, because the searched box may have contained only a part.
     DirectionBox whole(Vec2<double> film, DirectionBox box, DirectionBox search, const DirectionBox& widest) const;
 
     std::optional<PupilDirection> nearest_to_stop(Vec2<double> film, const DirectionBox& search) const;

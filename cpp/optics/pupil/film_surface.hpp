@@ -3,12 +3,12 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// The film, a sphere's cap or a plane, in its own frame: the vertex lies on the z axis, and light comes with growing
-/// z. Its points are named by their x and y. Directions at a point are in the frame of the tangent plane there: what
-/// the film's axes become when z is turned to the normal, the shortest way.
+/// The film, a spherical cap or a plane, in its own frame: the vertex lies on the z axis, and light arrives with
+/// growing z. Points are given by their x and y. Directions at a point are in the frame of the tangent plane there: the
+/// film's axes after the shortest rotation that takes z to the normal.
 template <class T>
 struct FilmSurface {
-    T distance;   ///< of the vertex from the origin, mm
+    T distance;  ///< z of the vertex, mm
     T curvature;  ///< 1/mm; above 0: the centre lies behind the film
 
     REALCAM_INLINE Vec3<T> place(Vec2<T> at) const {
@@ -16,7 +16,7 @@ struct FilmSurface {
         return {at.x, at.y, distance + curvature * squared / (T(1) + cosine(squared))};
     }
 
-    /// Of a direction of the tangent frame at a point, in the film's.
+    /// Transforms a direction from the tangent frame at a point to the film's frame.
     REALCAM_INLINE Vec3<T> direction(Vec2<T> at, Vec3<T> local) const {
         // With n the normal: x becomes (1 - nx nx / (1 + nz), -nx ny / (1 + nz), -nx), and y likewise.
         const T nx = -curvature * at.x, ny = -curvature * at.y, nz = cosine(at);
@@ -25,9 +25,9 @@ struct FilmSurface {
                 local.z * nz - nx * local.x - ny * local.y};
     }
 
-    /// Where a ray that comes from the lens meets it; no number where it does not.
+    /// Film point at which a ray from the lens arrives; NaN if it misses the film.
     REALCAM_INLINE Vec2<T> landing(Vec3<T> origin, Vec3<T> direction) const {
-        // As in intersect_sphere, for the near cap.
+        // Same as intersect_sphere, for the near cap.
         const Vec3<T> o = {origin.x, origin.y, origin.z - distance};
         const T F = curvature * dot(o, o) - T(2) * o.z;
         const T G = direction.z - curvature * dot(o, direction);

@@ -14,7 +14,7 @@ double cross(Vec2<double> a, Vec2<double> b) {
     return a.x * b.y - a.y * b.x;
 }
 
-/// Azimuths over a whole turn: the half, the azimuth in it, and the direction.
+/// An azimuth over a whole turn: its half of the outline, its index in that half, and its direction.
 struct TurnAzimuth {
     std::size_t half;
     int azimuth;
@@ -28,7 +28,7 @@ struct TurnAzimuth {
 
 using Reaches = double (PupilOutline::*)[kAzimuths + 1];
 
-/// Sets one edge of the moved outline. False if it does not go around the middle.
+/// Sets one edge of the moved outline. Returns false if the edge does not surround the centre of the box.
 bool move_edge(const OutlineHalves& outline, const DirectionBox& from, const DirectionBox& to, Reaches edge,
                OutlineHalves& moved) {
     std::vector<Vec2<double>> corners;

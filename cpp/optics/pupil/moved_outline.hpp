@@ -6,11 +6,11 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// The outline of a whole region: of its half above the middle of a box, and of the one below.
+/// Outline of a whole region: of its halves above and below the centre of its box.
 using OutlineHalves = std::array<PupilOutline, 2>;
 
-/// The same outline about the middle of another box, and in units of it. Between azimuths it is straight. Nothing where
-/// the region does not go all around both middles.
+/// Returns the outline relative to the centre of another box, in units of that box. It is taken as straight between
+/// azimuths. Returns an empty outline if the region does not surround the centres of both boxes.
 OutlineHalves moved_outline(const OutlineHalves& outline, const DirectionBox& from, const DirectionBox& to);
 
 }  // namespace REALCAM_NAMESPACE

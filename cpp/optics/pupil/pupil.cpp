@@ -48,7 +48,7 @@ bool Pupil::find_near(const Pupil& similar) {
     };
     std::vector<PupilOutline> expected, found;
     const auto are_alike = [&] { return mean_difference(expected, found) < 0.03; };
-    found = look({0}, expected);  // the axis tells in a few rays whether the stop has changed
+    found = look({0}, expected);  // on the axis, a few rays show whether the stop has changed
     if (!are_alike()) return false;
     if (ends_inside_film_ && !find_edge_near(similar)) return false;
     std::vector<int> eighths;
@@ -79,7 +79,7 @@ bool Pupil::find_edge_near(const Pupil& similar) {
     if (sight.lit.empty() || sight.dark.empty() || sight.dark.back() > film_radius_) return false;
     end_image(sight);
     if (image_radius_ == similar.image_radius_) return true;
-    // Rows without outlines are as wide as their boxes, so that these must be right.
+    // Rows without outlines use their whole boxes, which must therefore be accurate.
     constexpr int kFirst = kRows - kEdgeRows + 1;
     const PupilRowBoxes boxes = rows().look_between(sight.lit, kFirst);
     for (std::size_t row = kFirst; row < boxes.size(); ++row)
@@ -221,7 +221,7 @@ void Pupil::add_row(int row, PupilRow sectors, double reach, int clean_rounds) {
     int rounds = 0, passing = 0;
     for (int clean = 0; rounds < kMostRounds && clean < clean_rounds; ++rounds) {
         const auto stream = static_cast<std::uint32_t>(kMostRounds * row + rounds);
-        // Both ends of the row first.
+        // Starts with both ends of the row.
         const double position = row + (rounds < 2   ? 0.9999
                                        : rounds < 4 ? 0.0
                                                     : static_cast<double>(sample_2d(stream, 0, 1).x));
@@ -244,7 +244,7 @@ void Pupil::add_row(int row, PupilRow sectors, double reach, int clean_rounds) {
         if (!is_beside) passing += static_cast<int>(std::count(passes, passes + kBlock, true));
         clean = strayed ? 0 : clean + 1;
     }
-    // Of the rays all over, as many lie inside the sectors as these take of the surroundings.
+    // Expected number of the uniform rays inside the sectors: their share of the scanned area.
     const double held = (rounds + 1) / 2 * kBlock * sectors.area() / (2 * reach * reach);
     if (passing < held / 4) sectors = PupilRow(box_outline());
     std::copy(sectors.sectors().begin(), sectors.sectors().end(), outline_.begin() + row * kSectors);

@@ -10,103 +10,107 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// The directions that pass a lens, for every film radius. Found with real rays; owns the memory of its view.
+/// Pupil of a rotationally symmetric lens: the directions that pass it, for every film radius. Found by tracing real
+/// rays; owns the memory of its view.
 class Pupil {
 public:
     static constexpr int kRows = PupilRowSearch::kRows;
     static constexpr int kSectors = PupilRow::kSectors;  ///< for m >= 0
-    /// No search traces more, whatever the lens. There are 270 looks at a film radius: every eighth row, those around
-    /// and beyond a dark one, the edge of the image, all rows, and half-way between them. Each row has outlines at both
-    /// ends and seven places, looked for in five steps, and 256 rounds. Lenses that can be made take a hundredth of it.
+    /// Upper bound of the number of ray blocks of a search, for any lens. There are 270 box searches at a film radius:
+    /// every eighth row, the rows around and beyond a dark one, the edge of the image, all rows, and half-way between
+    /// them. Each row has outlines at both ends and at seven positions in between, found in five steps, and 256 rounds
+    /// of rays. Lenses that can be made take a hundredth of it.
     static constexpr int kMostBlocks = 270 * PupilSearch::kMostBlocks + OutlineSearch::most_blocks(kRows / 2 + 1) +
                                        OutlineSearch::most_blocks(kRows / 2) + OutlineSearch::most_blocks(kRows) +
                                        OutlineSearch::most_blocks(2 * kRows) + OutlineSearch::most_blocks(4 * kRows) +
                                        256 * kRows;
 
-    /// `film_radius` in mm: the film point furthest from the axis. Throws InputError where it is no positive length.
-    /// The pupil holds what passes at any of the wavelengths; none: the lens's design wavelength.
+    /// `film_radius`: radius of the film point farthest from the axis, mm. Throws InputError unless it is a positive
+    /// length of at most 1e9 mm. The pupil contains the directions that pass at any of the wavelengths; if there are no
+    /// wavelengths, at the lens's design wavelength.
     ///
-    /// `similar`: that of the lens in another state, whose edges are taken for about where these lie. It takes a fifth
-    /// of the rays where they do, and a few more where they do not.
+    /// `similar`: pupil of the lens in another state, near whose edges the search begins. Takes a fifth of the rays if
+    /// the edges are alike, and a few rays more if they are not.
     Pupil(const LensSystem& lens, double film_radius, PupilTracer tracer = {},
           const std::vector<double>& wavelengths_nm = {}, const Pupil* similar = nullptr);
 
     PupilView view() const;
     double image_radius() const { return image_radius_; }
-    /// Whether the table holds the pupil between its rows too. A stop of some micrometres moves by more than its own
-    /// size from row to row.
+    /// True if the table describes the pupil between its rows, too. A stop of a few micrometres moves by more than its
+    /// own size from row to row.
     bool follows() const { return follows_; }
-    /// Whether it was found near the edges of a similar one.
+    /// True if the pupil was found near the edges of a similar one.
     bool is_moved() const { return is_moved_; }
 
 private:
-    /// Smaller ones, in direction cosines, move by more than their own size from row to row.
+    /// Pupils of a smaller half-width, in direction cosines, may move by more than their own size from row to row.
     static constexpr float kSmall = 1e-3f;
-    /// Outermost rows, 0.4% of the image's area, that get no finer outline than a box.
+    /// Number of outermost rows, 0.4% of the image's area, whose outline is just the box.
     static constexpr int kEdgeRows = 2;
 
     void find_anew();
 
-    /// Finds this pupil near a similar one, in whose boxes; false where the two differ too much.
+    /// Finds this pupil near a similar one, whose boxes it adopts; returns false if the two differ too much.
     bool find_near(const Pupil& similar);
 
-    /// Finds where the image ends near the end of a similar one; false where it ends elsewhere.
+    /// Finds the edge of the image near that of a similar pupil; returns false if it lies elsewhere.
     bool find_edge_near(const Pupil& similar);
 
-    /// Finds how far out there is light, and the region's box at each node from the axis to there.
+    /// Finds the radius of the image, and the region's box at each node from the axis to that radius.
     void find_nodes();
 
-    /// The image ends where there is no light any more. The box there is that of the last light.
+    /// Ends the image at the innermost dark radius, with the box of the outermost lit one.
     void end_image(PupilRowSearch::Sight& sight);
 
     static PupilNode node_of(const PupilBox& box);
 
-    /// The grid sees too little of the thin ends of a crescent at the edge of the image: its box must not shrink as
-    /// fast as it does.
+    /// Limits how fast the boxes shrink at the edge of the image: the search grid misses the thin ends of the crescent
+    /// there.
     void widen_last_nodes();
 
     PupilRowSearch rows() const { return {search_, image_radius_}; }
     double radius_at(double position) const { return rows().radius_at(position); }
 
-    /// Whether a small pupil lies half-way between rows where its neighbours say. Of large ones the outlines see it;
-    /// and slivers at the edge of the image are small without a small stop.
+    /// True if a small pupil lies half-way between rows where its neighbours suggest. Large pupils are checked by their
+    /// outlines; slivers at the edge of the image, which are small without a small stop, are skipped.
     bool nodes_follow() const;
 
     PupilNode node_at(double position) const;
 
-    /// The key is the place in the table, in eighths of rows.
+    /// Outlines by position in the table, in eighths of a row.
     using OutlinesByEighth = std::map<int, PupilOutline>;
 
     std::vector<OutlineLook> looks_at(const std::vector<int>& eighths) const;
 
-    /// Looks half-way between outlines that have been seen, which lie `step` eighths before and behind.
+    /// Searches half-way between known outlines, which lie `step` eighths before and behind.
     void look_between(int step, int rows, const std::function<bool(int row)>& wanted, OutlinesByEighth& seen) const;
 
-    /// Rows that get an outline.
+    /// Number of rows with an outline of their own.
     int outlined_rows() const { return ends_inside_film_ ? kRows - kEdgeRows : kRows; }
 
-    /// At the two ends of each row, and in between. Where it changes by much, as behind the last surface that cuts the
-    /// light off, more film radii are looked at.
+    /// Finds the outlines at both ends of each row and in between. Rows in which the outline changes much, as beyond
+    /// the last surface that vignettes, get more film radii.
     OutlinesByEighth find_outlines() const;
 
-    /// A row holds what passes at its two ends and in between, and a share more of what changes over it.
+    /// Adds all rows. A row contains the outlines at its ends and in between, extended by a share of their change over
+    /// it.
     void add_rows(const OutlinesByEighth& seen);
 
-    /// From the beginning of a row to its end.
+    /// Outlines from the beginning of a row to its end.
     static std::vector<PupilOutline> outlines_of(int row, const OutlinesByEighth& seen);
 
-    /// Adds a row. Sends rays all over its surroundings in one round, and just beside the sectors in the next, and
-    /// widens those that do not hold what passes, until so many rounds in a row find none. The reason is that corners
-    /// of slivers lie between spokes, and ends of crescents between the points of a grid. Sectors that few rays pass do
-    /// not tell where the light is, which may lie in several rings: the whole box takes their place.
+    /// Adds a row. Traces rays all over its surroundings in one round and just beside the sectors in the next, and
+    /// widens the sectors that do not contain a passing ray, until `clean_rounds` rounds in succession find no ray to
+    /// add. This catches corners of slivers between spokes, and ends of crescents between grid points. Sectors that few
+    /// rays pass do not describe the light, which may form several rings: the whole box replaces them.
     void add_row(int row, PupilRow sectors, double reach, int clean_rounds);
 
     PupilSearch search_;
     double film_radius_, image_radius_;
     bool ends_inside_film_ = false, follows_ = false, is_moved_ = false;
     std::vector<PupilNode> nodes_;
-    PupilBox last_box_{};  ///< of the last light before the edge of the image
-    /// In the boxes of the nodes: this pupil's, or those of the similar one from which this was found.
+    PupilBox last_box_{};  ///< box of the outermost lit radius
+    /// Outlines in the boxes of the nodes: this pupil's own, or those of the similar one from which it was found.
     std::shared_ptr<const OutlinesByEighth> seen_;
     std::vector<PupilSector> outline_;
 };

@@ -7,7 +7,7 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Optical direction cosines of a ray on its way from the film to the scene.
+/// Optical direction cosines of a ray that travels from the film to the scene.
 struct PupilDirection {
     double l, m;
 };
@@ -22,7 +22,7 @@ struct PupilBox {
     double l() const { return 0.5 * (l_min + l_max); }
     double half_width() const { return 0.5 * (l_max - l_min); }
     PupilBox with(PupilDirection d) const { return {std::min(l_min, d.l), std::max(l_max, d.l), std::max(m_max, d.m)}; }
-    /// Whether it ends inside the searched box, or where nothing can be any more.
+    /// True if each side lies inside the searched box, or the searched box reaches the widest one on that side.
     bool lies_in(const PupilBox& searched, const PupilBox& widest) const {
         return (l_min > searched.l_min || searched.l_min <= widest.l_min) &&
                (l_max < searched.l_max || searched.l_max >= widest.l_max) &&
@@ -34,8 +34,8 @@ struct PupilBox {
     }
 };
 
-/// Boxes found so far, going outwards. The edges of the region move evenly, so the last two tell where it went:
-/// near the edge of the image circle it is a sliver that moves by more than its own width.
+/// Boxes found so far, from the axis outwards. The edges of the region move smoothly, so the last two boxes predict the
+/// next: near the edge of the image circle the region is a sliver that moves by more than its own width.
 struct PupilTrack {
     struct Seen {
         double radius;

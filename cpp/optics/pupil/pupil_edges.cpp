@@ -11,7 +11,7 @@ PupilEdgeSearch::PupilEdgeSearch(const LensSystem& lens, const PupilTracer& trac
 
 std::optional<PupilEdges> PupilEdgeSearch::at(double radius, double azimuth, const PupilBox& box) const {
     const Spokes spokes(radius, azimuth, box, film_distance_);
-    // The outer edges in the first half of the block, the inner ones in the second.
+    // Outer edges in the first half of the block, inner ones in the second.
     std::array<double, 2 * kSpokes> lit{}, dark{};
     if (!scan(spokes, lit, dark)) return std::nullopt;
     for (int halving = 0; halving < kHalvings; ++halving) {

@@ -10,20 +10,21 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// The edges of the light that a film point sees in the lens, as closed polygons in optical direction cosines:
-/// counter-clockwise around the light, clockwise around what blocks it in the middle.
+/// Edges of the pupil as seen from a film point, as closed polygons in optical direction cosines: counter-clockwise
+/// around the light, clockwise around a central obstruction.
 using PupilEdges = std::vector<std::vector<Vec2<double>>>;
 
-/// Finds them with real rays along spokes, at the design wavelength: rims, blades and whatever else stops light.
+/// Finds pupil edges by tracing real rays along radial scan lines (spokes), at the design wavelength: rims, blades and
+/// all else that blocks light.
 class PupilEdgeSearch {
 public:
     static constexpr int kSpokes = PupilTracer::kBlock / 2;
 
     PupilEdgeSearch(const LensSystem& lens, const PupilTracer& tracer);
 
-    /// The edges for the film point at this radius (mm) and azimuth (rad). `box`: what holds the light for azimuth 0,
-    /// from whose middle the spokes go. Nothing where some spoke meets no light, as in a crescent at the edge of the
-    /// image.
+    /// Returns the edges for the film point at this radius (mm) and azimuth (rad). `box`: bounding box of the light for
+    /// azimuth 0, from whose centre the spokes start. Returns std::nullopt if a spoke meets no light, as in a crescent
+    /// at the edge of the image.
     std::optional<PupilEdges> at(double radius, double azimuth, const PupilBox& box) const;
 
 private:
@@ -33,7 +34,8 @@ private:
     struct Spokes {
         Spokes(double radius, double azimuth, const PupilBox& box, double film_distance);
 
-        /// At a share of the way from the middle of the box to the ellipse in it. Spokes are numbered twice.
+        /// Direction on a spoke; `reach` is 0 at the centre of the box and 1 on the ellipse inscribed in it. Indices
+        /// run over the spokes twice.
         Vec2<double> direction(int spoke, double reach) const;
 
         PupilBox box;
@@ -43,8 +45,8 @@ private:
 
     std::array<bool, 2 * kSpokes> trace(const Spokes& spokes, const std::array<double, 2 * kSpokes>& reach) const;
 
-    /// Sets the last steps in and out of the light. False where a spoke meets none. A spoke whose middle is lit has its
-    /// inner edge there.
+    /// Sets, for both edges of each spoke, the last lit step and the dark one beyond. Returns false if a spoke meets no
+    /// light. The inner edge of a spoke that starts in light is at the centre.
     bool scan(const Spokes& spokes, std::array<double, 2 * kSpokes>& lit, std::array<double, 2 * kSpokes>& dark) const;
 
     static double reach_at(int step) { return kReach * step / kSteps; }

@@ -50,7 +50,7 @@ MirrorPlanes mirror_planes(const LensSystem& lens) {
         const ApertureShape& aperture = surface.aperture_shape;
         planes.x &= aperture.offset.x == 0;
         planes.y &= aperture.offset.y == 0;
-        // These may have the planes too, but few have.
+        // These may be symmetric, too, but rarely are.
         if (surface.form.zernike || aperture.kind == ApertureOutline::polygon || !aperture.obscurations.empty())
             return {};
     }
@@ -97,7 +97,7 @@ Vec2<double> PupilGrid::film_point(double column, double row) const {
 void PupilGrid::find_nodes() {
     const int columns = node_columns(), rows = node_rows();
     std::vector<std::optional<DirectionBox>> found(static_cast<std::size_t>(columns * rows));
-    // The middle of the film is lit, if anything is, but for odd cameras.
+    // Starts at the film's centre, which is lit, if anything is, in all but unusual cameras.
     int first_column = planes_.x ? 0 : columns / 2, first_row = planes_.y ? 0 : rows / 2;
     std::optional<DirectionBox> first = search_.look(node_point(first_column, first_row), {});
     for (int row = 0; row < rows && !first; ++row)
@@ -159,7 +159,7 @@ std::vector<PupilOutline> PupilGrid::sharpen_nodes() {
     std::vector<PupilOutline> outlines(looks.size());
     const std::vector<std::size_t> coarse = lattice.even_looks();
     assign_at(coarse, OutlineSearch::find(search_.lens(), at(coarse, looks)), outlines);
-    // What a grid of rays sees of a region is off by up to two of its cells.
+    // The box found by a grid of rays is off by up to two of the grid's cells.
     look_between(lattice, looks, 0.12, outlines);
     for (std::size_t node = 0; node < nodes_.size(); ++node) {
         DirectionBox box = DirectionBox::none();
@@ -265,10 +265,10 @@ void PupilGrid::set_cell(int column, int row, const std::vector<PupilOutline>& o
         std::copy(halves[half].sectors().begin(), halves[half].sectors().end(), sectors + half * kPupilGridSectors);
         areas[half] = halves[half].area();
     }
-    // A half without light may still be hit by a rounding.
+    // At least 1%: rounding may still select a half without light.
     const double share = std::clamp(areas[0] / (areas[0] + areas[1]), 0.01, 0.99);
     cell.upper_share = static_cast<float>(share);
-    if (passed == 0) return;  // the weights of the dark are 0
+    if (passed == 0) return;  // a dark cell's weights stay 0
     cell.upper_weight = static_cast<float>(0.5 * kPupilGridSectors / share);
     cell.lower_weight = static_cast<float>(0.5 * kPupilGridSectors / (1 - share));
 }

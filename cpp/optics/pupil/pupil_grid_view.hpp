@@ -3,46 +3,46 @@
 
 namespace REALCAM_NAMESPACE {
 
-// The pupil of a lens that is not of revolution: by the place on the film, not by the radius. In each cell of a grid
-// over the film, the outline of the region is a row of triangles, half of them above its middle and half below.
+// Pupil of a lens without rotational symmetry, tabulated over film positions instead of radii. In each cell of a grid
+// over the film, the outline of the region is a list of triangles, half of them above its centre and half below.
 
-/// The bounding box of the region that a film point sees, in optical direction cosines.
+/// Bounding box of the pupil of a film point, in optical direction cosines.
 struct PupilGridNode {
     float centre_l, centre_m;
     float half_width, half_height;
 };
 
-/// A cell of the film. Its sectors are those of the upper half, m above the box's middle, and then those of the lower
-/// one, whose y points down.
+/// A cell of the film. The sectors of the upper half, m above the box's centre, precede those of the lower half, whose
+/// y points down.
 struct PupilGridCell {
-    float upper_share;   ///< of the region's area, with which a sample goes to the upper half
-    float upper_weight, lower_weight;  ///< one over the density of a sector's choice; 0 in the dark
+    float upper_share;   ///< share of the region's area, and probability of sampling the upper half
+    float upper_weight, lower_weight;  ///< 1 / (2 x probability of choosing a sector); 0 in a dark cell
 };
 
 struct PupilGridView {
-    const PupilGridNode* nodes;  ///< at the corners of each 2 x 2 cells, row by row; null: there is a PupilView instead
+    const PupilGridNode* nodes;  ///< at the corners of each 2 x 2 cells, row by row; null: a PupilView is used instead
     const PupilGridCell* cells;  ///< columns x rows
-    const PupilSector* sectors;  ///< of each cell, 2 x kPupilGridSectors
+    const PupilSector* sectors;  ///< 2 x kPupilGridSectors for each cell
     int columns, rows;  ///< even
-    Vec2f corner;  ///< of the grid, where x and y are least, mm
+    Vec2f corner;  ///< corner of the grid with the smallest x and y, mm
     Vec2f cells_per_mm;
-    bool mirrors_x, mirrors_y;  ///< what lies at x < 0, or y < 0, is the mirror image of what the grid has beyond 0
+    bool mirrors_x, mirrors_y;  ///< the region at x < 0, or y < 0, is the mirror image of the one beyond 0
     float index_squared;  ///< n^2 of the medium before the film
 };
 
-inline constexpr int kPupilGridSectors = 32;  ///< of half a region
+inline constexpr int kPupilGridSectors = 32;  ///< sectors of half a region
 
 inline constexpr int kCellsPerPupilNode = 2;
 
-/// A film point's cell, and the box of its region.
+/// Lookup of a film point: its cell, and the interpolated box of its region.
 struct PupilGridPlace {
     PupilGridNode box;
     int cell;
-    float sign_l, sign_m;  ///< -1: the region is the mirror image
+    float sign_l, sign_m;  ///< -1: the region is mirrored
 };
 
 REALCAM_INLINE PupilGridPlace pupil_grid_place(const PupilGridView& pupil, float film_x, float film_y) {
-    // Points beyond the margin see what those at the margin see.
+    // Film points outside the grid use its edge.
     const auto within = [](float place, int cells) {
         const float last = static_cast<float>(cells);
         return select(place > 0.0f, select(place < last, place, last), 0.0f);
@@ -71,14 +71,14 @@ REALCAM_INLINE PupilGridPlace pupil_grid_place(const PupilGridView& pupil, float
             select(below, -1.0f, 1.0f)};
 }
 
-/// One over the density in a sector, steradians of projected solid angle; 0 in the dark.
+/// Inverse density in a sector, steradians of projected solid angle; 0 in a dark cell.
 REALCAM_INLINE float pupil_weight(const PupilGridPlace& place, const PupilGridCell& cell, const PupilSector& sector,
                                   bool lower) {
     const float area = (sector.x * sector.dy - sector.y * sector.dx) * (1.0f - sector.hole_squared);
     return select(lower, cell.lower_weight, cell.upper_weight) * area * place.box.half_width * place.box.half_height;
 }
 
-/// As of a PupilView.
+/// Samples a direction for a film point (x, y) in mm, from u and v in [0, 1). Uniform over each sector of the cell.
 REALCAM_INLINE PupilSample sample_pupil(const PupilGridView& pupil, float film_x, float film_y, float u, float v) {
     const PupilGridPlace place = pupil_grid_place(pupil, film_x, film_y);
     const PupilGridCell cell = pupil.cells[place.cell];
@@ -100,7 +100,7 @@ REALCAM_INLINE PupilSample sample_pupil(const PupilGridView& pupil, float film_x
             select(rest > 0.0f, pupil_weight(place, cell, sector, lower), 0.0f)};
 }
 
-/// As of a PupilView.
+/// Density of sample_pupil at the optical direction cosines (l, m), per unit of their area.
 REALCAM_INLINE float pupil_pdf(const PupilGridView& pupil, float film_x, float film_y, float l, float m) {
     const PupilGridPlace place = pupil_grid_place(pupil, film_x, film_y);
     const float x = (place.sign_l * l - place.box.centre_l) / place.box.half_width;

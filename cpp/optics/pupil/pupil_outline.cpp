@@ -95,10 +95,10 @@ PupilRow::PupilRow(const PupilOutline& outline) {
         const int a = std::min(i / kFine, kAzimuths - 1);
         const double f = static_cast<double>(i - a * kFine) / kFine;
         const double before = outline.outer[a], after = outline.outer[a + 1];
-        // Where the reach jumps, the corner of a sliver lies between the two spokes, further out than either.
+        // At a jump of the radius, the corner of a sliver lies between the two azimuths, further out than either.
         const bool corner = std::fabs(after - before) > 0.2 * std::max(before, after);
-        // Where two rims meet, the outline goes on straight from both sides until they do. At the ends it is taken to
-        // be symmetric in m.
+        // At a corner between two rims, both sides of the outline are extrapolated linearly until they meet. At the
+        // ends it is taken as symmetric in m.
         const double from_before = before + f * (before - outline.outer[a > 0 ? a - 1 : 1]);
         const double from_after = after + (1 - f) * (after - outline.outer[a + 1 < kAzimuths ? a + 2 : kAzimuths - 1]);
         const double straight = before + f * (after - before);
@@ -141,7 +141,7 @@ bool PupilRow::take_in(Vec2f place) {
 Vec2f PupilRow::beside(std::size_t sector, Vec2f u) const {
     constexpr float kBeyond = 0.15f;
     const PupilSector& s = sectors_[sector];
-    // A quarter of the places lies in the hole, if there is one.
+    // If there is a hole, a quarter of the points lies in it.
     const bool in_hole = s.hole_squared > 0 && u.y < 0.25f;
     const float reach = in_hole ? (1 - 4 * u.y * kBeyond) * std::sqrt(s.hole_squared) : 1 + u.y * kBeyond;
     return {reach * (s.x + u.x * s.dx), reach * (s.y + u.x * s.dy)};
@@ -152,7 +152,7 @@ std::optional<std::size_t> PupilRow::sector_of(Vec2f place) const {
     const auto ends_before = [place](const PupilSector& s) {
         return !(place.x * (s.y + s.dy) - place.y * (s.x + s.dx) >= 0);
     };
-    // Bisection without a branch: no processor could guess it.
+    // Branch-free bisection: the branches would be unpredictable.
     static_assert((kSectors & (kSectors - 1)) == 0);
     std::size_t at = 0;
     for (std::size_t half = kSectors / 2; half > 0; half /= 2)
@@ -163,14 +163,14 @@ std::optional<std::size_t> PupilRow::sector_of(Vec2f place) const {
 
 PupilSector PupilRow::sector_over(const double* outer, const double* inner, int from, int to) {
     const auto point = [&](int i) {
-        // Not less: next to a point a thousand times as far out, float32 would give the triangle no area.
+        // At least 1e-3: next to a point a thousand times as far out, float32 would give the triangle no area.
         const double r = std::max(outer[i], 1e-3);
         const PupilDirection d = PupilOutline::fine_direction(i);
         return Point{r * d.l, r * d.m};
     };
     const Point a = point(from), b = point(to);
     const double twice_area = a.x * b.y - a.y * b.x;
-    // By Cramer's rule, the distance from the middle to the edge along an azimuth is `twice_area` over this.
+    // By Cramer's rule, the distance from the centre to the edge along an azimuth is `twice_area` over this.
     const auto per_distance = [&](int i) {
         const PupilDirection d = PupilOutline::fine_direction(i);
         return (b.y - a.y) * d.l - (b.x - a.x) * d.m;

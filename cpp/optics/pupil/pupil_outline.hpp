@@ -7,7 +7,8 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Reach of the passing directions from the middle of their bounding box, in units of the box, by azimuth from 0 to pi.
+/// Outline of the passing directions: radii from the centre of their bounding box, in units of its half-widths, at
+/// azimuths from 0 to pi. An azimuth with outer radius 0 is dark.
 struct PupilOutline {
     static constexpr int kAzimuths = 64;  ///< intervals of azimuth
 
@@ -15,49 +16,49 @@ struct PupilOutline {
 
     static PupilDirection direction(int spoke) { return fine_direction(spoke * kFine); }
 
-    static constexpr int kFine = 16;  ///< finer ones in each interval
-    /// A direction of unit length.
+    static constexpr int kFine = 16;  ///< subdivisions of each interval
+    /// Unit vector at an azimuth, in units of pi / (kAzimuths kFine).
     static PupilDirection fine_direction(int i);
 };
 
-/// The whole box, and a little more. At the edge of the image circle the last light comes through a crescent, thin
-/// and bent, that spokes from its middle do not describe.
+/// Outline of the whole box and a margin. At the edge of the image circle the last light passes through a thin, bent
+/// crescent, which radii from its centre do not describe.
 PupilOutline box_outline();
 
-/// How much the reach along an azimuth differs between outlines.
+/// Range of the outer radius at an azimuth over several outlines.
 double spread(const std::vector<PupilOutline>& looks, int azimuth);
 
 double largest_spread(const std::vector<PupilOutline>& looks);
 
-/// By how much the outer edges of the same looks differ, mean of all azimuths in units of the box. One that is dark in
-/// one and lit in the other counts as one unit.
+/// Mean difference of the outer radii of corresponding outlines, over all azimuths, in units of the box. An azimuth
+/// that is dark in one outline and lit in the other counts as one unit.
 double mean_difference(const std::vector<PupilOutline>& a, const std::vector<PupilOutline>& b);
 
-/// The mean of these: what lies between them looks about so. Nothing at azimuths at which some are dark and others not,
-/// or only some have a hole.
+/// Mean of outlines, an estimate of the outline between them. It is 0 at azimuths at which an outline is dark, or at
+/// which only some outlines have a hole.
 PupilOutline between(const std::vector<const PupilOutline*>& looks);
 
-/// The outline that holds all of these, and a margin: a share of the reach, for what can pass between the film radii
-/// and azimuths looked at, and a share of how much it changes.
+/// Outline that contains all of these, with a margin: a share of the radius, for light between the searched film radii
+/// and azimuths, and a share of the radius's range.
 PupilOutline holding_all(const std::vector<PupilOutline>& looks);
 
-/// Sectors of one row, first to last in azimuth.
+/// Sectors of one row, in order of azimuth.
 class PupilRow {
 public:
-    static constexpr int kSectors = 32;  ///< for m >= 0
+    static constexpr int kSectors = 32;  ///< sectors for m >= 0
 
     /// Cuts the outline into sectors of nearly equal area.
     explicit PupilRow(const PupilOutline& outline);
 
-    /// Widens the sector of a place in the box such that it holds it; false where it does already.
+    /// Widens the sector at a point in the box to contain the point; returns false if no sector was widened.
     bool take_in(Vec2f place);
 
-    /// A place just outside of a sector's edge, or just inside its hole.
+    /// A point just outside a sector's edge, or just inside its hole. `u`: random numbers in [0, 1).
     Vec2f beside(std::size_t sector, Vec2f u) const;
 
     const std::vector<PupilSector>& sectors() const { return sectors_; }
 
-    /// Of all sectors without their holes, in units of the box's half-widths.
+    /// Area of all sectors without their holes, in units of the box's half-widths.
     double area() const;
 
 private:
@@ -65,15 +66,15 @@ private:
         double x, y;
     };
 
-    /// Nothing for a place with m < 0, and for one that falls between two sectors by rounding.
+    /// Returns std::nullopt for a point with m < 0, and for one that falls between two sectors by rounding.
     std::optional<std::size_t> sector_of(Vec2f place) const;
-    /// 1 on the sector's outer edge.
+    /// Distance of a point from the centre; 1 on the sector's outer edge.
     static float reach_in(const PupilSector& s, Vec2f place) {
         return (place.x * s.dy - place.y * s.dx) / (s.x * s.dy - s.y * s.dx);
     }
     static bool holds(const PupilSector& s, float reach) { return reach <= 1 && reach * reach >= s.hole_squared; }
 
-    /// The smallest triangle on these two azimuths whose outer edge lies outside the outline in between.
+    /// The smallest triangle between these two azimuths whose outer edge lies outside the outline in between.
     static PupilSector sector_over(const double* outer, const double* inner, int from, int to);
 
     std::vector<PupilSector> sectors_;

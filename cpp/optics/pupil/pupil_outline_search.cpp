@@ -18,7 +18,7 @@ std::vector<PupilOutline> OutlineSearch::find_near(const PupilLens& lens, const 
                                                    const std::vector<PupilOutline>& expected, double tolerance) {
     std::vector<PupilOutline> outlines(looks.size());
     Spokes left = spokes_of(looks);
-    constexpr double kWidest = 0.2;  // beyond, a scan takes fewer rays
+    constexpr double kWidest = 0.2;  // for larger tolerances a scan takes fewer rays
     for (const double reach : {tolerance, 8 * tolerance}) {
         if (reach > kWidest) break;
         const auto found = std::make_unique<bool[]>(left.size());
@@ -145,7 +145,7 @@ void OutlineSearch::test(const PupilLens& lens, const double (&open)[kBlock], co
 }
 
 void OutlineSearch::halve(const PupilLens& lens, int halvings, double (&open)[kBlock], double (&shut)[kBlock]) {
-    // Where a block has room for several rays of each spoke, they are those that the next halvings can ask for.
+    // If a block has room for several rays of each spoke, it traces all points that the next bisections may need.
     const int most_at_once = std::bit_width(static_cast<unsigned>(kBlock / count_ + 1)) - 1;
     while (halvings > 0) {
         const int at_once = std::min(halvings, most_at_once), parts = 1 << at_once;

@@ -47,7 +47,7 @@ void PupilRowSearch::find_edge_of_image(Sight& sight, double width, int far_roun
     for (int round = 0; round < kMostEdgeRounds && !dark.empty(); ++round) {
         const double lit = track.last->radius, third = (dark.back() - lit) / 3;
         if (3 * third < width * dark.back()) break;
-        // A sliver that moves is missed from afar. So where none was seen is looked at again from nearby.
+        // A moving sliver may be missed from a distance, so dark radii are searched again from nearby.
         const double radii[] = {lit + third, lit + 2 * third, dark.back()};
         constexpr int kCount = std::size(radii);
         std::optional<PupilBox> boxes[kCount];

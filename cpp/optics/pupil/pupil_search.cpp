@@ -127,8 +127,8 @@ std::optional<PupilSearch::NearestRay> PupilSearch::nearest_to_stop(double radiu
 }
 
 bool PupilSearch::is_dark_around(const NearestRay& nearest, const std::optional<NearestRay>& last) {
-    // A grid six times as fine comes about six times as near, and at least 2% nearer where a stop of a thousandth of
-    // the full one lies in a bent part of the pupil.
+    // A grid six times as fine comes about six times as near, and at least 2% nearer if a stop of a thousandth of the
+    // full one lies in a bent part of the pupil.
     constexpr double kLeastGain = 0.98;
     const bool comes_nearer = !last || nearest.distance < kLeastGain * last->distance;
     return nearest.all_in_stop || !comes_nearer;

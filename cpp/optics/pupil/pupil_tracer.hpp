@@ -5,8 +5,8 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// What a backend brings to the search for a pupil: its vector instructions and its threads. By default the build's
-/// baseline on the calling thread. The pupil is the same bits whatever the threads.
+/// Backend of the pupil search: vector instructions and threads. The default is the build's baseline instruction set on
+/// the calling thread. The pupil is bit-identical for any number of threads.
 struct PupilTracer {
     static constexpr int kBlock = 256;
     using Rays = LensRays<float, kBlock>;

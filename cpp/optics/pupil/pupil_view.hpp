@@ -5,41 +5,41 @@
 
 namespace REALCAM_NAMESPACE {
 
-// The pupil as a film point sees it is a region of directions. It is stored in optical direction cosines (l, m),
-// because there the exposure integral (source paper, equations 6 and 7) has no factors: n^2 cos(theta') dω = dl dm. So
-// the irradiance of a field of radiance L is L times the region's area, also on a film that glass covers. Uniform
-// samples all have the same weight.
+// The pupil as seen from a film point is a region of directions. It is stored in optical direction cosines (l, m), in
+// which the exposure integral (source paper, equations 6 and 7) has no factors: n^2 cos(theta') dω = dl dm. So the
+// irradiance from a field of radiance L is L times the region's area, also on a film that glass covers. Uniform samples
+// all have the same weight.
 
-/// Where the region lies for film points at one radius, the film point lying on the +x axis.
+/// Bounding box of the region for film points at one radius, with the film point on the +x axis.
 struct PupilNode {
-    float centre;       ///< l of the middle of the region's bounding box; its m is 0 by symmetry
-    float half_width;   ///< along l
+    float centre;  ///< l of the box's centre; its m is 0 by symmetry
+    float half_width;  ///< along l
     float half_height;  ///< along m
 };
 
-/// A triangle from the middle of the region to a piece of its outline, in units of the box. Light that is blocked in
-/// the middle (a mirror lens) leaves out a smaller similar triangle.
+/// A triangle from the centre of the region to a piece of its outline, in units of the box. A central obstruction (a
+/// mirror lens) removes a smaller similar triangle.
 struct PupilSector {
-    float x, y;    ///< first corner on the outline
-    float dx, dy;  ///< to the second one
+    float x, y;  ///< first corner on the outline
+    float dx, dy;  ///< to the second corner
     float hole_squared;
 };
 
-/// Rows of sectors over the film radius: row = rows * (1 - sqrt(1 - radius / image_radius)), so that they lie closer
-/// and closer towards the edge, where vignetting changes the outline fastest. Each row has `sectors` sectors for m >=
-/// 0; the others mirror them.
+/// Rows of sectors over the film radius: row = rows * (1 - sqrt(1 - radius / image_radius)), so that their spacing
+/// decreases towards the edge, where vignetting changes the outline fastest. Each row has `sectors` sectors for m >= 0;
+/// those for m < 0 mirror them.
 struct PupilView {
     const PupilNode* nodes;  ///< rows + 1
     const PupilSector* outline;
     int rows, sectors;
-    float image_radius;         ///< no light reaches film points further out, mm
+    float image_radius;  ///< no light reaches film points further out, mm
     float inverse_image_radius;  ///< 0 where there is no light at all
-    float index_squared;         ///< n^2 of the medium before the film
+    float index_squared;  ///< n^2 of the medium before the film
 };
 
-/// The box of a film point's region, and the row of sectors that fills it.
+/// Lookup of a film point: the interpolated box of its region, and its row of sectors.
 struct PupilRowPosition {
-    float cos, sin;  ///< of the film point's azimuth, by which the region is turned
+    float cos, sin;  ///< film point's azimuth, by which the region is rotated
     float centre, half_width, half_height;
     int row;
     float lit;  ///< 1 inside the image circle, else 0
@@ -66,21 +66,21 @@ REALCAM_INLINE PupilRowPosition pupil_row_position(const PupilView& pupil, float
             select(radius < pupil.image_radius, 1.0f, 0.0f)};
 }
 
-/// One over the density in a sector, steradians of projected solid angle: sectors are chosen evenly, so that it is
-/// their number times the area of this one. 0 outside the image circle.
+/// Inverse density in a sector, steradians of projected solid angle: sectors are chosen with equal probability, so that
+/// it is their number times the area of this one. 0 outside the image circle.
 REALCAM_INLINE float pupil_weight(const PupilView& pupil, const PupilRowPosition& place, const PupilSector& sector) {
     const float area = static_cast<float>(pupil.sectors) * (sector.x * sector.dy - sector.y * sector.dx) *
                        (1.0f - sector.hole_squared);
     return area * place.half_width * place.half_height * place.lit;
 }
 
-/// A ray's start direction.
+/// Sampled direction of a ray at a film point.
 struct PupilSample {
     Vec3f direction;  ///< optical, from the film point to the scene, lens frame
-    float weight;     ///< one over pupil_pdf; 0 outside the image circle, and where the direction does not exist
+    float weight;  ///< 1 / pupil_pdf; 0 outside the image circle, and if the direction does not exist
 };
 
-/// Chooses a direction for a film point (x, y) in mm, from u and v in [0, 1). Uniform over each sector of the row.
+/// Samples a direction for a film point (x, y) in mm, from u and v in [0, 1). Uniform over each sector of the row.
 REALCAM_INLINE PupilSample sample_pupil(const PupilView& pupil, float film_x, float film_y, float u, float v) {
     const PupilRowPosition place = pupil_row_position(pupil, film_x, film_y);
     const float scaled = u * static_cast<float>(2 * pupil.sectors);
@@ -97,13 +97,12 @@ REALCAM_INLINE PupilSample sample_pupil(const PupilView& pupil, float film_x, fl
     const float l = place.centre + place.half_width * x;
     const float m = place.half_height * select(lower, -y, y);
     const float l_film = l * place.cos - m * place.sin, m_film = l * place.sin + m * place.cos;
-    // Past the edge of the half-space, to which the sectors of a film point far out beside the lens may reach, there
-    // are no directions.
+    // There are no directions beyond the half-space, which the sectors of a film point far outside the lens may exceed.
     const float rest = pupil.index_squared - l * l - m * m;
     return {{l_film, m_film, -sqrt_or_zero(rest)}, select(rest > 0.0f, pupil_weight(pupil, place, sector), 0.0f)};
 }
 
-/// The sector of a place in the box, by its azimuth, which goes from 0 to pi.
+/// Index of the sector of a point in the box, by its azimuth, which runs from 0 to pi.
 REALCAM_INLINE int sector_at(const PupilSector* row, int sectors, float x, float y) {
     int first = 0, last = sectors;
     while (first + 1 < last) {
@@ -115,13 +114,14 @@ REALCAM_INLINE int sector_at(const PupilSector* row, int sectors, float x, float
     return first;
 }
 
-/// Whether a place at a sector's azimuth lies between its inner and its outer edge.
+/// True if a point at a sector's azimuth lies between the sector's inner and outer edge.
 REALCAM_INLINE bool holds(const PupilSector& s, float x, float y) {
     const float reach = (x * s.dy - y * s.dx) / (s.x * s.dy - s.y * s.dx);
     return reach <= 1.0f && reach * reach >= s.hole_squared;
 }
 
-/// Density of sample_pupil at the optical direction cosines (l, m), per unit of their area; 0 where it never goes.
+/// Density of sample_pupil at the optical direction cosines (l, m), per unit of their area; 0 for directions that are
+/// never sampled.
 REALCAM_INLINE float pupil_pdf(const PupilView& pupil, float film_x, float film_y, float l, float m) {
     const PupilRowPosition place = pupil_row_position(pupil, film_x, film_y);
     const float x = (l * place.cos + m * place.sin - place.centre) / place.half_width;

@@ -59,7 +59,7 @@ public:
         }
         if (!to_film) std::reverse(views_.begin(), views_.end());
         entry_index = to_film ? n.front() : n.back();
-        // A few diameters: squares of such distances keep enough digits in float32 for a surface of this size.
+        // A few diameters: squares of these distances keep enough digits in float32 for a surface of this size.
         entry_reach = 16 * (to_film ? lens.surfaces.front() : lens.surfaces.back()).clear_semi_diameter;
         entry_position = to_film ? z.front() : z.back();
         exit_position = to_film ? z.back() : z.front();
@@ -73,8 +73,8 @@ public:
         return {views_.data(), static_cast<int>(views_.size()), kind(), iris_, free};
     }
 
-    double entry_index = 1;  ///< of the medium from which rays enter; scales their unit directions
-    double entry_reach = 0;     ///< mm; origins farther away than this are to be moved nearer (enter_lens)
+    double entry_index = 1;  ///< index of the medium from which rays enter; scales their unit directions
+    double entry_reach = 0;  ///< mm; origins farther away than this are to be moved nearer (enter_lens)
     double entry_position = 0;  ///< z of the vertex to which origins of entering rays are relative, mm
     double exit_position = 0;  ///< the same for leaving rays
 
