@@ -17,9 +17,9 @@ namespace camera_detail {
 
 namespace {
 
-constexpr double kFarthestPosition = 1e12;  ///< each coordinate, m, as a scene's corners
+constexpr double kFarthestPosition = 1e12;  ///< limit of each coordinate, m; as for a scene's bounding box
 
-constexpr double kNearestLook = 1e-9;  ///< look_at from position, m
+constexpr double kNearestLook = 1e-9;  ///< least distance of look_at from position, m
 
 bool lies_between(double least, double value, double most) {
     return value >= least && value <= most;
@@ -108,7 +108,7 @@ Motion motion_of(const std::vector<PoseKey>& keys) {
 IdealLens ideal_lens_of(const LensSystem& lens, const FirstOrder& data) {
     IdealLens ideal{std::fabs(data.effective_focal_length), 0, 0.5 * data.entrance_pupil_diameter};
     if (data.is_afocal()) {
-        // The film is where it is; the ray through the middle of the pupil says how large the picture is there.
+        // An afocal lens has no conjugate of the film: the height of the chief ray on the film gives the image scale.
         const ParaxialRay chief = trace_paraxial(lens, lens.wavelength_nm, {-data.entrance_pupil_position, 1}, 0,
                                                  static_cast<int>(lens.surfaces.size()));
         ideal.image_distance = std::fabs(chief.height + lens.film_distance * chief.slope);
@@ -144,7 +144,7 @@ ThickLens thick_lens_of(const LensSystem& lens, const FirstOrder& data) {
     const double distance = lens.film_position() - data.exit_pupil_position;
     const bool far = !(std::fabs(distance) < kFar);
     const double tangent = data.exit_pupil_diameter / (2 * std::fabs(distance));
-    // With a pupil at infinity the quotient has no value. The slope of light from the stop's rim takes its place.
+    // With the pupil at infinity the quotient is not finite; the slope of a ray from the stop's rim replaces it.
     const double rim = lens.open_stop_radius();
     const double marginal =
         std::fabs(trace_paraxial(lens, lens.wavelength_nm, {rim, 0}, lens.stop_index(), count).slope);

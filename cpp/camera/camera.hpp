@@ -12,7 +12,7 @@ namespace REALCAM_NAMESPACE {
 
 inline constexpr int kMaxResolution = 32768;
 
-/// The light-sensitive rectangle and its grid of pixels.
+/// Film or sensor: the light-sensitive rectangle and its pixel grid.
 struct Film {
     double width_mm = 36, height_mm = 24;
     int width = 960, height = 640;
@@ -25,8 +25,8 @@ struct Film {
     double radius_mm() const {
         return hypotenuse(0.5 * width_mm + std::fabs(shift_mm.x), 0.5 * height_mm + std::fabs(shift_mm.y));
     }
-    /// Converts column and row, counted from the picture's upper left corner, to mm from the axis, right and up as the
-    /// picture shows it; and back.
+    /// Converts pixel coordinates (column and row from the upper left corner) to film coordinates in mm from the
+    /// optical axis, x to the right and y up as in the developed image; and back.
     Vec2<double> place_of(Vec2<double> pixel) const {
         return {(pixel.x / width - 0.5) * width_mm + shift_mm.x, (0.5 - pixel.y / height) * height_mm + shift_mm.y};
     }
@@ -44,7 +44,7 @@ struct Pose {
     bool operator==(const Pose&) const = default;
 };
 
-/// A pose at a time.
+/// Keyframe of the camera's pose.
 struct PoseKey {
     double time_s = 0;
     Pose pose;
@@ -52,28 +52,29 @@ struct PoseKey {
     bool operator==(const PoseKey&) const = default;
 };
 
-/// When the film is exposed: every row of pixels for the same time, the top one first.
+/// Rolling shutter: each row of pixels is exposed for the same time, the top row first.
 struct Shutter {
     double opens_s = 0;  ///< time in the scene at which the exposure of the top row begins
-    double readout_time_s = 0;  ///< from then to where that of a row below the last would begin; 0: all rows together
-    bool blurs = true;  ///< false: what a row sees is the scene in the middle of its exposure
+    double readout_time_s = 0;  ///< from the start of the top row's exposure to that of a row just below the last one;
+                                ///< 0: global shutter
+    bool blurs = true;  ///< false: each row sees the scene at the middle of its exposure
 
     bool operator==(const Shutter&) const = default;
 };
 
-/// Lens, film, pose, shutter and the two dials.
+/// Lens, film, pose, shutter, exposure time and ISO of a camera.
 struct Camera {
     LensSystem lens;
     Film film;
-    Pose pose;  ///< of a camera that moves, at time 0
+    Pose pose;  ///< pose at time 0 if the camera moves
     CameraModel model = CameraModel::full_lens;
     double exposure_time_s = 1.0 / 125;
     double iso = 100;
     Shutter shutter;
-    std::vector<PoseKey> motion;  ///< in rising order of time; empty: it stays where it is
+    std::vector<PoseKey> motion;  ///< keyframes in increasing order of time; empty: the camera does not move
 
     bool moves() const { return !motion.empty(); }
-    /// Time for which a row of pixels sees the scene, s.
+    /// Time for which a row of pixels sees the scene, s; 0 without motion blur.
     double seen_time() const { return shutter.blurs ? exposure_time_s : 0.0; }
     /// The interval from the first moment of the first row to the last moment of the last one.
     TimeInterval exposure() const;
@@ -81,25 +82,27 @@ struct Camera {
 
 namespace camera_detail {
 
-// Numbers beyond these are no camera's, and those of its rays would leave the range of float32.
-inline constexpr double kSmallestFilm = 1e-6, kLargestFilm = 1e9;  ///< each way, mm, as a lens: from a few atoms on
+// Limits of valid parameters. Beyond them, ray coordinates would leave the range of float32.
+inline constexpr double kSmallestFilm = 1e-6, kLargestFilm = 1e9;  ///< width and height, mm; from a few atoms up to
+                                                                   ///< kLongest
 
-inline constexpr double kShortestUp = 1e-100, kLongestUp = 1e100;  ///< squares of both are numbers
-/// Exposure time, s, and ISO number: they and the exposure of middle grey, 10 / ISO, are float32 with all their digits.
+inline constexpr double kShortestUp = 1e-100, kLongestUp = 1e100;  ///< length of Pose::up; the squares of both limits
+                                                                   ///< are finite
+/// Exposure time, s, and ISO: both, and the exposure of middle grey, 10 / ISO, are normal float32 numbers.
 inline constexpr double kLeastDial = 1e-37, kMostDial = 1e38;
 
 }  // namespace camera_detail
 
-/// Throws InputError where the film is none.
+/// Throws InputError if the film's resolution, size or shift is out of range.
 void validate(const Film& film);
 
-/// Throws InputError where nothing can be seen from there.
+/// Throws InputError if a coordinate is out of range or the viewing direction is zero or parallel to `up`.
 void validate(const Pose& pose);
 
-/// Throws InputError where keys are no motion of a camera.
+/// Throws InputError if a key is invalid or the key times are not strictly increasing.
 void validate(const std::vector<PoseKey>& motion);
 
-/// Throws InputError where the camera cannot take a picture.
+/// Throws InputError if a parameter of the camera is invalid or no lens is set.
 void validate(const Camera& camera);
 
 namespace camera_detail {
@@ -114,12 +117,12 @@ Affine<double> scene_from_camera(const Pose& pose);
 
 Motion motion_of(const std::vector<PoseKey>& keys);
 
-/// ThinLens in double precision.
+/// ThinLens in double precision, mm.
 struct IdealLens {
     double image_distance, inverse_object_distance, pupil_radius;
 };
 
-/// Pupil and magnification of the real lens, as an ideal lens in the entrance pupil. The film plane is paraxially
+/// Ideal lens in the entrance pupil, with the pupil and magnification of the real lens. The film plane is paraxially
 /// conjugate to the object plane at focus_distance.
 IdealLens ideal_lens_of(const LensSystem& lens, const FirstOrder& data);
 
@@ -127,28 +130,29 @@ ThinLens thin_lens_of(const LensSystem& lens, const FirstOrder& data);
 
 ThickLens thick_lens_of(const LensSystem& lens, const FirstOrder& data);
 
-/// Throws InputError where an ideal model cannot take the place of the lens.
+/// Throws InputError if the ideal camera model cannot represent the lens: its pupil lies in the film, at infinity or in
+/// the plane in focus.
 void validate_ideal(const LensSystem& lens, CameraModel model);
 
 }  // namespace camera_detail
 
-/// Where a camera is at a time.
+/// Pose of the camera at a time.
 Pose pose_at(const Camera& camera, double time_s);
 
-/// Pose::position_m when the shutter opens.
+/// Pose::position_m at shutter open.
 inline Vec3d position_when_open(const Camera& camera) {
     return pose_at(camera, camera.exposure().begin_s).position_m;
 }
 
-/// Lets a camera move. Throws InputError for keys that are none.
+/// Animates the camera and sets its pose to that at time 0. Throws InputError if a key or the camera is invalid.
 void set_motion(Camera& camera, std::vector<PoseKey> keys);
 
-/// Whether a scene that was placed about this origin serves the camera. It is moved to the camera, and stays where it
-/// is while the camera moves by little. At ten focus distances (or 10 m) float32 still resolves a hundredth of a
-/// pixel's width at the plane in focus.
+/// True if a render space with this origin is accurate enough for the camera: the camera opens its shutter within ten
+/// focus distances of it (10 m when focused at infinity), where float32 still resolves a hundredth of a pixel's width
+/// at the plane in focus. The render space is moved to the camera only if this is false.
 bool lies_near(const Camera& camera, Vec3d origin_m);
 
-/// Throws InputError where a GPU has no code for the camera's model.
+/// Throws InputError if the camera's model has no GPU implementation.
 void validate_on_gpu(const Camera& camera);
 
 }  // namespace REALCAM_NAMESPACE

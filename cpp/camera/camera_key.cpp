@@ -17,14 +17,14 @@ namespace {
 
 using Value = std::optional<double> CameraKey::*;
 
-/// What becomes of a value at a cut to another lens.
+/// Treatment of a setting at a cut to another lens.
 enum class AtCut {
-    goes_on,  ///< a dial of the camera
-    stays,    ///< as the ring stood
-    ends,     ///< the other lens has its own
+    goes_on,  ///< continues across the cut: a setting of the camera body
+    stays,    ///< keeps the last value of the lens before
+    ends,     ///< is dropped: the next lens has its own
 };
 
-/// A value and the scale on which it changes evenly.
+/// A setting and the scale in which it is interpolated.
 struct Ring {
     Value value;
     const char* name;
@@ -63,8 +63,8 @@ constexpr Ring kRings[] = {
 
 using Keys = std::span<const CameraKey>;
 
-/// The index of the key that puts the lens of a time on the camera, and that of the next one that puts on another. Of
-/// the first lens of all, 0 stands for the former.
+/// Range of keys of the lens in use at a time: the index of the key that mounts it (0 for the first lens) and that of
+/// the next key that mounts another lens.
 std::pair<std::size_t, std::size_t> keys_of_lens(Keys keys, double time_s) {
     std::size_t begin = 0;
     const LensSystem* lens = nullptr;
@@ -77,7 +77,7 @@ std::pair<std::size_t, std::size_t> keys_of_lens(Keys keys, double time_s) {
     return {begin, keys.size()};
 }
 
-/// The keys that have a value of a ring.
+/// Keys that have a value of a setting.
 std::vector<const CameraKey*> keys_with(Keys keys, Value value) {
     std::vector<const CameraKey*> found;
     for (const CameraKey& key : keys)
@@ -99,7 +99,7 @@ std::optional<double> value_at(Keys all, const Ring& ring, double time_s) {
     const auto above = std::upper_bound(keys.begin(), keys.end(), time_s,
                                         [](double time, const CameraKey* key) { return time < key->time_s; });
     const auto at = static_cast<std::size_t>(above - keys.begin()) - 1;
-    // Without the way through the scale and back, which would change the last digits of what stays.
+    // Returned directly: the transform to the scale and back would change the last digits of a constant value.
     if (above == keys.end() || keys[at]->way == KeyWay::step || keys[at]->time_s == time_s ||
         value(at) == value(at + 1))
         return value(at);
@@ -116,7 +116,7 @@ std::optional<double> value_at(Keys all, const Ring& ring, double time_s) {
     return ring.from_scale(MonotoneCurve(std::move(times), std::move(scaled), ends).at(time_s));
 }
 
-/// None: the diaphragm stays as it is, or wide open.
+/// f-number to set for a key; std::nullopt leaves the diaphragm unchanged, which is wide open on a newly mounted lens.
 std::optional<double> f_number_wanted(const Camera& camera, const CameraKey& key) {
     if (key.f_number || !key.lens || camera.lens.is_wide_open()) return key.f_number;
     return f_number_at_infinity(camera.lens);
@@ -153,7 +153,7 @@ void validate(const std::vector<CameraKey>& keys) {
 }
 
 CameraKey key_at(const std::vector<CameraKey>& keys, double time_s) {
-    // The time of a frame is a sum, which may miss a key's by its last digits.
+    // A frame's time is a sum, which may differ from a key's time in its last digits.
     constexpr double kSame_s = 1e-7;
     for (const CameraKey& key : keys)
         if (std::fabs(key.time_s - time_s) <= kSame_s) time_s = key.time_s;
@@ -187,8 +187,8 @@ Camera with_key(Camera camera, const CameraKey& key) {
 void check_key(const Camera& camera, const CameraKey& key) {
     const double f_number = f_number_at_infinity(with_key(camera, key).lens);
     const std::optional<double> wanted = f_number_wanted(camera, key);
-    constexpr double kRounding = 1e-6;  // of setting the diaphragm
-    // Without a focal length, with_key has refused it.
+    constexpr double kRounding = 1e-6;  // relative error of setting the diaphragm
+    // Without a focal length, with_key has thrown already.
     if (!wanted || !key.focal_length_mm || *wanted > (1 - kEngravingError) * (1 - kRounding) * f_number) return;
     char text[120];
     std::snprintf(text, sizeof text, "f/%.4g is faster than the lens at %.4g mm, which opens to f/%.4g", *wanted,

@@ -6,50 +6,53 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// How values go from a key to the next one that has them.
+/// Interpolation between consecutive keyframes of a parameter.
 enum class KeyWay {
-    linear,  ///< at an even pace
-    smooth,  ///< from rest to rest, and through the smooth keys between without a stop (MonotoneCurve)
-    step,    ///< they stay, and jump at the next key
+    linear,  ///< linear in the parameter's scale (see CameraKey)
+    smooth,  ///< MonotoneCurve through a run of smooth keys, with slope 0 at both ends of the run
+    step,    ///< constant, with a jump at the next key
 };
 
-/// What the rings and dials of a camera say at a time. A value that is left out is that of the keys beside.
+/// Keyframe of the camera's settings. A setting without a value is interpolated between the neighbouring keys that have
+/// one.
 ///
-/// A key with another lens is a cut. The rings of a lens, which are those of focus, zoom and diaphragm, go between its
-/// own keys alone. A lens without keys for focus and f-number takes over those of the lens before.
+/// A key with another lens is a cut. Focus, zoom and diaphragm are interpolated between keys of the same lens only. A
+/// lens without keys for focus or f-number takes over the last values of the lens before.
 struct CameraKey {
     double time_s = 0;
-    std::optional<double> focus_m = {};  ///< object plane to film; between keys even in 1 / distance
+    std::optional<double> focus_m = {};  ///< distance from object plane to film; interpolated in 1 / distance
     std::optional<double> focal_length_mm =
-        {};  ///< of a zoom lens at rest; this and what follows: even in the logarithm
+        {};  ///< of a zoom lens that is not refocused; interpolated in the logarithm, as are the next three
     std::optional<double> f_number = {};
     std::optional<double> exposure_time_s = {};
     std::optional<double> iso = {};
-    KeyWay way = KeyWay::linear;  ///< from here on
-    std::optional<LensSystem> lens = {};  ///< from here on; none so far: the camera's own
-    std::optional<int> blades = {};  ///< from here on; of these and what follows, none: as the lens has it
+    KeyWay way = KeyWay::linear;  ///< interpolation from this key on
+    std::optional<LensSystem> lens = {};  ///< lens from this key on; before the first key with a lens: the camera's own
+    std::optional<int> blades = {};  ///< from this key on; without a value, this and the following stay as the lens and
+                                     ///< camera have them
     std::optional<double> blade_rounding = {}, blade_rotation_deg = {};
     std::optional<double> film_right_mm = {}, film_up_mm = {};  ///< Film::shift_mm
 
     bool operator==(const CameraKey&) const = default;
 };
 
-/// Throws InputError for a key that says nothing, or has a number that is none of its kind.
+/// Throws InputError if the key has no value, or one that is out of range.
 void validate(const CameraKey& key);
 
-/// Throws InputError for keys that are none, or whose times do not rise.
+/// Throws InputError if a key is invalid or the key times are not strictly increasing.
 void validate(const std::vector<CameraKey>& keys);
 
-/// What the keys say at a time, as a key: before the first one that has a value, and after the last, it stays, but that
-/// no lens comes before its key. Values that no key has, or only one of another lens that comes later, are left out.
+/// Settings at a time, interpolated between the keys. A setting is constant before the first key that has a value and
+/// after the last one; but a lens is not used before its own key. A setting that no key has, or only keys of a later
+/// lens, is left out.
 CameraKey key_at(const std::vector<CameraKey>& keys, double time_s);
 
-/// The camera with its rings and dials as a key has them. A zoom lens that does not open as far as the key's f-number
-/// at its focal length opens as far as it does. Where the key has a lens, but no focus or f-number, these stay. Throws
-/// InputError where the lens cannot.
+/// The camera with the settings of a key. If a zoom lens does not open to the key's f-number at its focal length, it is
+/// opened as far as possible. A key with a lens, but without a focus or f-number, keeps the camera's. Throws InputError
+/// if the lens cannot be set so.
 Camera with_key(Camera camera, const CameraKey& key);
 
-/// Throws InputError where the camera cannot be as the key says, also where the lens does not open so far.
+/// Throws InputError if with_key does, or if the lens does not open to the key's f-number at its focal length.
 void check_key(const Camera& camera, const CameraKey& key);
 
 }  // namespace REALCAM_NAMESPACE

@@ -19,12 +19,13 @@ using namespace camera_detail;
 
 namespace {
 
-/// At even times of the exposure; empty where it does not move meanwhile. Throws InputError where it turns too fast.
+/// Poses of the camera at uniformly spaced times of the exposure; empty if it does not move meanwhile. Throws
+/// InputError if it rotates too fast.
 std::vector<Affine<double>> exposure_keys(const Camera& camera) {
     if (!camera.moves()) return {};
     const Motion motion = motion_of(camera.motion);
     const TimeInterval exposure = camera.exposure();
-    // What is near shows where the camera is, and what is far how it is turned.
+    // Near objects show the camera's translation, and far ones its rotation, so each must be resolved by itself.
     Motion turns = motion, ways = motion;
     for (Affine<double>& turn : turns.transforms) turn.origin = {0, 0, 0};
     for (Affine<double>& way : ways.transforms) way = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, way.origin};
@@ -36,17 +37,17 @@ std::vector<Affine<double>> exposure_keys(const Camera& camera) {
     return steps == 0 ? std::vector<Affine<double>>() : uniform_keys(motion, exposure, steps);
 }
 
-/// The circle of confusion of the ideal lens in the entrance pupil. Let R be the radius of its pupil, and b and s_f the
-/// distances from it to the film and to the plane in focus. The rays of a point at s fill the pupil. They meet the
-/// plane in focus over 2 R |s_f - s| / s, and the film over b / s_f times that. Where the entrance pupil is at
-/// infinity, the matrix of the real lens is used.
+/// Circle of confusion of the ideal lens in the entrance pupil. Let R be the radius of its pupil, and b and s_f the
+/// distances from it to the film and to the plane in focus. The rays of a point at s fill the pupil. They cover a disc
+/// of diameter 2 R |s_f - s| / s in the plane in focus, and one b / s_f times as large on the film. If the entrance
+/// pupil is at infinity, the matrix of the real lens is used.
 CircleOfConfusion circle_of_confusion(double entrance_pupil_position, ThinLens thin, ThickLens thick,
                                       double film_distance) {
     const double radius = static_cast<double>(thin.pupil_radius), image = static_cast<double>(thin.image_distance),
                  inverse = static_cast<double>(thin.inverse_object_distance);
     CircleOfConfusion circle{};
     if (std::isfinite(entrance_pupil_position) && std::isfinite(radius * image * inverse)) {
-        // s = t + entrance_pupil_position, and the ray through the pupil's middle rises by s / b.
+        // s = t + entrance_pupil_position, and the ray through the pupil's centre rises by s / b.
         circle.rim = static_cast<float>(radius * (1 - inverse * entrance_pupil_position));
         circle.rim_slope = static_cast<float>(-radius * inverse);
         circle.middle = static_cast<float>(entrance_pupil_position / image);
@@ -104,7 +105,7 @@ CameraSetup::CameraSetup(const Camera& camera, PupilTracer tracer, const CameraS
 
 CameraView CameraSetup::view(Vec3d origin_m, bool scene_moves) const {
     const LensSystem& lens = camera_.lens;
-    // What is only about the size of blurs is that of the lens on one axis.
+    // The first-order data of a decentred lens only serve to estimate blur: its elements are centred on one axis.
     const LensSystem on_axis = centred(lens);
     const FirstOrder data = first_order(on_axis, lens.wavelength_nm);
     CameraView view{};
@@ -173,7 +174,7 @@ void CameraSetup::check_light() const {
 
 FilmArea CameraSetup::film_area() const {
     const Film& film = camera_.film;
-    // The film's axes point against the picture's.
+    // The image on the film is inverted: the film's axes are opposite to the picture's.
     const Vec2<double> middle = {-film.shift_mm.x, -film.shift_mm.y};
     return {{middle.x - 0.5 * film.width_mm, middle.y - 0.5 * film.height_mm},
             {middle.x + 0.5 * film.width_mm, middle.y + 0.5 * film.height_mm}};

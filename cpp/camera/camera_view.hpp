@@ -14,79 +14,79 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// How the film is lit, from the crudest to the real. All have the same film, focus and exposure on the axis.
+/// Camera models in order of increasing accuracy. All have the same film, focus and exposure on the axis.
 enum class CameraModel : int {
-    pinhole,     ///< the entrance pupil's middle: everything sharp
-    thin_lens,   ///< an ideal lens in the entrance pupil: defocus only, light falls off with cos^4
-    mapped_lens,  ///< the same with the real lens's distortion and vignetting laid on
-    thick_lens,  ///< the paraxial matrix of the real lens, with its two pupils and its real film distance
+    pinhole,     ///< centre of the entrance pupil: everything is sharp
+    thin_lens,   ///< ideal lens in the entrance pupil: defocus and cos^4 falloff only
+    mapped_lens,  ///< thin_lens with the real lens's distortion and vignetting
+    thick_lens,  ///< paraxial matrix of the real lens, with its two pupils and its real film distance
     polynomial_lens,   ///< polynomials fitted to the rays of the real lens
     full_lens,         ///< every surface of the prescription
-    full_lens_double,  ///< the same in double precision: for comparison, on a CPU
+    full_lens_double,  ///< full_lens in double precision, for comparison; CPU only
 };
 
-/// Whether rays are sent where the real lens lets light pass.
+/// True if rays are sampled over the real lens's pupil.
 REALCAM_INLINE bool has_real_pupil(CameraModel model) {
     return model == CameraModel::polynomial_lens || model == CameraModel::full_lens ||
            model == CameraModel::full_lens_double;
 }
 
-/// An ideal lens in its entrance pupil. mm.
+/// Ideal lens in the entrance pupil. Lengths in mm.
 struct ThinLens {
-    float image_distance;           ///< film to pupil that gives the real lens's magnification
-    float inverse_object_distance;  ///< pupil to the plane in focus; 0 at infinity
+    float image_distance;           ///< from film to pupil; gives the real lens's magnification
+    float inverse_object_distance;  ///< from pupil to the plane in focus; 0 at infinity
     float pupil_radius;
 };
 
-/// The paraxial lens as a matrix from the last vertex back to the front one: h = D h' - B u', u = -C h' + A u'.
+/// Paraxial lens as a matrix from the last vertex back to the front one: h = D h' - B u', u = -C h' + A u'.
 struct ThickLens {
     float A, B, C, D;
     float exit_pupil_distance;  ///< film to exit pupil, positive towards the scene, mm
     float exit_pupil_radius;
 };
 
-/// Where the camera is in the placed scene.
+/// Pose of the camera in render space.
 struct CameraPlacement {
-    Vec3f position;             ///< of the film's middle, metres
+    Vec3f position;             ///< centre of the unshifted film, metres
     Vec3f right, up, backward;  ///< unit: x, y, z of the lens frame
 };
 
-/// Its own placement is that at the begin of the exposure.
+/// Parameters of a camera for the render kernels. The base CameraPlacement is that at the start of the exposure.
 struct CameraView : CameraPlacement, EffectViews {
     CameraModel model;
     int width, height;                    ///< pixels
     float film_half_width, film_half_height;  ///< mm
-    Vec2f film_middle;                        ///< from the axis, mm
+    Vec2f film_middle;                        ///< film centre, from the axis, mm
     float film_distance;                  ///< last vertex to film, mm
-    float film_curvature;  ///< see FilmSurface; 0 where the lens and its film are of revolution
-    float axis_irradiance;  ///< of the real lens on the axis for unit radiance; the ideal models take it over
+    float film_curvature;  ///< see FilmSurface; 0 for a rotationally symmetric lens, whose film is flat
+    float axis_irradiance;  ///< of the real lens for unit radiance; used by the ideal models
     float front_vertex_m;   ///< film to front vertex, metres
     float pupil_m;          ///< film to entrance pupil, metres
     ThinLens thin;
     ThickLens thick;
-    LensMapView map;  ///< of a mapped lens; else without nodes
+    LensMapView map;  ///< model mapped_lens; else without nodes
     CircleOfConfusion circle;
-    PupilView pupil;  ///< of a centred lens of revolution
-    PupilGridView pupil_grid;  ///< of any other; else without nodes
+    PupilView pupil;  ///< centred, rotationally symmetric lenses
+    PupilGridView pupil_grid;  ///< all other lenses; else without nodes
     TracedLightsView traced_lights;
     PixelPupils pixel_pupils;
     LensView<float> lens;
-    const LensView<double>* lens_in_double;  ///< of the model full_lens_double; else null
-    LensPolynomialView polynomial;           ///< of the model polynomial_lens; else without coefficients
-    // For an exposure during which something moves; else 0. Times are shares of the exposure:
-    float row_time;      ///< by which each row of pixels begins later than the one above
-    float exposed_time;  ///< for which each is exposed
-    const CameraPlacement* keys;  ///< of a camera that moves, at even times; positions relative to its own
+    const LensView<double>* lens_in_double;  ///< model full_lens_double; else null
+    LensPolynomialView polynomial;           ///< model polynomial_lens; else without coefficients
+    // Times as fractions of the exposure; 0 if nothing moves during it:
+    float row_time;      ///< delay of each row of pixels after the row above
+    float exposed_time;  ///< exposure time of each row
+    const CameraPlacement* keys;  ///< keyframes of a moving camera at uniformly spaced times; positions relative to the
+                                  ///< base placement
     int key_count;
 };
 
-/// Whether only the code for lenses of any kind serves it.
+/// True if the camera needs the code for LensKind::any.
 REALCAM_INLINE bool has_any_lens(const CameraView& camera) {
     return camera.pupil_grid.nodes || camera.lens.kind == LensKind::any;
 }
 
-/// The camera at a time of the exposure. Between two keys its axes are interpolated, and made unit and right-angled
-/// again.
+/// Camera at a time of the exposure. The axes are interpolated linearly between two keys and re-orthonormalised.
 REALCAM_INLINE CameraPlacement camera_at(const CameraView& camera, float time) {
     if (camera.key_count == 0) return camera;
     const KeyInterval at = key_interval(time, camera.key_count);
@@ -101,12 +101,12 @@ REALCAM_INLINE float depth_from(const CameraPlacement& camera, Vec3f point) {
     return dot(camera.position - point, camera.backward);
 }
 
-/// Where the lens's front vertex is in the placed scene, metres.
+/// Position of the lens's front vertex in render space, metres.
 REALCAM_INLINE Vec3f front_vertex(const CameraPlacement& camera, float front_vertex_m) {
     return camera.position - front_vertex_m * camera.backward;
 }
 
-/// A camera's view with every array replaced by a copy elsewhere: `copy(pointer, count)` returns where to.
+/// Returns the view with every array replaced by a copy; `copy(pointer, count)` returns the address of the copy.
 template <class Copy>
 CameraView with_copied_arrays(CameraView view, Copy&& copy) {
     const auto move = [&](auto*& array, int count) {

@@ -3,19 +3,17 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// How unsharp the film shows a point, as a paraxial lens has it: two rays from the film that both grow evenly with the
-/// distance t before the front vertex, mm. One goes from the axis through the pupil's rim, with height rim + t *
-/// rim_slope. The other goes through the pupil's middle from a film height of 1 mm, with height middle + t *
-/// middle_slope. What lies at t is as many times smaller on the film as the second ray is high there, so that the disc
-/// is 2 |rim| / |middle| wide.
+/// Circle of confusion of a paraxial lens, from two rays whose heights are linear in the distance t in front of the
+/// front vertex, mm. The marginal ray from the axial film point through the pupil's rim has the height rim + t *
+/// rim_slope. The chief ray from a film height of 1 mm has the height middle + t * middle_slope, the inverse of the
+/// magnification at t. So the diameter of the disc on the film is 2 |rim| / |middle|.
 struct CircleOfConfusion {
     float rim, rim_slope;
     float middle, middle_slope;
-    float least_middle;  ///< nearer to the pupil than its own radius, the disc of that distance is taken
+    float least_middle;  ///< least height of the chief ray: that at one pupil radius from the pupil
 };
 
-/// Diameter on the film, mm. `distance_mm`: from the front vertex along the axis towards the scene; infinite is
-/// allowed.
+/// Diameter on the film, mm. `distance_mm`: from the front vertex along the axis towards the scene; may be infinite.
 REALCAM_INLINE float circle_diameter(const CircleOfConfusion& circle, float distance_mm) {
     if (!(distance_mm < 1e30f)) return 2.0f * std::fabs(circle.rim_slope / circle.middle_slope);
     const float rim = circle.rim + distance_mm * circle.rim_slope;

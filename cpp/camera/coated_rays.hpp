@@ -3,8 +3,8 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Takes rays through the lens. `indices`: OneWavelength or ManyWavelengths. `passed`: what they keep of their light,
-/// if the lens is `coated`.
+/// Traces rays through the lens. `indices`: OneWavelength or ManyWavelengths. `passed`: transmitted fraction of each
+/// ray's power; set only if the lens is `coated`.
 template <LensKind lens_kind, bool coated, class Indices, int terms, int N>
 REALCAM_HD inline void trace_surfaces(const LensView<float>& lens, LensRays<float, N>& rays, const Indices& indices,
                                       const CoatingPolynomials<terms>* coatings, const float* variable,

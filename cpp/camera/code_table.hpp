@@ -7,8 +7,8 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// 8-bit codes of exposures at one sensitivity, as develop.hpp has them, by eight comparisons instead of a power and an
-/// exponential.
+/// Tone-mapping table: 8-bit display values of exposures at one ISO (see develop.hpp), found by eight comparisons
+/// instead of a power and an exponential.
 class CodeTable {
 public:
     CodeTable(double iso, ToneCurve curve) {
@@ -16,7 +16,7 @@ public:
             const double exposure = std::bit_cast<float>(bits);
             return srgb_code(apply_tone_curve(curve, sensor_value(exposure, iso)));
         };
-        // Positive floats are in the order of their bits.
+        // Positive floats are ordered as their bit patterns are.
         std::uint32_t low = 0;
         const auto infinite = std::bit_cast<std::uint32_t>(std::numeric_limits<float>::infinity());
         for (unsigned code = 1; code < 256; ++code) {
@@ -32,17 +32,17 @@ public:
         }
     }
 
-    /// What is below zero is black, and so is NaN.
+    /// Negative exposures and NaN are black.
     std::uint8_t operator()(float exposure_lux_s) const {
         unsigned code = 0;
-        // Without branches: of a noisy picture every other one would be foretold wrongly.
+        // Branch-free: in a noisy picture every second branch would be mispredicted.
         for (unsigned step = 128; step > 0; step /= 2)
             code += step * static_cast<unsigned>(exposure_lux_s >= begins_[code + step]);
         return static_cast<std::uint8_t>(code);
     }
 
 private:
-    float begins_[256] = {};  ///< the least exposure of each code but the first, lux seconds
+    float begins_[256] = {};  ///< least exposure of each code except 0, lux seconds
 };
 
 }  // namespace REALCAM_NAMESPACE

@@ -61,7 +61,8 @@ std::vector<GhostView> EffectTables::splats() const {
 void EffectTables::set_wavelengths(FilmSpectrum spectrum) {
     spectrum_ = std::move(spectrum);
     if (!effects_.dispersion && !effects_.coatings) return;
-    // The code for diffraction and coatings together takes the indices of a spectrum: here, of one wavelength.
+    // The code for diffraction with coatings uses index tables over a spectrum; without dispersion they hold one
+    // wavelength.
     const double design = lens_.wavelength_nm;
     const WavelengthRange range = effects_.dispersion ? spectrum_->range() : WavelengthRange{design, design};
     check_dispersion(lens_, range);

@@ -15,38 +15,39 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// What is simulated of the light in the lens besides its refraction at the design wavelength.
+/// Effects of the lens on light, beyond refraction at the design wavelength.
 struct LensEffects : Effects {
-    std::optional<Illuminant> illuminant = {};  ///< of a picture whose samples have wavelengths
+    std::optional<Illuminant> illuminant = {};  ///< for pictures whose samples have wavelengths
     std::optional<GhostChoice> ghosts = {};
     PupilSampling pupil_sampling = PupilSampling::outline;
-    std::optional<WavelengthRange> even_wavelengths = {};  ///< in place of an illuminant: all of these alike
+    std::optional<WavelengthRange> even_wavelengths = {};  ///< replaces the illuminant: uniform over these wavelengths
 
     bool operator==(const LensEffects&) const = default;
 };
 
-/// A lens made ready for effects. Owns the memory of its views.
+/// Tables of a lens for its effects. Owns the memory of its views.
 class EffectTables {
 public:
-    /// `film_radius`: of a circle that holds the film, mm. `last`: made before, of which is taken over what is the
-    /// same. Throws InputError where an index is not known.
+    /// `film_radius`: radius of a circle that contains the film, mm. `last`: earlier tables, from which unchanged ones
+    /// are reused. Throws InputError if a refractive index is unknown.
     EffectTables(const LensSystem& lens, double film_radius, const LensEffects& effects, const PupilTracer& tracer,
                  const EffectTables* last);
 
-    /// `film_angle`: the film's area over the square of its distance from the exit pupil.
+    /// `film_angle`: film area over the squared image distance of the thin lens (approximate solid angle, sr).
     EffectViews views(double film_angle) const;
 
-    /// Of all light of the picture that is traced apart from the samples of its pixels: at most kMostSplats.
+    /// Ghosts and starbursts, which are traced separately from the pixel samples.
     std::vector<GhostView> splats() const;
 
-    /// The way on which lights are seen themselves. Made when it is first wanted. Throws InputError as the constructor.
+    /// Direct (ghost-free) lens path, on which the lights themselves are visible. Built at first use. Throws InputError
+    /// as the constructor does.
     const LensWay& lens_way() const { return *shared_lens_way(); }
 
-    /// At which light may pass that the picture has to find; none: the design wavelength alone.
+    /// Wavelengths at which the pupil has to be found; empty: the design wavelength alone.
     const std::vector<double>& pupil_wavelengths() const { return pupil_wavelengths_; }
 
 private:
-    /// Rays of the shortest and of the longest wavelength leave the lens farthest apart.
+    /// Also sets the wavelengths of the pupil to both ends of the spectrum, whose rays leave the lens farthest apart.
     void set_wavelengths(FilmSpectrum spectrum);
 
     void set_coatings(const EffectTables* same);
@@ -61,7 +62,7 @@ private:
     LensEffects effects_;
     LensSystem lens_;
     double film_radius_;
-    std::optional<FilmSpectrum> spectrum_;  ///< of a picture whose samples have wavelengths, as what follows
+    std::optional<FilmSpectrum> spectrum_;  ///< this and the next four only if samples have wavelengths
     std::vector<IndexCubic> to_scene_, to_film_;
     std::optional<LensPath<float>> film_path_;
     std::vector<double> pupil_wavelengths_;

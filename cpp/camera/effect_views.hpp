@@ -6,14 +6,14 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// What the effects of a camera need of it. Of an effect that it has not, the view is empty.
+/// Views of the tables for a camera's effects. The view of an effect that is off is empty.
 struct EffectViews {
-    Effects effects;  ///< for which the camera was made ready
+    Effects effects;  ///< effects for which the camera was set up
     DispersionView dispersion;
     CoatingView coatings;
     DiffractionView diffraction;
 
-    /// move(array, count) for every array. `surfaces`: of the lens.
+    /// Calls move(array, count) for every array. `surfaces`: number of surfaces of the lens.
     template <class Move>
     void move_arrays(int surfaces, Move&& move) {
         move(dispersion.to_scene, surfaces);

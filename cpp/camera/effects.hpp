@@ -6,31 +6,30 @@
 
 namespace REALCAM_NAMESPACE {
 
-// All that the program has to know of each effect, but for the code that simulates it, stands in this file: names,
-// words and properties in kEffects, and the sets for which code that takes samples is compiled in kCompiledEffects.
-// CONTRIBUTING.md, "Adding an effect", says what else there is to do.
+// Declares all effects, apart from the code that simulates them: names, texts and properties in kEffects, and the sets
+// for which sampling code is compiled in kCompiledEffects. CONTRIBUTING.md, "Adding an effect", lists the other steps.
 
-/// What is simulated besides what every picture has: an argument of the code that takes samples, so that an effect that
-/// is switched off costs nothing.
+/// Effects that are simulated in pixel samples. A template argument of the sampling code, so that an effect that is off
+/// costs nothing.
 struct Effects {
     bool dispersion = false;
     bool coatings = false;
     bool diffraction = false;
 
     constexpr bool operator==(const Effects&) const = default;
-    /// Whether samples have a wavelength each.
+    /// True if each sample has a wavelength.
     constexpr bool have_wavelengths() const;
-    /// Whether samples may count in other pixels than their own (SampleSharing). Diffraction alone also has wavelengths
-    /// that end in others, but so seldom that it pays less than it takes.
+    /// True if samples may count in pixels other than their own (SampleSharing). Diffraction alone also has wavelengths
+    /// that end in other pixels, but too seldom to be worth the cost.
     constexpr bool share_pixels() const { return dispersion; }
     constexpr bool hold(const Effects& other) const;
 };
 
 inline constexpr Effects kNoEffects = {};
 
-/// The sets for which there is code, the smaller ones first. cmake/RealcamRenderKernels.cmake reads them here, and
-/// makes kernels for each. A camera with other effects gets the first set that holds them; what it lacks of that is
-/// left out.
+/// Sets for which code is compiled, smaller ones first. cmake/RealcamRenderKernels.cmake reads them here and makes
+/// kernels for each. A camera with any other set uses the first one that contains it; effects that the camera lacks are
+/// skipped at run time.
 inline constexpr Effects kCompiledEffects[] = {
     {},
     {.dispersion = true},
@@ -40,47 +39,48 @@ inline constexpr Effects kCompiledEffects[] = {
     {.dispersion = true, .coatings = true, .diffraction = true},
 };
 
-/// What a picture is to have of all effects. Those of the exposure are there where something moves, unless left out.
+/// All effects of a picture. Those of the exposure, motion_blur and rolling_shutter, are on unless switched off and
+/// apply if something moves.
 struct EffectChoice : Effects {
-    bool ghosts = false;  ///< what two surfaces of the lens reflect: found apart from the samples of pixels
-    double ghost_share = 1e-6;  ///< ghosts that bring less of the lens's light to the film are left out
+    bool ghosts = false;  ///< light reflected by two surfaces of the lens; traced separately from the pixel samples
+    double ghost_share = 1e-6;  ///< ghosts with a smaller fraction of the lens's light on the film are left out
     bool film_reflection = false;  ///< ghosts of the film and a surface
     double film_reflectance = 0.05;
-    bool motion_blur = true;  ///< else each row of pixels sees the scene in the middle of its exposure
-    bool rolling_shutter = true;  ///< else the shutter's readout time is 0
+    bool motion_blur = true;  ///< false: each row of pixels sees the scene at the middle of its exposure
+    bool rolling_shutter = true;  ///< false: the shutter's readout time is taken as 0
 
-    bool is_automatic = false;  ///< the planner decides on those that nobody has named (cpp/plan)
-    std::uint32_t named = 0;  ///< bits: those that somebody has named, in the order of kEffects
+    bool is_automatic = false;  ///< the planner decides on effects that the user has not named (cpp/plan)
+    std::uint32_t named = 0;  ///< bit mask of the effects that the user has named, in the order of kEffects
 
     constexpr bool operator==(const EffectChoice&) const = default;
     constexpr bool have_ghosts() const { return ghosts || film_reflection; }
 };
 
-/// Named, because nvcc puts parentheses around members of such types, of which the host's compiler then warns.
+/// Aliases, because nvcc puts parentheses around members of these types, about which the host's compiler then warns.
 using EffectSwitch = bool EffectChoice::*;
 using EffectParameter = double EffectChoice::*;
 
-/// Of one effect.
+/// Properties of an effect.
 struct EffectInfo {
-    const char* name;  ///< on the command line, in shot files and in Python; with a "-" before it: left out; with "="
-                       ///< and a number behind it: with that parameter
+    const char* name;  ///< on the command line, in shot files and in Python; prefix "-": off; suffix "=" and a number:
+                       ///< sets `parameter`
     EffectSwitch member;
-    EffectParameter parameter = nullptr;  ///< null: it has none
-    const char* what;  ///< it is
-    const char* needs;  ///< of lens, scene and camera
-    const char* usage = "";  ///< what else a user should know
-    bool has_wavelengths = false;  ///< each sample has one, so that an illuminant can be named
-    bool needs_full_lens = false;  ///< it happens at the lens's surfaces, which only the camera model full has
-    bool needs_round_lens = false;  ///< a centred one of revolution before a flat film
-    bool needs_coatings = false;  ///< of the lens file; without them it is a guess
-    bool shows_in_previews = true;  ///< in pictures of fewer pixels than were asked for
-    /// Of a picture of the frame benchmark with it over one without, on a core and on a GPU (benchmarks/effects.py, the
-    /// double Gauss). 0: not measured.
+    EffectParameter parameter = nullptr;  ///< null if the effect has no parameter
+    const char* what;  ///< description
+    const char* needs;  ///< requirements on lens, scene and camera
+    const char* usage = "";  ///< further notes for the user
+    bool has_wavelengths = false;  ///< each sample has a wavelength, so an illuminant can be named
+    bool needs_full_lens = false;  ///< acts at the lens's surfaces, which only the camera model full has
+    bool needs_round_lens = false;  ///< needs a centred, rotationally symmetric lens with a flat film
+    bool needs_coatings = false;  ///< uses the coatings of the lens file; without them the result is a guess
+    bool shows_in_previews = true;  ///< on in previews, which have fewer pixels than requested
+    /// Relative render time with the effect on one CPU core and on a GPU: frame benchmark, double Gauss
+    /// (benchmarks/effects.py). 0: not measured.
     double cpu_time = 0, gpu_time = 0;
 
-    /// Where nobody names it.
+    /// Default if the user does not name the effect.
     constexpr bool is_on() const { return EffectChoice{}.*member; }
-    /// Whether code that takes samples is compiled with and without it.
+    /// True if the effect is a parameter of the sampling code (Effects).
     constexpr bool is_compiled() const {
         EffectChoice alone;
         alone.*member = true;
@@ -147,14 +147,14 @@ inline constexpr EffectInfo kEffects[] = {
      .usage = "on unless left out, as -rolling_shutter"},
 };
 
-/// The first that is on and has a property; null: none.
+/// First active effect that has a property; null if there is none.
 constexpr const EffectInfo* first_that(const EffectChoice& effects, bool EffectInfo::* property) {
     for (const EffectInfo& effect : kEffects)
         if (effects.*effect.member && effect.*property) return &effect;
     return nullptr;
 }
 
-/// A loop of its own: with sanitizers, gcc does not take an address other than null for a constant.
+/// A separate loop: with sanitizers, gcc does not accept an address other than null as a constant.
 constexpr bool any_is(const EffectChoice& effects, bool EffectInfo::* property) {
     for (const EffectInfo& effect : kEffects)
         if (effects.*effect.member && effect.*property) return true;
@@ -172,8 +172,8 @@ constexpr bool Effects::hold(const Effects& other) const {
     return true;
 }
 
-/// The place in kCompiledEffects of the first that holds these. A number, for kernels: nvcc writes no code that
-/// launches one whose argument is of a class.
+/// Index in kCompiledEffects of the first set that contains these effects. Kernels take an int because nvcc generates
+/// no launch code for template arguments of class type.
 constexpr int number_of(const Effects& wanted) {
     int number = 0;
     for (const Effects& set : kCompiledEffects) {
@@ -188,7 +188,7 @@ constexpr Effects without_coatings(Effects set) {
     return set;
 }
 
-/// Whether the code for a set also serves cameras without coatings, so that it has to look.
+/// True if the code for a set also serves cameras without coatings and has to test for them.
 constexpr bool may_lack_coatings(const Effects& set) {
     return set.coatings && number_of(without_coatings(set)) == number_of(set);
 }

@@ -64,7 +64,7 @@ void EntrySearch::start(const Rectangle& in, int rows, int square, int lane, Pup
     ray.cosines = {static_cast<float>(x), static_cast<float>(y)};
     ray.square = {static_cast<float>(column), static_cast<float>(row)};
     ray.rear = {static_cast<float>(r + x / z * film_distance), static_cast<float>(y / z * film_distance)};
-    // Twice, for the other half of the circle.
+    // The first factor of 2 accounts for the other half of the circle.
     ray.etendue = static_cast<float>(2 * 2 * std::numbers::pi * r * ring * column * row);
 }
 

@@ -10,62 +10,66 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// A ray from the film that has left the lens by some way.
+/// Ray from the film that has left the lens along some optical path.
 struct FoundRay {
-    float half_tangent;  ///< of its angle to the axis
-    Vec2f front;  ///< place in the plane across it, through the front vertex: away from the axis, and beside, mm
-    int film_ring;  ///< of kGhostBins, in which it began
-    Vec2f rear;  ///< place in the plane of the last vertex: towards its film point, and beside, mm
-    Vec2f cosines, square;  ///< of its direction at the film: towards the radius, and beside; sides of its square
-    float etendue;          ///< mm^2 sr
+    float half_tangent;  ///< tangent of half its angle to the axis
+    Vec2f front;  ///< point in the plane perpendicular to it through the front vertex: away from the axis, and across,
+                  ///< mm
+    int film_ring;  ///< index of the film ring of its origin, of kGhostBins
+    Vec2f rear;  ///< point in the plane of the last vertex: towards its film point, and across, mm
+    Vec2f cosines, square;  ///< direction cosines at the film, along the film radius and across; size of its stratum in
+                            ///< them
+    float etendue;  ///< mm^2 sr
 };
 
-/// The largest distance of a surface's rim from its vertex plane, mm.
+/// Largest distance of a surface's rim from its vertex plane, mm.
 double rim_depth(const Surface& surface);
 
-/// Radius of a circle in the vertex plane through which all light goes that meets the surface, mm.
+/// Radius of a circle in the vertex plane through which all light passes that hits the surface, mm.
 double reach_of(const Surface& surface);
 
-/// Radius of a circle about the origin of the camera's frame (film_path_ends), across light from anywhere, that holds
-/// all places where light enters a lens of any kind, mm.
+/// Radius of a disc about the origin of the camera's frame (film_path_ends), perpendicular to light from any direction,
+/// that contains all points where light enters a lens of any kind, mm.
 float entry_reach(const LensSystem& lens);
 
-/// The lens with a round stop: the circle around what its blades leave open.
+/// The lens with a circular stop: the circumcircle of the opening that its blades leave.
 LensSystem with_stop_around_blades(LensSystem lens);
 
-/// Sets what is known of a ray that has left the lens with origin o and unit direction d.
+/// Sets half_tangent and front of a ray that has left the lens with origin o and unit direction d.
 void set_front(Vec3f o, Vec3f d, FoundRay& ray);
 
-/// Looks for where light has to enter: by rays back from the film, because there their bundles are wide, while those of
-/// a fisheye are a hundredth of its front. Lens and circle of film are round, so that one radius of the film is enough;
-/// blades are taken for the circle around their opening. A ghost's bundle may be narrow: it is looked for with the stop
-/// wide open first, then with its own, and at last in the rectangle that holds what was found.
+/// Entrance-pupil search: finds the entrance-pupil bounds by rays traced back from the film, where bundles are wide;
+/// those of a fisheye are a hundredth of its front. Lens and film circle are rotationally symmetric, so one azimuth of
+/// the film is enough; blades are replaced by the circumcircle of their opening. A ghost's bundle may be narrow: it is
+/// searched with the stop wide open first, then with the actual stop, and finally within the bounds of the rays found.
 struct EntrySearch {
     using Found = FoundRay;
 
-    /// `film_radius`: of a circle that holds the film, mm.
+    /// `film_radius`: radius of a circle that contains the film, mm.
     EntrySearch(const LensSystem& lens, double film_radius, const PupilTracer& tracer);
 
-    /// `way`: of light to the film; `lens`: to whose surfaces it belongs.
+    /// Rays that pass along an optical path. `way`: its crossings, in the direction of light to the film; `lens`: the
+    /// lens whose surfaces they index.
     std::vector<FoundRay> along(const LensSystem& lens, const std::vector<Crossing>& way) const;
 
-    /// Radii of circles that hold all places where light enters the lens, and through which it leaves it, mm.
+    /// Radii of circles that contain all points where light enters the lens, and where it leaves it, mm.
     float front_reach() const { return front_reach_; }
     double rear_reach() const { return rear_reach_; }
 
 private:
-    /// Rows of directions that are looked along; there are twice as many columns.
+    /// Rows of traced directions; there are twice as many columns.
     static constexpr int kFew = 8, kMany = 12;
 
-    /// Direction cosines: from low to high along the film point's radius, from 0 to `across` beside it. None: across 0.
+    /// Bounds of direction cosines: low to high along the film point's radius, 0 to `across` perpendicular to it. Empty
+    /// if `across` is 0.
     struct Rectangle {
         double low, high, across;
     };
-    using Directions = std::array<Rectangle, kGhostBins>;  ///< of each ring of the film
+    using Directions = std::array<Rectangle, kGhostBins>;  ///< one for each film ring
 
     double radius_of(int ring) const { return (ring + 0.5) * film_radius / kGhostBins; }
 
-    /// To the circle behind the lens.
+    /// Directions from a film ring to the circle behind the lens.
     Rectangle all_directions(int ring) const;
 
     template <int kRows>
@@ -93,28 +97,28 @@ private:
         return found;
     }
 
-    /// Starts a ray at the middle of a ring of film, along the middle of one of the squares of a rectangle.
+    /// Starts a ray at the middle of a film ring, through the centre of one stratum of a rectangle of directions.
     void start(const Rectangle& in, int rows, int square, int lane, PupilTracer::Rays& rays, FoundRay& ray) const;
 
-    /// What holds the squares of all rays that were found in a ring or beside it; where there are none, as before.
+    /// Bounds of the strata of all rays found in a ring and its neighbours; those of `before` if there are no rays.
     static Directions around(const std::vector<FoundRay>& rays, const Directions& before);
 
     double film_radius, film_distance;  ///< mm
-    double film_index;  ///< of the medium before the film
+    double film_index;  ///< refractive index of the medium in front of the film
     float front_reach_;
     double rear_reach_;
     const PupilTracer& tracer;
 };
 
-/// An upper bound of the tangents of half the angles of these rays.
+/// Upper bound of the tangents of half the angles of these rays to the axis.
 float largest_half_tangent_of(const std::vector<FoundRay>& rays);
 
 using GhostEntries = std::array<GhostEntry, kGhostBins>;
 
 namespace entry_search_detail {
 
-/// Rectangles around all places of each bin. A margin of a sixteenth on each side, and the neighbours' rectangles, for
-/// what lies between the rays.
+/// Bounding rectangles of the points of each bin and its neighbours. A margin of a sixteenth on each side covers the
+/// gaps between the rays.
 template <class BinOf>
 GhostEntries entries_around(const std::vector<FoundRay>& rays, Vec2f FoundRay::* place, BinOf&& bin_of) {
     GhostEntries own{}, entries{};
@@ -124,7 +128,7 @@ GhostEntries entries_around(const std::vector<FoundRay>& rays, Vec2f FoundRay::*
         if (entry.half_width == 0) entry = {at.x, at.x, 0};
         entry.low = std::min(entry.low, at.x);
         entry.high = std::max(entry.high, at.x);
-        // Never 0, which means that there is none.
+        // Positive, because 0 marks an empty entry.
         entry.half_width = std::max({entry.half_width, std::fabs(at.y), 1e-6f});
     }
     for (int i = 0; i < kGhostBins; ++i) {
@@ -146,10 +150,10 @@ GhostEntries entries_around(const std::vector<FoundRay>& rays, Vec2f FoundRay::*
 
 }  // namespace entry_search_detail
 
-/// Where light enters whose rays were found, in even steps up to the largest half tangent.
+/// Entrance-pupil bounds of the rays, in uniform steps of the half tangent up to the largest one.
 GhostEntries entries_of(const std::vector<FoundRay>& rays, float largest_half_tangent);
 
-/// Where it leaves the lens, for places on the film in even steps of their radius.
+/// Bounds of the rays in the plane of the last vertex, in uniform steps of the film radius.
 GhostEntries exits_of(const std::vector<FoundRay>& rays);
 
 double etendue_of(const std::vector<FoundRay>& rays);

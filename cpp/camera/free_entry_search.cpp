@@ -11,7 +11,7 @@ namespace realcam {
 
 namespace {
 
-/// The cells of a grid beside one, and itself.
+/// Visits a cell of a grid and its neighbours.
 template <class Visit>
 void for_neighbours(int cell, Visit&& visit) {
     const int column = cell % kGhostColumns, row = cell / kGhostColumns;
@@ -20,8 +20,8 @@ void for_neighbours(int cell, Visit&& visit) {
             visit(y * kGhostColumns + x);
 }
 
-/// Rectangles around all places of each cell. A margin of a sixteenth on each side, and the neighbours' rectangles, for
-/// what lies between the rays.
+/// Bounding rectangles of the points of each cell and its neighbours. A margin of a sixteenth on each side covers the
+/// gaps between the rays.
 template <class CellOf>
 std::vector<FreeGhostEntry> entries_around(const std::vector<FreeFoundRay>& rays, Vec2f FreeFoundRay::* place,
                                            CellOf&& cell_of) {
@@ -49,7 +49,7 @@ std::vector<FreeGhostEntry> entries_around(const std::vector<FreeFoundRay>& rays
         });
         if (!box.is_known) continue;
         const float half_width = 0.5f * (box.high.y - box.low.y);
-        // Never 0, which means that there is none.
+        // Positive, because 0 marks an empty entry.
         const float margin = std::max(0.0625f * std::max(box.high.x - box.low.x, half_width), 1e-6f);
         FreeGhostEntry& entry = entries[static_cast<std::size_t>(cell)];
         entry.low = box.low.x - margin;
@@ -72,9 +72,10 @@ FreeEntrySearch::FreeEntrySearch(const LensSystem& lens, double film_radius, con
     const auto corner = static_cast<float>(-film_radius), cells = 1 / cell_size_;
     film_grid_ = {{corner, corner}, {cells, cells}};
     front_reach_ = entry_reach(lens);
-    // Between the last surface and the plane a ray goes on by at most so much of its way to the film.
+    // Between the last surface and the plane z = 0, a ray covers at most this fraction (`share`) of its distance to the
+    // film.
     const Surface& last = lens.surfaces.back();
-    Affine<double> rear{};  // of a surface in place: in the origin
+    Affine<double> rear{};  // a surface that is not displaced lies at the origin
     if (to_scene_.entry) rear = inverse_motion(*to_scene_.entry) * surface_frames(lens).surfaces.back();
     const double rim = last.clear_semi_diameter, beside = hypotenuse(rear.origin.x, rear.origin.y) + reach_of(last);
     const double depth = std::fabs(rear.origin.z) + rim_depth(last) + rim * hypotenuse(rear.z.x, rear.z.y);
@@ -105,7 +106,7 @@ std::vector<FreeFoundRay> FreeEntrySearch::traced(const LensSystem& lens, const 
         FreeFoundRay looked[PupilTracer::kBlock];
         for (int k = 0; k < PupilTracer::kBlock; ++k) {
             const int cell = (first + k) / kPerCell, square = (first + k) % kPerCell;
-            // Somewhere in the cell, and somewhere in one of the squares of the rectangle.
+            // Random point in the film cell, and stratified point in its rectangle of the rear plane.
             const auto number = static_cast<std::uint32_t>(first + k);
             const Vec2f u = sample_2d(0, number, 0), v = sample_2d(0, number, 1);
             const Vec2f at = {film_grid_.corner.x + cell_size_ * (static_cast<float>(cell % kGhostColumns) + u.x),
@@ -184,7 +185,7 @@ GhostGrid grid_of_directions(const std::vector<std::vector<FreeFoundRay>>& rays)
             high = {std::max(high.x, x), std::max(high.y, y)};
         }
     if (!(high.x > low.x && high.y > low.y)) return {{0, 0}, {0, 0}};
-    // Half a cell more on each side, for what lies between the rays.
+    // A margin of half a cell on each side covers the gaps between the rays.
     const auto cells = [](float least, float most) { return (kGhostColumns - 1) / (most - least); };
     const Vec2f scale = {cells(low.x, high.x), cells(low.y, high.y)};
     return {{low.x - 0.5f / scale.x, low.y - 0.5f / scale.y}, scale};

@@ -9,40 +9,43 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// A ray from the film of a lens of any kind that has left the lens by some way.
+/// Ray from the film that has left a lens of any kind along some optical path.
 struct FreeFoundRay {
-    Vec2f half_tangents;  ///< of its direction
-    Vec2f front;  ///< place across it through the origin of the camera's frame (light_axes), mm
-    int film_cell;  ///< of the grid over the film, in which it began
-    Vec2f rear;  ///< place in the plane z = 0 of the film's frame, mm
-    Vec2f rear_step;  ///< by which its neighbours lie beside it there
+    Vec2f half_tangents;  ///< half_tangents() of its direction
+    Vec2f front;  ///< point in the plane perpendicular to it through the origin of the camera's frame (light_axes), mm
+    int film_cell;  ///< index of the cell of its origin, in the grid over the film
+    Vec2f rear;  ///< point in the plane z = 0 of the film's frame, mm
+    Vec2f rear_step;  ///< spacing of neighbouring rays in that plane, mm
     float etendue;  ///< mm^2 sr
 };
 
-/// EntrySearch for lenses that are not of revolution: by rays back from a grid over the film to a plane in front of it.
+/// EntrySearch for lenses without rotational symmetry: rays are traced back from a grid over the film through points of
+/// a plane in front of it.
 class FreeEntrySearch {
 public:
     using Found = FreeFoundRay;
 
-    /// `film_radius`: of a circle about the vertex of the film that holds the film, mm.
+    /// `film_radius`: radius of a circle about the film's vertex that contains the film, mm.
     FreeEntrySearch(const LensSystem& lens, double film_radius, const PupilTracer& tracer);
 
-    /// `way`: of light to the film; `lens`: to whose surfaces it belongs.
+    /// Rays that pass along an optical path. `way`: its crossings, in the direction of light to the film; `lens`: the
+    /// lens whose surfaces they index.
     std::vector<FreeFoundRay> along(const LensSystem& lens, const std::vector<Crossing>& way) const;
 
-    /// Where light of a way comes in at the front, in cells of the grid of directions; and at the film, in cells of
-    /// that.
+    /// Bounds of the light of an optical path: at the front, for each cell of the grid of directions; and in the plane
+    /// z = 0 of the film's frame, for each cell of the film grid.
     static std::vector<FreeGhostEntry> entries_of(const std::vector<FreeFoundRay>& rays, const GhostGrid& directions);
     static std::vector<FreeGhostEntry> exits_of(const std::vector<FreeFoundRay>& rays);
 
     const GhostGrid& film_grid() const { return film_grid_; }
-    /// Radius of a circle about the origin, across light from anywhere, that holds all that meets the front surface;
-    /// and of one in the plane z = 0 of the film's frame that holds all light from the last surface to the film, mm.
+    /// Radius of a disc about the origin, perpendicular to light from any direction, that contains all light that hits
+    /// the front surface; and radius of a circle in the plane z = 0 of the film's frame that contains all light from
+    /// the last surface to the film, mm.
     float front_reach() const { return front_reach_; }
     float rear_reach() const { return rear_reach_; }
 
 private:
-    /// Rows of places in the rear plane to which rays go from each cell of the film, and columns likewise.
+    /// Rows and columns of points in the rear plane to which rays are traced from each cell of the film.
     static constexpr int kFew = 8, kMany = 10;
 
     struct Rectangle {
@@ -54,7 +57,7 @@ private:
     std::vector<FreeFoundRay> traced(const LensSystem& lens, const std::vector<Crossing>& way,
                                      const Rears& rears) const;
 
-    /// About the rays that were found in each cell or beside it; where there are none, as before.
+    /// Bounds of the rays found in each cell and its neighbours; those of `before` if there are no rays.
     static Rears around(const std::vector<FreeFoundRay>& rays, const Rears& before);
 
     LensSystem lens_;
@@ -66,7 +69,7 @@ private:
     const PupilTracer& tracer_;
 };
 
-/// A grid that holds the directions of all these rays.
+/// Grid that covers the directions of all these rays.
 GhostGrid grid_of_directions(const std::vector<std::vector<FreeFoundRay>>& rays);
 
 double etendue_of(const std::vector<FreeFoundRay>& rays);

@@ -3,11 +3,11 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Which ghosts a picture has.
+/// Selection of the ghosts of a picture.
 struct GhostChoice {
-    bool of_lens = true;  ///< of pairs of the lens's surfaces
-    double film_reflectance = 0;  ///< more than 0: of pairs of the film, which reflects so much, and a surface
-    /// Those that bring less of the light that the lens itself brings to the film, from all sides alike, are left out.
+    bool of_lens = true;  ///< ghosts of two lens surfaces
+    double film_reflectance = 0;  ///< positive: ghosts of the film, with this reflectance, and a lens surface
+    /// Ghosts with a smaller fraction of the lens's own light on the film, for a uniform surround, are left out.
     double least_share = 0;
 
     bool operator==(const GhostChoice&) const = default;

@@ -32,7 +32,8 @@ GhostTables::GhostTables(const LensSystem& of_lens, double film_radius, const Gh
       film_index_(static_cast<float>(of_lens.indices(of_lens.wavelength_nm).back())) {
     const LensSystem lens = with_film_mirror(of_lens, choice.film_reflectance, film_radius);
     std::vector<AxialPair> pairs;
-    // For a spectrum the mean is taken: light that a coating stops at the design wavelength it reflects at another.
+    // With a spectrum, shares are averaged over it: a coating that suppresses light at the design wavelength reflects
+    // at another.
     std::vector<AxialShares> of_wavelengths;
     for (const double wavelength : spectrum ? spectrum->even_wavelengths() : std::vector{lens.wavelength_nm})
         of_wavelengths.emplace_back(lens, wavelength);
@@ -43,7 +44,7 @@ GhostTables::GhostTables(const LensSystem& of_lens, double film_radius, const Gh
     };
     const auto look_at = [&](const std::vector<GhostPair>& wanted) {
         for (const GhostPair pair : wanted) {
-            // A way that no more light can take than ten times what the lens itself takes is not worth the search.
+            // A ghost is not searched if it stays below the limit even with ten times the etendue of the lens itself.
             const double share = axial_share(crossings_of(of_lens, pair));
             if (10 * share > choice.least_share) pairs.push_back({pair, share});
         }
@@ -64,7 +65,8 @@ GhostTables::GhostTables(const LensSystem& of_lens, double film_radius, const Gh
 template <class Search>
 void GhostTables::find_ways(const Search& search, const LensSystem& of_lens, const LensSystem& lens,
                             const std::vector<AxialPair>& pairs, double least_share, const PupilTracer& tracer) {
-    std::vector<std::vector<typename Search::Found>> found(pairs.size() + 1);  // the last of the lens itself
+    /// The last element: the lens's direct path.
+    std::vector<std::vector<typename Search::Found>> found(pairs.size() + 1);
     tracer.for_each(static_cast<int>(found.size()), [&](int i) {
         const auto k = static_cast<std::size_t>(i);
         const auto way = k < pairs.size() ? crossings_of(of_lens, pairs[k].pair) : crossings_of(of_lens);
@@ -168,7 +170,7 @@ void GhostTables::add(Ways& to, const LensPath<float>& path, const std::vector<C
     const std::size_t first = to.surfaces.size();
     to.ways.push_back({static_cast<std::int32_t>(first), way.count, 0});
     to.surfaces.insert(to.surfaces.end(), way.surfaces, way.surfaces + way.count);
-    // What all crossings of one way do without, those of another may need.
+    // Data that one path does not need may be needed by another: missing arrays are padded.
     const auto append = [&](auto& list, const auto* from) {
         if (list.empty() && !from) return;
         list.resize(to.surfaces.size());

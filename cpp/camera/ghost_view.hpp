@@ -7,31 +7,31 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// In how many steps of the tangent of half its angle to the axis light is looked at that becomes ghosts, or of the
-/// film's radius places on the film to which it comes.
+/// Number of bins: of the tangent of half the angle to the axis, for light that becomes ghosts; or of the film radius,
+/// for film points that the light reaches.
 inline constexpr int kGhostBins = 64;
 
-/// Where light of one direction has to enter to reach the film by one ghost's way: a rectangle in the plane across the
-/// light through the front vertex, mm. `low`, `high`: away from the axis; across it, from -half_width to half_width.
-/// Or, in the plane of the last vertex, where light leaves the lens that reaches one place of the film.
+/// Entrance-pupil bounds of one ghost's path for one direction of light: a rectangle in the plane perpendicular to the
+/// light through the front vertex, mm. `low`, `high`: away from the axis; across, it extends from -half_width to
+/// half_width. Also the bounds in the plane of the last vertex of light that reaches one film point.
 struct GhostEntry {
-    float low, high, half_width;  ///< half_width 0: nowhere
+    float low, high, half_width;  ///< half_width 0: empty
 };
 
-/// The same for a lens that is not of revolution. Of light, in the axes that light_axes gives; of places on the film,
-/// in the axes of the film, and the plane is that of its z = 0.
+/// GhostEntry of a lens without rotational symmetry. For light, in the axes given by light_axes; for film points, in
+/// the plane z = 0 of the film's frame.
 struct FreeGhostEntry : GhostEntry {
-    float across;  ///< in y, the middle between -half_width and half_width; low and high are in x
+    float across;  ///< y of the centre line between -half_width and half_width; low and high are in x
 };
 
-/// For such a lens directions or places on the film are looked at on a grid.
+/// Grid of directions or film points for lenses without rotational symmetry.
 inline constexpr int kGhostColumns = 16, kGhostCells = kGhostColumns * kGhostColumns;
 
 struct GhostGrid {
-    Vec2f corner;  ///< where x and y are least
+    Vec2f corner;  ///< least x and y
     Vec2f cells_per_unit;
 
-    /// The cell of a place; -1: beyond the grid.
+    /// Index of the cell of a point; -1 outside the grid.
     REALCAM_INLINE int cell_of(Vec2f place) const {
         const float x = (place.x - corner.x) * cells_per_unit.x, y = (place.y - corner.y) * cells_per_unit.y;
         const float end = static_cast<float>(kGhostColumns);
@@ -41,67 +41,67 @@ struct GhostGrid {
     }
 };
 
-/// Unit vectors across light from a direction in front of the lens: x and y of the lens, after the shortest turn that
-/// brings -z there.
+/// Unit vectors perpendicular to light from a direction in front of the lens: the lens's x and y axes after the
+/// shortest rotation that takes -z to that direction.
 struct LightAxes {
     Vec3f x, y;
 };
 
-/// `from`: unit, towards the light; not along +z.
+/// `from`: unit vector towards the light; not +z.
 REALCAM_INLINE LightAxes light_axes(Vec3f from) {
     const float scale = 1.0f / (1.0f - from.z), both = -from.x * from.y * scale;
     return {{1.0f - from.x * from.x * scale, both, from.x}, {both, 1.0f - from.y * from.y * scale, from.y}};
 }
 
-/// By which the grid of a lens's directions names one: the tangent of half its angle to the axis is the length.
+/// Coordinates of a direction in the grid of directions; their length is the tangent of half its angle to the axis.
 REALCAM_INLINE Vec2f half_tangents(Vec3f from) {
     const float scale = 1.0f / (1.0f - from.z);
     return {scale * from.x, scale * from.y};
 }
 
-/// The way of one ghost through the lens.
+/// Optical path of one ghost through the lens.
 struct GhostWay {
-    std::int32_t first, count;  ///< of its crossings in the arrays of GhostView
-    float probability;          ///< with which a sample takes it
+    std::int32_t first, count;  ///< range of its crossings in the arrays of GhostView
+    float probability;          ///< of being sampled
 };
 
-/// Which light is traced apart from the samples of pixels, and from where.
+/// Light that is traced separately from the pixel samples, and the end that it is traced from.
 enum class GhostLight : std::int32_t {
-    of_lights,   ///< ghosts of the scene's lights, from these
-    starbursts,  ///< the lights themselves, spread by the edges of the aperture, from the lights
-    of_objects,  ///< ghosts of what objects reflect, from the film
-    direct,      ///< the lights themselves, from the lights (TracedLightsView)
+    of_lights,   ///< ghosts of the scene's lights, traced from the lights
+    starbursts,  ///< the lights themselves, spread by the edges of the aperture; traced from the lights
+    of_objects,  ///< ghosts of light that objects reflect, traced from the film
+    direct,      ///< the lights themselves, traced from the lights (TracedLightsView)
 };
 
-/// Of one picture.
+/// Largest number of GhostViews of a picture.
 inline constexpr int kMostSplats = 4;
 
-/// The ghosts of a lens, or the lens's own way, for starbursts. Lengths in mm.
+/// Ghosts of a lens; or its direct path, for starbursts and for the lights themselves. Lengths in mm.
 struct GhostView {
     GhostLight light;
-    Effects effects;  ///< of that light
-    std::int32_t pixel_samples;  ///< so many samples of pixels have one of these
+    Effects effects;  ///< effects that are simulated for it
+    std::int32_t pixel_samples;  ///< number of pixel samples for each sample of this light
     const GhostWay* ways;
     int way_count;
-    const float* cdf;  ///< of the ways' probabilities, way_count + 1
-    const GhostEntry* entries;  ///< kGhostBins of each way
+    const float* cdf;  ///< cumulative probabilities of the paths, way_count + 1
+    const GhostEntry* entries;  ///< kGhostBins for each path
     int crossing_count;
-    const SurfaceView<float>* surfaces;  ///< of all crossings of all ways, as the next three
+    const SurfaceView<float>* surfaces;  ///< crossings of all paths, as the next three
     const GhostCoating<kOneWavelengthTerms>* coatings;
-    const IndexCubic* indices;  ///< where samples have wavelengths, as the next
-    const GhostCoating<kGhostSpectrumTerms>* spectral_coatings;  ///< where surfaces do not pass on all light
-    float largest_half_tangent;  ///< of the angle between axis and light from which any ghost comes
-    float film_radius;           ///< of a circle that holds the film
-    float film_index;            ///< of the medium before the film
-    float reach;  ///< radius of a circle that holds all places where samples enter the lens
+    const IndexCubic* indices;  ///< only if samples have wavelengths, as the next
+    const GhostCoating<kGhostSpectrumTerms>* spectral_coatings;  ///< only if surfaces do not transmit all light
+    float largest_half_tangent;  ///< largest tangent of half the angle to the axis of light that causes a ghost
+    float film_radius;           ///< radius of a circle that contains the film
+    float film_index;            ///< refractive index of the medium in front of the film
+    float reach;  ///< radius of a circle that contains all points where samples enter the lens
     Iris<float> iris;
-    LensKind kind;  ///< any: the next three instead of `entries`, largest_half_tangent and film_radius
-    const FreeGhostEntry* free_entries;  ///< kGhostCells of each way
-    GhostGrid grid;  ///< of half_tangents, or of places on the film, mm
-    FreeParts<float> free;  ///< of all crossings of all ways
+    LensKind kind;  ///< any: the next three replace `entries`, largest_half_tangent and film_radius
+    const FreeGhostEntry* free_entries;  ///< kGhostCells for each path
+    GhostGrid grid;  ///< of half_tangents, or of film points in mm
+    FreeParts<float> free;  ///< crossings of all paths
 };
 
-/// A ghost view with every array replaced by a copy elsewhere: `copy(pointer, count)` returns where to.
+/// Returns the view with every array replaced by a copy; `copy(pointer, count)` returns the address of the copy.
 template <class Copy>
 GhostView with_copied_arrays(GhostView view, Copy&& copy) {
     const auto move = [&](auto*& array, int count) {

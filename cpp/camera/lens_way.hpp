@@ -11,16 +11,16 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Whether the code for lenses of revolution serves a lens and its film.
+/// True if the code for rotationally symmetric lenses handles a lens and its film.
 bool is_round_lens(const LensSystem& lens);
 
-/// The way of light to the film that no surface reflects but mirrors. Owns the memory of its views.
+/// Direct (ghost-free) lens path of light to the film, on which only mirrors reflect. Owns the memory of its views.
 class LensWay {
 public:
-    /// `spectrum`: of a picture whose samples have wavelengths. Throws InputError where an index is not known.
+    /// `spectrum`: for pictures whose samples have wavelengths. Throws InputError if a refractive index is unknown.
     LensWay(const LensSystem& lens, const std::optional<FilmSpectrum>& spectrum, const Effects& effects);
 
-    /// `pixel_samples`: as GhostView's.
+    /// `pixel_samples`: see GhostView.
     GhostView view(GhostLight light, std::int32_t pixel_samples) const;
 
     LensView<float> surfaces() const { return path_.view(); }

@@ -9,10 +9,10 @@ namespace realcam {
 
 namespace {
 
-constexpr int kLanes = 12;  ///< of Gauss's nodes on a spoke, which the compiler makes vectors of
+constexpr int kLanes = 12;  ///< Gauss nodes of a radial scan line, which the compiler vectorises
 using EntryLanes = Vec2<double>[kLanes];
 
-/// Calls work(entries, where they are) for as many at a time. Their number is a multiple.
+/// Calls work(entries, their positions) for kLanes entries at a time. The number of entries is a multiple of kLanes.
 template <class Work>
 void in_lanes(const std::vector<EntryPart>& entries, Work&& work) {
     for (std::size_t first = 0; first + kLanes <= entries.size(); first += kLanes) {
@@ -104,7 +104,7 @@ Vec2<double> MeanRays::middle_of_light(const SceneRay& ray, const std::vector<Pa
         area += part.area;
         squares = {squares.x + part.area * at.x * at.x, squares.y + part.area * at.y * at.y};
     }
-    // An even ellipse reaches out to twice the root of its mean square; spokes go on to 1.7 times this.
+    // A uniform ellipse extends to twice its root mean square; the radial scan lines extend to 1.7 times this.
     constexpr double kReach = 2;
     const EntryRectangle in = {{0, 0}, {kReach * std::sqrt(squares.x / area), kReach * std::sqrt(squares.y / area)}};
     const SceneBundle bundle(to_film_, film_, ray, focus_, in, mirrored);

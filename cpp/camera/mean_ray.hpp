@@ -8,26 +8,27 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// The mean of the rays that a film point gets. What it sees in planes across that ray are spots of light, whose
-/// middles lie on this straight line, since each ray is one.
+/// Centroid ray of a film point: the mean of the rays that reach it. In each plane across it the film point sees a spot
+/// of light, whose centroid lies on this straight line because each ray is straight.
 struct MeanRay {
-    SceneRay ray;  ///< from where it leaves the lens
-    Vec2<double> shows_at;  ///< film point at which the light of the ray's point in focus has its middle, mm
+    SceneRay ray;  ///< origin: where it leaves the lens
+    Vec2<double> shows_at;  ///< film point that is the centroid of the light of the ray's point in focus, mm
     double light;  ///< irradiance of the film point for unit radiance
 };
 
-/// Finds mean rays of film points.
+/// Computes centroid rays of film points.
 class MeanRays {
 public:
-    /// `focus`: from the entrance pupil to the plane in focus, mm; may be infinite.
+    /// `focus`: distance from the entrance pupil to the plane in focus, mm; may be infinite.
     MeanRays(const LensSystem& lens, double focus);
 
-    /// The light of a film point on the +y axis, of a centred lens of revolution with a round stop.
+    /// Ray bundle of a film point on the +y axis, for a centred, rotationally symmetric lens with a circular stop. Must
+    /// not outlive this object.
     FilmBundle bundle(const PupilView& pupil, double film_radius) const;
-    /// That of a film point of any lens. Bundles must not outlive this.
+    /// Ray bundle of a film point, for lenses without rotational symmetry. Must not outlive this object.
     FilmBundle bundle(const PupilGridView& pupil, Vec2<double> film) const;
 
-    /// Nothing where no light arrives.
+    /// Centroid ray of a bundle. Returns std::nullopt if no light reaches the film point.
     std::optional<MeanRay> of(const FilmBundle& bundle) const;
 
     /// Irradiance of the film point for unit radiance.
@@ -38,14 +39,14 @@ private:
         SceneRay ray;
         double area;
     };
-    /// Aspheres of a phone lens bend light at the rim so much more that fewer places along a radius would be off by 0.1
-    /// um.
+    /// With fewer nodes along a radius, errors would reach 0.1 um: aspheres of phone lenses bend light strongly at the
+    /// rim.
     static constexpr BundleSampling kSampling = {24, 12};
 
     static std::vector<Part> parts_of(const FilmBundle& bundle);
 
-    /// The middle of the light of the point in focus on the ray. Its light enters about where that of the film point
-    /// left.
+    /// Centroid on the film of the light of the ray's point in focus. `parts` gives the bounds of the search: that
+    /// light enters the lens about where the light of the film point leaves it.
     Vec2<double> middle_of_light(const SceneRay& ray, const std::vector<Part>& parts, bool mirrored) const;
 
     LensPath<double> to_scene_, to_film_;

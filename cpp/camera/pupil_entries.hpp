@@ -5,17 +5,18 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Where light from far away enters a lens to reach the film, as rays of the pupil show it: by its angle to the axis.
+/// Entrance-pupil bounds of light from far away that reaches the film, by its angle to the axis; found with rays
+/// through the pupil.
 class PupilEntries {
 public:
-    /// `lens`: from the film to the scene. `film_radius`: of a circle that holds the film, and `film_distance` behind
-    /// the last vertex, mm.
+    /// `lens`: for light from the film to the scene. `film_radius`: radius of a circle that contains the film;
+    /// `film_distance`: from the last vertex to the film, mm.
     PupilEntries(const PupilView& pupil, const LensView<float>& lens, double film_radius, double film_distance,
                  const PupilTracer& tracer);
 
-    /// An upper bound of the tangents of half the angles of light that is seen.
+    /// Upper bound of the tangents of half the angles to the axis of light that reaches the film.
     float largest_half_tangent() const { return largest_half_tangent_; }
-    /// Of the largest one, where the tangent is larger.
+    /// Bounds for the tangent of half the angle to the axis; beyond the largest tangent, those of the last bin.
     const GhostEntry& at(float half_tangent) const;
 
 private:

@@ -12,7 +12,7 @@ namespace realcam {
 
 namespace {
 
-/// The film and its mirror images in the planes of the lens.
+/// Film area united with its mirror images in the lens's planes of symmetry.
 FilmArea folded_out(FilmArea area, MirrorPlanes planes) {
     const auto both = [](double& least, double& most) {
         most = std::max(std::fabs(least), std::fabs(most));
@@ -115,7 +115,7 @@ std::vector<SightGrid::Grid::Values> SightGrid::shown_where_light_lands(const Se
     std::vector<Grid::Values> lines;
     for (int row = 0; row <= kRows; ++row)
         for (int column = 0; column <= kColumns; ++column) {
-            // Light lands beside its film point by a small part of a cell.
+            // Fixed-point iteration: the light's centroid lies a small fraction of a cell from its film point.
             Vec2<double> at = {static_cast<double>(column), static_cast<double>(row)};
             SeenGrid::Values there = seen.node(column, row);
             for (int i = 0; i < kMost; ++i) {
@@ -123,7 +123,7 @@ std::vector<SightGrid::Grid::Values> SightGrid::shown_where_light_lands(const Se
                 const double change = std::fabs(next.x - at.x) + std::fabs(next.y - at.y);
                 at = next;
                 const SeenGrid::Values found = seen.at(at.x, at.y).value;
-                // Beside a dark node its own line has to do.
+                // Next to a node without light, the node's own ray is used.
                 if (!(change > 1e-12) || !std::isfinite(found[0])) break;
                 there = found;
             }
@@ -139,7 +139,7 @@ void SightGrid::finish(std::vector<Grid::Values> lines) {
     const double column = std::clamp(-area_.least.x / size.x, 0.0, static_cast<double>(kColumns));
     const double row = std::clamp(-area_.least.y / size.y, 0.0, static_cast<double>(kRows));
     double middle = Grid(kColumns + 1, kRows + 1, lines).at(column, row).value[kLight];
-    if (!(middle > 0)) {  // of a lens whose film is lit beside its middle alone
+    if (!(middle > 0)) {  // no light in the middle of the film: relative to the brightest node instead
         middle = 0;
         for (const Grid::Values& line : lines) middle = std::max(middle, line[kLight]);
     }
@@ -153,7 +153,7 @@ void SightGrid::finish(std::vector<Grid::Values> lines) {
 std::optional<FilmSight> SightGrid::from(Vec2<double> place) const {
     const Vec2<double> size = cell_size();
     const double column = (-place.x - area_.least.x) / size.x, row = (-place.y - area_.least.y) / size.y;
-    // So much more that rounding leaves no corner without a line.
+    // Margin that keeps the film's corners inside despite rounding.
     constexpr double kRounding = 1e-6;
     if (!(column > -kRounding && column < kColumns + kRounding && row > -kRounding && row < kRows + kRounding))
         return std::nullopt;
@@ -214,7 +214,7 @@ bool SightGrid::follow(Vec3d from, GridPlace& at) const {
         if (!std::isfinite(line.value[kLight])) return false;
         const bool stays = std::max(std::fabs(next.column - at.column), std::fabs(next.row - at.row)) < kClose;
         at = next;
-        // At the border a step that is cut off ends where no line goes through the point.
+        // A step that is clamped at the border of the grid converges where no ray passes through the point.
         if (stays) return size < 10 * kClose && t > line.value[6];
     }
     return false;

@@ -9,12 +9,11 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// The lines of sight of a film whose lens is not of revolution: known at the nodes of a grid over the film, and smooth
-/// between them. Cells of the grid with a corner that gets no light have none.
+/// Projection rays of a lens without rotational symmetry: computed at the nodes of a grid over the film, with smooth
+/// interpolation in between. Cells of the grid with a corner that receives no light have no rays.
 class SightGrid : public LinesOfSight {
 public:
-    /// `setup`: of the camera, with the pupil in two dimensions. The lines are those of its film and a margin. Throws
-    /// InputError.
+    /// `setup`: set-up of the camera, with a PupilGrid. Covers the camera's film and a margin. Throws InputError.
     SightGrid(const CameraSetup& setup, SightRay ray, const RayLoop& loop = {});
 
     bool ends_in_film() const override { return ends_in_film_; }
@@ -23,18 +22,18 @@ public:
     std::optional<Vec2<double>> place_of(Vec3d point) const override;
 
 private:
-    /// Of cells. One that is its own mirror image in a plane is looked at in one half.
+    /// Number of grid cells. If the lens has a plane of symmetry, only one half of the grid is traced.
     static constexpr int kColumns = 24, kRows = 16;
 
-    /// A film point's line: its unit direction, and its point nearest to the reference point, relative to that. Where
-    /// it leaves the lens, along it from there, and the film point's light. Then by how much the middle of the light of
-    /// its point in focus lies elsewhere on the film, mm.
+    /// Projection ray of a film point: its unit direction; `foot`, its point nearest to the reference point, relative
+    /// to the latter; `start`, where it leaves the lens, along the ray from the foot; the irradiance of the film point;
+    /// and `shift`, the offset on the film of the light's centroid for the ray's point in focus, mm.
     struct Seen {
         Vec3d direction, foot;
         double start, light;
         Vec2<double> shift;
     };
-    static constexpr int kNumbers = 8, kLight = 7;  ///< of a line, and which of them is its light
+    static constexpr int kNumbers = 8, kLight = 7;  ///< values of a ray, and the index of its light
     using Grid = SmoothGrid<kNumbers>;
     using SeenGrid = SmoothGrid<kNumbers + 2>;
 
@@ -45,29 +44,32 @@ private:
     Vec2<double> cell_size() const;
     Vec2<double> film_point(int column, int row) const;
 
-    /// look(film point) for all nodes, or for those from which the others follow by symmetry.
+    /// Values of look(film point) at all nodes; only evaluated at those from which the others follow by symmetry.
     template <class Look>
     std::vector<SeenGrid::Values> nodes_by(Look&& look, const RayLoop& loop) const;
 
-    /// Gives each node the line whose point in focus has the middle of its light there.
+    /// Assigns each node the ray for whose point in focus the light's centroid lies at the node.
     std::vector<Grid::Values> shown_where_light_lands(const SeenGrid& seen) const;
 
-    /// The light of all relative to that in the middle of the film.
+    /// Stores the rays, with their light relative to that in the middle of the film.
     void finish(std::vector<Grid::Values> lines);
 
-    /// Columns and rows of the grid.
+    /// Position in the grid, in columns and rows.
     struct GridPlace {
         double column, row;
     };
-    /// Whose line passes nearest to a point, by the angle. Points are relative to the reference point.
+    /// Node whose ray passes nearest to a point, by angle; std::nullopt if the point lies in front of no ray's start.
+    /// Points are relative to the reference point.
     std::optional<GridPlace> nearest_node(Vec3d from) const;
-    /// From there to the place whose line goes through the point. False where there is none.
+    /// Moves `at` to the position in the grid whose ray passes through the point. Returns false if there is no such
+    /// position.
     bool follow(Vec3d from, GridPlace& at) const;
 
     FilmArea area_;
     MirrorPlanes planes_;
-    Vec3d reference_;  ///< the middle of the entrance pupil, in the frame of the camera (film_path_ends), mm
-    double film_z_;  ///< of the film there
+    Vec3d reference_;  ///< centre of the entrance pupil, or of the front if the pupil is far away; camera frame
+                       ///< (film_path_ends), mm
+    double film_z_;  ///< z of the film in that frame
     bool ends_in_film_ = false;
     std::optional<Grid> lines_;
 };

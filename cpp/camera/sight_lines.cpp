@@ -20,14 +20,14 @@ namespace {
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
-/// What the light of a film radius looks at, and at which radius that shows: where the light of the line's point in
-/// focus has its middle. Radii are in steps.
+/// Projection ray of a film radius, and the film radius at which it is shown: the centroid of the light of the ray's
+/// point in focus. Radii are in steps.
 struct Seen {
     SightLine line;
     double shown;
 };
 
-/// The lines of some of the steps, and cubics between them.
+/// Projection rays at some of the steps, with cubic interpolation in between.
 class KnownLines {
 public:
     explicit KnownLines(const std::vector<std::optional<Seen>>& steps) {
@@ -42,7 +42,7 @@ public:
         }
     }
 
-    /// The line that shows at a radius, without its light.
+    /// Ray that is shown at a radius, without its light.
     SightLine shown_at(double radius) const {
         const std::optional<LocalCubic> cubic = LocalCubic::at(shown_, radius);
         if (!cubic) return {kUnknown, kUnknown, kUnknown, kUnknown};
@@ -59,7 +59,7 @@ public:
 
 private:
     std::vector<double> radii_, light_;
-    std::vector<double> shown_;  ///< rises
+    std::vector<double> shown_;  ///< strictly increasing
     std::vector<SightLine> lines_;
 };
 
@@ -75,12 +75,12 @@ SightLines::SightLines(const CameraSetup& setup, SightRay ray, const RayLoop& lo
     reference_ = lens.film_position() - vertex_;
     focus_ = lens.focus_distance - reference_;
     const CameraView view = setup.view(camera.pose.position_m);
-    // So much more that rounding leaves no corner without a line.
+    // Margin that keeps the film's corners inside despite rounding.
     reach_ = camera.film.radius_mm() * (1 + 1e-7);
     if (has_real_pupil(camera.model)) {
         const auto lit = static_cast<double>(view.pupil.image_radius);
         ends_in_film_ = lit < reach_;
-        if (ends_in_film_) reach_ = (1 - 1e-4) * lit;  // at its very edge the bundle has no width
+        if (ends_in_film_) reach_ = (1 - 1e-4) * lit;  // at the very edge the bundle has no width
         follow_light(with_round_stop(lens), view.pupil, loop);
         if (ray == SightRay::chief) follow_chief_rays(with_round_stop(lens), view.pupil);
     } else {
@@ -160,10 +160,11 @@ void SightLines::set(int k, const std::optional<SceneRay>& ray, double light) {
 }
 
 void SightLines::follow_light(const LensSystem& lens, const PupilView& pupil, const RayLoop& loop) {
-    // A step in the middle between two is looked at as well. If cubics through the others foretell its line, those
-    // through it too are some ten times nearer, and no more are needed there.
+    // Adaptive refinement: the step halfway between two known ones is traced, too. If the cubics through the known
+    // steps predict its ray, cubics that include it are some ten times more accurate, and the interval is not refined
+    // further.
     constexpr int kWidestStep = 16;
-    constexpr double kPrecision = 5e-6;  // rad, and share of the film's radius or of the light
+    constexpr double kPrecision = 5e-6;  // rad; relative to the film's radius or to the light
     const MeanRays mean(lens, focus_);
     std::vector<std::optional<Seen>> seen(lines_.size());
     const auto is_foretold = [&](const KnownLines& known, int k) {
@@ -191,7 +192,7 @@ void SightLines::follow_light(const LensSystem& lens, const PupilView& pupil, co
         if (step == 1) break;
         for (const int k : looks) {
             if (is_foretold(known, k)) continue;
-            for (const int halves : {-3, -1, 1, 3}) {  // a cubic goes one interval beyond its own
+            for (const int halves : {-3, -1, 1, 3}) {  // a cubic also depends on the neighbouring intervals
                 const int beside = k + halves * step / 2;
                 if (beside > 0 && beside < kSteps && !seen[static_cast<std::size_t>(beside)]) wanted.insert(beside);
             }
@@ -209,8 +210,8 @@ void SightLines::follow_chief_rays(const LensSystem& lens, const PupilView& pupi
     const RaysFromFilm from_film(lens, lens.wavelength_nm);
     double cosine = 0, change = 0;
     for (int k = 0; k <= kSteps; ++k) {
-        // The search starts from the place to which the last two point. On the axis and after a gap, it starts from the
-        // middle of the light.
+        // First guess: extrapolated from the last two rays. Second guess, for the axis and after a gap: the centre of
+        // the pupil.
         const PupilRowPosition row = pupil_row_position(pupil, static_cast<float>(radius_of(k)), 0);
         const double guesses[2] = {cosine + change, static_cast<double>(row.centre)};
         const double light = lines_[static_cast<std::size_t>(k)].light;

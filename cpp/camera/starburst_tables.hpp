@@ -7,10 +7,10 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Where light enters the lens that makes starbursts. Owns the memory of its view.
+/// Entrance-pupil bounds of the light that makes starbursts. Owns the memory of its view.
 class StarburstTables {
 public:
-    /// `film_radius`: of a circle that holds the film, mm. `way`: of the same lens.
+    /// `film_radius`: radius of a circle that contains the film, mm. `way`: direct path of the same lens.
     StarburstTables(const LensSystem& lens, double film_radius, std::shared_ptr<const LensWay> way,
                     const PupilTracer& tracer);
 
