@@ -8,11 +8,11 @@ namespace REALCAM_NAMESPACE {
 
 inline constexpr int kDefaultLongSide = 960;
 
-/// Completes what the user says of the film; pixels are square unless both size and resolution are given.
+/// Completes the user's film settings. Pixels are square unless both size and resolution are given.
 /// - Neither: the film of the lens, 960 pixels along its longer side.
 /// - The size in mm alone: 960 pixels along its longer side.
-/// - The resolution alone: the largest part of the lens's film that has its shape; upright pictures turn the film.
-/// What makes no sense goes through unchanged, for validate(Camera) to name.
+/// - The resolution alone: the largest part of the lens's film with its aspect ratio; upright pictures rotate the film.
+/// Invalid values are passed through for validate(Camera) to report.
 Film default_film(const LensSystem& lens, std::optional<std::array<double, 2>> size_mm,
                   std::optional<std::array<int, 2>> resolution);
 

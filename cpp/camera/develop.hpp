@@ -6,16 +6,16 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Exposure in lux seconds as the film stores it: what is too bright for a float is the largest one.
+/// Exposure in lux seconds as stored on the film: clamped to the largest float.
 REALCAM_HD inline float film_exposure(double lux_s) {
     constexpr double kLargest = 3.4028234663852886e38;
     return static_cast<float>(lux_s < kLargest ? lux_s : kLargest);
 }
 
-/// How film exposure becomes a picture for a screen.
+/// Tone curve from film exposure to display value.
 enum class ToneCurve : int {
     linear,  ///< clipped at white
-    film,    ///< the same up to the middle tones, then a soft shoulder: highlights bend instead of being cut off
+    film,  ///< linear up to the middle tones, then a soft shoulder that compresses highlights instead of clipping them
 };
 
 /// Screen-linear value (1: white) of an exposure in lux seconds. ISO 12232 in its standard output sensitivity form: an
@@ -27,7 +27,7 @@ REALCAM_HD inline double sensor_value(double exposure_lux_s, double iso) {
 REALCAM_HD inline double apply_tone_curve(ToneCurve curve, double value) {
     if (!(value > 0)) return 0;
     if (curve == ToneCurve::film) {
-        constexpr double knee = 0.3;  // above middle grey, which stays where it is
+        constexpr double knee = 0.3;  // above middle grey, which is unchanged
         if (value > knee) value = 1 - (1 - knee) * std::exp(-(value - knee) / (1 - knee));
     }
     return value < 1 ? value : 1;
@@ -39,7 +39,7 @@ REALCAM_HD T srgb_encoded(T linear) {
     return linear <= T(0.0031308) ? T(12.92) * linear : T(1.055) * std::pow(linear, T(1 / 2.4)) - T(0.055);
 }
 
-/// The same as an 8-bit code.
+/// sRGB transfer function as a rounded 8-bit display value.
 REALCAM_HD inline std::uint8_t srgb_code(double linear) {
     return static_cast<std::uint8_t>(srgb_encoded(linear) * 255 + 0.5);
 }

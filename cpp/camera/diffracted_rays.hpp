@@ -3,15 +3,15 @@
 
 namespace REALCAM_NAMESPACE {
 
-// Light that geometrical optics brings to a film point reaches the points around it, too, as the lens's aperture
-// diffracts it. So a sample of a film point looks for light from another one, that far away. The distance grows with
-// the wavelength, so each sample has one.
+// The aperture diffracts the light of a film point to the points around it. So the sample of a film point looks through
+// the lens from another film point, displaced by a random offset (kick). The offset is proportional to the wavelength,
+// so each sample has a wavelength.
 
-/// Film points from which samples look into the lens.
+/// Film points from which samples look through the lens, displaced by diffraction.
 template <int N>
 struct DiffractedPoints {
     Vec2Lanes<float, N> points;  ///< mm
-    Vec2Lanes<float, N> kicks;   ///< from them to the places of the samples, mm for each nm of wavelength
+    Vec2Lanes<float, N> kicks;  ///< offsets from them to the film points of the samples, mm per nm of wavelength
     Lanes<std::int32_t, N> from_edge;  ///< 1: see DiffractionKick
 
     REALCAM_INLINE Vec2f operator[](int lane) const { return points[lane]; }
@@ -21,8 +21,8 @@ struct DiffractedPoints {
     }
 };
 
-/// Draws them. What would come from beyond the film is looked for at the sample's own place instead, so that no light
-/// is lost at the margins.
+/// Samples the points. If a point lies beyond the film, the sample's own film point replaces it, so that no light is
+/// lost at the margins.
 template <int N>
 REALCAM_HD inline void diffract(const CameraView& camera, const SampleBlock<N>& block, const float (&nm)[N],
                                 DiffractedPoints<N>& film) {

@@ -23,7 +23,8 @@ DiffractionTables::DiffractionTables(const LensSystem& lens, double film_radius,
     });
     for (int node = 0; node < radii_ * azimuths_; ++node) {
         auto& here = found[static_cast<std::size_t>(node)];
-        // At the edge of the image, where the light is a crescent, the aperture is taken as it is further in.
+        // At the edge of the image, where the light is a crescent, the aperture of the next smaller film radius is
+        // used.
         if (!here && node >= azimuths_) here = found[static_cast<std::size_t>(node - azimuths_)];
         if (!here) throw no_light(lens);
         add(*here);

@@ -7,13 +7,13 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// The diffraction of a lens made ready for pictures. Owns the memory of its view.
+/// Diffraction of a lens, prepared for rendering. Owns the memory of its view.
 class DiffractionTables {
 public:
-    /// `film_radius`: of a circle that holds the film, mm. Throws InputError where no light passes the lens.
+    /// `film_radius`: radius of a circle that contains the film, mm. Throws InputError if no light passes the lens.
     DiffractionTables(const LensSystem& lens, double film_radius, const PupilTracer& tracer);
 
-    /// `film_steradians`: solid angle that the film sees.
+    /// `film_steradians`: approximate solid angle of the film (EffectTables::views).
     DiffractionView view(double film_steradians) const;
 
 private:
@@ -25,7 +25,7 @@ private:
     static bool has_blades(const LensSystem& lens) { return lens.iris.blades > 0 && !lens.is_wide_open(); }
 
     double radius_of(int row) const { return film_radius_ * row / (radii_ - 1); }
-    /// At even steps of the view's angle, which runs from 0 to 4 along a square.
+    /// Azimuth of a sector, at uniform steps of the view's azimuth parameter, which runs from 0 to 4 along a square.
     double azimuth_of(int sector) const;
 
     std::vector<PupilBox> boxes_of(const LensSystem& lens, const PupilTracer& tracer) const;

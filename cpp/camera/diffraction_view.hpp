@@ -7,41 +7,42 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Pieces of edge that an aperture may have.
+/// Largest number of edge segments of an aperture.
 inline constexpr int kDiffractionEdges = 320;
-/// Places in a film point's alias tables: that of the edges, then that of the cells.
+/// Alias-table entries of a node: first those of the edges, then those of the cells.
 inline constexpr int kDiffractionEntries = kDiffractionEdges + kDiffractionCells;
 
-/// The lens's aperture as a film point sees it.
+/// Diffraction by the lens's aperture as seen from one film point.
 struct DiffractionNode {
-    float mm_per_nm;  ///< on the film, for one period over the aperture's width and each nm of wavelength
-    float edge_share;  ///< of the light, that is spread beyond the cells
+    float mm_per_nm;  ///< offset on the film for one period over the aperture's width, per nm of wavelength
+    float edge_share;  ///< fraction of the light that is diffracted beyond the cells
 };
 
-/// Diffraction of a lens at film points of even radii and, if blades make it differ, azimuths. Without diffraction
-/// there are no radii.
+/// Diffraction of a lens at film points of uniformly spaced radii and, if blades make it depend on them, azimuths.
+/// Without diffraction, `radii` is 0.
 struct DiffractionView {
     const DiffractionNode* nodes;  ///< radii x azimuths
     const AliasEntry* entries;     ///< kDiffractionEntries of each node
     const DiffractionEdge* edges;  ///< kDiffractionEdges of each node
     int radii;
-    int azimuths;  ///< 1: what is seen turns with the film point's azimuth
+    int azimuths;  ///< 1: the diffraction pattern rotates with the film point's azimuth
     float radii_per_mm;
-    float largest_radius;  ///< of a film point, mm
-    float splat_density;  ///< per steradian, with which lights are to be chosen that splats find better than samples do
+    float largest_radius;  ///< largest film radius, mm
+    float splat_density;  ///< density of splats of lights, for multiple importance sampling with pixel samples, per
+                          ///< steradian
 };
 
-/// Samples of pixels for each splat of a light.
+/// Number of pixel samples for each splat of a light.
 inline constexpr int kSamplesPerSplat = 32;
 
 namespace diffraction_detail {
 
-/// The node that stands for a film point: one of its neighbours, drawn as often as it is near.
+/// Index of a node for a film point: one of its neighbours, chosen with its interpolation weight as probability.
 REALCAM_INLINE std::int32_t node_at(const DiffractionView& view, Vec2f film, float u, float v) {
     const float radius = sqrt_or_zero(film.x * film.x + film.y * film.y);
     const auto ring = static_cast<std::int32_t>(radius * view.radii_per_mm + u);
     const std::int32_t row = select(ring < view.radii, ring, view.radii - 1);
-    // An angle from 0 to 4, along a square instead of a circle.
+    // Azimuth parameter from 0 to 4, along a square instead of a circle.
     const float around = std::fabs(film.x) + std::fabs(film.y);
     const float y = quotient(film.y, select(around > 0.0f, around, 1.0f));
     const float angle = select(film.x < 0.0f, 2.0f - y, select(y < 0.0f, 4.0f + y, y));
@@ -49,9 +50,9 @@ REALCAM_INLINE std::int32_t node_at(const DiffractionView& view, Vec2f film, flo
     return row * view.azimuths + select(sector < view.azimuths, sector, 0);
 }
 
-/// A frequency along a straight edge, in periods over its length, with the density sinc^2: a fit to the inverse of its
-/// cumulative probability, which is right within 3%, and in its tails exactly. They reach across the film and fall with
-/// 1 / f only, so that u needs all its bits: the largest that it has are one frequency, which shows as an image.
+/// Random frequency along a straight edge, in periods over its length, with density sinc^2: a fit to the inverse
+/// cumulative distribution, accurate to 3% and exact in the tails. The tails reach across the film and fall only as 1 /
+/// f, so u needs all its bits: its largest values give one frequency, which would show as an image.
 REALCAM_INLINE float frequency_along_edge(float u) {
     const float share = std::fabs(2.0f * u - 1.0f);
     const float size = share * (0.5f + share * (-0.34473f + share * (-0.44109f + share * 0.38714f)));
@@ -59,14 +60,14 @@ REALCAM_INLINE float frequency_along_edge(float u) {
     return select(u < 0.5f, -frequency, frequency);
 }
 
-/// What is left of a random number when its first eight bits, or so many times eight, are used.
+/// Remaining bits of a random number as a number in [0, 1), after the leading log2(scale) bits have been used.
 REALCAM_INLINE float behind_bits(float u, float scale) {
     const float scaled = scale * u;
     return scaled - static_cast<float>(static_cast<std::int32_t>(scaled));
 }
 
-/// For the frequency along an edge: eight bits that node_at has left, and finer ones that matter to no place on a piece
-/// of edge.
+/// Random number for the frequency along an edge: eight bits that node_at does not use, and lower bits that hardly
+/// affect the position on an edge segment.
 REALCAM_INLINE float along_number(Vec2f u, Vec2f v) {
     return behind_bits(u.y, 0x1p16f) + 0x1p-8f * behind_bits(v.y, 0x1p9f);
 }
@@ -78,7 +79,7 @@ REALCAM_INLINE float ring_edge_squared(std::int32_t ring) {
     return f * f;
 }
 
-/// In periods over the aperture's width.
+/// Random frequency in a cell, in periods over the aperture's width.
 REALCAM_INLINE Vec2f cell_frequency(std::int32_t cell, Vec2f u) {
     const std::int32_t ring = cell / kDiffractionAzimuths, azimuth = cell - ring * kDiffractionAzimuths;
     const float low = ring_edge_squared(ring), high = ring_edge_squared(ring + 1);
@@ -88,7 +89,8 @@ REALCAM_INLINE Vec2f cell_frequency(std::int32_t cell, Vec2f u) {
     return {f * way.x, f * way.y};
 }
 
-/// `f`: along the edge's normal.
+/// Random frequency of an edge segment. `f`: component along the edge's normal; `place`: position on the segment, 0 to
+/// 1; `u`: random number for the component along the edge.
 REALCAM_INLINE Vec2f edge_frequency(const DiffractionEdge& edge, float f, float place, float u) {
     const float turns = edge.angle + place * edge.turn;
     const Vec2f normal = cos_sin_of_turn(turns - select(turns >= 1.0f, 1.0f, select(turns < 0.0f, -1.0f, 0.0f)));
@@ -96,7 +98,7 @@ REALCAM_INLINE Vec2f edge_frequency(const DiffractionEdge& edge, float f, float 
     return {f * normal.x - along * normal.y, f * normal.y + along * normal.x};
 }
 
-/// For the film's axes, where the lens is the same all around.
+/// Rotates a vector to the film point's azimuth if the nodes have a single azimuth.
 REALCAM_INLINE Vec2f turned_with(Vec2f film, int azimuths, Vec2f v) {
     const float squared = film.x * film.x + film.y * film.y;
     const bool turns = (azimuths == 1) & (squared > 0.0f);
@@ -107,13 +109,13 @@ REALCAM_INLINE Vec2f turned_with(Vec2f film, int azimuths, Vec2f v) {
 
 }  // namespace diffraction_detail
 
-/// By how much diffraction moves light on the film.
+/// Offset of light on the film by diffraction.
 struct DiffractionKick {
-    Vec2f mm_per_nm;  ///< for each nm of wavelength
-    std::int32_t from_edge;  ///< 1: further than the cells reach
+    Vec2f mm_per_nm;  ///< per nm of wavelength
+    std::int32_t from_edge;  ///< 1: beyond the range of the cells
 };
 
-/// Draws one for light of a film point, with the power that its aperture diffracts there as density.
+/// Samples a kick for the light of a film point. The density is the power that the aperture diffracts there.
 REALCAM_INLINE DiffractionKick draw_kick(const DiffractionView& view, Vec2f film, Vec2f u, Vec2f v) {
     using namespace diffraction_detail;
     const std::int32_t at = node_at(view, film, u.y, behind_bits(u.y, 0x1p8f));
@@ -134,11 +136,12 @@ REALCAM_INLINE DiffractionKick draw_kick(const DiffractionView& view, Vec2f film
     return {turned_with(film, view.azimuths, kick), select(is_edge, 1, 0)};
 }
 
-/// One that comes from an edge, as often near the cells as, in the logarithm, anywhere up to the whole film. It goes to
-/// the dark between spikes more often than light does, and brings less: a full share there would be a bright speck.
+/// Kick from an edge, log-uniformly distributed from the range of the cells to the whole film. It reaches the dark
+/// areas between spikes more often than light does, with a smaller weight: with weight 1 it would make a bright speck
+/// there.
 struct EdgeKick {
     Vec2f mm_per_nm;
-    float weight;  ///< share of all light over that of the draws
+    float weight;  ///< density of the light over the sampling density
 };
 
 REALCAM_INLINE EdgeKick draw_edge_kick(const DiffractionView& view, Vec2f film, float nm, Vec2f u, Vec2f v) {
@@ -150,7 +153,7 @@ REALCAM_INLINE EdgeKick draw_edge_kick(const DiffractionView& view, Vec2f film, 
     const float range = std::log(quotient(most > kDiffractionReach ? most : kDiffractionReach, kDiffractionReach));
     const float ratio = std::exp(v.x * range);
     const float side = select(v.y < 0.5f, 1.0f, -1.0f), scale = side * node.mm_per_nm;
-    // Squared, what is left to the nearer end is small more often; its derivative is the weight.
+    // Squaring the distance to the nearer end makes small distances more frequent; the derivative is the weight.
     const float along = along_number(u, v), left = 2.0f * select(along < 0.5f, along, 1.0f - along);
     const float tail = 0.5f * left * left;
     const Vec2f from_edge = edge_frequency(view.edges[at * kDiffractionEdges + edge], kDiffractionReach * ratio,

@@ -3,36 +3,37 @@
 
 namespace REALCAM_NAMESPACE {
 
-// One wavelength a sample would be noisy: a film has three channels, and each would see a third of the samples. But the
-// same ray outside the lens belongs to a point of the film at another wavelength, too. So it is traced back to the film
-// at two more wavelengths, one third and two thirds of the list of cells further on. The pixel in which it ends could
-// have drawn it at that wavelength with the same density, because film and scene measure rays alike (the optical
-// invariant). The sample counts in the pixels of all that could, in equal parts (the balance heuristic of Veach and
-// Guibas 1995), if they lie in the tile of its own pixel (SampleSharing). The three are the same whichever of them
-// comes first, so that nothing is counted twice or left out.
+// With one wavelength per sample, pictures would be noisy: each of the film's three channels would see a third of the
+// samples. But the same ray outside the lens belongs to other film points at other wavelengths. So it is traced back to
+// the film at two more wavelengths, one third and two thirds of the list of cells further on (hero wavelength
+// sampling). The pixel that it reaches could have sampled it at that wavelength with the same density, because film and
+// scene measure rays alike (the optical invariant). The sample counts in all these pixels in equal parts (balance
+// heuristic of Veach and Guibas 1995), provided that they lie in the tile of its own pixel (SampleSharing). The set of
+// three does not depend on which of them is sampled, so nothing is counted twice or left out.
 
-/// Where a pixel lies from that of a sample.
+/// Offset of a pixel from a sample's own pixel.
 struct PixelOffset {
     int right, down;
-    bool is_near;  ///< else the numbers mean nothing
+    bool is_near;  ///< false: right and down are invalid
 
     REALCAM_INLINE bool is_own() const { return is_near & (right == 0) & (down == 0); }
 };
 
-/// The pixel of a film point, if it is not further away than tiles are large.
+/// Pixel of a film point; not near if it is farther away than the size of a tile.
 template <int N>
 REALCAM_INLINE PixelOffset pixel_at(const CameraView& camera, const SampleBlock<N>& block, int lane, Vec2f film) {
     const float columns_per_mm = -0.5f * static_cast<float>(camera.width) / camera.film_half_width;
     const float rows_per_mm = 0.5f * static_cast<float>(camera.height) / camera.film_half_height;
     const Vec2f corner = film_point(camera, block.column[lane], block.row[lane], {0.0f, 0.0f});
     const float column = columns_per_mm * (film.x - corner.x), row = rows_per_mm * (film.y - corner.y);
-    constexpr float kFar = SampleSharing::kTileSide;  // beyond it numbers need not fit into integers
+    constexpr float kFar = SampleSharing::kTileSide;  // beyond it, offsets may not fit into integers
     const bool is_near = (std::abs(column) < kFar) & (std::abs(row) < kFar);
     return {static_cast<int>(std::floor(select(is_near, column, 0.0f))),
             static_cast<int>(std::floor(select(is_near, row, 0.0f))), is_near};
 }
 
-/// Lets a sample count at a further step in the pixel of a film point, if that is its own or one that shares with it.
+/// Lets a sample count, at wavelength step `step`, in the pixel of a film point if that is its own pixel or one in the
+/// same tile.
 template <int N>
 REALCAM_INLINE void share(const CameraView& camera, const SampleBlock<N>& block, int lane, int step, bool arrives,
                           Vec2f film, SampleWavelengths<N>& wavelengths) {
@@ -46,7 +47,8 @@ REALCAM_INLINE void share(const CameraView& camera, const SampleBlock<N>& block,
     wavelengths.away[step - 1][lane] = pixel.down * sharing.stride + pixel.right;
 }
 
-/// A wavelength for each sample, stratified over those of its pixel, for which alone it counts so far.
+/// Samples a wavelength for each sample, stratified over the samples of its pixel. At first, a sample counts for this
+/// wavelength alone.
 template <int N>
 REALCAM_INLINE void draw_wavelengths(const DispersionView& view, const SampleBlock<N>& block,
                                      SampleWavelengths<N>& wavelengths) {
@@ -60,8 +62,8 @@ REALCAM_INLINE void draw_wavelengths(const DispersionView& view, const SampleBlo
     for (int i = 0; i < N; ++i) wavelengths.nm[i] = wavelength_at(view, wavelengths.place[i]);
 }
 
-/// Finds in which pixels rays that have left the lens count at further steps, and what the lens passes on at their
-/// wavelengths, if it is `coated`.
+/// Finds the pixels in which rays that have left the lens count at the further wavelengths, and the lens's
+/// transmittance at these wavelengths if it is `coated`.
 template <LensKind lens_kind, bool coated, int N, class Points>
 REALCAM_HD inline void find_shares(const CameraView& camera, const SampleBlock<N>& block,
                                    const LensRays<float, N>& left, const Points& film,
@@ -91,8 +93,8 @@ REALCAM_HD inline void find_shares(const CameraView& camera, const SampleBlock<N
     }
 }
 
-/// The same of rays that go as at the design wavelength, whatever their own is. Their light is on a line on the film,
-/// by the wavelength. Where both of its ends are in the sample's pixel, all wavelengths could have drawn it.
+/// find_shares for rays that are traced at the design wavelength whatever their own is. On the film, their light lies
+/// on a line, by wavelength. If both of its ends are in the sample's pixel, all wavelengths could have sampled it.
 template <int N, class Points>
 REALCAM_INLINE void find_shares_of_landings(const CameraView& camera, const SampleBlock<N>& block, const Points& film,
                                             SampleWavelengths<N>& wavelengths) {

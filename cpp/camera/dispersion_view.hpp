@@ -9,40 +9,43 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// How many wavelengths a ray through the scene may count for: its own, and others at even steps through the cells.
+/// Wavelengths per path (hero wavelength sampling): the sampled one, and others at uniform steps through the cells.
 inline constexpr int kSharedWavelengths = 3;
 
-/// A range of wavelengths. All cells are drawn with the same probability.
+/// Range of wavelengths. All cells are sampled with the same probability.
 struct WavelengthCell {
     float first_nm, last_nm;
-    float film[9];  ///< scene colour to film colour, 3 x 3, row by row; the mean over all cells is the identity
+    float film[9];  ///< matrix from scene colour to film colour, 3 x 3, row-major; its mean over all cells is the
+                    ///< identity
 };
 
-/// The wavelengths of a picture. Without dispersion there are no cells.
+/// Wavelengths of a picture. Without dispersion, cell_count is 0.
 struct DispersionView {
     const WavelengthCell* cells;
     int cell_count;  ///< a multiple of kSharedWavelengths, or 1
     WavelengthVariable variable;
-    const IndexCubic *to_scene, *to_film;  ///< of the lens's surfaces, in the order in which light meets them
-    const SurfaceView<float>* film_surfaces;  ///< of the lens, on the light's way to the film
-    FreeParts<float> film_free;               ///< and what belongs to them
+    const IndexCubic *to_scene, *to_film;  ///< for each of the lens's surfaces, in the order in which light meets them
+    const SurfaceView<float>* film_surfaces;  ///< the lens's surfaces for light towards the film
+    FreeParts<float> film_free;  ///< their data for LensKind::any
     SampleSharing sharing{};
-    float film[9]{};  ///< as that of a cell: their mean, by which white stays white
+    float film[9]{};  ///< mean of the cells' matrices, which keeps white white
 };
 
-/// The shares of a sample that counts for all wavelengths alike, in its own pixel.
+/// SampleWavelengths::shares of a sample that counts for all wavelengths alike, in its own pixel.
 inline constexpr std::int32_t kAllWavelengths = 1 << kSharedWavelengths;
 
-/// Wavelengths for which samples count: one that was drawn, and others at steps from its place.
+/// Wavelengths for which samples count: the sampled one, at position `place` in the list of cells, and others at steps
+/// from it.
 template <int N>
 struct SampleWavelengths {
     Lanes<float, N> nm, place;
-    Lanes<std::int32_t, N> shares;  ///< a bit for each step that counts, and the first of them; or kAllWavelengths
-    Lanes<std::int32_t, N> away[kSharedWavelengths - 1];  ///< from its own pixel to that in which a further one counts
-    Lanes<float, N> passed[kSharedWavelengths];  ///< by a coated lens, at each step
+    Lanes<std::int32_t, N> shares;  ///< bit mask of the steps that count, including step 0; or kAllWavelengths
+    Lanes<std::int32_t, N> away[kSharedWavelengths - 1];  ///< offset in the film from its own pixel to that of each
+                                                          ///< further step
+    Lanes<float, N> passed[kSharedWavelengths];  ///< transmittance of a coated lens at each step
 };
 
-/// Wavelengths are drawn evenly over the cells: this one is the same share of its cell as the place's.
+/// Wavelength at a position in the list of cells. Wavelengths are uniform within a cell.
 REALCAM_INLINE float wavelength_at(const DispersionView& view, float place) {
     const auto cell = static_cast<std::int32_t>(place);
     const float share = place - static_cast<float>(cell);
@@ -50,19 +53,19 @@ REALCAM_INLINE float wavelength_at(const DispersionView& view, float place) {
     return in.first_nm + share * (in.last_nm - in.first_nm);
 }
 
-/// `step` steps further from a place, and from the last cell on to the first.
+/// Position `step` steps further in the list of cells, wrapping around from the last cell to the first.
 REALCAM_INLINE float shared_place(const DispersionView& view, float place, int step) {
     const auto cells = static_cast<float>(view.cell_count);
     const float at = place + static_cast<float>(step * (view.cell_count / kSharedWavelengths));
     return at < cells ? at : at - cells;
 }
 
-/// The film's colour for light of a scene's colour. `m`: from one to the other, row by row.
+/// Film colour of light with a scene colour. `m`: matrix from scene to film colour, row-major.
 REALCAM_INLINE Color film_color(const float (&m)[9], Color scene) {
     return {m[0] * scene.r + m[1] * scene.g + m[2] * scene.b, m[3] * scene.r + m[4] * scene.g + m[5] * scene.b,
             m[6] * scene.r + m[7] * scene.g + m[8] * scene.b};
 }
-/// The same for light that has the wavelengths of a place's cell.
+/// Film colour of light with the wavelengths of the cell at a position.
 REALCAM_INLINE Color film_color(const DispersionView& view, float place, Color scene) {
     return film_color(view.cells[static_cast<std::int32_t>(place)].film, scene);
 }

@@ -3,10 +3,10 @@
 
 namespace REALCAM_NAMESPACE {
 
-// Rays of an exposure during which something moves: each has a time of its own, as a share of the exposure, and goes
-// out from where the camera is then.
+// Rays of an exposure during which something moves: each has its own time, as a fraction of the exposure, and starts
+// from the camera's pose at that time.
 
-/// `within(lane)`: share of the time for which its pixel is exposed.
+/// `within(lane)`: time within the exposure of the lane's row, from 0 to 1.
 template <int N, class Within>
 REALCAM_INLINE void set_times(const CameraView& camera, const SampleBlock<N>& block, float (&times)[N],
                               Within&& within) {
@@ -14,7 +14,7 @@ REALCAM_INLINE void set_times(const CameraView& camera, const SampleBlock<N>& bl
         times[i] = static_cast<float>(block.row[i]) * camera.row_time + camera.exposed_time * within(i);
 }
 
-/// Takes rays along that were made for the camera at the begin of the exposure.
+/// Moves rays from the camera's pose at the start of the exposure to that at their times.
 template <int N>
 REALCAM_INLINE void move_rays(const CameraView& camera, const float (&times)[N], CameraRays<N>& rays) {
     if (camera.key_count == 0) return;
@@ -29,7 +29,7 @@ REALCAM_INLINE void move_rays(const CameraView& camera, const float (&times)[N],
     }
 }
 
-/// Gives rays times that are stratified over the exposure of each pixel.
+/// Samples times of rays, stratified over the exposure of each pixel, and moves the rays.
 template <int N>
 REALCAM_HD inline void expose_rays(const CameraView& camera, const SampleBlock<N>& block, CameraRays<N>& rays,
                                    float (&times)[N]) {
@@ -42,7 +42,7 @@ REALCAM_HD inline void expose_rays(const CameraView& camera, const SampleBlock<N
     move_rays(camera, times, rays);
 }
 
-/// generate_rays, at such times.
+/// generate_rays, followed by expose_rays.
 template <LensKind lens_kind, int N>
 REALCAM_HD inline void generate_exposed_rays(const CameraView& camera, const SampleBlock<N>& block, CameraRays<N>& rays,
                                              float (&times)[N]) {

@@ -11,7 +11,7 @@ namespace realcam {
 
 namespace {
 
-/// Rays of one film point in the meridional plane, aimed at shares of the last surface's rim.
+/// Meridional rays of one film point, aimed at fractions of the last surface's semi-diameter.
 class MeridionalRays {
 public:
     MeridionalRays(const LensSystem& lens, double image_height_mm)

@@ -33,13 +33,13 @@ Matrix inverse(const Matrix& m) {
 
 std::array<double, 3> basis_at(double wavelength_nm) {
     const double r = Illuminant::at(kBasisRed, wavelength_nm), g = Illuminant::at(kBasisGreen, wavelength_nm),
-                 b = Illuminant::at(kBasisBlue, wavelength_nm), sum = r + g + b;  // 1, but for its last digits
+                 b = Illuminant::at(kBasisBlue, wavelength_nm), sum = r + g + b;  // 1 up to rounding
     return {r / sum, g / sum, b / sum};
 }
 
 namespace {
 
-/// The film's matrix per nm under a spectrum, not yet balanced.
+/// Film matrix per nm under a spectrum, before white balance.
 Matrix matrix_at(double wavelength_nm, double power) {
     const double x = Illuminant::at(kObserverX, wavelength_nm), y = Illuminant::at(kObserverY, wavelength_nm),
                  z = Illuminant::at(kObserverZ, wavelength_nm);
@@ -53,15 +53,15 @@ Matrix matrix_at(double wavelength_nm, double power) {
     return m;
 }
 
-/// A piece of the spectrum, in which all tables are linear.
+/// Piece of the spectrum in which all tables are linear.
 struct Piece {
     double first, last;  ///< nm
-    Matrix film;         ///< integral over it
-    double density = 0;  ///< integral, not normalised
+    Matrix film;         ///< integral of the film matrix
+    double density = 0;  ///< integral of the sampling density, not normalised
 };
 
-/// Pieces of half a nm, and shorter ones at the points of a table. Simpson's rule is exact in each but for the
-/// quotient by the basis's sum: the product of three linear functions is a cubic.
+/// Pieces of 0.5 nm, split at the points of a table. Simpson's rule is exact in each up to the division by the sum of
+/// the basis: the product of three linear functions is a cubic.
 std::vector<Piece> pieces_of(const Illuminant& illuminant) {
     std::vector<double> knots;
     for (double nm = kFirstWavelength_nm; nm <= kLastWavelength_nm; nm += 0.5) knots.push_back(nm);
@@ -74,7 +74,7 @@ std::vector<Piece> pieces_of(const Illuminant& illuminant) {
         const double a = knots[i], b = knots[i + 1];
         if (!(b > a)) continue;
         Piece piece{a, b, {}};
-        // The ends a hair inside: where a table begins or ends, its power jumps.
+        // Evaluated slightly inside the ends: power jumps where a table begins or ends.
         const double inside = 1e-9 * (b - a);
         const auto add = [&](double nm, double weight) {
             const Matrix m = matrix_at(nm, illuminant.power(nm));
@@ -95,7 +95,7 @@ Matrix sum_of(const std::vector<Piece>& pieces) {
     return sum;
 }
 
-/// Makes the tables' sum under D65 the identity, which they miss by a thousandth, and balances the film.
+/// Makes the tables' integral under D65 the identity, from which it differs by a thousandth, and balances the film.
 void balance(std::vector<Piece>& pieces, const std::string& name) {
     const Matrix to_identity = inverse(sum_of(pieces_of(Illuminant::named("D65"))));
     for (Piece& piece : pieces) piece.film = product(to_identity, piece.film);
@@ -114,7 +114,8 @@ void balance(std::vector<Piece>& pieces, const std::string& name) {
 
 /// A sample that counts for one wavelength shows white in channel c as k_c / p, and one that counts for three as their
 /// mean. The density is the one of the form p = sqrt(sum of a_c k_c^2) for which the latter differs least from 1 under
-/// D65, by 0.28, 0.14 and 0.28; under A and FL2, by half and by 0.4 at most. Alone, 1.8 to 2.2 are left.
+/// D65, by 0.28, 0.14 and 0.28; under A and FL2, by at most 0.5 and 0.4. With single wavelengths, the difference is 1.8
+/// to 2.2.
 void set_density(std::vector<Piece>& pieces) {
     constexpr std::array<double, 3> kWeights = {0.7, 1, 0.7};
     double sum = 0;
@@ -130,17 +131,18 @@ void set_density(std::vector<Piece>& pieces) {
     for (Piece& piece : pieces) piece.density /= sum;
 }
 
-/// Cells of equal probability. One that spans a gap between two lines smears its own share over it, one of kCells.
+/// Cells of equal probability. A cell that spans a gap between two lines spreads its share, one of kCells, over the
+/// gap.
 std::vector<WavelengthCell> cells_of(const std::vector<Piece>& pieces, int count) {
     struct Edge {
         double wavelength;
-        Matrix film;  ///< sum over all shorter wavelengths
+        Matrix film;  ///< integral over all shorter wavelengths
     };
     Matrix film{};
     double passed = 0;
     std::size_t at = 0;
     const auto edge_at = [&](double share) -> Edge {
-        // Past pieces without light, too, in which no wavelength is to be drawn.
+        // Also skips pieces without light, in which no wavelength may be sampled.
         while (at + 1 < pieces.size() && (passed + pieces[at].density < share || !(pieces[at].density > 0))) {
             for (std::size_t k = 0; k < 9; ++k) film[k] += pieces[at].film[k];
             passed += pieces[at].density;
@@ -154,7 +156,7 @@ std::vector<WavelengthCell> cells_of(const std::vector<Piece>& pieces, int count
     };
     std::size_t last = pieces.size() - 1;
     while (last > 0 && !(pieces[last].density > 0)) --last;
-    const Edge end = {pieces[last].last, sum_of(pieces)};  // whatever roundings leave
+    const Edge end = {pieces[last].last, sum_of(pieces)};  // exact despite rounding
     std::vector<WavelengthCell> cells;
     Edge low = edge_at(0);
     for (int i = 1; i <= count; ++i) {
@@ -174,7 +176,7 @@ std::vector<WavelengthCell> cells_of(const std::vector<Piece>& pieces, int count
 FilmSpectrum::FilmSpectrum(const Illuminant& illuminant) {
     using namespace film_spectrum_detail;
     if (illuminant.is_line()) {
-        // Balanced, all channels show the same: what the scene's colours have of this wavelength.
+        // After white balance all channels are equal: the spectrum of the scene colour at this wavelength.
         const double nm = illuminant.points()[0].wavelength_nm;
         const std::array<double, 3> basis = basis_at(nm);
         WavelengthCell cell{static_cast<float>(nm), static_cast<float>(nm), {}};
@@ -207,7 +209,7 @@ std::vector<double> FilmSpectrum::even_wavelengths() const {
     for (std::size_t i = 0; i < kCount; ++i) {
         const double place = (static_cast<double>(i) + 0.5) / kCount * static_cast<double>(cells_.size());
         const WavelengthCell& cell = cells_[static_cast<std::size_t>(place)];
-        // One of many cells is narrow.
+        // If there are many cells, each is narrow, and its centre is used.
         const double within = cells_.size() > kCount ? 0.5 : place - std::floor(place);
         wavelengths.push_back(std::lerp(static_cast<double>(cell.first_nm), static_cast<double>(cell.last_nm), within));
     }

@@ -8,10 +8,10 @@
 
 namespace REALCAM_NAMESPACE {
 
-// Scenes are RGB. A surface's or a light's colour stands for the spectrum that Mallett and Yuksel's basis (2019) makes
-// of it, times that of the illuminant. For each wavelength, film and sRGB are a 3 x 3 matrix from the scene's colour to
-// the picture's. Its integral over the visible wavelengths is the identity for D65, sRGB's white. For any illuminant
-// the film is balanced to it: each channel is scaled so that white stays white.
+// Scenes are RGB. The colour of a surface or light is upsampled to a spectrum with the basis of Mallett and Yuksel
+// (2019), times that of the illuminant. For each wavelength, film and sRGB form a 3 x 3 matrix from the scene's colour
+// to the picture's. Its integral over the visible wavelengths is the identity for D65, sRGB's white. For any illuminant
+// the film is white-balanced: each channel is scaled so that white stays white.
 
 namespace film_spectrum_detail {
 
@@ -27,30 +27,30 @@ Matrix inverse(const Matrix& m);
 
 std::array<double, 3> basis_at(double wavelength_nm);
 
-/// What a channel of the film has of white.
+/// Response of a film channel to white.
 inline double row_sum(const Matrix& m, std::size_t row) {
     return m[3 * row] + m[3 * row + 1] + m[3 * row + 2];
 }
 
 }  // namespace film_spectrum_detail
 
-/// The wavelengths of a picture under an illuminant, and the film's matrix over them.
+/// Wavelengths of a picture under an illuminant, and the film's matrix over them.
 class FilmSpectrum {
 public:
     static constexpr int kCells = 64 * kSharedWavelengths;
 
-    /// Throws InputError for an illuminant under which white cannot be shown as white.
+    /// Throws InputError if the illuminant has too little of a colour for white to be balanced.
     explicit FilmSpectrum(const Illuminant& illuminant);
-    /// All wavelengths of a range alike, for rays without a colour.
+    /// Uniform over a range of wavelengths, for rays without a colour.
     explicit FilmSpectrum(WavelengthRange range);
 
     const std::vector<WavelengthCell>& cells() const { return cells_; }
     WavelengthRange range() const {
         return {static_cast<double>(cells_.front().first_nm), static_cast<double>(cells_.back().last_nm)};
     }
-    /// WavelengthCell::film, mean of all.
+    /// Mean of WavelengthCell::film over all cells.
     std::array<float, 9> mean_film() const;
-    /// 32, spread as the wavelengths of samples are.
+    /// 32 wavelengths with the distribution of those of samples.
     std::vector<double> even_wavelengths() const;
 
 private:

@@ -6,17 +6,17 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Rays in scene axes, metres, relative to the origin of the placed scene.
+/// Rays in render space: scene axes, metres.
 template <int N>
 struct CameraRays {
     Vec3Lanes<float, N> origin, direction;
-    Lanes<float, N> weight;  ///< times the radiance seen: the sample's irradiance on the film
-    Lanes<std::int32_t, N> sampled;  ///< 1 where a ray was sent into the lens
-    Lanes<std::int32_t, N> passed;  ///< 1 where it left the lens
+    Lanes<float, N> weight;  ///< irradiance of the sample on the film per unit radiance
+    Lanes<std::int32_t, N> sampled;  ///< 1 if a ray was sent into the lens
+    Lanes<std::int32_t, N> passed;  ///< 1 if it left the lens
 };
 
-/// Film point of a sample, mm (source paper, equation 1). The lens turns the picture upside down, so the film's axes
-/// point against the picture's.
+/// Film point of a sample, mm (source paper, equation 1). The lens inverts the picture, so the film's axes are opposite
+/// to the picture's.
 REALCAM_INLINE Vec2f film_point(const CameraView& camera, std::int32_t column, std::int32_t row, Vec2f offset) {
     const float x = quotient(2.0f * (static_cast<float>(column) + offset.x), static_cast<float>(camera.width)) - 1.0f;
     const float y = quotient(2.0f * (static_cast<float>(row) + offset.y), static_cast<float>(camera.height)) - 1.0f;
@@ -29,7 +29,8 @@ struct LensFrameRay {
     float weight;
 };
 
-/// The ideal lens: pupil point P, direction to the point in focus; off the axis E falls with cos^4.
+/// Ray of the ideal lens from the pupil point P towards the conjugate point in focus. Off the axis, irradiance falls
+/// off as cos^4.
 REALCAM_INLINE LensFrameRay thin_lens_ray(const CameraView& camera, Vec2f film, Vec2f u, float pupil_radius) {
     const Vec2f disc = sample_disc(u);
     const Vec2f p = {pupil_radius * disc.x, pupil_radius * disc.y};
@@ -40,7 +41,7 @@ REALCAM_INLINE LensFrameRay thin_lens_ray(const CameraView& camera, Vec2f film, 
     return {{p.x, p.y, pupil_z}, direction, camera.axis_irradiance * cosine2 * cosine2};
 }
 
-/// The same with the real lens's distortion and vignetting.
+/// thin_lens_ray with the real lens's distortion and vignetting.
 REALCAM_INLINE LensFrameRay mapped_lens_ray(const CameraView& camera, Vec2f film, Vec2f u) {
     const LensMapNode map = lens_map_at(camera.map, film);
     LensFrameRay ray = thin_lens_ray(camera, {map.scale * film.x, map.scale * film.y}, u, camera.thin.pupil_radius);
@@ -63,7 +64,7 @@ REALCAM_INLINE LensFrameRay thick_lens_ray(const CameraView& camera, Vec2f film,
         {front.x, front.y, 0.0f}, normalized(Vec3f{-out.x, -out.y, -1.0f}), camera.axis_irradiance * cosine2 * cosine2};
 }
 
-/// Transforms a ray from the lens frame to the scene. Lanes without light get a ray that is valid but has no weight.
+/// Transforms a ray from the lens frame to render space. Lanes without light get a valid ray of weight 0.
 template <int N>
 REALCAM_INLINE void place_ray(const CameraView& camera, CameraRays<N>& rays, int lane, LensFrameRay ray, bool lit) {
     const Vec3f o = select(lit, ray.origin_mm, Vec3f{0, 0, 0});
@@ -75,7 +76,7 @@ REALCAM_INLINE void place_ray(const CameraView& camera, CameraRays<N>& rays, int
     rays.weight[lane] = select(lit, ray.weight, 0.0f);
 }
 
-/// The film point of each sample: anywhere in its pixel.
+/// Film point of each sample, uniform in its pixel.
 template <int N>
 struct PixelPoints {
     const CameraView& camera;
@@ -87,11 +88,12 @@ struct PixelPoints {
     REALCAM_INLINE Vec2f operator[](int lane) const {
         return film_point(camera, block.column[lane], block.row[lane], u[lane]);
     }
-    /// Where light of a wavelength falls that the lens brings to the place `at`.
+    /// Film point reached by light of a wavelength that geometrical optics brings to `at`: without diffraction, `at`
+    /// itself.
     REALCAM_INLINE Vec2f landing(int, Vec2f at, float) const { return at; }
 };
 
-/// `ray_of(film point, lane)`.
+/// Generates the rays of an ideal lens; `ray_of(film point, lane)` returns a LensFrameRay.
 template <int N, class Points, class RayOf>
 REALCAM_HD inline void generate_ideal_rays(const CameraView& camera, const SampleBlock<N>& block, const Points& film,
                                            CameraRays<N>& rays, RayOf&& ray_of) {
@@ -103,7 +105,7 @@ REALCAM_HD inline void generate_ideal_rays(const CameraView& camera, const Sampl
     }
 }
 
-/// Lanes whose rays have a weight.
+/// Marks used lanes with a positive weight as sampled, and all others as vignetted.
 template <class T, int N>
 REALCAM_INLINE void mark_sampled(const SampleBlock<N>& block, LensRays<T, N>& inside, CameraRays<N>& rays) {
     REALCAM_LANES
@@ -113,7 +115,7 @@ REALCAM_INLINE void mark_sampled(const SampleBlock<N>& block, LensRays<T, N>& in
     }
 }
 
-/// Rays from film and pupil, in front of the last surface.
+/// Starts rays at film points towards sampled points of the pupil, before the last surface.
 template <LensKind lens_kind, class T, int N, class Points>
 REALCAM_INLINE void start_lens_rays(const CameraView& camera, const SampleBlock<N>& block, const Points& film,
                                     const LaneNumbers<N>& u, LensRays<T, N>& inside, CameraRays<N>& rays) {
@@ -128,13 +130,13 @@ REALCAM_INLINE void start_lens_rays(const CameraView& camera, const SampleBlock<
     mark_sampled(block, inside, rays);
 }
 
-/// Those that have left the lens, in the scene.
+/// Transforms the rays that have left the lens to render space.
 template <class T, int N>
 REALCAM_INLINE void place_lens_rays(const CameraView& camera, const LensRays<T, N>& inside, CameraRays<N>& rays) {
     REALCAM_LANES
     for (int i = 0; i < N; ++i) {
         const bool passed = inside.status[i] == 0;
-        // The trace leaves a length of about 1: to 1e-4 for a ray that comes from far beside the lens.
+        // After tracing, directions have unit length to 1e-4 only for rays from far beside the lens.
         place_ray(
             camera, rays, i,
             {static_cast<Vec3f>(inside.origin[i]), static_cast<Vec3f>(normalized(inside.direction[i])), rays.weight[i]},
@@ -161,7 +163,7 @@ REALCAM_HD inline void generate_lens_rays_in_double(const CameraView& camera, co
     place_lens_rays(camera, inside, rays);
 }
 
-/// generate_lens_rays of a camera whose pixels learn where light passes.
+/// generate_lens_rays for a camera whose pixels learn where light passes the lens (PixelPupil).
 template <LensKind lens_kind, int N, class Points>
 REALCAM_HD inline void generate_learning_rays(const CameraView& camera, const SampleBlock<N>& block, const Points& film,
                                               const LaneNumbers<N>& numbers, CameraRays<N>& rays) {
@@ -187,7 +189,7 @@ REALCAM_HD inline void generate_learning_rays(const CameraView& camera, const Sa
     }
 }
 
-/// Through the polynomials, and past the rims of first and last surface and the stop.
+/// Traces rays through the polynomials, and clips them at the rims of the first and last surface and the stop.
 template <int N, class Points>
 REALCAM_HD inline void generate_polynomial_rays(const CameraView& camera, const SampleBlock<N>& block,
                                                 const Points& film, const LaneNumbers<N>& u, CameraRays<N>& rays) {
@@ -216,7 +218,8 @@ REALCAM_HD inline void generate_polynomial_rays(const CameraView& camera, const 
     }
 }
 
-/// Samples the pupil as film points see it and takes the rays through the lens. `film`[lane]: the point of a lane, mm.
+/// Samples the pupil as seen from film points and traces the rays through the lens. `film[lane]`: film point of a lane,
+/// mm.
 template <LensKind lens_kind, int N, class Points>
 REALCAM_HD inline void generate_rays_from(const CameraView& camera, const SampleBlock<N>& block, const Points& film,
                                           CameraRays<N>& rays) {
@@ -258,8 +261,9 @@ REALCAM_HD inline void generate_rays_from(const CameraView& camera, const Sample
     }
 }
 
-/// Samples film and pupil and takes the rays through the lens. The expected value of weight times radiance is the
-/// pixel's irradiance, pi L sin^2(theta') for a constant field on the axis. `lens_kind`: any, or the lens's own.
+/// Samples film and pupil and traces the rays through the lens. The expected value of weight times radiance is the
+/// pixel's irradiance, pi L sin^2(theta') for a constant field on the axis. `lens_kind`: LensKind::any, or the lens's
+/// own kind.
 template <LensKind lens_kind, int N>
 REALCAM_HD inline void generate_rays(const CameraView& camera, const SampleBlock<N>& block, CameraRays<N>& rays) {
     generate_rays_from<lens_kind>(camera, block, PixelPoints<N>(camera, block), rays);

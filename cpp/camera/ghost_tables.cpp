@@ -65,7 +65,7 @@ GhostTables::GhostTables(const LensSystem& of_lens, double film_radius, const Gh
 template <class Search>
 void GhostTables::find_ways(const Search& search, const LensSystem& of_lens, const LensSystem& lens,
                             const std::vector<AxialPair>& pairs, double least_share, const PupilTracer& tracer) {
-    /// The last element: the lens's direct path.
+    // The last element: the lens's direct path.
     std::vector<std::vector<typename Search::Found>> found(pairs.size() + 1);
     tracer.for_each(static_cast<int>(found.size()), [&](int i) {
         const auto k = static_cast<std::size_t>(i);

@@ -14,7 +14,7 @@ struct SpectrumPoint {
     bool operator==(const SpectrumPoint&) const = default;
 };
 
-/// The spectrum of all light in a picture: of a name (D65, D50, A, FL2), one line, or a table. A value.
+/// Spectrum of all light in a picture: a standard illuminant (D65, D50, A, FL2), a single line, or a table.
 class Illuminant {
 public:
     static constexpr const char* kWanted =
@@ -22,28 +22,28 @@ public:
 
     Illuminant() = default;
 
-    /// Throws InputError for another name.
+    /// Throws InputError if the name is unknown.
     static Illuminant named(std::string_view name);
-    /// Throws InputError outside the visible wavelengths.
+    /// Throws InputError if the wavelength is not from 380 to 780 nm.
     static Illuminant line(double wavelength_nm);
-    /// Linear between its points, and 0 before the first and after the last. Throws InputError for one that has no
-    /// light where it is visible.
+    /// Linear between its points, 0 outside. Throws InputError for fewer than two points, wavelengths that are not
+    /// strictly increasing, and values out of range.
     static Illuminant table(std::vector<SpectrumPoint> points);
-    /// As users write it in one word. Throws InputError.
+    /// Parses the one-word form that users write. Throws InputError if it is invalid.
     static Illuminant parse(std::string_view text);
 
     bool is_line() const { return points_.size() == 1; }
     const std::vector<SpectrumPoint>& points() const { return points_; }
 
-    /// Relative power at a wavelength from 380 to 780 nm. A line has none.
+    /// Relative power at a wavelength from 380 to 780 nm; 0 for a line, which has no density.
     double power(double wavelength_nm) const;
 
-    /// What parse reads.
+    /// Text from which parse makes this illuminant.
     std::string text() const;
 
     bool operator==(const Illuminant&) const = default;
 
-    /// Value of a table of this library, at a wavelength from 380 to 780 nm.
+    /// Value of a spectrum of spectra.hpp, at a wavelength from 380 to 780 nm.
     static double at(const VisibleSpectrum& spectrum, double wavelength_nm);
 
 private:
@@ -56,12 +56,12 @@ private:
 
     [[noreturn]] static void fail(const std::string& why) { throw InputError("illuminant: " + why); }
 
-    /// NaN where the text is none.
+    /// Returns NaN if the text is not a finite number.
     static double number_in(std::string_view text);
     static std::string short_text(double value);
 
     std::string name_ = "D65";
-    std::vector<SpectrumPoint> points_;  ///< of a line, one
+    std::vector<SpectrumPoint> points_;  ///< one point for a line
 };
 
 }  // namespace REALCAM_NAMESPACE

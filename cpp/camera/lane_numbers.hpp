@@ -5,8 +5,8 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// The random numbers of a dimension for the lanes of a block, all drawn at once: for many that is vector code, and a
-/// GPU gets this code once for all that ask.
+/// Random numbers of one dimension pair for the lanes of a block, drawn at once: for many lanes this is vector code,
+/// and a GPU has the code once for all callers.
 template <int N>
 class LaneNumbers {
 public:
@@ -16,7 +16,7 @@ public:
         else
             kept_.set(0, block.random(0, dimension));
     }
-    /// Of the lanes `lane_of(place)` at the first `places`.
+    /// Draws numbers for the lanes `lane_of(i)`, i from 0 to `places` - 1.
     template <class LaneOf>
     REALCAM_INLINE LaneNumbers(const SampleBlock<N>& block, std::uint32_t dimension, int places, LaneOf&& lane_of) {
         Lanes<std::uint32_t, N> stream, sample;
@@ -32,7 +32,7 @@ public:
 private:
     using Integers = std::uint32_t[N];
 
-    /// Code for each dimension of the joint sequence, and for few and many samples, is chosen outside of the loops.
+    /// The code for a dimension of the joint sequence, and for few or many samples, is selected outside the loops.
     [[gnu::noinline]] static void draw(const Integers& stream, const Integers& sample, int places,
                                        std::uint32_t dimension, Vec2Lanes<float, N>& numbers) {
         switch (dimension) {

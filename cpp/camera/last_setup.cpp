@@ -6,7 +6,7 @@ namespace realcam {
 
 std::shared_ptr<const CameraSetup> LastSetup::make(const Camera& camera, const PupilTracer& tracer,
                                                    const LensEffects& effects, PupilStart start) {
-    // Not locked while the pupil is found: another thread's camera may be ready at once.
+    // The lock is not held during the search of the pupil, so that no thread waits for another thread's camera.
     const std::shared_ptr<const CameraSetup> last = get();
     auto setup = std::make_shared<const CameraSetup>(camera, tracer, last.get(), effects, start);
     const std::lock_guard lock(mutex_);

@@ -6,11 +6,10 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Keeps the last camera that was made ready, because its pupil serves the next one if lens and film are equal. Several
-/// threads may use it.
+/// Cache of the last camera set-up, whose pupil serves the next one if lens and film are equal. Thread-safe.
 class LastSetup {
 public:
-    /// Throws InputError, and keeps the last one then.
+    /// Throws InputError; the last set-up is kept then.
     std::shared_ptr<const CameraSetup> make(const Camera& camera, const PupilTracer& tracer,
                                             const LensEffects& effects = {}, PupilStart start = PupilStart::anew);
 

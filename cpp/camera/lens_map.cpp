@@ -16,13 +16,13 @@ LensMap::LensMap(const LensSystem& lens, double film_radius, double thin_image_d
     std::vector<int> behind(kSteps + 1, 0);
     tracer.for_each(kSteps + 1, [&](int step) {
         const auto k = static_cast<std::size_t>(step);
-        // The quotient in the middle is that of a film point nearby.
+        // On the axis the quotient is 0 / 0; that of a nearby film point replaces it.
         const double radius = step == 0 ? 0.1 * film_radius / kSteps : film_radius * step / kSteps;
         const Seen seen = seen_at(lens, pupil.view(), path.view(), radius, tracer);
         behind[k] = seen.is_behind;
         nodes_[k].light = static_cast<float>(seen.light);
         if (!(seen.light > 0)) return;
-        // A thin lens shows at the film radius r what lies at the slope r / image distance to its middle.
+        // A thin lens images the direction of slope r / image distance, from its centre, at the film radius r.
         const double distance = lens.focus_distance - lens.film_position() + pupil_position;
         const double slope = std::isfinite(lens.focus_distance) ? seen.place / distance : seen.place;
         nodes_[k].scale = static_cast<float>(slope * thin_image_distance / radius);

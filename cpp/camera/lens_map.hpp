@@ -11,9 +11,9 @@ namespace REALCAM_NAMESPACE {
 /// Distortion and vignetting of a lens, measured with real rays. Owns the memory of its view.
 class LensMap {
 public:
-    /// `film_radius`: of the film point furthest from the axis, mm. `thin_image_distance`, `pupil_position`: of the
-    /// thin lens onto which they are laid, mm. Throws InputError where the film sees 90 degrees or more to the side,
-    /// which is behind any thin lens.
+    /// `film_radius`: of the film point farthest from the axis, mm. `thin_image_distance`, `pupil_position`: of the
+    /// thin lens to which distortion and vignetting are applied, mm. Throws InputError if the film sees directions of
+    /// 90 degrees or more from the axis, which no thin lens can image.
     LensMap(const LensSystem& lens, double film_radius, double thin_image_distance, double pupil_position,
             const PupilTracer& tracer);
 
@@ -24,8 +24,9 @@ private:
 
     struct Seen {
         double light;  ///< irradiance for unit radiance
-        double place;  ///< mean over it: distance from the axis in the plane in focus, mm; the slope, for infinity
-        bool is_behind;  ///< some of it comes from behind the lens
+        double place;  ///< mean over the light of its distance from the axis in the plane in focus, mm; at infinity, of
+                       ///< its slope
+        bool is_behind;  ///< true if some of the light comes from 90 degrees or more from the axis
     };
 
     static Seen seen_at(const LensSystem& lens, const PupilView& pupil, const LensView<float>& path, double radius,

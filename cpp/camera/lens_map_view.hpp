@@ -3,13 +3,13 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// What a thin lens takes over from the real one at a radius of the film.
+/// Distortion and vignetting of the real lens at one film radius.
 struct LensMapNode {
-    float scale;  ///< the radius at which a thin lens sees what the real one sees here, over this one
-    float light;  ///< the real irradiance for unit radiance all around
+    float scale;  ///< film radius at which a thin lens sees the point that the real lens sees here, over this radius
+    float light;  ///< irradiance of the real lens for uniform unit radiance
 };
 
-/// Distortion and vignetting of a lens, in even steps of the film's radius from the middle.
+/// Distortion and vignetting of a lens, in uniform steps of the film radius from the axis.
 struct LensMapView {
     const LensMapNode* nodes;
     int count;

@@ -3,28 +3,29 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// How many places in the pupil are tried before a pixel counts as dark: at two percent of its radius from the next.
+/// Largest number of pupil points that are tried before a pixel counts as dark. Their spacing is two percent of the
+/// pupil's radius.
 inline constexpr int kMiddlePlaces = 2048;
 
 namespace middle_rays_detail {
 
-/// Places in the unit disc, each farther out than the one before, and evenly spread (Vogel's spiral). The first is the
-/// middle.
+/// Point of Vogel's spiral, in units of the half sizes of the pupil's box: uniformly spread, in order of increasing
+/// radius. The first is the centre.
 REALCAM_INLINE Vec2f spiral(int index) {
     constexpr float kGoldenTurn = 0.381966011f;
     const float turns = static_cast<float>(index) * kGoldenTurn;
     const Vec2f azimuth = cos_sin_of_turn(turns - std::floor(turns));
-    // The corners of the box count: a pupil with blades may fill them.
+    // Radius up to sqrt(2), because a pupil with blades may fill the corners of the box.
     const float reach = 1.4142136f * std::sqrt(static_cast<float>(index) / static_cast<float>(kMiddlePlaces));
     return {reach * azimuth.x, reach * azimuth.y};
 }
 
-/// The optical direction with these cosines.
+/// Optical direction with these direction cosines, towards the scene.
 REALCAM_INLINE Vec3f optical_direction(float l, float m, float index_squared) {
     return {l, m, -sqrt_or_zero(index_squared - l * l - m * m)};
 }
 
-/// The optical direction from a film point to a place in the box around its pupil.
+/// Optical direction from a film point to a point in the box around its pupil.
 REALCAM_INLINE Vec3f direction_to(const CameraView& camera, Vec2f film, Vec2f place) {
     if (camera.pupil_grid.nodes) {
         const PupilGridPlace at = pupil_grid_place(camera.pupil_grid, film.x, film.y);
@@ -38,14 +39,14 @@ REALCAM_INLINE Vec3f direction_to(const CameraView& camera, Vec2f film, Vec2f pl
     return {l * row.cos - m * row.sin, l * row.sin + m * row.cos, on_x_axis.z};
 }
 
-/// Whether light may arrive at a film point at all.
+/// False if no light can reach a film point.
 REALCAM_INLINE bool may_be_lit(const CameraView& camera, Vec2f film) {
     if (camera.pupil_grid.nodes)
         return camera.pupil_grid.cells[pupil_grid_place(camera.pupil_grid, film.x, film.y).cell].upper_weight > 0.0f;
     return pupil_row_position(camera.pupil, film.x, film.y).lit > 0.0f;
 }
 
-/// The next place, from `first` on, that lies in the pupil by its table; kMiddlePlaces where there is none.
+/// Index of the next point, from `first` on, that lies in the tabulated pupil; kMiddlePlaces if there is none.
 REALCAM_INLINE int next_place(const CameraView& camera, Vec2f film, int first) {
     for (int k = first; k < kMiddlePlaces; ++k) {
         const Vec3f direction = direction_to(camera, film, spiral(k));
@@ -61,7 +62,7 @@ REALCAM_HD inline void lens_rays(const CameraView& camera, const SampleBlock<N>&
     int searching = 0;
     for (int i = 0; i < N; ++i) {
         const Vec2f film = film_point(camera, block.column[i], block.row[i], {0.5f, 0.5f});
-        // The pupil's own middle is tried even where the table leaves it out: the table is a polygon.
+        // The centre is tried even if it lies outside the tabulated pupil, which is a polygon.
         place[i] = block.used[i] && may_be_lit(camera, film) ? 0 : kMiddlePlaces;
         rays.passed[i] = 0;
         rays.sampled[i] = block.used[i];
@@ -113,10 +114,10 @@ REALCAM_HD inline void still_rays(const CameraView& camera, const SampleBlock<N>
 
 }  // namespace middle_rays_detail
 
-/// The ray from the middle of each pixel through the middle of the pupil as it is seen from there. Where that ray is
-/// blocked (mirror lenses have a hole there), it is the nearest to it in the pupil that passes. Weights are 1, and 0
-/// where none passes. `times`: in the middle of the exposure of each pixel. The streams and samples of the block are
-/// not used.
+/// Pixel-centre rays: from the centre of each pixel through the centre of the pupil as seen from there. If that ray is
+/// blocked (mirror lenses have a central obstruction), the nearest ray in the pupil that passes replaces it. Weights
+/// are 1, or 0 if no ray passes. `times`: the middle of the exposure of each pixel. Streams and samples of the block
+/// are not used.
 template <int N>
 REALCAM_HD inline void middle_rays(const CameraView& camera, const SampleBlock<N>& block, CameraRays<N>& rays,
                                    float (&times)[N]) {

@@ -67,8 +67,8 @@ private:
 
     FilmArea area_;
     MirrorPlanes planes_;
-    Vec3d reference_;  ///< centre of the entrance pupil, or of the front if the pupil is far away; camera frame
-                       ///< (film_path_ends), mm
+    Vec3d reference_;  ///< centre of the entrance pupil or, if that is far away, where the chief ray leaves the lens;
+                       ///< in the camera's frame (film_path_ends), mm
     double film_z_;  ///< z of the film in that frame
     bool ends_in_film_ = false;
     std::optional<Grid> lines_;
