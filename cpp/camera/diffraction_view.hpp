@@ -28,7 +28,7 @@ struct DiffractionView {
     int azimuths;  ///< 1: the diffraction pattern rotates with the film point's azimuth
     float radii_per_mm;
     float largest_radius;  ///< largest film radius, mm
-    float splat_density;  ///< density of splats of lights, for multiple importance sampling with pixel samples, per
+    float splat_density;  ///< density of edge-diffracted pixel samples per splat of a light, for MIS weights, per
                           ///< steradian
 };
 

@@ -15,7 +15,7 @@ double picture_angle(const Camera& camera, double image_height_mm) {
     const FirstOrder data = first_order(lens, lens.wavelength_nm);
     if (camera.model != CameraModel::thick_lens)
         return std::atan(image_height_mm / static_cast<double>(camera_detail::thin_lens_of(lens, data).image_distance));
-    // The ray through the middle of the exit pupil, from the last vertex to the front one.
+    // Chief ray through the centre of the exit pupil, from the last vertex to the front one.
     const ThickLens thick = camera_detail::thick_lens_of(lens, data);
     const double slope = image_height_mm / static_cast<double>(thick.exit_pupil_distance);
     const double height = image_height_mm - lens.film_distance * slope;
@@ -25,7 +25,7 @@ double picture_angle(const Camera& camera, double image_height_mm) {
 FieldOfView field_of_view(const Camera& camera) {
     const double x = 0.5 * camera.film.width_mm, y = 0.5 * camera.film.height_mm;
     const double right = std::fabs(camera.film.shift_mm.x), up = std::fabs(camera.film.shift_mm.y);
-    // Angle from the place farthest from the axis to the one opposite, which may lie on the same side.
+    // Angle between the film point farthest from the axis and the opposite one, which may lie on the same side.
     const auto between = [&](double far, double opposite) {
         const double angle = picture_angle(camera, far);
         return opposite == far ? 2 * angle
@@ -51,7 +51,7 @@ std::optional<Vec3d> entrance_pupil_position_m(const Camera& camera) {
 Vec3d film_centre_m(const Camera& camera) {
     const camera_detail::Axes axes = camera_detail::axes_of(camera.pose);
     const Vec2<double> shift = camera.film.shift_mm;
-    // The picture on the film is upside down, and right and left are exchanged.
+    // The image on the film is inverted in both directions.
     return camera.pose.position_m - (0.001 * shift.x) * axes.right - (0.001 * shift.y) * axes.up;
 }
 

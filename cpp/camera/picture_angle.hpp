@@ -6,24 +6,24 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Angle to the axis, in front of the lens, of what the camera's model shows that far from the middle of the picture,
-/// radians. Where the film is larger than the image of a full lens: that of the image's edge.
+/// Field angle in front of the lens, radians, at a distance of `image_height_mm` from the middle of the picture, for
+/// the camera's model. If a full lens has no image there: the angle at the edge of its image.
 double picture_angle(const Camera& camera, double image_height_mm);
 
-/// Angles from edge to edge of the picture, and from corner to corner, radians. On a shifted film they are in the
-/// planes of the axis, and between the two corners farthest from each other on both sides of it.
+/// Field of view from edge to edge of the picture, and from corner to corner, radians. For a shifted film, the angles
+/// are in the planes of the axis, and between the two corners farthest from each other on both sides of it.
 struct FieldOfView {
     double horizontal, vertical, diagonal;
 };
 
-/// Throws InputError where the camera's model has no place for its lens.
+/// Throws InputError if the camera's model cannot represent its lens.
 FieldOfView field_of_view(const Camera& camera);
 
-/// The middle of the paraxial entrance pupil in the scene, metres: where lines from the scene to the camera meet. None
-/// where it lies at infinity.
+/// Centre of the paraxial entrance pupil in the scene, metres: the centre of projection. Returns std::nullopt if it
+/// lies at infinity.
 std::optional<Vec3d> entrance_pupil_position_m(const Camera& camera);
 
-/// The middle of the film in the scene, metres: Pose::position_m but for Film::shift_mm.
+/// Centre of the film in the scene, metres: Pose::position_m displaced by Film::shift_mm.
 Vec3d film_centre_m(const Camera& camera);
 
 }  // namespace REALCAM_NAMESPACE

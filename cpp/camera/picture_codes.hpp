@@ -5,7 +5,7 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// sRGB's 8-bit code of a linear value, 1 being white, without rounding.
+/// 8-bit sRGB display value of a linear value (1: white), not rounded.
 template <class T>
 T code_of(T value) {
     return 255 * srgb_encoded(std::clamp(value, T(0), T(1)));

@@ -12,7 +12,7 @@ PictureMap::PictureMap(const CameraView& camera)
       pixels_per_mm_y_(0.5 * camera.height / static_cast<double>(camera.film_half_height)),
       axis_{0.5 * camera.width + pixels_per_mm_x_ * static_cast<double>(camera.film_middle.x),
             0.5 * camera.height - pixels_per_mm_y_ * static_cast<double>(camera.film_middle.y)} {
-    // Another film behind the same lens: one row, from the middle to a corner.
+    // Auxiliary film behind the same lens: one row of pixels, with corners of the film at both ends.
     CameraView along = camera;
     static_cast<CameraPlacement&>(along) = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     along.keys = nullptr;
@@ -28,7 +28,7 @@ PictureMap::PictureMap(const CameraView& camera)
     CameraRays<1> rays;
     float time[1];
     block.used[0] = 1;
-    // The film's right half in the picture sees what is on the right.
+    // The right half of the picture shows the right half of the scene.
     for (int k = 0; k < kRadii; ++k) {
         block.column[0] = kRadii + k;
         middle_rays(along, block, rays, time);
@@ -59,7 +59,7 @@ std::optional<double> PictureMap::film_radius(double radius, double z, bool is_d
         return x * ray.along_x + depth * ray.along_z > 0;
     };
     double before = beside(rays_.front(), radius, z, is_direction);
-    // Between the axis and the first ray distances grow evenly.
+    // Linear interpolation between the axis and the first ray.
     if (before <= 0 && is_ahead(rays_.front())) {
         return rays_.front().film_mm * radius / (radius - before);
     }

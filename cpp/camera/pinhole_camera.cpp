@@ -12,7 +12,7 @@ namespace realcam {
 namespace {
 
 /// An ideal lens has its own image distance. The film of a real lens lies where its picture is sharpest, which is not
-/// quite the paraxial focus. Its image distance follows from the paraxial ray through the middle of the pupil.
+/// quite the paraxial focus. Its image distance follows from the paraxial chief ray.
 CentralLens central_lens(const LensSystem& lens, CameraModel model) {
     const FirstOrder data = first_order(lens, lens.wavelength_nm);
     if (model == CameraModel::pinhole || model == CameraModel::thin_lens)
@@ -22,10 +22,10 @@ CentralLens central_lens(const LensSystem& lens, CameraModel model) {
     return {data.entrance_pupil_position, std::fabs(chief.height + lens.film_distance * chief.slope)};
 }
 
-/// A lens before a film to first order: places on the film, mm, right and down as the picture shows them, are
-/// scale (x / z, y / z) + middle, in the axes of computer vision.
+/// Projection of a lens to first order: film coordinates in mm, x to the right and y down as in the picture, are scale
+/// (x / z, y / z) + middle, in the axes of computer vision.
 struct FilmPinhole {
-    Vec3d centre;  ///< of projection, from the middle of the film in the camera's axes, mm
+    Vec3d centre;  ///< centre of projection, from the film centre in the camera's axes, mm
     Matrix2 scale;
     Vec2<double> middle;
 };
@@ -36,8 +36,8 @@ FilmPinhole pinhole_of_round_lens(const Camera& camera) {
     return {{0, 0, lens.position - camera.lens.film_position()}, {{f, 0}, {0, f}}, {0, 0}};
 }
 
-/// By chief rays of film points close to the middle. Of differences over four of them the errors are of the fourth
-/// order. Where there are none it holds no numbers.
+/// Computed from chief rays of film points close to the centre, by differences over four points with an error of fourth
+/// order. Filled with NaN if there are no chief rays.
 FilmPinhole pinhole_of_any_lens(const LensSystem& lens) {
     constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
     const RaysFromFilm rays(lens, lens.wavelength_nm);
@@ -45,8 +45,8 @@ FilmPinhole pinhole_of_any_lens(const LensSystem& lens) {
     if (!middle) return {{kNone, kNone, kNone}, {}, {}};
     const Vec3d towards = -middle->scene_direction;
     const AcrossRay across(towards);
-    // As computer vision has it, x and y over z; and the place in the plane across the middle ray, with the slope
-    // there.
+    // `direction`: x / z and y / z in the axes of computer vision. `place`, `slope`: position and slope in the plane
+    // perpendicular to the central chief ray.
     struct Seen {
         Vec2<double> direction = {kNone, kNone}, place = direction, slope = direction;
     };
@@ -58,7 +58,7 @@ FilmPinhole pinhole_of_any_lens(const LensSystem& lens) {
         return Seen{{-d.x / d.z, d.y / d.z}, {at.x - along * slope.x, at.y - along * slope.y}, slope};
     };
     const double step = 1e-3 * rays.film_distance();
-    Matrix2 direction{}, place{}, slope{};  // by x and y on the film as the picture shows it, upside down
+    Matrix2 direction{}, place{}, slope{};  // derivatives by x to the right and y down on the film, as in the picture
     for (const bool is_y : {false, true}) {
         const auto at = [&](double steps) {
             return seen_from(
@@ -77,7 +77,7 @@ FilmPinhole pinhole_of_any_lens(const LensSystem& lens) {
         set(place, &Seen::place);
         set(slope, &Seen::slope);
     }
-    // Where rays of all film points cross, the mean of both meridians.
+    // Distance along the central chief ray to where the chief rays cross, averaged over both meridians.
     const double ahead = -0.5 * (place * slope.inverse()).trace();
     const Vec3d centre = middle->scene + ahead * towards - Vec3d{0, 0, camera_film_position(lens)};
     const Matrix2 scale = direction.inverse();

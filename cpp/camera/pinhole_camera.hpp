@@ -5,31 +5,31 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// What a camera's lens is to computer vision, mm: light at a small angle a to the axis through the middle of the
-/// entrance pupil meets the film at image_distance * tan(a), whatever the object's distance.
+/// Central projection of a lens, mm: light at a small angle a to the axis through the centre of the entrance pupil
+/// reaches the film at image_distance * tan(a), at any object distance.
 struct CentralLens {
-    double position;        ///< of the middle of the entrance pupil, from the front vertex; may be infinite
-    double image_distance;  ///< the focal length, for a lens that is focused at infinity
+    double position;        ///< centre of the entrance pupil, from the front vertex; may be infinite
+    double image_distance;  ///< the focal length if the lens is focused at infinity
 };
 
-/// Pixel = K (R p + t), p in the scene, in the axes of computer vision: x right, y down, z forward from the centre of
-/// projection, which is the middle of the entrance pupil. Columns and rows count from the upper left corner of the
-/// picture, so that the middle of the first pixel is (0.5, 0.5).
+/// Pixel = K (R p + t), with p in the scene. Axes of computer vision: x right, y down, z forward from the centre of
+/// projection, the centre of the entrance pupil. Pixel coordinates start at the upper left corner of the picture, so
+/// the centre of the first pixel is (0.5, 0.5).
 struct PinholeCamera {
     double focal_x, focal_y, centre_x, centre_y;  ///< K, pixels
-    /// The others of K: column by y / z, and row by x / z. Of lenses alone whose meridians do not lie in the film's
-    /// axes.
+    /// Off-diagonal elements of K: column by y / z, and row by x / z. Non-zero only for lenses whose meridians are not
+    /// along the film's axes.
     double column_by_y = 0, row_by_x = 0;
-    Vec3d right, down, forward;  ///< the rows of R
+    Vec3d right, down, forward;  ///< rows of R
     Vec3d translation_m;  ///< t
-    Vec3d centre_m;  ///< of projection, in the scene
+    Vec3d centre_m;  ///< centre of projection, in the scene
 };
 
-/// The pinhole of a camera with this pose. There is none for a lens whose entrance pupil lies at infinity: it has no
-/// centre of projection.
+/// Pinhole model of a camera with this pose. Returns std::nullopt if the entrance pupil of the lens lies at infinity:
+/// it has no centre of projection.
 std::optional<PinholeCamera> pinhole_camera(const Camera& camera, const Pose& pose);
 
-/// Where the camera is in the middle of its exposure.
+/// Pose of the camera at the middle of its exposure.
 Pose middle_pose(const Camera& camera);
 
 }  // namespace REALCAM_NAMESPACE

@@ -6,27 +6,26 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// What a pixel has learnt about where light passes the lens. It has a bit for each cell of the unit square from which
-/// the pupil is sampled (after B. Steinert et al., "General Spectral Camera Lens Simulation", Computer Graphics Forum
-/// 30, 2011).
+/// Learned visibility of the pupil from a pixel: one bit for each cell of the unit square from which the pupil is
+/// sampled (after B. Steinert et al., "General Spectral Camera Lens Simulation", Computer Graphics Forum 30, 2011).
 struct PixelPupil {
-    std::uint32_t tried;   ///< to which rays were sent
-    std::uint32_t passed;  ///< and through which some came
+    std::uint32_t tried;   ///< cells to which rays were sent
+    std::uint32_t passed;  ///< cells through which some rays passed
 
     REALCAM_INLINE std::uint32_t promising() const { return passed | ~tried; }
 };
 
-/// The pupils of all pixels, row by row; null for a camera that does not learn.
+/// PixelPupil of all pixels, row-major; null for a camera that does not learn.
 struct PixelPupils {
     const PixelPupil* known;  ///< from earlier passes
-    PixelPupil* found;        ///< the same, and of this pass
+    PixelPupil* found;        ///< from earlier passes and this one
 };
 
 namespace pixel_pupil {
 
 inline constexpr int kColumns = 8, kRows = 4;
-/// The share of samples that are drawn from all cells. Cells that look dark may still let some light pass. Their few
-/// samples then have weights of up to one over this share.
+/// Fraction of the samples that are drawn from all cells: cells that look dark may still pass some light. Their few
+/// samples have weights of up to 1 / kAnywhere.
 inline constexpr float kAnywhere = 0.25f;
 
 REALCAM_INLINE int cell_of(Vec2f u) {
@@ -36,7 +35,7 @@ REALCAM_INLINE int cell_of(Vec2f u) {
 /// Passes end at 4, 8, 16, ... samples.
 inline constexpr std::uint32_t kFirstPass = 4;
 
-/// Number of the bit that has `below` others below it.
+/// Index of the set bit that has `below` set bits below it.
 REALCAM_INLINE int place_of_bit(std::uint32_t bits, std::uint32_t below) {
     int place = 0;
     for (int half = 16; half > 0; half /= 2) {
@@ -51,13 +50,14 @@ REALCAM_INLINE int place_of_bit(std::uint32_t bits, std::uint32_t below) {
 
 }  // namespace pixel_pupil
 
-/// A place in the unit square, and one over its density.
+/// Point in the unit square, and the inverse of its density.
 struct GuidedPlace {
     Vec2f place;
     float weight;
 };
 
-/// Mixes some cells with all cells, so that no light is missed whatever was learnt.
+/// Defensive mixture: samples the given cells and, with probability kAnywhere, all cells, so that every cell keeps a
+/// non-zero probability.
 REALCAM_INLINE GuidedPlace guided(std::uint32_t cells, Vec2f u) {
     using namespace pixel_pupil;
     if (cells == 0) return {u, 1.0f};
@@ -67,7 +67,7 @@ REALCAM_INLINE GuidedPlace guided(std::uint32_t cells, Vec2f u) {
         const float along = (u.x - kAnywhere) * (1.0f / (1.0f - kAnywhere)) * static_cast<float>(count);
         const std::uint32_t below = std::min(static_cast<std::uint32_t>(along), count - 1u);
         const int cell = place_of_bit(cells, below);
-        // The sum of a cell's number and a share must not be rounded up to the next cell.
+        // The sum of a cell's index and a fraction must not be rounded up to the next cell.
         const auto within = [](int number, float share) {
             return static_cast<float>(number) + std::min(share, 0x1.ffffep-1f);
         };

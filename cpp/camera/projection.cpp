@@ -19,7 +19,7 @@ ProjectedPoint Projection::pixel_of(Vec3d point_m) const {
     if (!std::isfinite(point_m.x) || !std::isfinite(point_m.y) || !std::isfinite(point_m.z))
         return {kNowhere, ProjectionStatus::bad_input};
     if (places_.size() == 1) return seen_from(places_.front(), point_m);
-    // The row says when the point is seen, and the time, which row: until they agree.
+    // Rolling shutter: the row determines the time, and the time determines the row. Iterated until they agree.
     int row = static_cast<int>(places_.size()) / 2;
     ProjectedPoint found{};
     for (int i = 0; i < kMostTurns; ++i) {

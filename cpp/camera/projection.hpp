@@ -8,29 +8,29 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// What became of a point of the scene on its way to the film.
+/// Result of projecting a scene point onto the film.
 enum class ProjectionStatus {
     ok,
-    outside_picture,  ///< its light lands beside the film
-    blocked,          ///< it lies in front of the lens, which lets none of its light through to the film's plane
-    behind,           ///< it lies behind the lens, or in it
+    outside_picture,  ///< its image lies outside the film
+    blocked,          ///< it lies in front of the lens, but none of its light reaches the film plane
+    behind,           ///< it lies behind or inside the lens
     bad_input,        ///< a coordinate is not finite
 };
 
-/// Columns and rows count from the upper left corner of the picture: the middle of the first pixel is (0.5, 0.5).
+/// Pixel coordinates from the upper left corner of the picture: the centre of the first pixel is (0.5, 0.5).
 struct ProjectedPoint {
-    Vec2<double> pixel;  ///< NaN where no line is known that goes there
+    Vec2<double> pixel;  ///< NaN if no projection ray passes through the scene point
     ProjectionStatus status;
 };
 
-/// A line from the lens into the scene, metres.
+/// Projection ray from the lens into the scene, metres.
 struct PixelRay {
     Vec3d origin_m, direction;  ///< NaN for a pixel without light
-    double light = 0;           ///< the pixel's irradiance for an even field, over that in the middle of the film
+    double light = 0;           ///< irradiance of the pixel for a uniform scene, relative to the middle of the film
 };
 
-/// Takes points of the scene to a camera's picture, and pixels to lines in the scene. If the camera moves, each row of
-/// pixels is seen from the camera's place in the middle of the row's exposure.
+/// Projects scene points to pixels of a camera's picture, and pixels to rays in the scene. If the camera moves, each
+/// row of pixels uses the camera's pose at the middle of the row's exposure.
 class Projection {
 public:
     Projection(const Camera& camera, std::shared_ptr<const LinesOfSight> lines);
@@ -51,7 +51,8 @@ private:
 
     Film film_;
     std::shared_ptr<const LinesOfSight> lines_;
-    std::vector<Affine<double>> places_;  ///< of the rows of pixels; one, if it is the same for all
+    std::vector<Affine<double>> places_;  ///< scene-from-camera transform of each row of pixels; a single one if all
+                                          ///< rows share it
 };
 
 }  // namespace REALCAM_NAMESPACE

@@ -8,8 +8,8 @@ namespace REALCAM_NAMESPACE {
 // micro-lenses are shifted towards the middle of the film, so that light from the axis of the pupil falls between the
 // diodes all over the film, and no light is lost between them.
 
-/// Sets 1 for samples that come through the right half of the exit pupil, as the photographer looks through the lens.
-/// What the halves are of is the paraxial pupil; where rims cut it, one half has less light, as in a real camera.
+/// Sets 1 for samples that pass the right half of the exit pupil, as the photographer looks through the lens. The
+/// paraxial pupil is halved; where rims vignette it, one half gets less light, as in a real camera.
 template <Effects effects, int N>
 REALCAM_HD inline void find_right_half(const CameraView& camera, const SampleBlock<N>& block,
                                        Lanes<std::int32_t, N>& is_right) {
@@ -18,7 +18,7 @@ REALCAM_HD inline void find_right_half(const CameraView& camera, const SampleBlo
     const FilmPointsWith<N, effects> film(camera, block, wavelengths);
     const LaneNumbers<N> u(block, dimension::pupil);
     const bool has_real = has_real_pupil(camera.model);
-    // Slopes, not places in the pupil: a pupil behind the film, at a distance below 0, is no exception then.
+    // Compares slopes instead of points in the pupil, which also holds for a pupil behind the film (negative distance).
     const float inverse_distance = 1.0f / camera.thick.exit_pupil_distance;
     for (int i = 0; i < N; ++i) {
         float right;

@@ -8,7 +8,8 @@ namespace realcam {
 
 namespace {
 
-/// What passes the last surface as if nothing bent or stopped it there.
+/// Lens that consists of the clear aperture of the last surface, without refraction and with a stop that blocks
+/// nothing.
 LensSystem last_surface_alone(const LensSystem& lens) {
     LensSystem alone = lens;
     Surface last = lens.surfaces.back();

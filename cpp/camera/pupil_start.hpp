@@ -3,10 +3,10 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// How the pupil is found of a lens that is not the last one.
+/// Start of the pupil search for a lens that differs from the last one.
 enum class PupilStart {
-    anew,  ///< it is the same after any other lens
-    near_last,  ///< in less time, near the last one's edges (see Pupil); anew where the lens stays as it is
+    anew,  ///< from scratch: the result does not depend on the last lens
+    near_last,  ///< faster, near the edges of the last pupil (see Pupil); from scratch if the lens is unchanged
 };
 
 }  // namespace REALCAM_NAMESPACE

@@ -4,7 +4,7 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Some of a camera's rays, of which there are spp for each pixel, row by row.
+/// Range of a camera's rays, of which there are spp for each pixel, in row-major order of the pixels.
 struct RayRange {
     std::int64_t first, count;
 };
@@ -13,23 +13,23 @@ inline RayRange all_rays(int width, int height, std::uint32_t spp) {
     return {0, static_cast<std::int64_t>(width) * height * spp};
 }
 
-/// The camera's own rays, sample by sample of pixel by pixel. Arrays lie where the rays are made, on the host or on a
-/// device.
+/// Request for the rays of a camera: the samples of a pixel are consecutive. Arrays are in the memory of the host or
+/// device that generates the rays.
 struct RayRequest {
     CameraView camera;
     RayRange range;
     std::uint32_t spp, seed;
-    float *origins, *directions;  ///< 3 for each ray: metres in the placed scene; unit
+    float *origins, *directions;  ///< 3 for each ray: metres in render space; unit vectors
     float* weights;               ///< irradiance on the film for unit radiance; 0: blocked
-    float* times;                 ///< as shares of the camera's exposure
+    float* times;                 ///< as fractions of the camera's exposure
     float* wavelengths_nm;
-    float design_wavelength_nm;  ///< of all rays, where the camera has no dispersion
+    float design_wavelength_nm;  ///< of all rays if the camera has no dispersion
 
     REALCAM_HD std::int64_t count() const { return range.count; }
 };
 
-/// Makes N rays of the range, from its `first` on; fewer at the end of the arrays. `lens_kind`: any where
-/// has_any_lens says so, else rotational.
+/// Generates N rays of the range, from its `first` on; fewer at the end of the range. `lens_kind`: LensKind::any if
+/// has_any_lens(camera), else rotational.
 template <LensKind lens_kind, int N>
 REALCAM_HD inline void generate_rays_of(const RayRequest& request, std::int64_t first) {
     SampleBlock<N> block;

@@ -5,15 +5,15 @@
 
 namespace REALCAM_NAMESPACE {
 
-// Rays of a camera with any set of effects, stage by stage: wavelengths, places on the film, the lens, and for which
-// other wavelengths a sample counts. Each effect takes part in the stages that it concerns.
+// Rays of a camera with any set of effects, stage by stage: wavelengths, film points, the lens, and the further
+// wavelengths for which a sample counts. Each effect takes part in the stages that concern it.
 
-/// What samples without wavelengths have in their place.
+/// Replaces SampleWavelengths for samples without wavelengths.
 struct NoWavelengths {};
 template <int N, Effects effects>
 using WavelengthsWith = std::conditional_t<effects.have_wavelengths(), SampleWavelengths<N>, NoWavelengths>;
 
-/// The points of the film from which samples look into the lens: `points[lane]`, mm, and `points.landing`.
+/// Film points from which samples look through the lens: `points[lane]`, mm, and `points.landing`.
 template <int N, Effects effects>
 struct FilmPointsWith : PixelPoints<N> {
     REALCAM_INLINE FilmPointsWith(const CameraView& camera, const SampleBlock<N>& block,
@@ -29,7 +29,7 @@ struct FilmPointsWith<N, effects> : DiffractedPoints<N> {
     }
 };
 
-/// generate_rays_from of a full lens whose surfaces do more than to refract light of the design wavelength.
+/// generate_rays_from for a full lens with dispersion or coatings.
 template <LensKind lens_kind, Effects effects, int N, class Points>
 REALCAM_HD inline void generate_surface_rays(const CameraView& camera, const SampleBlock<N>& block, const Points& film,
                                              [[maybe_unused]] WavelengthsWith<N, effects>& wavelengths,
@@ -56,8 +56,8 @@ REALCAM_HD inline void generate_surface_rays(const CameraView& camera, const Sam
     place_lens_rays(camera, inside, rays);
 }
 
-/// generate_rays_from with effects. Samples that have wavelengths have them already, and learn for which others they
-/// count and what the lens passes on of each (film_color).
+/// generate_rays_from with effects. Wavelengths must have been sampled already; the further wavelengths for which
+/// samples count, and the lens's transmittance at each (film_color), are added.
 template <LensKind lens_kind, Effects effects, int N, class Points>
 REALCAM_HD inline void generate_rays_with(const CameraView& camera, const SampleBlock<N>& block, const Points& film,
                                           [[maybe_unused]] WavelengthsWith<N, effects>& wavelengths,

@@ -6,11 +6,11 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Which samples a block of lanes takes. Unused lanes have used = 0 and otherwise valid numbers.
+/// Samples of a block of lanes. Unused lanes have used = 0 and otherwise valid numbers.
 template <int N>
 struct SampleBlock {
     Lanes<std::int32_t, N> column,
-        row;  ///< of the pixel; row 0 at the top of the picture
+        row;  ///< pixel; row 0 at the top of the picture
     Lanes<std::int32_t, N> used;
     Lanes<std::uint32_t, N> stream;  ///< pixel_stream() of the pixel
     Lanes<std::uint32_t, N> sample;
@@ -19,30 +19,30 @@ struct SampleBlock {
         return dimension < kJointPairs ? sample_joint_2d(stream[lane], sample[lane], dimension)
                                        : sample_2d(stream[lane], sample[lane], dimension);
     }
-    /// Random bits of a sample that are in no sequence.
+    /// Hashed random bits of a sample, independent of the sequences.
     REALCAM_INLINE std::uint32_t bits(int lane, std::uint32_t salt) const {
         return hash32(stream[lane] ^ sample[lane], salt);
     }
 };
 
-/// The random sequence of a pixel.
+/// Seed of the random sequence of a pixel.
 REALCAM_INLINE std::uint32_t pixel_stream(std::int32_t pixel, std::uint32_t seed) {
     return hash32(static_cast<std::uint32_t>(pixel), seed);
 }
 
-/// Dimension pairs of the random sequence. Those below kJointPairs, which are all up to the first bounce, are of one
-/// sequence together.
+/// Dimension pairs of the random sequence. Those below kJointPairs, all up to the first bounce, form one joint
+/// sequence.
 namespace dimension {
 inline constexpr std::uint32_t film = 0, pupil = 1, first_bounce = 2, per_bounce = 2, light = 0, scatter = 1;
-/// The dimension pair of the time, which most samples do not use. Its second number is the wavelength's.
+/// Dimension pair of the time, unused by most samples. Its second number selects the wavelength.
 inline constexpr std::uint32_t time = 4;
 inline constexpr std::uint32_t second_bounce = kJointPairs;
-/// For the end of long paths, far behind those of the last bounce.
+/// Russian roulette, far beyond the pairs of the last bounce.
 inline constexpr std::uint32_t roulette = 0x10000;
-/// Two pairs of diffraction's.
+/// Two pairs for diffraction.
 inline constexpr std::uint32_t diffraction = 0x30000;
 
-/// The first of a bounce.
+/// First pair of a bounce.
 REALCAM_INLINE constexpr std::uint32_t of_bounce(int bounce) {
     return bounce == 0 ? first_bounce : second_bounce + static_cast<std::uint32_t>(bounce - 1) * per_bounce;
 }

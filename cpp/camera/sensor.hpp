@@ -11,10 +11,10 @@
 
 namespace REALCAM_NAMESPACE {
 
-// A sensor as its data sheet describes it, by the linear model of EMVA standard 1288. What a sheet does not say stays
-// at the value that adds nothing, and `assumptions` says what the file had to assume.
+// A sensor as its data sheet describes it, by the linear model of EMVA standard 1288. A property that the sheet does
+// not state keeps the value without effect, and `assumptions` lists what the sensor file had to assume.
 
-/// Electrons per photon on the pixel's area: of the red, green and blue filter; the same three times without filters.
+/// Electrons per photon on the pixel's area, for the red, green and blue filter; three equal values without filters.
 struct QuantumEfficiency {
     double wavelength_nm;
     std::array<double, 3> electrons_per_photon;
@@ -22,7 +22,7 @@ struct QuantumEfficiency {
     bool operator==(const QuantumEfficiency&) const = default;
 };
 
-/// A table's point: transmission by wavelength (nm), or relative response by angle (degrees).
+/// Point of a table: transmission by wavelength (nm), or relative response by angle (degrees).
 struct SensorPoint {
     double at, value;
 
@@ -31,8 +31,8 @@ struct SensorPoint {
 
 /// The conversion from electrons to digital numbers (DN).
 struct SensorConversion {
-    double gain_dn_per_e = 0;    ///< overall system gain K at the lowest ISO; 0: whatever the ISO asks for
-    double largest_gain_db = 0;  ///< that can be added to it
+    double gain_dn_per_e = 0;    ///< overall system gain K at the lowest ISO; 0: determined by the ISO
+    double largest_gain_db = 0;  ///< largest gain in addition to it
     double saturation_capacity_e = std::numeric_limits<double>::infinity();  ///< as EMVA 1288 measures it
     int adc_bits = 16;
     double black_level_dn = 0;
@@ -45,22 +45,22 @@ struct SensorConversion {
 /// Standard deviations and means in electrons.
 struct SensorNoise {
     double read_noise_e = 0;  ///< temporal dark noise without exposure time, before the gain
-    double row_noise_e = 0;   ///< what all pixels of a row have together, from exposure to exposure
+    double row_noise_e = 0;   ///< common to all pixels of a row, different in each exposure
     double dark_current_e_per_s = 0;
     double dark_current_temperature_c = 20;
-    double dark_current_doubling_k = 0;  ///< doubling temperature interval; 0: not known
+    double dark_current_doubling_k = 0;  ///< doubling temperature interval; 0: unknown
     double dsnu_e = 0;
     double prnu_percent = 0;
     double hot_pixel_share = 0;
-    double hot_pixel_current_e_per_s = 0;  ///< mean of the hot ones, above the dark current
+    double hot_pixel_current_e_per_s = 0;  ///< mean of the hot pixels, above the dark current
 
     bool operator==(const SensorNoise&) const = default;
 };
 
 struct Sensor {
     std::string name, title, source;
-    std::vector<std::string> assumptions;  ///< what is not published, and what stands in its place
-    double pixel_pitch_um = 0;             ///< 0: that of the film's pixels
+    std::vector<std::string> assumptions;  ///< properties that are not published, and the values assumed for them
+    double pixel_pitch_um = 0;             ///< 0: pitch of the film's pixels
     int columns = 0, rows = 0;             ///< 0: any number
     std::string color_filter_array;        ///< "RGGB" and so on: two rows of two, from the top left; empty: none
     std::vector<QuantumEfficiency> quantum_efficiency;  ///< linear between its points, 0 beyond
@@ -83,7 +83,7 @@ namespace sensor_detail {
 
 [[noreturn]] void fail(const std::string& key, const std::string& wanted);
 
-/// Rising places; values from 0 to 1.
+/// Throws InputError unless the arguments are at least 0 and strictly increasing, and `is_good` holds for all points.
 template <class Point>
 void require_table(const std::string& key, const std::vector<Point>& points, double (*at)(const Point&),
                    bool (*is_good)(const Point&)) {
@@ -100,7 +100,7 @@ inline bool is_temperature(double celsius) {
 
 }  // namespace sensor_detail
 
-/// Throws InputError naming the key as sensor files have it.
+/// Throws InputError, naming the key of the sensor file.
 void validate(const Sensor& sensor);
 
 }  // namespace REALCAM_NAMESPACE

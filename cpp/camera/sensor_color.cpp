@@ -42,7 +42,7 @@ SensorMatrix adaptation(const std::array<double, 3>& from_white, const std::arra
 
 namespace {
 
-/// Whether the filters tell three colours apart: in the light of one line, they do not.
+/// True if the filters distinguish three colours. Under a single line they do not.
 bool tells_colors(const SensorMatrix& m) {
     double volume =
         m[0] * (m[4] * m[8] - m[5] * m[7]) - m[1] * (m[3] * m[8] - m[5] * m[6]) + m[2] * (m[3] * m[7] - m[4] * m[6]);

@@ -4,13 +4,13 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// How the numbers of a sensor's filters become colours again, under one illuminant. The film's colours stand for
-/// spectra of a basis of three (film_spectrum.hpp), so this is exact, and not a fit over samples.
+/// Conversion of a sensor's raw values to colours under one illuminant. The film's colours stand for spectra of a basis
+/// of three (film_spectrum.hpp), so this is exact, and not a fit over samples.
 struct SensorColor {
-    std::array<double, 3> white;  ///< what the filters see of the illuminant, the largest 1: DNG's AsShotNeutral
-    SensorMatrix camera_from_xyz;     ///< of XYZ under the illuminant, white of Y = 1 as `white`: DNG's ColorMatrix
-    SensorMatrix film_from_balanced;  ///< from numbers over `white` to linear Rec. 709
-    SensorMatrix d50_from_balanced;   ///< likewise to XYZ under D50: DNG's ForwardMatrix
+    std::array<double, 3> white;  ///< filter responses to the illuminant, the largest 1: DNG's AsShotNeutral
+    SensorMatrix camera_from_xyz;  ///< from XYZ under the illuminant; white of Y = 1 maps to `white`: DNG's ColorMatrix
+    SensorMatrix film_from_balanced;  ///< from raw values divided by `white` to linear Rec. 709
+    SensorMatrix d50_from_balanced;  ///< from the same values to XYZ under D50: DNG's ForwardMatrix
 };
 
 namespace sensor_detail {
@@ -29,8 +29,8 @@ SensorMatrix adaptation(const std::array<double, 3>& from_white, const std::arra
 
 }  // namespace sensor_detail
 
-/// Where the sensor cannot tell colours apart in the illuminant, they are those of D65, and white is the illuminant's.
-/// Throws InputError where it cannot under D65 either, or where a filter sees nothing of the illuminant.
+/// If the sensor cannot distinguish colours under the illuminant, the matrices are those of D65, with the white of the
+/// illuminant. Throws InputError if it cannot under D65 either, or if a filter has no response to the illuminant.
 SensorColor sensor_color(const Sensor& sensor, const Illuminant& illuminant);
 
 }  // namespace REALCAM_NAMESPACE

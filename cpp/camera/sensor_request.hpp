@@ -8,50 +8,50 @@
 
 namespace REALCAM_NAMESPACE {
 
-// What a sensor makes of the film's exposure, after the linear model of EMVA standard 1288 (release 4.0 linear).
-// Photons become electrons, which the well limits. The gain makes digital numbers of them, to which the black level is
-// added.
+// Response of a sensor to the film's exposure, after the linear model of EMVA standard 1288 (release 4.0 linear).
+// Photons become electrons, up to the full well. The gain converts electrons to digital numbers, to which the black
+// level is added.
 
-/// How much of light that comes under an angle a pixel sees, relative to light along the axis. Evenly over the square
-/// of the angle's tangent, which is linear in the squared distance from the axis.
+/// Response of a pixel to light at an angle, relative to light along the axis. Tabulated uniformly over the squared
+/// tangent of the angle, which is linear in the squared distance from the axis.
 struct AngularResponse {
     static constexpr int kSteps = 64;
     float at[kSteps + 1];
-    float steps_per_square;  ///< steps for each square pixel of squared distance; 0: all light counts alike
+    float steps_per_square;  ///< steps per square pixel of squared distance; 0: no dependence on the angle
     float middle_column, middle_row;
 };
 
-/// Part of a picture for a sensor: plain data, which travels to whichever build of the code is the fastest.
+/// Part of a sensor's picture: plain data, which is passed to the build of the code that is fastest on the CPU.
 struct SensorRequest {
     const float* exposure;  ///< rows * width * 3, lux seconds, linear Rec. 709
     std::uint16_t* raw;     ///< rows * width
-    std::int32_t width, first_row, row_count;  ///< the pointers are to the first of these rows
-    /// Electrons of one lux second of each channel, at the places (row % 2) * 2 + column % 2 of the mosaic.
+    std::int32_t width, first_row, row_count;  ///< the pointers refer to the first of these rows
+    /// Electrons for one lux second of each channel, indexed by (row % 2) * 2 + column % 2 in the mosaic.
     float electrons[4][3];
     AngularResponse angular_response;
     float response_deviation;  ///< photo-response non-uniformity, a fraction
     float offset_deviation_e;  ///< dark signal non-uniformity
-    float dark_electrons;  ///< mean in a pixel
-    float hot_share, hot_electrons;  ///< share of pixels, and the mean of what they have more
+    float dark_electrons;  ///< mean of a pixel
+    float hot_share, hot_electrons;  ///< fraction of hot pixels, and the mean of their additional electrons
     float full_well_e;  ///< may be infinite
     float read_noise_e, row_noise_e;  ///< before the gain
-    float converter_noise_dn;  ///< after it
+    float converter_noise_dn;  ///< after the gain
     float gain_dn_per_e, black_level_dn;
     float largest_dn;
-    std::uint32_t seed, serial;  ///< of the noise of this exposure, and of what a sensor has for ever
+    std::uint32_t seed, serial;  ///< seeds of the noise of this exposure, and of the sensor's fixed pattern
 };
 
-/// Random numbers of one pixel: functions of pixel, seed and dimension alone.
+/// Random numbers of a pixel: functions of pixel, seed and dimension alone.
 namespace sensor_noise {
 
-/// The seed takes part twice: otherwise another seed would give the same numbers to other pixels.
+/// The seed enters twice: otherwise another seed would give the same numbers to other pixels.
 REALCAM_INLINE std::uint32_t stream(std::uint32_t pixel, std::uint32_t seed) {
     return hash32(pixel, seed) ^ hash32(seed, 0x5eed);
 }
 
-/// Far behind the attempts of Poisson numbers, which use the same stream.
+/// Dimensions far beyond the attempts of Poisson sampling, which use the same stream.
 inline constexpr std::uint32_t kRead = 0x10000, kRow = 0x10002;
-/// In the stream of the serial number.
+/// Dimensions in the stream of the serial number.
 inline constexpr std::uint32_t kPattern = 0, kHot = 2;
 
 /// Current of a hot pixel in units of its mean, exponentially distributed; 0 for all but a share of the pixels.
@@ -62,11 +62,11 @@ REALCAM_INLINE float hot_current(std::uint32_t bits, float share) {
 
 }  // namespace sensor_noise
 
-/// N pixels in a row of a mosaic.
+/// N consecutive pixels in a row of a mosaic.
 template <int N>
 struct SensorLanes {
-    alignas(64) float light_e[N];  ///< electrons expected of the light, were all pixels alike
-    alignas(64) double mean[N];  ///< electrons expected
+    alignas(64) float light_e[N];  ///< expected photoelectrons, without variation between pixels
+    alignas(64) double mean[N];  ///< expected electrons
     alignas(64) double count[N];
     alignas(64) std::uint32_t stream[N];
     alignas(64) std::int32_t is_left[N];
@@ -86,23 +86,25 @@ REALCAM_INLINE float angular_response(const AngularResponse& response, float col
     return response.at[lower] + share * (response.at[lower + 1] - response.at[lower]);
 }
 
-/// Electrons beyond which neither well nor converter can tell how many there are; so that absurd light stays finite.
+/// Number of electrons beyond which neither the well nor the converter can tell the difference. Keeps absurd light
+/// finite.
 REALCAM_INLINE float most_electrons(const SensorRequest& request) {
     const float converter = request.largest_dn / request.gain_dn_per_e;
     const float most_of_these = request.full_well_e < converter ? request.full_well_e : converter;
-    const float limit = most_of_these < 1e15f ? most_of_these : 1e15f;  // whole numbers in a double, with room
+    const float limit = most_of_these < 1e15f ? most_of_these : 1e15f;  // well within the range of whole numbers of a
+                                                                        // double
     return limit +
            40.0f * (std::sqrt(limit) + request.read_noise_e + request.row_noise_e + request.offset_deviation_e) +
            1000.0f;
 }
 
-/// Light of any size, so that sums of it are finite; NaN stays.
+/// Clamps light, so that sums of it are finite; NaN is kept.
 REALCAM_INLINE float bounded(float light) {
     const float below = light > 1e24f ? 1e24f : light;
     return below < -1e24f ? -1e24f : below;
 }
 
-/// Electrons of the light alone, were all pixels alike.
+/// Expected photoelectrons, without variation between pixels.
 template <int N>
 void expect_light(const SensorRequest& request, std::int32_t row, std::int32_t column, const float* exposure,
                   SensorLanes<N>& lanes) {
@@ -122,7 +124,7 @@ void expect_light(const SensorRequest& request, std::int32_t row, std::int32_t c
             angular_response(request.angular_response, static_cast<float>(column + k), static_cast<float>(row));
 }
 
-/// What each pixel has of its own: response, dark electrons and offset.
+/// Adds the fixed pattern of each pixel: response, dark electrons and offset.
 template <int N>
 void add_pattern(const SensorRequest& request, std::uint32_t first_pixel, float most, SensorLanes<N>& lanes) {
     REALCAM_LANES
@@ -133,13 +135,14 @@ void add_pattern(const SensorRequest& request, std::uint32_t first_pixel, float 
         const float seen = lanes.light_e[k] * (1.0f + request.response_deviation * fixed.x);
         const float hot = sensor_noise::hot_current(hash32(pattern, sensor_noise::kHot), request.hot_share);
         const float mean =
-            (seen > 0.0f ? seen : 0.0f) + request.dark_electrons + request.hot_electrons * hot;  // NaN is no light
+            /// NaN counts as no light.
+            (seen > 0.0f ? seen : 0.0f) + request.dark_electrons + request.hot_electrons * hot;
         lanes.mean[k] = static_cast<double>(mean < most ? mean : most);
         lanes.offset_e[k] = request.offset_deviation_e * fixed.y;
     }
 }
 
-/// Small means, some lanes at a time, so that few wait for one of a larger mean.
+/// Samples counts of small means by inversion, some lanes at a time, so that few wait for one of a larger mean.
 template <int N>
 void invert_small_means(SensorLanes<N>& lanes) {
     constexpr int kGroup = 32;
@@ -167,8 +170,8 @@ void invert_small_means(SensorLanes<N>& lanes) {
     }
 }
 
-/// Draws numbers of larger means. Most come from the first attempt, which all lanes make together; the others are drawn
-/// one by one.
+/// Samples counts of larger means by rejection. Most come from the first attempt, which all lanes make together; the
+/// remaining ones are drawn one by one.
 template <int N>
 void draw_large_means(SensorLanes<N>& lanes) {
     std::int32_t left = 0;
@@ -213,7 +216,8 @@ void convert(const SensorRequest& request, const SensorLanes<N>& lanes, float (&
 
 }  // namespace sensor_detail
 
-/// The rows of a request. Every number is a function of the pixel and the seeds, so rows may be done in any order.
+/// Exposes the rows of a request. Every value is a function of the pixel and the seeds, so rows may be processed in any
+/// order.
 template <int N>
 void expose_rows(const SensorRequest& request) {
     using namespace sensor_detail;

@@ -20,7 +20,7 @@ double table_at(const std::vector<SensorPoint>& table, double x) {
 
 namespace {
 
-/// Photons of one joule, by wavelength in nm.
+/// Photons per joule, by wavelength in nm.
 double photons_per_joule(double wavelength_nm) {
     constexpr double kPlanck = 6.62607015e-34, kLight = 299792458;  // J s, m / s: exact in SI
     return wavelength_nm * 1e-9 / (kPlanck * kLight);
@@ -28,7 +28,7 @@ double photons_per_joule(double wavelength_nm) {
 
 constexpr double kLumensPerWatt = 683;  // at the maximum of V: the candela's definition
 
-/// Electrons in a square micrometre of a spectral exposure of 1 J / m^2 / nm, by filter, cover glass included.
+/// Electrons per square micrometre for a spectral exposure of 1 J / m^2 / nm, by filter, cover glass included.
 std::array<double, 3> electrons_at(const Sensor& sensor, double wavelength_nm) {
     const double photons = 1e-12 * photons_per_joule(wavelength_nm) * table_at(sensor.cover_glass, wavelength_nm);
     std::array<double, 3> result{};
@@ -40,7 +40,8 @@ std::array<double, 3> electrons_at(const Sensor& sensor, double wavelength_nm) {
     return result;
 }
 
-/// Where a table of the integrand bends: all of it is a product of functions that are linear in between.
+/// Wavelengths at which a table of the integrand has a kink. In between, the integrand is a product of linear
+/// functions.
 std::vector<double> knots_of(const Sensor& sensor, const Illuminant& illuminant) {
     std::vector<double> knots;
     const auto add = [&](double nm) {
@@ -105,7 +106,7 @@ double full_well_e(double saturation_capacity_e, double prnu_percent) {
     };
     const auto rises = [&](double full) {
         double sum = 0;
-        for (int i = -24; i <= 24; ++i) {  // PRNU up to six deviations, in quarters
+        for (int i = -24; i <= 24; ++i) {  // PRNU up to six standard deviations, in quarters
             const double deviations = 0.25 * i, response = 1 + 0.01 * prnu_percent * deviations;
             sum += std::exp(-deviations * deviations / 2) * response * slope(response * saturation_capacity_e, full);
         }
@@ -138,7 +139,7 @@ double SensorSpeed::highest_iso() const {
 double SensorSpeed::gain_dn_per_e(double iso) const {
     if (!(iso > 0) || !std::isfinite(iso)) throw InputError("iso must be a positive number");
     if (conversion_.gain_dn_per_e == 0) return range_dn() * iso / (kSaturation * electrons_per_lux_s_);
-    constexpr double kRounded = 5e-3;  // of what users copy from a message or a table
+    constexpr double kRounded = 5e-3;  // rounding of values that users copy from a message or a table
     if (iso < lowest_iso() * (1 - kRounded))
         throw InputError("the lowest ISO of this sensor is " + rounded(lowest_iso()) + "; it is " + rounded(iso) +
                          " here (camera.replace(iso=...).metered(scene), or the command realcam render with --iso, "

@@ -8,8 +8,8 @@
 
 namespace REALCAM_NAMESPACE {
 
-// The conversion from lux seconds to electrons. The film's colours stand for the spectra that Mallett and Yuksel's
-// basis makes of them, times the illuminant (film_spectrum.hpp). So what a filter sees of one is linear in its three
+// Conversion from lux seconds to electrons. The film's colours stand for the spectra into which Mallett and Yuksel's
+// basis upsamples them, times the illuminant (film_spectrum.hpp). So the response of a filter is linear in the three
 // channels, and a sensor is a 3 x 3 matrix. The film is balanced to its illuminant: (1, 1, 1) is the illuminant's own
 // spectrum, of 1 lux second.
 
@@ -18,7 +18,7 @@ using SensorMatrix = std::array<double, 9>;
 
 namespace sensor_detail {
 
-/// Linear between the points, and `beyond` outside.
+/// Linear interpolation between the points; `beyond` outside.
 template <class Point, class At, class Value>
 double interpolated(const std::vector<Point>& points, double x, double beyond, At&& at, Value&& value) {
     if (points.empty() || x < at(points.front()) || x > at(points.back())) return beyond;
@@ -33,35 +33,36 @@ double table_at(const std::vector<SensorPoint>& table, double x);
 
 }  // namespace sensor_detail
 
-/// Electrons in a square micrometre for one lux second of each of the film's channels. Throws InputError where the
-/// illuminant has no light that is seen.
+/// Electrons per square micrometre for one lux second of each of the film's channels. Throws InputError if the
+/// illuminant has no visible light.
 SensorMatrix electrons_per_um2(const Sensor& sensor, const Illuminant& illuminant);
 
-/// What the filters see of the illuminant itself, per lux second.
+/// Filter responses to the illuminant itself, per lux second.
 std::array<double, 3> white_of(const SensorMatrix& matrix);
 
-/// The number of electrons at which a well is full. EMVA 1288 measures the saturation capacity where the temporal
-/// variance, averaged over the pixels, is largest. For a Poisson number of mean m that is cut at C it is m v(z). Here z
-/// = (C - m) / sqrt(m), and v is the variance of a standard normal number cut at z. Its derivative by m is v(z) - v'(z)
-/// (C + m) / (2 sqrt(m)). Pixels have the means m (1 + PRNU). So C lies some three deviations above.
+/// Number of electrons at which a well is full. EMVA 1288 measures the saturation capacity where the temporal variance,
+/// averaged over the pixels, is largest. For a Poisson number of mean m that is clipped at C it is m v(z). Here z = (C
+/// - m) / sqrt(m), and v is the variance of a standard normal number clipped at z. Its derivative by m is v(z) - v'(z)
+/// (C + m) / (2 sqrt(m)). Pixels have the means m (1 + PRNU). So C lies some three standard deviations above the
+/// saturation capacity.
 double full_well_e(double saturation_capacity_e, double prnu_percent);
 
-/// That of a sensor.
+/// Full well of a sensor, electrons.
 inline double full_well_e(const Sensor& sensor) {
     return full_well_e(sensor.conversion.saturation_capacity_e, sensor.noise.prnu_percent);
 }
 
-/// A sensor with pixels of one size: what its ISO numbers mean. ISO 12232, saturation-based speed: S = 78 / H, H being
-/// the exposure in lux seconds at which white, here under D65, saturates its most sensitive filter.
+/// ISO speed of a sensor with a given pixel pitch. ISO 12232, saturation-based speed: S = 78 / H, H being the exposure
+/// in lux seconds at which white, here under D65, saturates its most sensitive filter.
 class SensorSpeed {
 public:
     SensorSpeed(const Sensor& sensor, double pitch_um);
 
-    /// 0 and infinite where the gain is whatever the ISO asks for.
+    /// Lowest and highest ISO; 0 and infinite if the gain is determined by the ISO.
     double lowest_iso() const;
-    double highest_iso() const;  ///< by the gain
-    /// Overall system gain, DN per electron: the largest for ISO numbers above the highest, for which the picture is
-    /// brightened when it is developed. Throws InputError for one below the lowest.
+    double highest_iso() const;  ///< at the largest gain
+    /// Overall system gain, DN per electron. ISO numbers above the highest get the largest gain; their pictures are
+    /// brightened in development. Throws InputError for an ISO number below the lowest.
     double gain_dn_per_e(double iso) const;
 
 private:

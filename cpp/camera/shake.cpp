@@ -13,8 +13,8 @@
 namespace realcam {
 namespace {
 
-constexpr int kCosines = 64;  // of each angle and shift
-/// Frequency, in corners, above which nothing is drawn: 4e-4 of the spectrum lie there.
+constexpr int kCosines = 64;  // number for each angle and shift
+/// Highest frequency, in units of the corner frequency: 4e-4 of the spectrum lie above it.
 constexpr double kHighest = 10;
 constexpr double kMostDegrees = 90, kMostMetres = 1e6, kMostHertz = 1e4;
 
@@ -26,7 +26,8 @@ public:
         for (std::uint32_t axis = 0; axis < 3; ++axis) {
             for (std::uint32_t k = 0; k < kCosines; ++k) {
                 const std::uint32_t stream = hash32((first_stream + axis) * 2 * kCosines + 2 * k, seed);
-                // Each has the same share of the spectrum, and a random frequency in it: nothing repeats.
+                // Each cosine has the same share of the spectrum and a random frequency in it, so that the sum does not
+                // repeat.
                 const double frequency = corner_hz * frequency_below((k + unit(stream)) / kCosines);
                 cosines_[axis][k] = {kTurn * frequency, kTurn * unit(hash32(stream))};
             }
@@ -49,7 +50,8 @@ private:
 
     static double unit(std::uint32_t bits) { return (bits + 0.5) * 0x1p-32; }
 
-    /// Of the corner, below which a share of the spectrum lies: its integral is 2 / pi (atan x + x / (1 + x^2)).
+    /// Frequency, in units of the corner frequency, below which a share of the spectrum up to kHighest lies. The
+    /// spectrum's integral is 2 / pi (atan x + x / (1 + x^2)).
     static double frequency_below(double share) {
         const auto below = [](double x) { return 2 / std::numbers::pi * (std::atan(x) + x / (1 + x * x)); };
         const double all = below(kHighest);
@@ -111,7 +113,8 @@ std::vector<ShakeKey> shake_at(const Shake& shake, const std::vector<double>& ti
 Camera shaken(Camera camera, const Shake& shake) {
     if (shake.is_still()) return camera;
     const TimeInterval exposure = camera.exposure();
-    // Steps in which a drawn curve bends by little, and all at which the curve and the camera's own way may bend.
+    // Uniform steps over which a random curve bends little, and all times at which the measured curve and the camera's
+    // own motion may have a kink.
     const double step_s = 0.1 / (kHighest * shake.corner_hz);
     constexpr int kMostSteps = 1000;
     const int steps = static_cast<int>(

@@ -6,7 +6,7 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// How far a camera that is held is from where it should be, at a time, in its own axes: right, up and backward.
+/// Displacement of a hand-held camera from its intended pose at a time, in its own axes: right, up and backward.
 struct ShakeKey {
     double time_s = 0;
     Vec3d rotation_deg = {0, 0, 0};  ///< about x, then y, then z, right-handed
@@ -15,14 +15,15 @@ struct ShakeKey {
     bool operator==(const ShakeKey&) const = default;
 };
 
-/// The shake of a camera in the hand: a curve that was measured, and one that is drawn. They are added.
+/// Shake of a hand-held camera: the sum of a measured curve and a random one.
 ///
-/// Each of the three angles, and of the three shifts, is drawn as a Gaussian process of its own with the one-sided
-/// spectrum 4 rms^2 / (pi f_c) / (1 + (f / f_c)^2)^2 over the frequency f: even up to about the corner f_c, and falling
-/// with f^-4. It is a sum of cosines (M. Shinozuka and G. Deodatis, Appl. Mech. Rev. 44 (1991) 191), and so a function
-/// of the time and the seed alone.
+/// Each of the three angles and three shifts is an independent Gaussian process with the one-sided spectrum 4 rms^2 /
+/// (pi f_c) / (1 + (f / f_c)^2)^2 over the frequency f: flat up to about the corner frequency f_c, and falling with
+/// f^-4. It is a sum of cosines (M. Shinozuka and G. Deodatis, Appl. Mech. Rev. 44 (1991) 191), and so a function of
+/// time and seed alone.
 struct Shake {
-    std::vector<ShakeKey> curve;  ///< in rising order of time, even between; before and after, its ends
+    std::vector<ShakeKey> curve;  ///< measured, in increasing order of time; linear in between, constant before and
+                                  ///< after
     double rms_deg = 0;
     double rms_mm = 0;
     double corner_hz = 1;
@@ -33,13 +34,13 @@ struct Shake {
     bool is_still() const { return curve.empty() && rms_deg == 0 && rms_mm == 0; }
 };
 
-/// Throws InputError.
+/// Throws InputError if a parameter is invalid.
 void validate(const Shake& shake);
 
-/// Where the shake has the camera at these times.
+/// Displacements of the camera at these times.
 std::vector<ShakeKey> shake_at(const Shake& shake, const std::vector<double>& times_s);
 
-/// The camera with the shake of its exposure added to how it moves. For other times it is wrong. Throws InputError.
+/// The camera with the shake added to its motion during its exposure; not valid for other times. Throws InputError.
 Camera shaken(Camera camera, const Shake& shake);
 
 }  // namespace REALCAM_NAMESPACE

@@ -98,7 +98,7 @@ inline constexpr VisibleSpectrum kIlluminantFL2 = {
     18.66, 17.73, 16.54, 15.21, 13.8,  12.36, 10.95, 9.65,  8.4,   7.32,  6.31,  5.43,  4.68,  4.02,
     3.45,  2.96,  2.55,  2.19,  1.89,  1.64,  1.53,  1.27,  1.1,   0.99,  0.88,  0.76,  0.68,  0.61,
     0.56,  0.54,  0.51,  0.47,  0.47,  0.43,  0.46,  0.47,  0.4,   0.33,  0.27};
-/// What a reflectance has of linear sRGB's red, by Mallett.
+/// Red basis spectrum for upsampling linear sRGB reflectance (Mallett and Yuksel 2019).
 inline constexpr VisibleSpectrum kBasisRed = {
     0.327457414,   0.323750578,   0.313439461,   0.288879383,   0.239205681,   0.189702037,   0.121746068,
     0.0745782707,  0.0444331586,  0.0289286321,  0.0223166535,  0.0169113073,  0.0141811071,  0.0130531427,
@@ -112,7 +112,7 @@ inline constexpr VisibleSpectrum kBasisRed = {
     0.432701597,   0.405358046,   0.385491835,   0.370983585,   0.357608702,   0.3487128,     0.344880119,
     0.341917877,   0.339531093,   0.337169504,   0.336172019,   0.335167443,   0.334421625,   0.33400876,
     0.333915793,   0.333818455,   0.333672775,   0.333569513};
-/// What a reflectance has of linear sRGB's green, by Mallett.
+/// Green basis spectrum for upsampling linear sRGB reflectance (Mallett and Yuksel 2019).
 inline constexpr VisibleSpectrum kBasisGreen = {
     0.331861713,  0.329688188,  0.327860022,  0.31917358,   0.294322584,  0.258697065,  0.188894319,  0.125388382,
     0.0786870603, 0.0531432709, 0.042288146,  0.0333183455, 0.0297559482, 0.0303312505, 0.0309885719, 0.0316863552,
@@ -125,7 +125,7 @@ inline constexpr VisibleSpectrum kBasisGreen = {
     0.317815883,  0.322990347,  0.326353848,  0.329143902,  0.330808727,  0.33148269,   0.33198455,   0.332341173,
     0.332912009,  0.33291928,   0.333027673,  0.333179705,  0.333247031,  0.333259349,  0.33327505,   0.333294328,
     0.333309425};
-/// What a reflectance has of linear sRGB's blue, by Mallett.
+/// Blue basis spectrum for upsampling linear sRGB reflectance (Mallett and Yuksel 2019).
 inline constexpr VisibleSpectrum kBasisBlue = {
     0.340680792,  0.346561187,  0.358700493,  0.391947027,  0.466471731,   0.551600896,   0.689359611,   0.800033347,
     0.876879781,  0.917928097,  0.935395201,  0.949770347,  0.956062945,   0.956615607,   0.957025265,   0.957024931,
