@@ -21,8 +21,8 @@ enum class KeyWay {
 struct CameraKey {
     double time_s = 0;
     std::optional<double> focus_m = {};  ///< distance from object plane to film; interpolated in 1 / distance
-    std::optional<double> focal_length_mm =
-        {};  ///< of a zoom lens that is not refocused; interpolated in the logarithm, as are the next three
+    /// Zoom setting: focal length without refocusing. This and the next three are interpolated in the logarithm.
+    std::optional<double> focal_length_mm = {};
     std::optional<double> f_number = {};
     std::optional<double> exposure_time_s = {};
     std::optional<double> iso = {};

@@ -47,7 +47,8 @@ public:
     const std::vector<double>& pupil_wavelengths() const { return pupil_wavelengths_; }
 
 private:
-    /// Also sets the wavelengths of the pupil to both ends of the spectrum, whose rays leave the lens farthest apart.
+    /// Sets the spectrum, and the wavelengths of the pupil to the design wavelength and both ends of the spectrum,
+    /// whose rays leave the lens farthest apart.
     void set_wavelengths(FilmSpectrum spectrum);
 
     void set_coatings(const EffectTables* same);

@@ -38,10 +38,11 @@ LensSystem with_stop_around_blades(LensSystem lens);
 /// Sets half_tangent and front of a ray that has left the lens with origin o and unit direction d.
 void set_front(Vec3f o, Vec3f d, FoundRay& ray);
 
-/// Entrance-pupil search: finds the entrance-pupil bounds by rays traced back from the film, where bundles are wide;
-/// those of a fisheye are a hundredth of its front. Lens and film circle are rotationally symmetric, so one azimuth of
-/// the film is enough; blades are replaced by the circumcircle of their opening. A ghost's bundle may be narrow: it is
-/// searched with the stop wide open first, then with the actual stop, and finally within the bounds of the rays found.
+/// Entrance-pupil search: finds the entrance-pupil bounds by rays traced back from the film, where bundles are wide. At
+/// the front of a fisheye they cover only a hundredth of its first surface. Lens and film circle are rotationally
+/// symmetric, so one azimuth of the film is enough; blades are replaced by the circumcircle of their opening. A ghost's
+/// bundle may be narrow: it is searched with the stop wide open first, then with the actual stop, and finally within
+/// the bounds of the rays found.
 struct EntrySearch {
     using Found = FoundRay;
 

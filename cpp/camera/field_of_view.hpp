@@ -4,7 +4,7 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Angle to the axis, in front of the lens, of the light that reaches the film `image_height_mm` from its centre,
+/// Angle to the axis, in front of the lens, of the light that reaches the film at `image_height_mm` from the axis,
 /// radians: the mean direction of real meridional rays or, if few of those traced pass the stop, the direction of the
 /// chief ray. NaN if no ray from there passes the lens.
 double field_angle(const LensSystem& lens, double image_height_mm);

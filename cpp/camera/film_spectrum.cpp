@@ -142,7 +142,7 @@ std::vector<WavelengthCell> cells_of(const std::vector<Piece>& pieces, int count
     double passed = 0;
     std::size_t at = 0;
     const auto edge_at = [&](double share) -> Edge {
-        // Also skips pieces without light, in which no wavelength may be sampled.
+        // Skips pieces without light, too, in which no wavelength may be sampled.
         while (at + 1 < pieces.size() && (passed + pieces[at].density < share || !(pieces[at].density > 0))) {
             for (std::size_t k = 0; k < 9; ++k) film[k] += pieces[at].film[k];
             passed += pieces[at].density;

@@ -136,7 +136,7 @@ REALCAM_INLINE void place_lens_rays(const CameraView& camera, const LensRays<T, 
     REALCAM_LANES
     for (int i = 0; i < N; ++i) {
         const bool passed = inside.status[i] == 0;
-        // After tracing, directions have unit length to 1e-4 only for rays from far beside the lens.
+        // Tracing keeps the length only near 1: to 1e-4 for a ray from far beside the lens.
         place_ray(
             camera, rays, i,
             {static_cast<Vec3f>(inside.origin[i]), static_cast<Vec3f>(normalized(inside.direction[i])), rays.weight[i]},

@@ -68,7 +68,7 @@ private:
     void find_ways(const Search& search, const LensSystem& of_lens, const LensSystem& lens,
                    const std::vector<AxialPair>& pairs, double least_share, const PupilTracer& tracer);
 
-    // set_range sets the range of directions from the rays of all paths, the last of which is the lens's direct path.
+    // set_range sets the range of directions from the rays of all paths; the last path is the lens's direct one.
     // add_entries appends the bounds where the light of one path enters and leaves the lens.
     void set_range(const EntrySearch& search, const std::vector<std::vector<FoundRay>>& found);
     void set_range(const FreeEntrySearch& search, const std::vector<std::vector<FreeFoundRay>>& found);

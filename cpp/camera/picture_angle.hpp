@@ -6,8 +6,8 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Field angle in front of the lens, radians, at a distance of `image_height_mm` from the middle of the picture, for
-/// the camera's model. If a full lens has no image there: the angle at the edge of its image.
+/// Field angle in front of the lens, radians, of light that the camera's model images at `image_height_mm` from the
+/// axis. Beyond the image of a full lens: the field angle at the edge of the image.
 double picture_angle(const Camera& camera, double image_height_mm);
 
 /// Field of view from edge to edge of the picture, and from corner to corner, radians. For a shifted film, the angles

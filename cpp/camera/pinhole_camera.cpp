@@ -37,7 +37,7 @@ FilmPinhole pinhole_of_round_lens(const Camera& camera) {
 }
 
 /// Computed from chief rays of film points close to the centre, by differences over four points with an error of fourth
-/// order. Filled with NaN if there are no chief rays.
+/// order. Contains NaN if a chief ray does not exist.
 FilmPinhole pinhole_of_any_lens(const LensSystem& lens) {
     constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
     const RaysFromFilm rays(lens, lens.wavelength_nm);

@@ -8,8 +8,8 @@ namespace REALCAM_NAMESPACE {
 // micro-lenses are shifted towards the middle of the film, so that light from the axis of the pupil falls between the
 // diodes all over the film, and no light is lost between them.
 
-/// Sets 1 for samples that pass the right half of the exit pupil, as the photographer looks through the lens. The
-/// paraxial pupil is halved; where rims vignette it, one half gets less light, as in a real camera.
+/// Sets `is_right` to 1 for samples that pass the right half of the exit pupil, as the photographer looks through the
+/// lens. The paraxial pupil is halved; where rims vignette it, one half gets less light, as in a real camera.
 template <Effects effects, int N>
 REALCAM_HD inline void find_right_half(const CameraView& camera, const SampleBlock<N>& block,
                                        Lanes<std::int32_t, N>& is_right) {

@@ -4,7 +4,7 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Range of a camera's rays, of which there are spp for each pixel, in row-major order of the pixels.
+/// Range of a camera's rays, in row-major order of the pixels, with spp rays for each pixel.
 struct RayRange {
     std::int64_t first, count;
 };
@@ -23,7 +23,7 @@ struct RayRequest {
     float* weights;               ///< irradiance on the film for unit radiance; 0: blocked
     float* times;                 ///< as fractions of the camera's exposure
     float* wavelengths_nm;
-    float design_wavelength_nm;  ///< of all rays if the camera has no dispersion
+    float design_wavelength_nm;  ///< used for all rays if the camera has no dispersion
 
     REALCAM_HD std::int64_t count() const { return range.count; }
 };

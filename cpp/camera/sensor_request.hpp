@@ -91,8 +91,7 @@ REALCAM_INLINE float angular_response(const AngularResponse& response, float col
 REALCAM_INLINE float most_electrons(const SensorRequest& request) {
     const float converter = request.largest_dn / request.gain_dn_per_e;
     const float most_of_these = request.full_well_e < converter ? request.full_well_e : converter;
-    const float limit = most_of_these < 1e15f ? most_of_these : 1e15f;  // well within the range of whole numbers of a
-                                                                        // double
+    const float limit = most_of_these < 1e15f ? most_of_these : 1e15f;  // far below 2^53: exact in a double
     return limit +
            40.0f * (std::sqrt(limit) + request.read_noise_e + request.row_noise_e + request.offset_deviation_e) +
            1000.0f;
@@ -135,7 +134,7 @@ void add_pattern(const SensorRequest& request, std::uint32_t first_pixel, float 
         const float seen = lanes.light_e[k] * (1.0f + request.response_deviation * fixed.x);
         const float hot = sensor_noise::hot_current(hash32(pattern, sensor_noise::kHot), request.hot_share);
         const float mean =
-            /// NaN counts as no light.
+            // NaN counts as no light.
             (seen > 0.0f ? seen : 0.0f) + request.dark_electrons + request.hot_electrons * hot;
         lanes.mean[k] = static_cast<double>(mean < most ? mean : most);
         lanes.offset_e[k] = request.offset_deviation_e * fixed.y;

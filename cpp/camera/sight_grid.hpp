@@ -26,8 +26,8 @@ private:
     static constexpr int kColumns = 24, kRows = 16;
 
     /// Projection ray of a film point: its unit direction; `foot`, its point nearest to the reference point, relative
-    /// to the latter; `start`, where it leaves the lens, along the ray from the foot; the irradiance of the film point;
-    /// and `shift`, the offset on the film of the light's centroid for the ray's point in focus, mm.
+    /// to the latter; `start`, the position along the ray, from the foot, where it leaves the lens; the film point's
+    /// irradiance; and, as `shift`, the offset on the film of the light's centroid for the ray's point in focus, mm.
     struct Seen {
         Vec3d direction, foot;
         double start, light;
@@ -61,8 +61,7 @@ private:
     /// Node whose ray passes nearest to a point, by angle; std::nullopt if the point lies in front of no ray's start.
     /// Points are relative to the reference point.
     std::optional<GridPlace> nearest_node(Vec3d from) const;
-    /// Moves `at` to the position in the grid whose ray passes through the point. Returns false if there is no such
-    /// position.
+    /// Moves `at` to the position in the grid whose ray passes through the point. Returns false if no ray does.
     bool follow(Vec3d from, GridPlace& at) const;
 
     FilmArea area_;

@@ -49,8 +49,8 @@ struct TracedLightsView {
     const std::int32_t* light_of_area;  ///< for each area light of the scene: index in `lights`, or -1
     const float* share_of_area;  ///< probability of being sampled, given its light
     std::int32_t area_count;
-    /// Light samples for each sample of all pixels, times the factor that makes their density that of pixel samples
-    /// (traced_light_weight), mm^2 sr.
+    /// Number of light samples per sample of each pixel, times the factor that makes their density that of pixel
+    /// samples (traced_light_weight), mm^2 sr.
     float scale;
 
     /// Calls move(array, count) for every array.
