@@ -3,9 +3,9 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// The colour of a surface, whatever the light and the direction of view, 0 to 1: the reflectance of its lobes at
-/// normal incidence, one above the other. What passes counts as reflected, so that clear glass is white. Clear coats
-/// are left out. (So has Open Image Denoise its albedos.)
+/// Albedo of a surface point, 0 to 1, independent of light and view (an auxiliary image for Open Image Denoise): the
+/// reflectances of its lobes at normal incidence, layered. Transmitted light counts as reflected, so that clear glass
+/// is white. Clear coats are ignored.
 REALCAM_INLINE Color albedo_of(const SurfacePoint& point) {
     using make_bsdf_detail::unit_range;
     const Material& m = *point.material;

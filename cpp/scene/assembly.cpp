@@ -46,10 +46,11 @@ std::string label(const Assembly& assembly, std::size_t instance) {
 }
 
 std::string transform_error(const Affine<double>& map) {
-    // Far inside of what float can do, and beyond what anybody has seen.
+    // Well within float's range, and beyond any real scene.
     constexpr double kFarthest_m = 1e12, kMost = 1e6, kLeast = 1e-6;
-    constexpr double kLeastVolume =
-        1e-4;  // of what the three would span at right angles: its inverse has digits to lose
+    // Least determinant relative to that of orthogonal axes of the same lengths; below it the inverse loses too many
+    // digits.
+    constexpr double kLeastVolume = 1e-4;
     const auto within = [](double v) { return v >= kLeast && v <= kMost; };
     const double x = length(map.x), y = length(map.y), z = length(map.z);
     if (x == 0 || y == 0 || z == 0) return "a transform must keep three directions; this one makes the object flat";
@@ -103,7 +104,7 @@ Assembly standing_at(Assembly assembly, double time_s) {
 
 namespace {
 
-/// The transform of a part in the frame of its whole.
+/// Transform of a part relative to the instance it belongs to.
 Affine<double> whole_from_part(const Affine<double>& scene_from_whole, const Affine<double>& scene_from_part) {
     const InverseAffine<double> back = scene_from_whole.inverse();
     return {back.direction(scene_from_part.x), back.direction(scene_from_part.y), back.direction(scene_from_part.z),
@@ -137,7 +138,7 @@ void move(Assembly& assembly, std::size_t instance, const Placement& placement) 
         const auto within = [&](double time) {
             return whole_from_part(whole.transform_at(time), part.transform_at(time));
         };
-        // A part that moves with its whole alone has no keys of its own to be kept.
+        // A part that is rigidly attached to its whole has no keys of its own to preserve.
         const std::vector<double> own = all_times({whole.motion.get(), part.motion.get()});
         const Affine<double> first = within(own.empty() ? 0.0 : own.front());
         const bool is_fixed =

@@ -14,13 +14,13 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Where an object is in the scene, or how it moves there. Metres on both sides.
+/// Animated transform of an object: a fixed transform or keyframes. Metres in both frames.
 struct Placement {
-    Affine<double> scene_from_object;  ///< of what moves, at time 0
-    std::shared_ptr<const Motion> motion;  ///< null: it stays where it is
+    Affine<double> scene_from_object;  ///< for an animated object: at time 0
+    std::shared_ptr<const Motion> motion;  ///< null: not animated
 
     Placement(const Affine<double>& map = {}) : scene_from_object(map) {}
-    /// The keys are a motion (motion_error).
+    /// The keys must be valid (motion_error returns an empty string).
     Placement(Motion keys) : scene_from_object(keys.at(0)), motion(std::make_shared<const Motion>(std::move(keys))) {}
 
     Affine<double> at(double time_s) const { return motion ? motion->at(time_s) : scene_from_object; }
@@ -32,8 +32,8 @@ struct Instance {
 
     std::shared_ptr<const Scene> object;
     Affine<double> scene_from_object;  ///< see Placement
-    std::string name;  ///< for messages, and to find it by
-    /// Number of the instance of which this one is a part, and with which it moves. A part comes after its whole.
+    std::string name;  ///< for messages and look-up
+    /// Index of the parent instance, with which this one moves, or kNoWhole. A part comes after its parent.
     std::ptrdiff_t part_of = kNoWhole;
     std::shared_ptr<const Motion> motion = nullptr;
 
@@ -41,13 +41,14 @@ struct Instance {
     void put(const Placement& placement);
 };
 
-/// A scene as static geometry and instances of objects. A value: copies share what is
-/// large. Backends know the last one again by these pointers, and keep all that they made of it where only transforms
+/// A scene as static geometry and instances of objects, with value semantics: copies share the geometry. Backends
+/// recognise the previous scene by these pointers and reuse everything that they built for it if only transforms
 /// differ.
 struct Assembly {
-    std::shared_ptr<const Scene> static_geometry;  ///< with the lights; may have no triangles where there are instances
+    /// With the suns and the environment; may have no triangles if there are instances.
+    std::shared_ptr<const Scene> static_geometry;
     std::vector<Instance> instances;
-    std::vector<SceneCamera> cameras;  ///< that its file brings along
+    std::vector<SceneCamera> cameras;  ///< from the scene file
 
     Assembly() = default;
     Assembly(std::shared_ptr<const Scene> scene) : static_geometry(std::move(scene)) {}
@@ -60,30 +61,30 @@ struct Assembly {
     std::size_t triangle_count() const;
 };
 
-/// Whether two assemblies are made of the same parts, of which some may have other transforms.
+/// True if two scenes share static geometry and objects; transforms may differ.
 bool same_parts(const Assembly& a, const Assembly& b);
 
 bool same_placement(const Instance& a, const Instance& b);
 
 bool same_transforms(const Assembly& a, const Assembly& b);
 
-/// A name for messages.
+/// Returns the instance's index and name, for messages.
 std::string label(const Assembly& assembly, std::size_t instance);
 
-/// Why a map is no transform for an instance; empty where it is one.
+/// Returns why a matrix is not a valid instance transform; empty if it is valid.
 std::string transform_error(const Affine<double>& map);
 
-/// Why keys are no motion for an instance; empty where they are one.
+/// Returns why keyframes are not a valid motion; empty if they are valid.
 std::string motion_error(const Motion& motion);
 
-/// Throws InputError where a transform is none.
+/// Throws InputError if a transform or motion is invalid.
 void validate_transforms(const Assembly& assembly);
 
-/// Throws InputError where there is nothing to be seen, or where a transform is none. What the parts hold is for
-/// SceneChecks.
+/// Throws InputError if the scene has no triangles, too many instances or an invalid transform. SceneChecks checks the
+/// contents of the geometry.
 void validate(const Assembly& assembly);
 
-/// With a copy of static geometry that `change` has changed.
+/// Returns the scene with its static geometry replaced by a copy that `change(Scene&)` has modified.
 template <class Change>
 Assembly with_static_geometry(Assembly assembly, Change&& change) {
     auto static_geometry = std::make_shared<Scene>(*assembly.static_geometry);
@@ -92,22 +93,22 @@ Assembly with_static_geometry(Assembly assembly, Change&& change) {
     return assembly;
 }
 
-/// The scene as it stands at a time.
+/// Returns the scene frozen at a time: every instance has a fixed transform.
 Assembly standing_at(Assembly assembly, double time_s);
 
-/// But for roundings.
+/// True if two transforms are equal up to rounding (1e-9, relative).
 bool are_close(const Affine<double>& a, const Affine<double>& b);
 
-/// The times of the keys of several motions; null: none.
+/// Key times of several motions, sorted, without duplicates; null motions have no keys.
 std::vector<double> all_times(std::initializer_list<const Motion*> motions);
 
-/// What moves as `at`, a function of the time, says. `times`: of the keys that this wants; none: it stays where it is.
+/// Animated transform with keys at `times`, where it equals at(time); fixed, at(0), if `times` is empty.
 template <class At>
 Placement placement_by(const std::vector<double>& times, At&& at) {
     return times.empty() ? Placement(at(0.0)) : Placement(sampled_motion(times, at));
 }
 
-/// Puts an instance elsewhere, or lets it move, and with it its parts, and theirs.
+/// Sets the transform or motion of an instance and moves its parts, recursively, along with it.
 void move(Assembly& assembly, std::size_t instance, const Placement& placement);
 
 }  // namespace REALCAM_NAMESPACE

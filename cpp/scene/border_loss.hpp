@@ -4,12 +4,13 @@
 
 namespace REALCAM_NAMESPACE {
 
-// What a rough border between two dielectrics loses of light that is reflected or let through by one facet alone, by
-// tables (tools/make_loss_tables.py). `critical`: the cosine of the critical angle, which stands for the two indices.
+// Energy that single scattering (one reflection or transmission by a microfacet) loses at a rough dielectric interface,
+// from tables (tools/make_loss_tables.py). `critical` is the cosine of the critical angle; it stands for the ratio of
+// the two refractive indices.
 
-enum class BorderSide : int { outside, inside };  ///< of the lesser and of the greater index
+enum class BorderSide : int { outside, inside };  ///< the side of the lower and of the higher refractive index
 
-/// Where the tables begin: the index of the least critical angle.
+/// Lowest refractive index of the tables: that of the smallest tabulated cosine of the critical angle.
 inline constexpr float kLeastRoughIndex = 1.0482848f;
 
 namespace border_loss_detail {
@@ -30,8 +31,8 @@ REALCAM_INLINE TablePlace layer_of(float critical) {
 
 }  // namespace border_loss_detail
 
-/// The loss of light at this cosine. `found`: what facets that reflect all of it give back, ggx_albedo(cosine,
-/// alpha).all.
+/// Loss (1 - directional albedo) of single scattering at the cosine of the angle of incidence. `found`: the directional
+/// albedo of perfectly reflecting facets, ggx_albedo(cosine, alpha).all.
 REALCAM_HD inline float border_loss(BorderSide side, float cosine, float alpha, float critical, float found) {
     using namespace border_loss_detail;
     static constexpr float kLoss[] = {REALCAM_BORDER_LOSS};
@@ -46,10 +47,10 @@ REALCAM_HD inline float border_loss(BorderSide side, float cosine, float alpha, 
     return loss < 1.0f ? loss : 1.0f;
 }
 
-/// Over all directions, weighted by their cosines.
+/// Cosine-weighted mean of border_loss over the hemisphere.
 REALCAM_HD inline float border_mean_loss(BorderSide side, float alpha, float critical) {
     using namespace border_loss_detail;
-    static constexpr float kLoss[] = {REALCAM_BORDER_MEAN_LOSS};  // over alpha^2
+    static constexpr float kLoss[] = {REALCAM_BORDER_MEAN_LOSS};  // divided by alpha^2
     static_assert(sizeof kLoss == sizeof(float) * 2 * kBorderLayers * kBorderMeanRows);
     const float* table = kLoss + static_cast<int>(side) * kBorderLayers * kBorderMeanRows;
     return alpha * alpha * read_table(table, layer_of(critical), row_of(alpha, kBorderMeanRows), kBorderMeanRows);

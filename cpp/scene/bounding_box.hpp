@@ -15,7 +15,7 @@ struct BoundingBox {
     bool empty() const { return !(low.x <= high.x); }
     Vec3d size() const { return high - low; }
     double diagonal() const { return empty() ? 0.0 : length(size()); }
-    /// One of the eight, by three bits.
+    /// One of the eight corners: bits 0, 1, 2 choose the high end of x, y, z.
     Vec3d corner(int bits) const {
         return {bits & 1 ? high.x : low.x, bits & 2 ? high.y : low.y, bits & 4 ? high.z : low.z};
     }
@@ -27,29 +27,30 @@ struct BoundingBox {
     }
 };
 
-/// Adds the triangles of a scene, metres, as a map transforms them.
+/// Adds the triangles of a scene (metres), transformed by `map`.
 void add_triangles(BoundingBox& box, const Scene& scene, const Affine<double>& map);
 
-/// Boxes of objects in their own coordinates, each made once, however many instances an object has.
+/// Bounding boxes of objects in object space, each computed once however many instances the object has.
 class ObjectBoxes {
 public:
     const BoundingBox& of(const Scene& object);
-    /// In the scene's coordinates: of the eight corners of the object's box, which may reach past its triangles.
+    /// In scene space: the box of the eight transformed corners of the object's box, which may be larger than its
+    /// triangles require.
     BoundingBox of(const Instance& instance);
 
 private:
     std::unordered_map<const Scene*, BoundingBox> boxes_;
 };
 
-/// Up to here each triangle of each instance is asked by itself; beyond, the box of an object stands for it.
+/// Up to this many instanced triangles bounding boxes are exact; beyond, the transformed box of an object is used.
 inline constexpr std::size_t kMostTrianglesAsked = std::size_t{1} << 22;
 
 inline bool asks_every_triangle(const Assembly& assembly) {
     return assembly.triangle_count() - assembly.static_geometry->triangles.size() <= kMostTrianglesAsked;
 }
 
-/// The box of a scene, metres. For instances with many triangles in all (kMostTrianglesAsked) it holds the boxes of
-/// their objects, and is larger where these are turned.
+/// Bounding box of a scene in metres. Above kMostTrianglesAsked instanced triangles it encloses the transformed boxes
+/// of the objects, which are not tight for rotated instances.
 BoundingBox bounding_box(const Assembly& assembly);
 
 }  // namespace REALCAM_NAMESPACE

@@ -7,49 +7,50 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// How a surface scatters light at one point, for one direction of view: the sum of up to six lobes, each of which a
-/// material model may leave out (make_bsdf.hpp). Directions are unit vectors in the scene's axes, away from the
-/// surface.
+/// BSDF of a surface point for one direction of view: the sum of up to six lobes, which make_bsdf.hpp sets according to
+/// the material model. Directions are unit vectors in the scene's axes, pointing away from the surface.
 class Bsdf {
 public:
     ShadingFrame frame;
-    Vec3f geometric_normal;  ///< on the eye's side, as the frame's
-    Vec3f eye;               ///< local
+    Vec3f geometric_normal;  ///< on the eye's side, like frame.z
+    Vec3f eye;  ///< unit, in the local frame
 
-    Color diffuse = {0, 0, 0};             ///< reflectance
-    FacetReflectance above_diffuse;  ///< of facets as rough as those of `specular`: diffuse gets what they leave
-    Color phong = {0, 0, 0};  ///< reflectance of Phong's lobe
+    Color diffuse = {0, 0, 0};  ///< reflectance
+    /// Reflectance of the specular layer over the diffuse lobe, with facets as rough as those of `specular`; the
+    /// diffuse lobe gets the transmitted share.
+    FacetReflectance above_diffuse;
+    Color phong = {0, 0, 0};  ///< reflectance of the Phong lobe
     float shininess = 0;
     Color mirror = {0, 0, 0};  ///< reflectance for this direction of view
     MicrofacetReflection specular;
-    float specular_weight = 1;  ///< all that `specular` does is multiplied by this
+    float specular_weight = 1;  ///< multiplies the whole `specular` lobe
     DielectricBorder border;
-    float coat_weight = 0;  ///< share of the surface that `coat` covers
+    float coat_weight = 0;  ///< coverage of `coat`, 0 to 1
     MicrofacetReflection coat;
-    HalfTurn coat_turn;  ///< into the frame of the coat's own normal
+    HalfTurn coat_turn;  ///< rotates directions into the frame of the coat's own normal
 
     REALCAM_INLINE Bsdf(Vec3f normal, Vec3f geometric_normal_, Vec3f to_eye)
         : frame(normal), geometric_normal(geometric_normal_), eye(frame.to_local(to_eye)) {}
 
-    /// Called when all lobes are set.
+    /// Must be called after all lobes have been set.
     REALCAM_HD void prepare() {
         is_layered_ = above_diffuse.f90 > 0.0f || coat_weight > 0.0f;
         through_coat_ = through_coat(coat.to_eye);
         left_to_eye_ = grey(1.0f) - above_diffuse.albedo(specular.to_eye);
         diffuse_ = diffuse;
         if (is_layered_) diffuse_ = through_coat_ * diffuse * left_to_eye_ / mean_left();
-        // No table has the loss of a coat with a normal of its own.
+        // The loss tables assume that the coat has the normal of the base.
         if (coat_weight > 0.0f && !specular.is_smooth() && coat_turn.is_none()) prepare_lost_under_coat();
         choose_lobes();
     }
 
     REALCAM_INLINE bool is_opaque() const { return !(border.weight > 0.0f); }
-    /// Leaves Lambert's lobe out.
+    /// Removes the Lambertian lobe.
     REALCAM_INLINE void keep_narrow_lobes() {
         diffuse = diffuse_ = lost_under_coat_ = {0, 0, 0};
         choose_lobes();
     }
-    /// Leaves out all but mirrors and smooth borders.
+    /// Removes all lobes except mirrors and smooth borders.
     REALCAM_INLINE void keep_mirrors() {
         diffuse = diffuse_ = phong = lost_under_coat_ = {0, 0, 0};
         if (!specular.is_smooth()) specular_weight = 0.0f;
@@ -58,7 +59,7 @@ public:
         choose_lobes();
     }
 
-    /// BSDF times cosine; mirrors and smooth borders have none.
+    /// BSDF times cosine; mirrors and smooth borders (delta lobes) contribute 0.
     REALCAM_HD Color eval(Vec3f to_light) const {
         const Vec3f light = frame.to_local(to_light);
         if (!is_possible(light, to_light)) return {0, 0, 0};
@@ -67,20 +68,21 @@ public:
         const float in = coat_weight > 0.0f && coat_light.z > 0.0f ? through_coat(coat.facets_at(coat_light.z)) : 1.0f;
         Color value = (0.3183098862f * light.z) * diffuse_;
         if (is_layered_) value *= in * left_at(light.z);
-        // What comes back as by a mirror meets the coat at the same angle twice, and what is reflected between the two
-        // is not lost: the share of one passage. Of two angles the lesser, so that nothing is gained. What is lost by
-        // that comes back in a lobe of its own, as that of several reflections in MicrofacetReflection does.
+        // Light of the narrow lobes passes the coat twice at about the same angle, and interreflections between coat
+        // and base are not lost: so the transmittance of a single passage applies. If the two angles differ, the lower
+        // transmittance is taken, so that no energy is gained; the energy lost by this returns in a lobe of its own, as
+        // multiple scattering does in MicrofacetReflection.
         const float coated = through_coat_ < in ? through_coat_ : in;
         if (!is_black(phong)) value += (coated * phong_value(eye, shininess, light)) * phong;
         if (share_[2] > 0.0f) value += (coated * specular_weight) * specular.eval(eye, light);
         if (!is_black(lost_under_coat_)) value += light.z * lost_under_coat(light.z) * lost_under_coat_;
-        // As below, where the coat is met on the eye's side alone.
+        // The coat attenuates on the eye's side only, like light from below.
         if (border.weight > 0.0f) value += through_coat_ * border.eval(eye, light);
         if (coat_weight > 0.0f && coat_light.z > 0.0f) value += coat_weight * coat.eval(coat_turn(eye), coat_light);
         return value;
     }
 
-    /// Density of sample, per steradian; mirrors and smooth borders have none.
+    /// Density of sample(), per steradian; mirrors and smooth borders (delta lobes) contribute 0.
     REALCAM_HD float pdf(Vec3f to_light) const {
         const Vec3f light = frame.to_local(to_light);
         if (!is_possible(light, to_light)) return 0.0f;
@@ -94,7 +96,8 @@ public:
         return density;
     }
 
-    /// Chooses a lobe by its reflectance, then a direction. `choice`: for rough borders, which need a third number.
+    /// Chooses a lobe by its reflectance, then a direction. `choice` is a third random number, which only rough borders
+    /// need.
     REALCAM_HD BsdfSample sample(Vec2f u, float choice) const {
         BsdfSample result{geometric_normal, {0, 0, 0}, 0.0f, false};
         if (!(total_ > 0.0f)) return result;
@@ -128,7 +131,8 @@ public:
                 light = coat_turn(coat.sample(coat_turn(eye), u));
                 if (coat.is_smooth()) return delta(light, (coat_weight / share) * coat.albedo_to_eye());
         }
-        // Facets may reflect light below the surface, where it would meet them again.
+        // Facets may reflect light below the surface, where it would hit other facets; multiple scattering is a lobe of
+        // its own.
         if (lobe != 3 && !(light.z > 0.0f)) return result;
         result.direction = frame.to_world(light);
         result.pdf = pdf(result.direction);
@@ -137,7 +141,7 @@ public:
     }
 
 private:
-    // Gauss's rule of six points for the integral over the squares of cosines, which weights them by themselves.
+    // Six-point Gaussian quadrature in the squared cosine, which makes the mean over the hemisphere cosine-weighted.
     static constexpr int kGaussPoints = 6;
     struct GaussPoint {
         float cosine, weight;
@@ -150,14 +154,15 @@ private:
         return {std::sqrt(kSquares[i]), kWeights[i]};
     }
 
-    /// The loss of this surface at a cosine, from that of a surface that reflects all.
+    /// Loss of this surface under its coat at a cosine: the loss of a perfect reflector times the specular albedo.
     REALCAM_INLINE Color lost_under_coat(float cosine) const {
         return coat_loss(cosine, coat.alpha, specular.alpha) * specular.reflectance.albedo(specular.facets_at(cosine));
     }
     REALCAM_HD void prepare_lost_under_coat() {
         const float mean = coat_mean_loss(coat.alpha, specular.alpha);
         if (!(mean > 1e-6f)) return;
-        // The table's mean, times a mean of the reflectances in which the rule's errors cancel for the most part.
+        // The tabulated mean loss times the loss-weighted mean reflectance: in that ratio most of the quadrature error
+        // cancels.
         Color coloured{0, 0, 0};
         float white = 0.0f;
         for (int i = 0; i < kGaussPoints; ++i) {
@@ -172,11 +177,12 @@ private:
     REALCAM_INLINE float through_coat(GgxAlbedo facets) const {
         return coat_weight > 0.0f ? 1.0f - coat_weight * coat.reflectance.albedo(facets).r : 1.0f;
     }
-    /// The share of light at a cosine that the specular lobe leaves to the diffuse one.
+    /// Share of light at a cosine that the specular lobe transmits to the diffuse one.
     REALCAM_INLINE Color left_at(float cosine) const {
         return grey(1.0f) - above_diffuse.albedo(specular.facets_at(cosine));
     }
-    /// What coat and specular lobe leave of light from everywhere: diffuse light over this is lost nowhere else.
+    /// Cosine-weighted mean of the share that coat and specular lobe transmit. Dividing the diffuse lobe by it makes
+    /// these two the only losses of diffuse light.
     REALCAM_HD Color mean_left() const {
         if (!(coat_weight > 0.0f)) return at_least(grey(1.0f) - above_diffuse.albedo(specular.mean));
         Color sum{0, 0, 0};
@@ -186,13 +192,14 @@ private:
         }
         return at_least(sum);
     }
-    /// A divisor.
+    /// Clamps a divisor away from 0.
     REALCAM_INLINE static Color at_least(Color c, float least = 1e-4f) {
         const auto held = [=](float v) { return v > least ? v : least; };
         return {held(c.r), held(c.g), held(c.b)};
     }
 
-    /// On the same side of shading and of geometric normal; below only where something passes.
+    /// True if the direction is on the same side of the shading and the geometric normal; below the surface only if the
+    /// border transmits.
     REALCAM_INLINE bool is_possible(Vec3f light, Vec3f to_light) const {
         const bool above = dot(geometric_normal, to_light) > 0.0f;
         return above ? light.z > 0.0f : light.z < 0.0f && border.weight > 0.0f;
@@ -218,13 +225,15 @@ private:
     }
 
     bool is_layered_;
-    Color left_to_eye_;  ///< of the light, by the specular lobe
-    Color diffuse_;  ///< reflectance, times what depends on the direction of view alone
-    Color lost_under_coat_ = {0, 0, 0};  ///< on the way to the eye, over the mean
+    /// Share of light that the specular lobe transmits to the diffuse one, for the eye's direction.
+    Color left_to_eye_;
+    Color diffuse_;  ///< reflectance times all factors that depend only on the direction of view
+    Color lost_under_coat_ = {0, 0, 0};  ///< loss under the coat towards the eye, over pi times the mean loss
     float lost_share_ = 0;
     float through_coat_;
-    float
-        share_[6];  ///< probabilities of diffuse and what is lost under the coat, phong, specular, border, mirror, coat
+    /// Sampling probabilities of the lobes: diffuse with the loss under the coat, Phong, specular, border, mirror,
+    /// coat.
+    float share_[6];
     float total_;
 };
 

@@ -8,7 +8,7 @@ namespace realcam {
 
 LightLeaf LightTree::leaf(const PointLight& p) {
     const bool is_spot = p.cos_scale > 0;
-    // Where a spot ends.
+    // Cosine of the spot's outer cone angle.
     const float cos_spread = is_spot ? std::clamp(-p.cos_offset / p.cos_scale, 0.0f, 1.0f) : kIsotropic;
     return {{p.position, p.position, p.axis, cos_spread, luminance(p.intensity)}, 0.0f, p.position};
 }
@@ -78,8 +78,8 @@ LightBounds LightTree::around(Leaves first, Leaves last) {
 }
 
 bool LightTree::is_one_lamp(Leaves first, Leaves last, const LightBounds& all) {
-    constexpr float kMostRatio = 10;  // of radiances
-    // Of the square of the box's diagonal. A disc fills 0.39 of it, a square 0.5, a rectangle of 4 : 1 0.24.
+    constexpr float kMostRatio = 10;  // largest ratio of radiances
+    // Least area over the squared diagonal of the bounding box. A disc has 0.39, a square 0.5, a 4:1 rectangle 0.24.
     constexpr float kLeastFilled = 0.2f;
     const auto squared_size = [](const LightBounds& b) { return dot(b.high - b.low, b.high - b.low); };
     float area = 0, largest = 0;
@@ -92,7 +92,7 @@ bool LightTree::is_one_lamp(Leaves first, Leaves last, const LightBounds& all) {
         area += i->area;
         largest = std::max(largest, squared_size(one));
     }
-    // The two halves of a rectangle, however long, have its box.
+    // Each of the two triangles of a rectangle, however long, has the bounding box of the rectangle.
     return area > kLeastFilled * squared_size(all) || squared_size(all) < 1.5f * largest;
 }
 

@@ -8,32 +8,32 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Where lights are, and how they shine: what a LightNode is made of.
+/// Bounds of a group of lights in space, direction and intensity, from which a LightNode is made.
 struct LightBounds {
-    Vec3f low, high;  ///< a box about them
+    Vec3f low, high;  ///< bounding box
     Vec3f axis;
-    float cos_spread, intensity;  ///< as LightNode's
+    float cos_spread, intensity;  ///< see LightNode
 };
 
-/// A light of the tree.
+/// A light with its bounds, as input of the tree's construction.
 struct LightLeaf {
     LightBounds bounds;
-    float area;    ///< square metres; 0: of a point light
-    Vec3f middle;  ///< of its place
-    std::int32_t light = 0;  ///< its number
+    float area;  ///< in m^2; 0 for a point light
+    Vec3f middle;  ///< centroid, by which lights are partitioned
+    std::int32_t light = 0;  ///< index among all lights: point lights, then area lights
 };
 
-/// Built on the host, anew whenever a light is put elsewhere.
+/// Light tree, built on the host; rebuilt from scratch whenever a light moves.
 class LightTree {
 public:
     static LightLeaf leaf(const PointLight& p);
-    /// `mean`: what a map makes of its luminance.
+    /// `mean`: mean factor by which emission map and vertex colours multiply the luminance (emission_means).
     static LightLeaf leaf(const AreaLight& a, float mean);
-    /// Makes a leaf hold what another one says of the same light elsewhere.
+    /// Extends a leaf's bounds to those of the same light at another time.
     static void widen(LightLeaf& leaf, const LightLeaf& elsewhere);
 
     LightTree() = default;
-    /// Builds a tree of the point lights, then the area lights, in the order of their numbers.
+    /// Builds a tree; `leaves` are the point lights, then the area lights, in the order of their indices.
     LightTree(std::vector<LightLeaf> leaves, Checkpoint& checkpoint);
 
     const std::vector<LightNode>& nodes() const { return nodes_; }
@@ -48,7 +48,7 @@ private:
     static Vec3f most(Vec3f a, Vec3f b) { return {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)}; }
     static float coordinate(Vec3f v, int axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
 
-    /// The narrowest cone that is easily found about two.
+    /// Extends the normal cone to enclose both cones.
     static void widen(LightBounds& bounds, const LightBounds& other);
 
     static LightBounds around(const LightBounds& a, const LightBounds& b);
@@ -56,23 +56,23 @@ private:
 
     static constexpr std::ptrdiff_t kMostInLeaf = 16;
 
-    /// Whether they are triangles of one flat lamp: in one plane, about as bright, and side by side. A choice
-    /// between them by their light alone is as good as any.
+    /// True if the leaves are triangles of one flat lamp: coplanar, of similar radiance, and adjacent. Choosing among
+    /// these by power alone is then as good as any choice.
     static bool is_one_lamp(Leaves first, Leaves last, const LightBounds& all);
 
-    /// What a split costs: intensity times the spread in space and in direction (the paper's surface area orientation
-    /// heuristic).
+    /// Cost of a node: intensity times spatial and directional extent (surface area orientation heuristic, Conty
+    /// Estevez and Kulla 2018).
     static double cost(const LightBounds& b);
 
-    /// Where to split, after sorting along the best axis; the middle where all places are alike, and from a depth on at
-    /// which 64 turns would not do.
+    /// Partitions the leaves along the best axis and returns the first one of the second half. Splits at the median if
+    /// all centroids coincide, or below a depth that keeps trails within 64 bits.
     Leaves split(Leaves first, Leaves last, int depth, Checkpoint& checkpoint) const;
 
     static int bin_of(const LightLeaf& leaf, int axis, float from, float size, int bins);
 
     static LightNode node_of(const LightBounds& bounds);
 
-    /// Adds the node of these lights, and all below it. Returns the bounds that it was made of.
+    /// Adds the node of these lights and its subtree. Returns the node's bounds.
     LightBounds add(Leaves first, Leaves last, std::uint64_t turns, int depth, Checkpoint& checkpoint);
     void fill_leaf(LightNode& leaf, Leaves first, Leaves last, std::uint64_t turns);
 

@@ -4,9 +4,9 @@
 
 namespace REALCAM_NAMESPACE {
 
-// What a rough metal that reflects all loses under a coat, if of the coat's two transmittances, towards the eye and
-// towards the light, the lesser counts; by a table (tools/make_loss_tables.py). For a coat of weight 1; the loss grows
-// in proportion.
+// Energy that a perfectly reflecting rough metal loses under a coat if the lower of the coat's two transmittances,
+// towards the eye and towards the light, is applied (bsdf.hpp); from a table (tools/make_loss_tables.py) for a coat of
+// weight 1. The loss is proportional to the weight.
 
 namespace coat_loss_detail {
 
@@ -20,7 +20,7 @@ inline constexpr int kCoatLayers = REALCAM_COAT_LAYERS, kCoatRows = REALCAM_COAT
 
 }  // namespace coat_loss_detail
 
-/// Seen at this cosine.
+/// Loss at the cosine of the angle between normal and direction of view.
 REALCAM_HD inline float coat_loss(float cosine, float coat_alpha, float metal_alpha) {
     using namespace coat_loss_detail;
     static constexpr float kLoss[] = {REALCAM_COAT_LOSS};
@@ -33,7 +33,7 @@ REALCAM_HD inline float coat_loss(float cosine, float coat_alpha, float metal_al
                    read_table(upper + kCoatRows * kCoatColumns, row, column, kCoatColumns), layer.fraction);
 }
 
-/// Over all directions, weighted by their cosines.
+/// Cosine-weighted mean of coat_loss over the hemisphere.
 REALCAM_HD inline float coat_mean_loss(float coat_alpha, float metal_alpha) {
     using namespace coat_loss_detail;
     static constexpr float kLoss[] = {REALCAM_COAT_MEAN_LOSS};

@@ -6,7 +6,7 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// What each code of 8 bits stands for, 0 to 1, linear. On the host.
+/// Returns the linear value, 0 to 1, of each 8-bit code. Host only.
 std::array<float, 256> light_of_codes(TextureEncoding encoding);
 
 }  // namespace REALCAM_NAMESPACE

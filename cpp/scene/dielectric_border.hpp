@@ -5,30 +5,30 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// A border that reflects one part of the light and lets the other through: smooth, or rough by GGX microfacets (Walter
-/// et al. 2007). In local coordinates, with `eye` above the surface. Radiance is that of the side on which it is: on
-/// entering a medium it grows by the index squared. What facets lose by a single reflection or passage comes back in a
-/// lobe on each side (after Kulla and Conty 2017). Light that has met several facets has forgotten where it came from.
-/// So it leaves to the two sides in one ratio, whatever the eye's side. That makes the lobes reciprocal.
+/// Dielectric interface that reflects and transmits: smooth, or rough by GGX microfacets (Walter et al. 2007). In local
+/// coordinates, with `eye` above the surface. Radiance is that in the medium in question: it grows by the index squared
+/// on entering a medium. The energy that single scattering loses returns in a lobe on each side (after Kulla and Conty
+/// 2017). Multiply scattered light has lost the memory of its origin: it is divided between the two sides in a fixed
+/// ratio, whatever the eye's side, which makes the lobes reciprocal.
 struct DielectricBorder {
-    float weight = 0;  ///< all that it does is multiplied by this; 0: there is none
-    Color filter = {1, 1, 1};  ///< of what passes
+    float weight = 0;  ///< multiplies the whole lobe; 0: no border
+    Color filter = {1, 1, 1};  ///< multiplies transmitted light
     float eta = 1;  ///< index below over index above
-    float alpha = 0;  ///< below kSmoothAlpha: smooth; so are borders of an index near 1
-    float fixed_reflectance = -1;  ///< at any angle; negative: Fresnel's
-    bool is_thin = false;  ///< a film: what passes goes on straight
-    float found_at_eye = 1;  ///< of light from there, what single reflections and passages find
-    float below_share = 0.5f;  ///< of what they lose, what leaves below
-    float lost = 0;  ///< what they lose of light from everywhere on both sides, each by its index squared
+    float alpha = 0;  ///< GGX alpha; below kSmoothAlpha, or for an index near 1, the border is smooth
+    float fixed_reflectance = -1;  ///< reflectance at any angle; negative: by the Fresnel equations
+    bool is_thin = false;  ///< thin film: transmitted light is not refracted
+    float found_at_eye = 1;  ///< directional albedo of single scattering for the eye's direction
+    float below_share = 0.5f;  ///< share of the multiple-scattering energy that leaves below
+    float lost = 0;  ///< mean loss of single scattering, summed over both sides, each weighted by its index squared
     float critical = 0;  ///< cosine of the critical angle
 
     REALCAM_INLINE bool is_smooth() const { return alpha < kSmoothAlpha; }
 
-    /// Called when eta and alpha are set.
+    /// Must be called after eta and alpha have been set.
     REALCAM_HD void prepare(float eye_cosine) {
         const float index = eta > 1.0f ? eta : 1.0f / eta;
-        // Facets bend light by less than three degrees there, and not at all for an index of 1, while one facet alone
-        // would let nothing pass straight on.
+        // For such an index facets deflect light by less than three degrees, and not at all for an index of 1, where
+        // single scattering would leave no undeflected light.
         if (!is_thin && index < kLeastRoughIndex) alpha = 0.0f;
         if (is_smooth()) return;
         critical = std::sqrt(1.0f - 1.0f / (index * index));
@@ -41,21 +41,21 @@ struct DielectricBorder {
     REALCAM_INLINE float reflectance(float cosine) const {
         const float fresnel = dielectric_fresnel(cosine, eta);
         if (is_thin) {
-            // Between the two borders of a film light goes to and fro.
+            // Sum of all interreflections between the two faces of a film.
             const float one = fixed_reflectance < 0.0f ? fresnel : fixed_reflectance;
             return fixed_reflectance < 0.0f ? 2.0f * one / (1.0f + one) : one;
         }
         return fixed_reflectance < 0.0f || fresnel >= 1.0f ? fresnel : fixed_reflectance;
     }
 
-    /// Where a ray goes on below a facet whose normal is h; z = 0: nowhere.
+    /// Direction refracted at a facet with normal h; z is 0 for total reflection.
     REALCAM_INLINE Vec3f refracted(Vec3f eye, Vec3f h) const {
         const float cosine = dot(eye, h), sine2 = (1.0f - cosine * cosine) / (eta * eta);
         if (!(sine2 < 1.0f)) return {0, 0, 0};
         return (cosine / eta - std::sqrt(1.0f - sine2)) * h - (1.0f / eta) * eye;
     }
 
-    /// The facet that takes eye to light.
+    /// Normal of the facet that reflects or refracts `eye` to `light`.
     REALCAM_INLINE Vec3f facet(Vec3f eye, Vec3f light) const {
         if (light.z > 0.0f) return normalized(eye + light);
         if (is_thin) return normalized(eye + Vec3f{light.x, light.y, -light.z});
@@ -70,18 +70,19 @@ struct DielectricBorder {
         return light.z > 0.0f ? grey(value) : value * filter;
     }
 
-    /// Density of sample, per steradian.
+    /// Density of sample(), per steradian.
     REALCAM_INLINE float pdf(Vec3f eye, Vec3f light) const {
         if (is_smooth() || light.z == 0.0f) return 0.0f;
         const float side = light.z > 0.0f ? 1.0f - below_share : below_share;
         return found_at_eye * pdf_once(eye, light) + (1.0f - found_at_eye) * side * (2.0f * kSpherePdf);
     }
 
-    /// `choice`: of reflection or passage. The weight and density are those of a smooth border; rough ones have eval
-    /// and pdf. Black where the light would meet the facets again: that is left out.
+    /// Samples a direction. `choice`: random number that chooses reflection or transmission. Weight and density are
+    /// those of a smooth border; for a rough one use eval and pdf. Black if the light would hit other facets, a path
+    /// that is not followed.
     REALCAM_INLINE BsdfSample sample(Vec3f eye, Vec2f u, float choice) const {
         if (u.x >= found_at_eye) {
-            // Evenly, because on smooth surfaces it is at grazing incidence that light is lost.
+            // Uniform over the hemisphere, not by cosine: on smooth surfaces energy is lost at grazing incidence.
             const float fresh = (u.x - found_at_eye) / (1.0f - found_at_eye);
             const Vec3f above = sample_sphere({fresh < 1.0f ? 0.5f * fresh : 0.5f, u.y});
             if (!(choice < below_share)) return {above, grey(1.0f), kDelta, false};
@@ -101,7 +102,7 @@ struct DielectricBorder {
     }
 
 private:
-    /// By one facet: BSDF times cosine, less weight and filter.
+    /// Single scattering: BSDF times cosine, without weight and filter.
     REALCAM_INLINE float once(Vec3f eye, Vec3f light) const {
         const Vec3f h = facet(eye, light);
         const float c = dot(eye, h);
@@ -126,8 +127,8 @@ private:
         return (1.0f - reflected) * facets * eta * eta * -d / (way * way);
     }
 
-    /// The same by several facets. Below, more light goes there by the index squared, and radiance shrinks by the same
-    /// factor on its way to the eye.
+    /// Multiple scattering: BSDF times cosine, without weight and filter. Below the surface the energy grows by the
+    /// index squared, and radiance shrinks by the same factor towards the eye.
     REALCAM_INLINE float several(float light_z) const {
         if (!(lost > 1e-6f)) return 0.0f;
         const float cosine = std::fabs(light_z);

@@ -11,7 +11,7 @@ namespace realcam {
 
 namespace {
 
-/// The mean of all texels, linear.
+/// Mean of all texels, linear.
 Color mean_of(const TextureView& texture) {
     const std::size_t texels = static_cast<std::size_t>(texture.width) * static_cast<std::size_t>(texture.height);
     const std::array<float, 256> light = light_of_codes(texture.encoding);
@@ -49,7 +49,7 @@ std::vector<float> emission_means(const MeshView& mesh, Checkpoint& checkpoint) 
             const auto known = whole.find(map.texture);
             all = known != whole.end() ? known->second : (whole[map.texture] = mean_of(mesh.textures[map.texture]));
         }
-        // The middles of equal triangles into which the triangle is cut.
+        // Centroids of a regular subdivision of the triangle.
         Color sum{0, 0, 0};
         for (int row = 0; row < kSteps; ++row)
             for (int column = 0; column < 2 * (kSteps - row) - 1; ++column) {
@@ -60,7 +60,7 @@ std::vector<float> emission_means(const MeshView& mesh, Checkpoint& checkpoint) 
                 const Color colors = has_colors ? vertex_color(mesh, triangle, hit) : Color{1, 1, 1};
                 sum += colors * texture_color(mesh, map, surface_uv(mesh, triangle, hit, map).at);
             }
-        // Colours between black vertices are black, whatever the map.
+        // The whole map's mean must not make a triangle with black vertex colours a light.
         if (has_colors) all *= vertex_color(mesh, triangle, {0.0f, number, 1.0f / 3.0f, 1.0f / 3.0f});
         const Color mean = mix((1.0f / (kSteps * kSteps)) * sum, all, kWholeMap);
         means.push_back(luminance(material.emission * mean) / bare);

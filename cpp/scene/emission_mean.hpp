@@ -6,11 +6,11 @@
 
 namespace REALCAM_NAMESPACE {
 
-// How bright the emission maps of a mesh are, by which its lights are chosen (build_light_tree.hpp). On the host.
+// Mean brightness of emission maps, by which the light tree chooses emitters (build_light_tree.hpp). Host only.
 
-/// For each of a mesh's emitters, what its map and the vertices' colours make of its luminance: 1 without them. Samples
-/// over the triangle, and a part of the whole map's mean, so that what they miss is still a light: 0 only where the map
-/// is black.
+/// Returns, for each emitter of a mesh, the mean factor by which emission map and vertex colours multiply its
+/// luminance; 1 without them. Samples the triangle and blends in the mean of the whole map, so that emission that the
+/// samples miss keeps a non-zero probability: 0 only if the map is black.
 std::vector<float> emission_means(const MeshView& mesh, Checkpoint& checkpoint);
 
 }  // namespace REALCAM_NAMESPACE

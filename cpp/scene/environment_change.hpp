@@ -3,19 +3,19 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// How an environment is to be changed before it lights a scene.
+/// Edit of an environment before rendering.
 struct EnvironmentChange {
-    double scale = 1;         ///< of its light
-    double rotation_deg = 0;  ///< about +y, the vertical: counterclockwise as seen from above, so that what lay towards
-                              ///< -z lies towards -x after 90 degrees
+    double scale = 1;  ///< factor of its radiance
+    double rotation_deg = 0;  ///< About +y, the vertical, counterclockwise seen from above: 90 degrees take -z to -x.
 
     bool says_nothing() const { return scale == 1 && rotation_deg == 0; }
 };
 
-/// Throws InputError where it is none.
+/// Throws InputError if the scale is not a positive number or the rotation not finite.
 void check_environment_change(const EnvironmentChange& change);
 
-/// By a part of a column, each column takes its share of two, so that the light in all of them is the same as before.
+/// Returns the scaled and rotated environment. A rotation by a fraction of a column interpolates linearly between
+/// neighbours, which preserves the total light.
 Environment changed(Environment environment, const EnvironmentChange& change);
 
 }  // namespace REALCAM_NAMESPACE

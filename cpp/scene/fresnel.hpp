@@ -8,13 +8,13 @@ REALCAM_INLINE float fifth_power(float v) {
     return v2 * v2 * v;
 }
 
-/// Schlick 1994, between the reflectance at normal incidence and that at grazing incidence.
+/// Schlick's approximation (1994): f0 at normal, f90 at grazing incidence.
 REALCAM_INLINE Color schlick(Color f0, float f90, float cosine) {
     return mix(f0, grey(f90), fifth_power(1.0f - cosine));
 }
 
-/// Share of unpolarised light that the border of two dielectrics reflects. `eta`: the index beyond it over the index
-/// before it; `cosine` > 0: of the angle of incidence. 1: total reflection.
+/// Fresnel reflectance of a dielectric interface for unpolarised light; 1 for total reflection. `eta`: index behind the
+/// interface over the index in front of it; `cosine` > 0: of the angle of incidence.
 REALCAM_INLINE float dielectric_fresnel(float cosine, float eta) {
     const float sine2_beyond = (1.0f - cosine * cosine) / (eta * eta);
     if (!(sine2_beyond < 1.0f)) return 1.0f;

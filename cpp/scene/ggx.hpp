@@ -4,36 +4,37 @@
 
 namespace REALCAM_NAMESPACE {
 
-// Microfacets after Trowbridge and Reitz (GGX; Walter et al. 2007), in a frame whose z axis is the surface's normal.
-// `alpha`: their root mean square slope, glTF's roughness squared.
+// Microfacet distribution of Trowbridge and Reitz (GGX; Walter et al. 2007), in a frame whose z axis is the surface
+// normal. `alpha`: root mean square slope, which is glTF's roughness squared.
 
-/// Below this, a lobe is narrower than float directions resolve, and counts as a mirror.
+/// Below this alpha a lobe is narrower than float directions resolve, and is treated as a mirror.
 inline constexpr float kSmoothAlpha = 1e-3f;
 
-/// Density of facet normals, per steradian, weighted by the facets' area on the surface.
+/// Normal distribution D(h), per steradian.
 REALCAM_INLINE float ggx_density(Vec3f h, float alpha) {
-    // (h.z^2 (alpha^2 - 1) + 1) without its cancellation at h.z = 1.
+    // h.z^2 (alpha^2 - 1) + 1, without its cancellation at h.z = 1.
     const float a2 = alpha * alpha, k = h.x * h.x + h.y * h.y + a2 * h.z * h.z;
     return a2 / (3.141592654f * k * k);
 }
 
-/// Smith's Lambda.
+/// Smith's Lambda function.
 REALCAM_INLINE float ggx_lambda(Vec3f w, float alpha) {
     const float tangent2 = (w.x * w.x + w.y * w.y) / (w.z * w.z);
     return 0.5f * (std::sqrt(1.0f + alpha * alpha * tangent2) - 1.0f);
 }
 
-/// Share of the facets that a direction sees.
+/// Smith masking function G1.
 REALCAM_INLINE float ggx_visible(Vec3f w, float alpha) {
     return 1.0f / (1.0f + ggx_lambda(w, alpha));
 }
 
-/// Share that both directions see (height-correlated; Heitz 2014). On different sides of the surface: by their betas.
+/// Height-correlated masking-shadowing function G2 (Heitz 2014). For directions on different sides of the surface,
+/// where Heitz derives a Beta function of the Lambdas, the same form is used.
 REALCAM_INLINE float ggx_visible_to_both(Vec3f a, Vec3f b, float alpha) {
     return 1.0f / (1.0f + ggx_lambda(a, alpha) + ggx_lambda(b, alpha));
 }
 
-/// Normal of a facet that w (w.z > 0) sees, by its visible area (Dupuy and Benyoub 2023).
+/// Samples a visible facet normal for w, w.z > 0 (Dupuy and Benyoub 2023).
 REALCAM_INLINE Vec3f sample_ggx(Vec3f w, float alpha, Vec2f u) {
     const Vec3f stretched = normalized(Vec3f{alpha * w.x, alpha * w.y, w.z});
     const Vec2f azimuth = cos_sin_of_turn(u.y);
@@ -43,7 +44,7 @@ REALCAM_INLINE Vec3f sample_ggx(Vec3f w, float alpha, Vec2f u) {
     return normalized(Vec3f{alpha * h.x, alpha * h.y, h.z > 1e-6f ? h.z : 1e-6f});
 }
 
-/// Density of sample_ggx, per steradian of facet normals.
+/// Density of sample_ggx, per steradian of facet normals (not of reflected directions).
 REALCAM_INLINE float ggx_pdf(Vec3f w, Vec3f h, float alpha) {
     const float cosine = dot(w, h);
     return cosine > 0.0f ? ggx_visible(w, alpha) * ggx_density(h, alpha) * cosine / w.z : 0.0f;

@@ -8,11 +8,11 @@
 
 namespace REALCAM_NAMESPACE {
 
-// What GGX microfacets give back of light from everywhere, by a table (tools/make_ggx_tables.py), and what they send
-// into further reflections, which a single one leaves out (Kulla and Conty 2017).
+// Directional albedo of single scattering by GGX microfacets, from tables (tools/make_ggx_tables.py); its complement is
+// the energy of multiple scattering (Kulla and Conty 2017).
 
-/// For a Fresnel term of f0 + (f90 - f0) (1 - cosine)^5 the share that is reflected is f0 (all - grazing) + f90
-/// grazing.
+/// Albedo for a unit Fresnel term (`all`) and for the Fresnel term (1 - cosine)^5 (`grazing`). With Schlick's term f0 +
+/// (f90 - f0) (1 - cosine)^5 the albedo is f0 (all - grazing) + f90 grazing.
 struct GgxAlbedo {
     float all, grazing;
 };
@@ -29,26 +29,26 @@ struct TablePlace {
 REALCAM_INLINE TablePlace table_place(float position, int count) {
     const float scaled = position * static_cast<float>(count - 1);
     const int index = static_cast<int>(scaled);
-    // One after the other, and not of floats: else gcc makes branches of it, and no vector code.
+    // Two selects in sequence, of integers: otherwise gcc emits branches and does not vectorise the loop.
     const int above = select(index > 0, index, 0), held = select(above < count - 2, above, count - 2);
     const float fraction = scaled - static_cast<float>(held);
     return {held, select(fraction < 0.0f, 0.0f, select(fraction > 1.0f, 1.0f, fraction))};
 }
 
 REALCAM_INLINE TablePlace row_of(float alpha, int rows = kRows) {
-    constexpr float kSmoothest = 0.0316227766f;  // the square root of kSmoothAlpha
+    constexpr float kSmoothest = 0.0316227766f;  // square root of kSmoothAlpha
     return table_place((std::sqrt(alpha) - kSmoothest) / (1.0f - kSmoothest), rows);
 }
 
-/// The cube root of a number from 0 to 1, with a relative error of 2e-6. It uses Newton's steps from a third of the
-/// exponent, because std::cbrt takes 6% of the time of a picture with glossy surfaces.
+/// Cube root of a number from 0 to 1, with a relative error of 2e-6. It uses Newton's steps from a third of the
+/// exponent, because std::cbrt takes 6% of the render time of a picture with glossy surfaces.
 REALCAM_INLINE float cube_root(float x) {
     float y = std::bit_cast<float>(std::bit_cast<std::uint32_t>(x) / 3 + 0x2a514067u);
     for (int i = 0; i < 2; ++i) y = 0.333333333f * (2.0f * y + x / (y * y));
     return y;
 }
 
-/// By the cosine on a surface that is stretched until its facets are those of alpha 1, to the power 2/3.
+/// Table column: the cosine on the surface stretched to alpha 1, to the power 2/3.
 REALCAM_INLINE TablePlace column_of(float cosine, float alpha) {
     const float sine2 = 1.0f - cosine * cosine;
     const float root = cube_root(cosine / std::sqrt(cosine * cosine + alpha * alpha * (sine2 > 0.0f ? sine2 : 0.0f)));
@@ -67,7 +67,7 @@ REALCAM_INLINE float read_table(const float* table, TablePlace row, TablePlace c
 
 }  // namespace ggx_albedo_detail
 
-/// Seen at this cosine. Within the loops that are to become vector code.
+/// Directional albedo at a cosine. Inlined on all platforms, for loops that must vectorise.
 REALCAM_INLINE GgxAlbedo inlined_ggx_albedo(float cosine, float alpha) {
     using namespace ggx_albedo_detail;
     static constexpr float kAll[] = {REALCAM_GGX_ALBEDO};
@@ -78,15 +78,15 @@ REALCAM_INLINE GgxAlbedo inlined_ggx_albedo(float cosine, float alpha) {
     return {all, all * read_table(kGrazingOfAll, row, table_place(std::sqrt(cosine), kColumns))};
 }
 
-/// Likewise, for all others.
+/// Directional albedo at a cosine, for all other callers.
 REALCAM_GPU_CALL GgxAlbedo ggx_albedo(float cosine, float alpha) {
     return inlined_ggx_albedo(cosine, alpha);
 }
 
-/// Over all directions of view, weighted by their cosines.
+/// Cosine-weighted mean of the albedo over the hemisphere. Inlined on all platforms, for loops that must vectorise.
 REALCAM_INLINE GgxAlbedo inlined_ggx_mean_albedo(float alpha) {
     using namespace ggx_albedo_detail;
-    static constexpr float kLoss[] = {REALCAM_GGX_MEAN_LOSS};  // over alpha^2
+    static constexpr float kLoss[] = {REALCAM_GGX_MEAN_LOSS};  // divided by alpha^2
     static constexpr float kGrazing[] = {REALCAM_GGX_MEAN_SCHLICK};
     const TablePlace row = row_of(alpha);
     const int i = row.index;
@@ -94,7 +94,7 @@ REALCAM_INLINE GgxAlbedo inlined_ggx_mean_albedo(float alpha) {
             between(kGrazing[i], kGrazing[i + 1], row.fraction)};
 }
 
-/// Likewise.
+/// Cosine-weighted mean of the albedo, for all other callers.
 REALCAM_GPU_CALL GgxAlbedo ggx_mean_albedo(float alpha) {
     return inlined_ggx_mean_albedo(alpha);
 }

@@ -4,16 +4,16 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// What a GlossyBsdf is made of: those parameters of a material, at one point, that its lobes depend on.
+/// Parameters of a GlossyBsdf: those of a material, evaluated at one point, that affect its lobes.
 struct GlossySurface {
-    Color base = {0, 0, 0};  ///< reflectance of Lambert's lobe, or of a metal's facets at normal incidence
+    Color base = {0, 0, 0};  ///< reflectance of the Lambertian lobe, or of a metal's facets at normal incidence
     Color f0 = {0, 0, 0};  ///< reflectance of a dielectric's facets at normal incidence
-    float f90 = 0;         ///< and at grazing incidence
-    float metallic = 0;    ///< share of the surface that is metal
-    float alpha = 1;       ///< of the facets, not below kSmoothAlpha
+    float f90 = 0;  ///< reflectance of a dielectric's facets at grazing incidence
+    float metallic = 0;  ///< metallic share of the surface, 0 to 1
+    float alpha = 1;  ///< GGX alpha, at least kSmoothAlpha
 };
 
-/// Whether GlossyBsdf can describe what is at a point.
+/// True if GlossyBsdf can represent the material at a point.
 REALCAM_INLINE bool is_glossy(const SurfacePoint& point) {
     const Material& m = *point.material;
     if (m.only_shadows || point.transmission > 0.0f) return false;
@@ -21,7 +21,7 @@ REALCAM_INLINE bool is_glossy(const SurfacePoint& point) {
     return !(point.clearcoat > 0.0f) && make_bsdf_detail::alpha_of(point.roughness) >= kSmoothAlpha;
 }
 
-/// For a point that is_glossy.
+/// Requires is_glossy(point).
 REALCAM_INLINE GlossySurface glossy_surface(const SurfacePoint& point) {
     using namespace make_bsdf_detail;
     const Material& m = *point.material;
@@ -30,7 +30,7 @@ REALCAM_INLINE GlossySurface glossy_surface(const SurfacePoint& point) {
             point.specular_weight, unit_range(point.metallic), alpha_of(point.roughness)};
 }
 
-/// What of a surface decides which lights it shows. `normal`: turned to the eye.
+/// Lobe of a surface by which lights are chosen. `normal`: on the eye's side.
 REALCAM_INLINE LightLobe light_lobe(const GlossySurface& surface, Vec3f normal, Vec3f to_eye) {
     const float cosine = dot(normal, to_eye), left = 1.0f - select(cosine > 0.0f, cosine, 0.0f),
                 grazing = left * left * left * left * left;
@@ -38,29 +38,31 @@ REALCAM_INLINE LightLobe light_lobe(const GlossySurface& surface, Vec3f normal, 
     const float dielectric = f0 + (surface.f90 - f0) * grazing, metal = base + (1.0f - base) * grazing;
     const float specular = dielectric + (metal - dielectric) * surface.metallic,
                 diffuse = (1.0f - surface.metallic) * base;
-    // A lobe about as broad as Lambert's shows the same lights, and needs no second look at each node of their tree.
+    // A lobe about as broad as the Lambertian one favours the same lights and is not worth evaluating at each node of
+    // the light tree.
     constexpr float kBroad = 0.5f;
     const bool is_used = (specular > 0.0f) & (surface.alpha < kBroad);
     return {to_eye, surface.alpha, select(is_used, specular / (specular + diffuse), 0.0f)};
 }
 
-/// The same of any point; where GlossyBsdf does not describe it, lights are chosen by their illuminance.
+/// Lobe of any surface point by which lights are chosen; without one, if GlossyBsdf cannot represent the material, they
+/// are chosen by their illuminance.
 REALCAM_INLINE LightLobe light_lobe(const SurfacePoint& point, Vec3f to_eye) {
     return is_glossy(point) ? light_lobe(glossy_surface(point), point.normal, to_eye) : LightLobe{};
 }
 
-/// What Bsdf is for most opaque surfaces: Lambert's lobe under one of rough microfacets. Without branches, so that it
-/// becomes vector code for many points; on a GPU, and for other materials, Bsdf does the same.
+/// BSDF of most opaque surfaces: a Lambertian lobe under a rough microfacet lobe. Free of branches, so that loops over
+/// many points vectorise. On a GPU, and for other materials, Bsdf does the same.
 class GlossyBsdf {
 public:
-    /// What goes to a direction: BSDF times cosine of either lobe, and their densities per steradian. Zero where the
-    /// direction is not above the surface.
+    /// BSDF times cosine of each lobe, and the sampling densities of the lobes per steradian. Zero if the direction is
+    /// below the surface.
     struct Value {
         Color diffuse, specular;
         float diffuse_pdf, specular_pdf;
     };
 
-    /// `normal`: of the surface, turned to the eye.
+    /// `normal`: shading normal, on the eye's side.
     REALCAM_INLINE GlossyBsdf(const GlossySurface& surface, Vec3f normal, Vec3f geometric_normal, Vec3f to_eye)
         : frame_(visible_normal(normal, to_eye)),
           geometric_normal_(geometric_normal),
@@ -79,14 +81,14 @@ public:
         specular_albedo_ = largest(reflectance_.albedo(to_eye_));
     }
 
-    /// Reflectances by which a lobe is chosen.
+    /// Albedos for the eye's direction, by which a lobe is chosen.
     REALCAM_INLINE float diffuse_albedo() const { return diffuse_albedo_; }
     REALCAM_INLINE float specular_albedo() const { return specular_albedo_; }
 
     REALCAM_INLINE Value eval(Vec3f to_light) const {
         const Vec3f light = frame_.to_local(to_light);
         const bool is_possible = (light.z > 0.0f) & (dot(geometric_normal_, to_light) > 0.0f);
-        // Tables are also read for directions below the surface.
+        // Directions below the surface must not index outside the tables.
         const float cosine = select(is_possible, light.z, 1.0f), pdf = 0.3183098862f * cosine;
         const GgxAlbedo to_light_facets = inlined_ggx_albedo(cosine, alpha_);
         const Color diffuse = pdf * diffuse_ * (grey(1.0f) - above_diffuse_.albedo(to_light_facets));
@@ -103,7 +105,7 @@ public:
                 select(is_possible, specular_pdf, 0.0f)};
     }
 
-    /// A direction of one of the lobes, which may lie below the surface.
+    /// Samples a direction of one lobe; it may lie below the surface.
     REALCAM_INLINE Vec3f sample(bool is_diffuse, Vec2f u) const {
         const Vec3f h = sample_ggx(eye_, alpha_, {u.x / to_eye_.all, u.y});
         const Vec3f mirrored = (2.0f * dot(eye_, h)) * h - eye_;
@@ -114,7 +116,7 @@ public:
     }
 
 private:
-    /// As make_bsdf's, which has a branch.
+    /// Branch-free version of make_bsdf_detail::visible_normal.
     REALCAM_INLINE static Vec3f visible_normal(Vec3f normal, Vec3f to_eye) {
         constexpr float kLeastCosine = 1e-3f;
         const float cosine = dot(normal, to_eye);
@@ -123,11 +125,11 @@ private:
 
     ShadingFrame frame_;
     Vec3f geometric_normal_;
-    Vec3f eye_;  ///< local
+    Vec3f eye_;  ///< unit, in the local frame
     float alpha_, lost_;
     GgxAlbedo to_eye_;
     FacetReflectance above_diffuse_, reflectance_;
-    Color diffuse_;  ///< reflectance, times what depends on the direction of view alone
+    Color diffuse_;  ///< reflectance times all factors that depend only on the direction of view
     float diffuse_albedo_, specular_albedo_;
 };
 

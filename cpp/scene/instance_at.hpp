@@ -4,15 +4,15 @@
 
 namespace REALCAM_NAMESPACE {
 
-// Where things are that move while the shutter is open. Times are shares of the exposure, from 0 to 1. Between the
-// keys, which are at even times, the entries of a transform change evenly, as in Embree.
+// Transforms of moving instances while the shutter is open. Times are fractions of the exposure, 0 to 1. Keys are
+// equally spaced in time, and matrix entries are interpolated linearly between them, as in Embree.
 
 REALCAM_INLINE Affine<float> transform_at(const Affine<float>* keys, std::int32_t count, float time) {
     const KeyInterval at = key_interval(time, count);
     return mix(keys[at.first], keys[at.first + 1], at.share);
 }
 
-/// With the transforms of a time.
+/// Returns an instance with its transforms at a time.
 REALCAM_INLINE InstanceView instance_at(const SceneView& scene, std::uint32_t number, float time) {
     InstanceView instance = scene.instances[number];
     if (instance.key_count > 0) {

@@ -6,7 +6,7 @@ namespace realcam {
 
 std::string DistinctNames::take(const std::string& name) {
     if (name.empty() || taken_.insert(name).second) return name;
-    // The count goes on from the last one, because a file may hold a name a million times.
+    // Counts on from the last number, because a file may hold a name a million times.
     int& number = numbers_.try_emplace(name, 1).first->second;
     std::string free;
     do free = name + '.' + std::to_string(++number);

@@ -7,8 +7,8 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Keeps the names of instances distinct, so that a name says which one is meant: of several that are called "car" the
-/// first keeps that name, and the others become "car.2", "car.3" and so on. No name stays no name.
+/// Makes instance names unique, so that a name identifies one instance: of several called "car" the first keeps that
+/// name, and the others become "car.2", "car.3" and so on. Empty names stay empty.
 class DistinctNames {
 public:
     DistinctNames() = default;
@@ -16,7 +16,7 @@ public:
         for (const Instance& instance : assembly.instances) taken_.insert(instance.name);
     }
 
-    /// The name, or the first free one made of it; taken from now on.
+    /// Returns the name, or the first free numbered variant of it, and reserves it.
     std::string take(const std::string& name);
 
 private:
@@ -24,11 +24,11 @@ private:
     std::unordered_map<std::string, int> numbers_;
 };
 
-/// For an assembly whose instances have the names that a file gave them.
+/// Makes the instance names of a scene unique.
 void make_names_distinct(Assembly& assembly);
 
-/// Puts an object into a scene. What the object is itself made of becomes its parts, with names of the form name/part.
-/// `names`: those of the assembly, which the new ones are kept apart from.
+/// Instances an object in a scene. The object's own instances become parts of the new one, named name/part. `names`:
+/// the names that the scene already uses.
 void add(Assembly& assembly, const Assembly& object, const Placement& placement, const std::string& name,
          DistinctNames& names);
 

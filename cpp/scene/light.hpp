@@ -7,13 +7,13 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Density per steradian of a point on an area light, drawn evenly over it, at this distance and with this cosine
-/// between its normal and the way to it.
+/// Solid-angle density of a point sampled uniformly by area on an area light, at this distance; `cosine` is that
+/// between the light's normal and the direction to the receiver.
 REALCAM_INLINE float area_light_pdf(float area, float distance_squared, float cosine) {
     return distance_squared / (area * cosine);
 }
 
-/// What an area light sends from the point with these barycentric coordinates.
+/// Radiance that an area light emits at barycentric coordinates (along_u, along_v).
 template <SceneKind scene_kind>
 REALCAM_INLINE Color emitted_radiance(const SceneView& scene, const AreaLight& light, float along_u, float along_v) {
     if constexpr (scene_kind == SceneKind::plain) return light.radiance;
@@ -28,7 +28,7 @@ REALCAM_INLINE Color emitted_radiance(const SceneView& scene, const AreaLight& l
     return radiance;
 }
 
-/// Where an area light that may move is at a time.
+/// Returns an area light, which may move, at a time of the exposure.
 REALCAM_INLINE AreaLight area_light_at(const SceneView& scene, const AreaLight& stored, float time) {
     AreaLight light = stored;
     if (light.instance == kNoInstance || scene.instances[light.instance].key_count == 0) return light;
@@ -48,14 +48,14 @@ REALCAM_INLINE AreaLight area_light_at(const SceneView& scene, const AreaLight& 
     return light;
 }
 
-/// The same of a number among the area lights, in a scene of this kind.
+/// Returns the area light of this index at a time of the exposure; only scenes of SceneKind::any have moving ones.
 template <SceneKind scene_kind>
 REALCAM_INLINE AreaLight area_light_at(const SceneView& scene, std::int32_t number, float time) {
     if constexpr (scene_kind == SceneKind::any) return area_light_at(scene, scene.areas[number], time);
     return scene.areas[number];
 }
 
-/// Where a point light that may move is at a time.
+/// Returns a point light, which may move, at a time of the exposure.
 REALCAM_INLINE PointLight point_light_at(const SceneView& scene, const PointLight& stored, float time) {
     PointLight light = stored;
     if (light.moves_with < 0) return light;
@@ -66,16 +66,17 @@ REALCAM_INLINE PointLight point_light_at(const SceneView& scene, const PointLigh
     return light;
 }
 
-/// The way from a position to a place on an area light.
+/// Direction and distance from a position to a point on an area light.
 struct WayToLight {
     Vec3f direction;  ///< unit
-    float distance, reach;  ///< as LightSample's
-    float cosine;  ///< between the way back and the light's normal; above 0 where the light shines this way
-    float pdf;  ///< per steradian, of a place that was drawn evenly
+    float distance, reach;  ///< see LightSample
+    /// Between the light's normal and the direction to the position; positive if the light emits towards it.
+    float cosine;
+    float pdf;  ///< per steradian, of a point sampled uniformly by area
 };
 
-/// `u`: barycentric. Without branches, so that it becomes vector code. Where the position lies on the light, the cosine
-/// is no number.
+/// `u`: barycentric coordinates of the point. Free of branches, so that loops vectorise. If the position lies on the
+/// light, the cosine is NaN.
 REALCAM_INLINE WayToLight way_to(const AreaLight& light, bool on_both_sides, Vec3f position, Vec2f u) {
     const Vec3f way = light.corner + u.x * light.edge_u + u.y * light.edge_v - position;
     const float squared = dot(way, way), distance = std::sqrt(squared);
@@ -86,30 +87,30 @@ REALCAM_INLINE WayToLight way_to(const AreaLight& light, bool on_both_sides, Vec
     return {direction, distance, reach, cosine, area_light_pdf(light.area, squared, cosine)};
 }
 
-/// Barycentric coordinates of a place on a triangle, drawn evenly.
+/// Barycentric coordinates of a point sampled uniformly on a triangle.
 REALCAM_INLINE Vec2f sample_triangle(Vec2f u) {
     const float root = std::sqrt(u.x);
     return {root * (1.0f - u.y), root * u.y};
 }
 
-/// Whether places on an area light are drawn evenly by the solid angle in which they are seen. Drawn evenly by area,
-/// those next to the position would count without a bound. This is so up to about 1.2 times the light's size, so that
-/// the nearest corner of those drawn by area is no less than a third of its middle's distance away.
+/// True if points on an area light are sampled uniformly by solid angle. Sampled by area, points close to the receiver
+/// would have unbounded weights. This holds up to a distance of about 1.2 times the light's size, so that for lights
+/// sampled by area the nearest corner is at least a third of the centroid's distance away.
 REALCAM_INLINE bool is_near(const AreaLight& light, Vec3f position) {
     const Vec3f to_middle = light.corner + (1.0f / 3.0f) * (light.edge_u + light.edge_v) - position;
-    // 1.5 times the sum of the squared distances of the corners from the middle.
+    // 1.5 times the sum of the squared distances of the corners from the centroid.
     const float size2 =
         dot(light.edge_u, light.edge_u) + dot(light.edge_v, light.edge_v) - dot(light.edge_u, light.edge_v);
     return dot(to_middle, to_middle) < size2;
 }
 
-/// A place drawn evenly by solid angle, in barycentric coordinates.
+/// Point sampled uniformly by solid angle, in barycentric coordinates.
 struct NearPlace {
     Vec2f at;
-    float solid_angle;  ///< of the whole light
+    float solid_angle;  ///< solid angle of the whole light, in steradians
 };
 
-/// Called by GPUs, because few receivers are near a light.
+/// A function call on GPUs, because few receivers are near a light.
 REALCAM_ONE_COPY NearPlace sample_spherical_triangle(Vec3f a, Vec3f b, Vec3f c, float double_area, float height,
                                                      Vec2f u) {
     const SphericalTriangle seen(a, b, c, double_area, height);
@@ -122,13 +123,13 @@ REALCAM_INLINE NearPlace sample_near(const AreaLight& light, Vec3f position, Vec
                                      std::fabs(dot(way, light.normal)), u);
 }
 
-/// Of a place on an area light that sample_area_light draws, per steradian.
+/// Density of sample_area_light, per steradian, at a point on the light.
 REALCAM_INLINE float place_pdf(const AreaLight& light, Vec3f position, float distance, float cosine) {
     return is_near(light, position) ? 1.0f / sample_near(light, position, {0, 0}).solid_angle
                                     : area_light_pdf(light.area, distance * distance, cosine);
 }
 
-/// What arrives from a place on an area light, with its density. Black where the way is from behind.
+/// Light sample of a point on an area light. Black if the position is behind the light.
 template <SceneKind scene_kind>
 REALCAM_INLINE LightSample light_from(const SceneView& scene, const AreaLight& light, const WayToLight& way,
                                       Vec2f place) {
@@ -142,7 +143,7 @@ REALCAM_INLINE bool shines_on_both_sides(const AreaLight& light) {
     return scene_kind != SceneKind::plain && light.is_two_sided != 0;
 }
 
-/// A place on an area light, drawn evenly by area.
+/// Samples an area light uniformly by area.
 template <SceneKind scene_kind>
 REALCAM_INLINE LightSample sample_area(const SceneView& scene, const AreaLight& light, Vec3f position, Vec2f u) {
     const Vec2f place = sample_triangle(u);
@@ -150,7 +151,7 @@ REALCAM_INLINE LightSample sample_area(const SceneView& scene, const AreaLight& 
                                   place);
 }
 
-/// A place on an area light, drawn with place_pdf.
+/// Samples an area light with the density place_pdf.
 template <SceneKind scene_kind>
 REALCAM_INLINE LightSample sample_area_light(const SceneView& scene, const AreaLight& light, Vec3f position, Vec2f u) {
     if (!is_near(light, position)) return sample_area<scene_kind>(scene, light, position, u);
@@ -172,7 +173,7 @@ REALCAM_INLINE LightSample sample_point_light(const PointLight& light, Vec3f pos
     return {direction, distance, reach, (share * share / squared) * light.intensity, kDelta};
 }
 
-/// The two parts of which the probability of a kind of light consists: an even share, and one by its importance.
+/// Probability of choosing a kind of light: a uniform part plus a part proportional to its importance.
 struct LightShares {
     float even, scale;
 
@@ -181,17 +182,17 @@ struct LightShares {
     }
 };
 
-/// `count`: kinds of light, at least one; `sum`: of their importances.
+/// `count`: number of kinds of light, at least one; `sum`: of their importances.
 REALCAM_INLINE LightShares light_shares(float count, float sum) {
     constexpr float kEven = 0.5f;
-    // No estimate, or one that float cannot hold: all alike.
+    // Falls back to the uniform distribution if the estimate is 0 or overflows.
     const bool is_useful = (sum > 0.0f) & (sum < 1e30f);
-    // Not by 0 even where the result is thrown away: a GPU takes many instructions for that.
+    // Never divides by 0, even if the result is discarded: a GPU takes a slow path of many instructions for that.
     return {select(is_useful, kEven, 1.0f) / count,
             select(is_useful, (1.0f - kEven) / select(is_useful, sum, 1.0f), 0.0f)};
 }
 
-/// The importance of an environment: the illuminance on a plane that sees half of it.
+/// Importance of the environment: the illuminance on a plane that faces half of it.
 REALCAM_INLINE float environment_importance(const SceneView& scene) {
     return scene.has_environment ? 3.141592654f * scene.environment.mean_luminance : 0.0f;
 }
@@ -201,22 +202,21 @@ REALCAM_INLINE float sun_importance(const SunLight& sun, Vec3f normal) {
     return select(cosine > 0.0f, cosine * luminance(sun.illuminance), 0.0f);
 }
 
-/// Samples of the lights at a surface: of one of the lights, and of the environment where it is apart.
+/// Light samples at a surface: one of a chosen light, and one of the environment if it is sampled separately.
 inline constexpr int kLightSampleCount = 2;
 
-/// The estimated share of a receiver's light from which on the environment has a sample of its own.
+/// Estimated share of a receiver's light above which the environment gets a sample of its own.
 inline constexpr float kApartShare = 0.1f;
 
-/// What is known of the kinds of light at a receiver, to choose one of them. Half of the probability goes by the
-/// estimated illuminance of each kind if nothing stands in between. The other half is even, because the brightest kind
-/// may be occluded.
+/// Probabilities of the kinds of light at a receiver. Half of the probability is proportional to the estimated
+/// unoccluded illuminance of each kind; the other half is uniform, because the brightest kind may be occluded.
 struct LightKinds {
     LightShares shares;
-    float local_probability;  ///< of point and area lights, together
+    float local_probability;  ///< all point and area lights together
     float environment_probability;
-    bool environment_is_apart;  ///< it has a sample of its own, and is not among those of which one is chosen
+    bool environment_is_apart;  ///< it has a sample of its own and is not one of the choices of the other sample
 
-    /// Of the sample of either number.
+    /// Probability that one of the two light samples is taken from the environment.
     REALCAM_INLINE float environment_chance() const {
         return select(environment_is_apart, 1.0f, environment_probability);
     }
@@ -230,21 +230,21 @@ REALCAM_INLINE int count_light_kinds(const SceneView& scene) {
     return (scene.light_node_count > 0) + scene.sun_count + scene.has_environment;
 }
 
-/// `goes_on`: whether the surface's lobes send out rays; `is_first`: of its path.
+/// `goes_on`: true if the path continues with a BSDF sample; `is_first`: true at the first surface of a path.
 REALCAM_INLINE SkySampling sky_sampling(const SceneView& scene, bool goes_on, bool is_first) {
     if (scene.light_node_count + scene.sun_count == 0) return SkySampling::chosen;
     if (goes_on) return scene.environment.pixels ? SkySampling::chosen : SkySampling::left_to_rays;
     return is_first ? SkySampling::apart : SkySampling::chosen;
 }
 
-/// Whether a scene has any light for the sample of this number.
+/// True if the scene has a light for the sample of this index, 0 or 1.
 REALCAM_INLINE bool has_light(const SceneView& scene, SkySampling sky, int number) {
     if (number == 1) return sky == SkySampling::apart && scene.has_environment;
     return scene.light_node_count + scene.sun_count > 0 || scene.has_environment;
 }
 
-/// `local`, `suns`: importances of all point and area lights, and of all suns; 0 where there is but one kind. Becomes
-/// vector code for many receivers.
+/// `local`, `suns`: importances of all point and area lights, and of all suns; 0 if there is only one kind. Free of
+/// branches, so that loops over receivers vectorise.
 REALCAM_INLINE LightKinds light_kinds(const SceneView& scene, SkySampling sampling, float local, float suns) {
     const int count = count_light_kinds(scene);
     const float sky = count > 1 ? environment_importance(scene) : 0.0f, others = local + suns;
@@ -258,7 +258,7 @@ REALCAM_INLINE LightKinds light_kinds(const SceneView& scene, SkySampling sampli
             select(is_chosen, shares.probability(sky), 0.0f), is_apart};
 }
 
-/// Of all point and area lights, and of all suns.
+/// Importances of all point and area lights together, and of all suns together.
 struct LightImportances {
     float local = 0.0f, suns = 0.0f;
 };
@@ -276,15 +276,16 @@ REALCAM_INLINE LightKinds light_kinds(const SceneView& scene, SkySampling sampli
     return light_kinds(scene, sampling, of.local, of.suns);
 }
 
-/// Density per steradian of sample_light in a direction in which the environment is seen. One of its two samples may
-/// be in that direction, and which one depends on the receiver alone.
+/// Solid-angle density of sample_light in a direction in which the environment is visible. At most one of the two
+/// samples can have that direction; which one depends only on the receiver.
 REALCAM_INLINE float environment_light_pdf(const SceneView& scene, SkySampling sampling, LightReceiver receiver,
                                            Vec3f direction) {
     return light_kinds(scene, sampling, receiver).environment_chance() *
            environment_pdf(scene.environment, receiver.normal, direction);
 }
 
-/// The same in a direction in which an area light is met, at this distance and with this cosine at it.
+/// Solid-angle density of sample_light in a direction in which an area light is hit, at this distance and with this
+/// cosine at the light.
 template <SceneKind scene_kind>
 REALCAM_INLINE float emitter_light_pdf(const SceneView& scene, SkySampling sampling, LightReceiver receiver,
                                        std::int32_t area_light, float distance, float cosine) {
@@ -294,7 +295,7 @@ REALCAM_INLINE float emitter_light_pdf(const SceneView& scene, SkySampling sampl
            place_pdf(light, receiver.position, distance, cosine);
 }
 
-/// The area light that a hit on an emitting triangle is on.
+/// Index of the area light of a hit on an emitting triangle.
 REALCAM_INLINE std::int32_t area_light_of(const SceneView& scene, Hit hit) {
     const bool is_static = hit.instance == kNoInstance;
     const MeshView& mesh = mesh_of(scene, hit.instance);
@@ -308,17 +309,17 @@ REALCAM_INLINE std::int32_t area_light_of(const SceneView& scene, Hit hit) {
 
 enum class LightKind : std::int32_t { point, area, environment, sun };
 
-/// One light of all.
+/// Chosen light.
 struct LightPick {
     LightKind kind;
-    std::int32_t index;  ///< among those of its kind
+    std::int32_t index;  ///< among the lights of its kind
     float probability;
-    Vec2f u;  ///< random numbers for a place on it
+    Vec2f u;  ///< random numbers for sampling it
 };
 
-/// Chooses one light. One pair of numbers does that and chooses a place on it, so that what is even over a pixel's
-/// samples is even over each light. `number`: of the sample. `choose(u)`: one of the point and area lights, as
-/// choose_light does.
+/// Chooses one light. A single pair of random numbers chooses the light and the point on it, so that stratification
+/// over a pixel's samples carries over to each light. `number`: index of the light sample. `choose(u)`: chooses one of
+/// the point and area lights, like choose_light.
 template <class Choose>
 REALCAM_INLINE LightPick pick_light_by(const SceneView& scene, LightReceiver receiver, const LightKinds& kinds,
                                        int number, Vec2f u, const Choose& choose) {
@@ -338,27 +339,27 @@ REALCAM_INLINE LightPick pick_light_by(const SceneView& scene, LightReceiver rec
     for (int i = 0; i < scene.sun_count; ++i) {
         u.x -= probability;
         probability = kinds.sun_probability(scene.suns[i], receiver.normal);
-        // The last one also where roundings have left nothing to it.
+        // The last sun also takes what rounding leaves over.
         if (u.x < probability || i + 1 == scene.sun_count) return {LightKind::sun, i, probability, u};
     }
     return {LightKind::environment, 0, 0.0f, u};
 }
 
-/// `seed`: as in choose_light.
+/// `seed`: see choose_light.
 REALCAM_INLINE LightPick pick_light(const SceneView& scene, LightReceiver receiver, const LightKinds& kinds, int number,
                                     Vec2f u, std::uint32_t seed) {
     return pick_light_by(scene, receiver, kinds, number, u,
                          [&](float rest) { return choose_light(scene, receiver, rest, seed); });
 }
 
-/// One over the squared distance has no bound. Lights end at 1e30; what a narrow lobe and the film's sums make of this
-/// is still finite.
+/// 1 / distance^2 is unbounded, and intensities reach 1e30 cd. With this bound a narrow lobe's value and the film's
+/// sums stay finite.
 REALCAM_INLINE Color bounded_light(Color c) {
     const auto bounded = [](float v) { return select(v < 1e28f, v, 1e28f); };
     return {bounded(c.r), bounded(c.g), bounded(c.b)};
 }
 
-/// A place on the light that was picked, as if there were no other.
+/// Samples the chosen light as if it were the only one.
 template <SceneKind scene_kind>
 REALCAM_INLINE LightSample sample_picked(const SceneView& scene, LightReceiver receiver, const LightPick& pick) {
     switch (pick.kind) {
@@ -377,7 +378,8 @@ REALCAM_INLINE LightSample sample_picked(const SceneView& scene, LightReceiver r
     return {-sun.direction, kFarAway, 1.0f, sun.illuminance, kDelta};
 }
 
-/// Chooses one light for the sample of this number, for which the scene must have one, and a place on it. Black: none.
+/// Chooses one light for the light sample of this index, for which has_light must hold, and samples it. Black if no
+/// light was chosen.
 template <SceneKind scene_kind>
 REALCAM_INLINE LightSample sample_light(const SceneView& scene, SkySampling sampling, LightReceiver receiver,
                                         int number, Vec2f u, std::uint32_t seed) {

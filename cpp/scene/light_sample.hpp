@@ -7,11 +7,11 @@ namespace REALCAM_NAMESPACE {
 
 inline constexpr float kFarAway = 3.0e38f;
 
-/// A lobe of rough facets, by which lights are chosen that it shows.
+/// Rough microfacet lobe, by which lights are chosen.
 struct LightLobe {
     Vec3f to_eye = {0, 0, 0};  ///< unit
-    float alpha = 1;           ///< of the facets (ggx.hpp)
-    float share = 0;           ///< of what the surface scatters, about; the rest is Lambert's
+    float alpha = 1;  ///< GGX alpha (ggx.hpp)
+    float share = 0;  ///< approximate share of the scattered light; the Lambertian lobe has the complement
 };
 
 REALCAM_INLINE LightLobe select(bool condition, const LightLobe& a, const LightLobe& b) {
@@ -19,29 +19,29 @@ REALCAM_INLINE LightLobe select(bool condition, const LightLobe& a, const LightL
             select(condition, a.share, b.share)};
 }
 
-/// Where and when light is wanted.
+/// Point and time at which incident light is estimated.
 struct LightReceiver {
     Vec3f position;
-    Vec3f normal;  ///< of the surface, on the side that light can reach; zero: light may come from all sides
-    float time = 0;  ///< share of the exposure; for SceneKind::any alone
+    Vec3f normal;  ///< surface normal on the side that light can reach; zero: light may come from all directions
+    float time = 0;  ///< fraction of the exposure; used only for SceneKind::any
     LightLobe lobe = {};
 };
 
-/// How the environment is looked for at a surface beside other lights. A choice between the two is noisiest where the
-/// stronger one is hidden.
+/// How the environment is sampled at a surface beside other lights. A choice between the two is noisiest if the
+/// stronger one is occluded.
 enum class SkySampling : std::int32_t {
-    chosen,       ///< as one of the lights
-    apart,        ///< by a sample of its own, where it brings a good part of the light
-    left_to_rays  ///< by the scattered ray alone, whose directions have the density that samples would have
+    chosen,  ///< chosen among the lights
+    apart,  ///< by a sample of its own if it contributes a good part of the light
+    left_to_rays  ///< only by BSDF sampling, whose density equals that of light samples
 };
 
-/// A direction from which light may come to a receiver.
+/// Sampled direction of incident light, before the visibility test.
 struct LightSample {
     Vec3f direction;  ///< unit, towards the light
     float distance;   ///< to the light; kFarAway for sun and environment
-    float reach;      ///< share of the distance at which a shadow ray ends, so as not to meet the light itself
-    Color irradiance; ///< arriving at a right angle, over the density; black: nothing arrives
-    float pdf;        ///< of the direction, per steradian; kDelta for points and suns, which no scattered ray meets
+    float reach;  ///< fraction of the distance at which a shadow ray ends, so that it does not hit the light itself
+    Color irradiance;  ///< at perpendicular incidence, divided by the density; black: no light
+    float pdf;  ///< of the direction, per steradian; kDelta for point lights and suns, which BSDF samples cannot hit
 };
 
 }  // namespace REALCAM_NAMESPACE

@@ -35,7 +35,7 @@ EnvironmentTables environment_tables(const Environment& e, Checkpoint& checkpoin
     }
     double sum = 0;
     for (double l : light) sum += l;
-    // A row of pixels fills 2 pi sine pi / height of the 4 pi.
+    // A row of pixels covers 2 pi sine pi / height of the 4 pi steradians.
     tables.mean_luminance = static_cast<float>(sum * 1.5707963267948966 / static_cast<double>(width * height));
     const std::vector<double> weights = mixed(light, solid_angle);
     std::vector<double> rows;

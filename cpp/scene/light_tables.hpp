@@ -6,12 +6,14 @@
 
 namespace REALCAM_NAMESPACE {
 
-// The probabilities by which the pixels of an environment are chosen. Most of it goes by their power. A share is even,
-// because a light that is 1e8 times dimmer than another is all the light where the other does not reach.
+// Sampling probabilities of an environment map's pixels: mostly in proportion to power, blended with a uniform share,
+// because a light that is 1e8 times dimmer than another is all the light that reaches points where the brighter one is
+// occluded.
 
-inline constexpr double kEvenShare = 0.125;  ///< its price: where power is the best choice, 1/7 more variance
+inline constexpr double kEvenShare = 0.125;  ///< its cost: 1/7 more variance if sampling by power is optimal
 
-/// `weights` by their sum, less kEvenShare; that share by `even_weights`, which are 0 where `weights` are.
+/// Defensive mixture: (1 - kEvenShare) of the normalised `weights` plus kEvenShare of the normalised `even_weights`,
+/// which must be 0 where `weights` are 0. Returns `weights` if all are 0.
 std::vector<double> mixed(std::vector<double> weights, const std::vector<double>& even_weights);
 
 struct EnvironmentTables {
@@ -19,8 +21,8 @@ struct EnvironmentTables {
     float mean_luminance = 0;                          ///< over all directions
 };
 
-/// For choosing the pixels of an image by their light and, for the even share, by their solid angle where they have
-/// any.
+/// Tables for sampling an environment map: pixels by power and, for the uniform share, by solid angle if they are not
+/// black.
 EnvironmentTables environment_tables(const Environment& e, Checkpoint& checkpoint);
 
 }  // namespace REALCAM_NAMESPACE

@@ -7,7 +7,7 @@ namespace REALCAM_NAMESPACE {
 
 namespace make_bsdf_detail {
 
-/// A shading normal under which the eye would lie below the surface is turned towards it, until it does not.
+/// Tilts a shading normal under which the eye would be below the surface towards the eye, until it is not.
 REALCAM_INLINE Vec3f visible_normal(Vec3f normal, Vec3f to_eye) {
     constexpr float kLeastCosine = 1e-3f;
     const float cosine = dot(normal, to_eye);
@@ -21,13 +21,13 @@ REALCAM_INLINE Color unit_range(Color c) {
     return {unit_range(c.r), unit_range(c.g), unit_range(c.b)};
 }
 
-/// GGX alpha of glTF's roughness.
+/// GGX alpha of a glTF roughness.
 REALCAM_INLINE float alpha_of(float roughness) {
     const float r = unit_range(roughness);
     return r * r;
 }
 
-/// Reflectance of a border at normal incidence.
+/// Fresnel reflectance of a dielectric at normal incidence.
 REALCAM_INLINE float normal_reflectance(float ior) {
     const float root = (ior - 1.0f) / (ior + 1.0f);
     return root * root;
@@ -60,7 +60,8 @@ REALCAM_INLINE void add_phong(Bsdf& bsdf, const SurfacePoint& point) {
         if (m.fresnel == FresnelTerm::none) {
             bsdf.mirror = m.mirror;
         } else {
-            // The reflectance at normal incidence is still the sum of the material's.
+            // Keeps the total reflectance at normal incidence: the diffuse lobe below the mirror is scaled up by what
+            // the mirror takes.
             const Color f0 = unit_range(m.mirror);
             bsdf.specular = MicrofacetReflection(0.0f, bsdf.eye.z);
             bsdf.specular.reflectance = bsdf.above_diffuse = FacetReflectance::between(f0, 1.0f, 0.0f);
@@ -99,7 +100,7 @@ REALCAM_INLINE void add_metallic_roughness(Bsdf& bsdf, const SurfacePoint& point
 
 }  // namespace make_bsdf_detail
 
-/// The BSDF of a point for a direction of view. For SceneKind::plain all materials must be plain.
+/// BSDF of a point for a direction of view. For SceneKind::plain all materials must be plain (Material::is_plain).
 template <SceneKind scene_kind>
 REALCAM_INLINE auto make_bsdf(const SurfacePoint& point, Vec3f to_eye) {
     using namespace make_bsdf_detail;

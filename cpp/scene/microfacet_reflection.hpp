@@ -5,15 +5,15 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// What one facet reflects, by Schlick's term, and what comes of light that is reflected more than once.
+/// Reflectance of microfacets: Schlick's term for single scattering, and the albedo of the multiple-scattering lobe.
 struct FacetReflectance {
     Color f0 = {0, 0, 0};
     float f90 = 0;
     Color multiple = {0, 0, 0};
 
-    /// `lost`: share of light from everywhere that a single reflection on facets that reflect all loses.
+    /// `lost`: cosine-weighted mean of the energy that single scattering on perfectly reflecting facets loses.
     REALCAM_INLINE static FacetReflectance between(Color f0, float f90, float lost) {
-        const Color mean = (1.0f / 21.0f) * (20.0f * f0 + grey(f90));  // Schlick's term over the cosines
+        const Color mean = (1.0f / 21.0f) * (20.0f * f0 + grey(f90));  // cosine-weighted mean of Schlick's term
         return {f0, f90, (1.0f - lost) * mean * mean / (grey(1.0f) - lost * mean)};
     }
     REALCAM_INLINE Color albedo(GgxAlbedo facets) const {
@@ -25,16 +25,16 @@ REALCAM_INLINE FacetReflectance mix(const FacetReflectance& a, const FacetReflec
     return {mix(a.f0, b.f0, share_of_b), a.f90 + share_of_b * (b.f90 - a.f90), mix(a.multiple, b.multiple, share_of_b)};
 }
 
-/// GGX microfacets with all reflections between them: what a single reflection loses comes back in a lobe that is
-/// nearly diffuse (Kulla and Conty 2017). In local coordinates, with `to_eye` above the surface.
+/// GGX microfacet reflection with multiple scattering: the energy that single scattering loses returns in a nearly
+/// diffuse lobe (Kulla and Conty 2017). In local coordinates, with `to_eye` above the surface.
 struct MicrofacetReflection {
-    float alpha = 1;  ///< below kSmoothAlpha: a mirror, for which eval and pdf are 0
-    float lost = 0;   ///< share of light from everywhere that one reflection loses
+    float alpha = 1;  ///< GGX alpha; below kSmoothAlpha: a mirror, for which eval and pdf are 0
+    float lost = 0;  ///< cosine-weighted mean of the energy that single scattering loses
     GgxAlbedo to_eye = {0, 0}, mean = {0, 0};
     FacetReflectance reflectance;
 
     REALCAM_HD MicrofacetReflection() {}
-    /// Without reflectance yet.
+    /// Leaves `reflectance` to be set by the caller.
     REALCAM_HD MicrofacetReflection(float alpha_, float eye_cosine) : alpha(alpha_), to_eye(facets_at(eye_cosine)) {
         mean = is_smooth() ? GgxAlbedo{1.0f, 1.0f / 21.0f} : ggx_mean_albedo(alpha);
         lost = 1.0f - mean.all;
@@ -44,7 +44,7 @@ struct MicrofacetReflection {
     REALCAM_INLINE GgxAlbedo facets_at(float cosine) const {
         return is_smooth() ? GgxAlbedo{1.0f, fifth_power(1.0f - cosine)} : ggx_albedo(cosine, alpha);
     }
-    /// Share of the light to a direction that is reflected.
+    /// Directional albedo for the eye's direction.
     REALCAM_INLINE Color albedo_to_eye() const { return reflectance.albedo(to_eye); }
 
     /// BSDF times cosine.
@@ -53,21 +53,21 @@ struct MicrofacetReflection {
         return single(eye, light) + several(light.z, ggx_albedo(light.z, alpha));
     }
 
-    /// Density of sample, per steradian.
+    /// Density of sample(), per steradian.
     REALCAM_INLINE float pdf(Vec3f eye, Vec3f light) const {
         if (is_smooth()) return 0.0f;
         const Vec3f h = normalized(eye + light);
         return to_eye.all * ggx_pdf(eye, h, alpha) / (4.0f * dot(eye, h)) + (1.0f - to_eye.all) * (2.0f * kSpherePdf);
     }
 
-    /// A direction, which may lie below the surface.
+    /// Samples a direction, which may lie below the surface.
     REALCAM_INLINE Vec3f sample(Vec3f eye, Vec2f u) const {
         if (is_smooth()) return {-eye.x, -eye.y, eye.z};
         if (u.x < to_eye.all) {
             const Vec3f h = sample_ggx(eye, alpha, {u.x / to_eye.all, u.y});
             return (2.0f * dot(eye, h)) * h - eye;
         }
-        // Evenly, because on smooth surfaces it is at grazing incidence that light is lost.
+        // Uniform over the hemisphere, not by cosine: on smooth surfaces energy is lost at grazing incidence.
         const float fresh = (u.x - to_eye.all) / (1.0f - to_eye.all);
         return sample_sphere({fresh < 1.0f ? 0.5f * fresh : 0.5f, u.y});
     }

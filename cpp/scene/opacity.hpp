@@ -4,11 +4,11 @@
 
 namespace REALCAM_NAMESPACE {
 
-// A ray that meets a surface with holes stops there with the probability of its opacity. So the picture's mean is that
-// of light which is let through in part, for shadows as for what is seen, however many surfaces lie behind each other,
-// and no ray has to be split.
+// Stochastic opacity: a ray that hits a surface with holes stops there with the probability of its opacity. The
+// expected picture equals that of partial transmission, for shadows and for visible surfaces, however many surfaces
+// overlap, and rays need not be split.
 
-/// Share of a surface that is there, at a place on one of its triangles.
+/// Opacity of a surface at a hit, 0 to 1.
 REALCAM_INLINE float opacity_at(const MeshView& mesh, const Triangle& triangle, Hit hit) {
     const Material& material = mesh.materials[triangle.material];
     float opacity = material.opacity;
@@ -19,7 +19,8 @@ REALCAM_INLINE float opacity_at(const MeshView& mesh, const Triangle& triangle, 
     return opacity;
 }
 
-// By the number of a ray each one decides anew, and each backend alike. It is odd for shadow rays.
+// A ray's number seeds its decisions: independent for each ray, and identical in all backends. It is odd for shadow
+// rays and even for path rays.
 REALCAM_INLINE std::uint32_t path_ray_number(std::uint32_t hash) {
     return (hash & ~1u) | 2u;
 }
@@ -27,11 +28,11 @@ REALCAM_INLINE std::uint32_t shadow_ray_number(std::uint32_t hash) {
     return hash | 1u;
 }
 
-/// The number of a ray that stops at surfaces with an opacity of half or more, and passes those that show shadows
-/// alone. One ray that stands for a whole pixel must not depend on chance.
+/// Number of a ray that decides deterministically: it stops at surfaces with an opacity of at least 0.5 and passes
+/// shadow catchers. A single ray that represents a whole pixel must not depend on chance.
 inline constexpr std::uint32_t kDecidedRay = 0;
 
-/// Whether a ray stops at a hit on a mesh.
+/// True if a ray stops at a hit on a mesh.
 REALCAM_INLINE bool stops_ray(const MeshView& mesh, Hit hit, std::uint32_t ray) {
     const Triangle& triangle = mesh.triangles[hit.triangle];
     const Material& material = mesh.materials[triangle.material];

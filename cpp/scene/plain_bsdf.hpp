@@ -5,7 +5,7 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Bsdf of a material that is_plain: Lambert's and Phong's lobe, for kernels that need no other.
+/// BSDF of a plain material (Material::is_plain): Lambertian and Phong lobes, for kernels that need no others.
 class PlainBsdf {
 public:
     Vec3f normal, geometric_normal, eye;
@@ -48,7 +48,7 @@ public:
     }
 
 private:
-    /// Probability of Lambert's lobe: by the largest reflectance of each.
+    /// Probability of sampling the Lambertian lobe: by the largest reflectance of each lobe.
     REALCAM_INLINE float diffuse_share() const {
         const float d = largest(diffuse), p = largest(phong);
         return d > 0.0f ? d / (d + p) : 0.0f;

@@ -67,7 +67,7 @@ bool RenderSpaceMesh::has_holes() const {
 
 void RenderSpaceMesh::add_normals(Checkpoint& checkpoint) {
     if (frame_.is_scale_and_shift() || split_.normals().empty()) return;
-    // Not made unit vectors, so that what is interpolated between them is what it was.
+    // Left unnormalised, so that interpolation between vertices is the transform of the original one.
     const InverseAffine<double> inverse = frame_.inverse();
     turned_normals_.reserve(split_.normals().size());
     for (const Vec3f n : split_.normals()) {
@@ -77,11 +77,11 @@ void RenderSpaceMesh::add_normals(Checkpoint& checkpoint) {
 }
 
 void RenderSpaceMesh::add_planes(Checkpoint& checkpoint) {
-    const double side = frame_.determinant() < 0 ? -1 : 1;  // a mirror turns corners round
+    const double side = frame_.determinant() < 0 ? -1 : 1;  // a mirroring transform reverses the winding
     planes_.reserve(triangles().size());
     for (std::size_t i = 0; i < triangles().size(); ++i) {
         checkpoint.pass();
-        // The edges of the whole triangle, so that its pieces are one plane.
+        // Uses the edges of the original triangle, so that all its pieces have the same plane.
         const Edges whole = edges_of(scene_.triangles[split_.parent(i)],
                                      [&](std::uint32_t v) { return frame_.point(scene_.positions_m[v]); });
         const Vec3d area = cross(whole.u, whole.v);

@@ -8,35 +8,35 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// A scene's triangles as kernels read them: float, in a frame that suits. What is measured between corners (planes,
-/// areas, edges) comes from their double positions. Owns the memory of its view; the Scene must outlive it.
+/// Triangle mesh as kernels read it: float, in a given frame. Planes, areas and edges are computed from
+/// double-precision positions. Owns the memory of its view; the Scene must outlive it.
 class RenderSpaceMesh {
 public:
-    /// `frame`: from that of the scene.
+    /// `frame`: transform from scene space.
     RenderSpaceMesh(const Scene& scene, const Affine<double>& frame, LargeTriangles large, Checkpoint& checkpoint);
 
     MeshView view() const;
 
     const Scene& scene() const { return scene_; }
     const Affine<double>& frame() const { return frame_; }
-    /// With room for one more, because Embree reads 16 bytes of each.
+    /// With capacity for one more, because Embree reads 16 bytes per vertex.
     const std::vector<Vec3f>& positions() const { return positions_; }
-    /// The scene's, of which those that are large and near are in pieces.
+    /// The scene's triangles; those that are large and near are split (SplitTriangles).
     const std::vector<Triangle>& triangles() const { return split_.triangles(); }
 
     const std::vector<TrianglePlane>& planes() const { return planes_; }
-    /// Those of the triangles that give light.
+    /// Indices of the triangles that emit light.
     const std::vector<std::uint32_t>& emitters() const { return emitters_; }
-    /// What maps make of their luminance.
+    /// Mean factor of each emitter's luminance (emission_means).
     const std::vector<float>& emission_means() const { return emission_means_; }
 
-    /// Makes the coarser levels of colours, for which the mean of a part is what is seen of it; not of directions, of
-    /// roughness and of coverage, for which it is not. Views made before do not have them.
+    /// Builds the mipmap levels of colour textures. Directions, roughness and coverage get none, because shading with
+    /// their mean is not the mean of the shading. Views made earlier lack the levels.
     void add_texture_levels(Checkpoint& checkpoint);
 
     bool has_holes() const;
 
-    /// Corner and edges of a triangle, as exact as the scene gives them.
+    /// First corner and edges of a triangle, in double precision.
     struct Edges {
         Vec3d corner, u, v;
     };
@@ -64,7 +64,7 @@ private:
     std::vector<std::uint32_t> emitters_;
     std::vector<float> emission_means_;
     std::vector<TextureView> textures_;
-    std::vector<TextureLevels> levels_;  ///< of each of them; empty: none
+    std::vector<TextureLevels> levels_;  ///< for each texture; empty: no levels
 };
 
 }  // namespace REALCAM_NAMESPACE

@@ -18,7 +18,8 @@ RenderSpaceScene::RenderSpaceScene(Assembly assembly, Vec3d origin_m, TimeInterv
       checkpoint_(keep_going),
       static_geometry_(*assembly_.static_geometry, relative_to(origin_m), LargeTriangles::cut, checkpoint_) {
     std::map<const Scene*, BoundingBox> boxes;
-    std::map<std::pair<const Scene*, int>, std::uint32_t> shared;  // by those that are scaled about alike
+    // By object and coarse scale, so that instances of similar scale share one mesh.
+    std::map<std::pair<const Scene*, int>, std::uint32_t> shared;
     for (const Instance& instance : assembly_.instances) {
         checkpoint_.pass();
         const Scene& object = *instance.object;
@@ -248,7 +249,7 @@ PointLight RenderSpaceScene::point_light(const ScenePointLight& from, Vec3d posi
     PointLight light{static_cast<Vec3f>(position), from.intensity};
     if (!(length(axis) > 0)) return light;
     light.axis = static_cast<Vec3f>(normalized(axis));
-    // A spot that ends without fading first would have an infinite slope: KHR_lights_punctual's bound.
+    // Lower bound of KHR_lights_punctual: a spot with equal inner and outer angles would have an infinite slope.
     const double cos_outer = std::cos(from.outer_cone_rad);
     const double scale = 1 / std::max(1e-3, std::cos(from.inner_cone_rad) - cos_outer);
     light.cos_scale = static_cast<float>(scale);

@@ -10,21 +10,22 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// A scene as kernels read it, relative to an origin near the camera, so that a scene far from its own origin loses
-/// nothing. Objects are placed in frames of their own, which kernels reach through the instances; but one that is
-/// large, and near the camera, is prepared as static geometry is, once for each instance of it. Owns the memory of
-/// its view.
+/// Scene as kernels read it, in render space: relative to an origin near the camera, so that a scene far from its own
+/// origin loses no precision. Objects have frames of their own, which kernels reach through the instances; but an
+/// object that is large and near the camera is prepared like static geometry, once for each of its instances. Owns the
+/// memory of its view.
 class RenderSpaceScene {
 public:
-    /// `exposure`: from when to when it is looked at. Throws Cancelled where `keep_going` returns false, and InputError
-    /// for a motion that is too fast (exposure_keys).
+    /// `exposure`: shutter interval. Throws Cancelled if `keep_going` returns false, and InputError for a motion that
+    /// is too fast (exposure_keys).
     RenderSpaceScene(Assembly assembly, Vec3d origin_m, TimeInterval exposure = {}, const KeepGoing& keep_going = {});
 
-    /// Whether move can bring about an assembly: it has the same parts, and their frames are still good ones.
+    /// True if move() can update to this scene: it has the same parts, and their frames still have a suitable scale and
+    /// position.
     bool can_move_to(const Assembly& assembly) const;
 
-    /// Gives instances other transforms, as can_move_to allows, or looks at them at another time. Their triangles stay
-    /// what they are, in their own frames. Throws InputError as the constructor.
+    /// Updates the instances' transforms (see can_move_to) or the exposure interval; meshes are kept. Throws InputError
+    /// like the constructor.
     void move(const Assembly& assembly, TimeInterval exposure = {});
 
     SceneView view() const;
@@ -34,7 +35,7 @@ public:
     const Assembly& assembly() const { return assembly_; }
     Vec3d origin_m() const { return origin_; }
     const TimeInterval& exposure() const { return exposure_; }
-    /// Whether anything moves during the exposure.
+    /// True if anything moves during the exposure.
     bool moves() const { return !keys_.empty(); }
     const RenderSpaceMesh& static_geometry() const { return static_geometry_; }
     const std::vector<std::unique_ptr<RenderSpaceMesh>>& objects() const { return objects_; }
@@ -42,43 +43,44 @@ public:
     const std::vector<Affine<float>>& keys() const { return keys_; }
 
 private:
-    /// Objects of up to this size have float corners that are right to some micrometres, wherever the camera stands.
+    /// Up to this size an object's float corners are accurate to a few micrometres, wherever the camera is.
     static constexpr double kLarge_m = 100;
-    /// As SplitTriangles: what is nearer than this part of its size is near.
+    /// An object is near if its distance is below this fraction of its size; see SplitTriangles.
     static constexpr double kNearShare = 1.0 / 128;
 
     bool is_large_and_near(const BoundingBox& box, const Affine<double>& map) const;
 
-    /// The scaling of a length by a map, as a power of two.
+    /// Binary logarithm of a transform's scale factor, rounded to an integer.
     static double doublings(const Affine<double>& map) {
         return std::round(std::log2(std::fabs(map.determinant())) / 3);
     }
-    /// So many doublings make no difference to a frame.
+    /// Scale differences of up to this many powers of two may share a frame.
     static constexpr double kAlike = 10;
 
-    /// About the middle, in units of about a metre as it is instanced: traversal takes triangles of less than 1e-9 of
-    /// the unit for points.
+    /// Frame of an object: centred on its box, scaled so that a unit is about a metre at the instance's scale.
+    /// Traversal treats triangles smaller than 1e-9 units as points.
     static Affine<double> own_frame(const BoundingBox& box, const Affine<double>& map);
 
     void add_object(const Scene& object, const Affine<double>& frame, LargeTriangles large);
     bool is_static(std::size_t instance) const { return static_objects_[object_of_[instance]]; }
 
-    /// The transform from the frame of an instance's object, whose own coordinates `map` takes into the scene.
+    /// Transform from the frame of instance i's object to render space; `map`: from object space to scene space.
     Affine<double> render_from_object(std::size_t i, const Affine<double>& map) const;
 
     void update_instances();
 
-    /// The instance, its keys if it moves, and its lights.
+    /// Appends the instance, its keys if it moves, and its lights.
     void add_instance(std::size_t i);
 
-    /// Transforms of an instance at even times of the exposure; one where it does not move meanwhile.
+    /// Transforms of an instance at equally spaced times of the exposure; a single one if it does not move meanwhile.
     std::vector<Affine<double>> exposure_keys(std::size_t i) const;
 
-    /// Makes margins serve at another key, too. Kernels find the inverse in float: each of its entries is off by some
-    /// roundings of the products of two columns over the volume that the three span.
+    /// Extends an instance's margins to another key. Kernels compute the inverse in float; each of its entries has an
+    /// error of some roundings of the product of two column lengths over the volume spanned by the three columns.
     void widen_margins(InstanceView& view, const Affine<double>& key, std::size_t i) const;
 
-    /// Those of the lights from these numbers on, which are of one instance; of one that moves, around all places.
+    /// Appends the leaves of the lights from these indices on, which belong to the last instance; the bounds of a
+    /// moving light enclose its positions at all keys.
     void add_leaves(std::size_t first_point, std::size_t first_area, std::vector<LightLeaf>& points,
                     std::vector<LightLeaf>& areas) const;
 
@@ -88,7 +90,8 @@ private:
 
     static PointLight point_light(const ScenePointLight& from, Vec3d position, Vec3d axis);
 
-    /// The emitters of a mesh where a map from its frame puts them. `instance`: none of static geometry.
+    /// Appends the lights of a mesh, transformed by `map` from the mesh's frame to render space. `instance`: null for
+    /// static geometry.
     void add_lights(const RenderSpaceMesh& mesh, const Affine<double>& map, const InstanceView* instance);
 
     Assembly assembly_;
@@ -96,18 +99,18 @@ private:
     TimeInterval exposure_;
     Checkpoint checkpoint_;
     RenderSpaceMesh static_geometry_;
-    std::vector<BoundingBox> boxes_;  ///< of each instance's object, as it is given
-    std::vector<std::uint32_t> object_of_;  ///< of each instance, in:
+    std::vector<BoundingBox> boxes_;  ///< for each instance: bounding box of its object, in object space
+    std::vector<std::uint32_t> object_of_;  ///< for each instance: index in objects_
     std::vector<std::unique_ptr<RenderSpaceMesh>> objects_;
-    std::vector<bool> static_objects_;  ///< of each of them: placed as static geometry is, for one instance
+    std::vector<bool> static_objects_;  ///< for each object: prepared like static geometry, for a single instance
     std::vector<MeshView> object_views_;
     std::vector<InstanceView> instances_;
-    std::vector<Affine<float>> keys_;  ///< of those that move
+    std::vector<Affine<float>> keys_;  ///< keys of all moving instances
     std::vector<PointLight> points_;
     std::vector<AreaLight> areas_;
-    std::vector<float> area_means_;  ///< what maps make of their luminance
+    std::vector<float> area_means_;  ///< for each area light: mean factor of its luminance (emission_means)
     LightTree light_tree_;
-    SceneKind kind_ = SceneKind::plain;  ///< as long as nothing moves
+    SceneKind kind_ = SceneKind::plain;  ///< kind of the scene if nothing moves
     EnvironmentTables environment_;
 };
 

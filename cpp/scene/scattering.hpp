@@ -4,20 +4,20 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Density of a direction that has no alternative: a mirror's, and that of a ray from the camera.
+/// Density of a direction sampled from a delta distribution: a mirror reflection, or a ray from the camera.
 inline constexpr float kDelta = __builtin_huge_valf();
-/// In place of the density of a ray that comes straight from the film.
+/// Stands for the density of a ray that comes directly from the film.
 inline constexpr float kFromFilm = -1.0f;
 
-/// A direction drawn from a BSDF.
+/// Direction sampled from a BSDF.
 struct BsdfSample {
     Vec3f direction;
-    Color weight;  ///< BSDF times cosine over density; black: the path ends
-    float pdf;     ///< of the whole BSDF, per steradian; kDelta where one lobe allows this direction only
-    bool refracted = false;  ///< into or out of the material's inside
+    Color weight;  ///< BSDF times cosine over density; black ends the path
+    float pdf;  ///< of all lobes, per steradian; kDelta if sampled from a delta lobe
+    bool refracted = false;  ///< the ray enters or leaves the material's interior
 };
 
-/// Right-handed axes with a surface's normal as z.
+/// Right-handed orthonormal basis with a surface's normal as z.
 struct ShadingFrame {
     Vec3f x, y, z;
 
@@ -26,8 +26,8 @@ struct ShadingFrame {
     REALCAM_INLINE Vec3f to_world(Vec3f v) const { return v.x * x + v.y * y + v.z * z; }
 };
 
-/// Half a turn that takes another normal to z, and z to it: directions in the frame of one are then in that of the
-/// other. About which axis does not matter to what scatters alike all around.
+/// Rotation by 180 degrees that swaps z and another normal, and so converts directions between the two frames. The
+/// azimuth is arbitrary, which does not matter to isotropic lobes.
 struct HalfTurn {
     Vec3f normal = {0, 0, 1};  ///< unit, above the surface
 

@@ -5,8 +5,8 @@
 
 namespace REALCAM_NAMESPACE {
 
-// Views with every array replaced by a copy elsewhere: `copy(pointer, count)` copies at once, and returns where to.
-// These lists are all that a device needs to know of what a scene consists of.
+// Return views with every array replaced by a copy, such as one on a device: `copy(pointer, count)` copies an array and
+// returns the address of the copy. Transferring a scene to a device needs no other knowledge of its members.
 
 namespace scene_arrays_detail {
 
@@ -45,7 +45,7 @@ MeshView with_copied_arrays(MeshView view, Copy&& copy) {
     return view;
 }
 
-/// All but its InstancesView.
+/// Copies all arrays except those of the InstancesView.
 template <class Copy>
 SceneView with_copied_arrays(SceneView view, Copy&& copy) {
     using scene_arrays_detail::replace;

@@ -6,15 +6,14 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// A camera that a scene's file brings along: where it is and where it looks to. What its lens is, realcam's own says.
+/// Camera of a scene file: pose and field of view. The lens comes from realcam, not from the file.
 struct SceneCamera {
     std::string name;
-    /// It stands in the origin and looks along -z, y upwards; metres. Of one that moves, at time 0.
+    /// The camera is at the origin of its frame and looks along -z, with y up; metres. For a moving camera: at time 0.
     Affine<double> scene_from_camera;
-    /// The angle from the lower edge of its picture to the upper one, radians. It is 0 where rays are parallel
-    /// (orthographic), which no lens's are.
+    /// Vertical field of view in radians. 0 for an orthographic camera, which no lens can reproduce.
     double vertical_field_rad = 0;
-    std::shared_ptr<const Motion> motion = nullptr;  ///< null: it stays where it is
+    std::shared_ptr<const Motion> motion = nullptr;  ///< null: not animated
 
     bool has_place() const { return vertical_field_rad > 0; }
     Affine<double> transform_at(double time_s) const { return motion ? motion->at(time_s) : scene_from_camera; }

@@ -8,10 +8,10 @@ namespace realcam {
 
 namespace {
 
-// Cubes of it, which traversal and planes need, are still far from the largest float.
+// Traversal and planes need its cube, which is still far below the largest float.
 constexpr double farthest_m = 1e12;
-// Beyond all that emits light, the sun as a point light included; what a distance or a lobe makes of it is still a
-// float.
+// Beyond all real emitters, the sun as a point light included; products with distances or lobes are still finite
+// floats.
 constexpr float brightest = 1e20f, most_intense = 1e30f;
 
 bool finite(Vec3f v) {
@@ -246,7 +246,7 @@ void SceneChecks::check(const Assembly& scene, const std::string& file, const Ke
 void SceneChecks::check_parts(const Assembly& scene, const std::string& file, Checkpoint& checkpoint) const {
     std::set<const Scene*> good{last_.static_geometry.get()};
     for (const Instance& instance : last_.instances) good.insert(instance.object.get());
-    // What served as an object may be too little for a whole scene: no triangle.
+    // Geometry that was valid as an object may be invalid as a whole scene: it may have no triangles.
     if (good.insert(scene.static_geometry.get()).second || scene.instances.empty())
         validate(*scene.static_geometry, file, !scene.instances.empty(), checkpoint);
     for (std::size_t i = 0; i < scene.instances.size(); ++i) {
@@ -262,7 +262,7 @@ bool is_degenerate(const Scene& scene, const Triangle& triangle) {
                 c = scene.positions_m[triangle.vertices[2]];
     const double longest = std::max({dot(b - a, b - a), dot(c - b, c - b), dot(a - c, a - c)});
     const double twice_area = length(cross(b - a, c - a));
-    // Renderers normalise the cross product in float, whose square must not underflow.
+    // Renderers normalise the cross product in float; its square must not underflow.
     return !(twice_area > 2e-18) || !(twice_area > 1e-12 * longest);
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// Whether a scene makes sense, whoever built it.
+// Validation of scenes from any source.
 
 #include <cmath>
 #include <cstddef>
@@ -11,27 +11,27 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Whether coordinates in metres are finite, and near enough to be rendered.
+/// True if all coordinates are finite; in_reach also requires them to be small enough to be rendered (metres).
 inline bool is_finite(Vec3d p) {
     return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
 }
 bool in_reach(Vec3d p_m);
 
-/// What messages say of coordinates, as the file gives them, that are not in reach.
+/// Error text for coordinates, in the file's units, that are not in reach.
 std::string why_out_of_reach(Vec3d p);
 
-/// Checks everything that a renderer relies on: sizes of lists, indices, finite numbers, no negative light or
-/// reflectance. Throws SceneFileError if there is no triangle or if `file`, for the message, is given, and InputError
-/// otherwise; the message names the element, counted from 0. `may_be_empty`: of what has no triangle but emitters, or
-/// of a scene that consists of instances. Throws Cancelled where `checkpoint` does.
+/// Checks everything that a renderer relies on: list sizes, indices, finite numbers, no negative light or reflectance.
+/// Throws SceneFileError if there is no triangle or if `file`, for the message, is not empty, and InputError otherwise;
+/// the message names the element, counted from 0. `may_be_empty`: accepts geometry without triangles, such as an object
+/// of point lights or the static geometry of a scene of instances. Throws Cancelled if `checkpoint` does.
 void validate(const Scene& scene, const std::string& file, bool may_be_empty, Checkpoint& checkpoint);
 void validate(const Scene& scene, const std::string& file = {}, bool may_be_empty = false);
 
-/// Checks scenes that come one after the other: static geometry, objects and transforms, and of each scene only what
-/// was no part of the last one. Keeps the last one in memory.
+/// Incremental validation of successive scenes: static geometry, objects and transforms, skipping all parts of the
+/// previous scene, which it keeps in memory.
 class SceneChecks {
 public:
-    /// Throws as validate(Scene), and InputError for what is wrong with an instance, and Cancelled.
+    /// Throws like validate(Scene), InputError for an invalid instance, and Cancelled if `keep_going` returns false.
     void check(const Assembly& scene, const std::string& file = {}, const KeepGoing& keep_going = {});
 
 private:
@@ -40,10 +40,11 @@ private:
     Assembly last_;
 };
 
-/// No area to speak of: less than (1 nm)^2, or thinner than 1e-12 of its length. Its indices have to be in range.
+/// True for a triangle with an area below (1 nm)^2 or a height below 1e-12 of its longest edge. Its indices must be in
+/// range.
 bool is_degenerate(const Scene& scene, const Triangle& triangle);
 
-/// Returns how many triangles it dropped.
+/// Removes degenerate triangles and returns their number.
 inline std::size_t drop_degenerate_triangles(Scene& scene) {
     return std::erase_if(scene.triangles, [&](const Triangle& t) { return is_degenerate(scene, t); });
 }

@@ -4,10 +4,10 @@
 
 namespace REALCAM_NAMESPACE {
 
-// What traversal has to know of a ray besides its line: whether it stops at a triangle that it meets, and where
-// instances are at its time.
+// Properties of a ray, apart from its origin and direction, that traversal needs: whether it stops at a hit, and the
+// time at which it sees moving instances.
 
-/// A ray in a scene without holes and motion: it stops at everything.
+/// Ray in a scene without holes and motion: it stops at every hit.
 struct PlainSceneRay {
     static constexpr bool is_plain = true;
 };
@@ -15,8 +15,8 @@ struct PlainSceneRay {
 struct AnySceneRay {
     static constexpr bool is_plain = false;
     const SceneView& scene;
-    std::uint32_t number;  ///< by which it decides at holes
-    float time;            ///< share of the exposure
+    std::uint32_t number;  ///< seed of its decisions at holes (opacity.hpp)
+    float time;  ///< fraction of the exposure
 
     REALCAM_INLINE bool stops(Hit hit) const { return stops_ray(mesh_of(scene, hit.instance), hit, number); }
     REALCAM_INLINE InverseAffine<float> into_object(std::uint32_t instance) const {

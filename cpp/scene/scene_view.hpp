@@ -6,108 +6,110 @@
 
 namespace REALCAM_NAMESPACE {
 
-// What kernels see of a scene: plain data and pointers. Positions are float and relative to an origin near the camera
-// (RenderSpaceScene); light is photometric and per colour channel (linear Rec. 709): radiance in cd/m^2, intensity in
-// cd, illuminance in lux.
+// Scene as kernels see it: plain data and pointers. Positions are float and relative to an origin near the camera
+// (RenderSpaceScene). Light is photometric, per channel of linear Rec. 709: radiance in cd/m^2, intensity in cd,
+// illuminance in lux.
 
 struct Triangle {
     std::uint32_t vertices[3];
     std::uint32_t material;
 };
 
-/// The plane of a triangle, from positions in double precision: float corners of a sliver have no normal, and those of
-/// a large triangle give no place on it.
+/// Plane of a triangle, computed from double-precision positions: the float corners of a sliver define no normal, and
+/// those of a large triangle no accurate point on it.
 struct TrianglePlane {
-    Vec3f normal;  ///< unit, by the right-hand rule over the corners
-    float height;  ///< dot(normal, p) of the points p on it
-    float margin;  ///< how far from it the float triangle, and what traversal makes of it, may lie
+    Vec3f normal;  ///< unit, by the right-hand rule from the winding
+    float height;  ///< dot(normal, p) for points p on the plane
+    float margin;  ///< bound on the distance from the plane to the float triangle and to computed hit points
 };
 
-/// Margin over the largest coordinate of the corners: 25 roundings to 24 bits. Corners and a point between them take
-/// up to two each along the normal, and traversal, which works relative to the ray's origin, some ten of twice the
+/// Margin relative to the largest coordinate of the corners: 25 roundings to 24 bits. Corners and interpolated points
+/// take up to two each along the normal, and traversal, which works relative to the ray's origin, some ten of twice the
 /// size.
 inline constexpr float kMarginShare = 1.5e-6f;
 
-/// How the numbers of a texture become light.
+/// Transfer function of a texture's values.
 enum class TextureEncoding : std::int32_t { srgb, linear };
 
-/// Row 0 at the top, texture coordinate v upwards, repeated outside 0..1. Either 8-bit codes or floats.
+/// Texture of 8-bit codes or floats. Row 0 is at the top, texture coordinate v points up; it repeats outside 0..1.
 struct TextureView {
-    const std::uint8_t* rgba;  ///< null: floats
+    const std::uint8_t* rgba;  ///< null: linear_rgba holds the texels
     const float* linear_rgba;
     std::int32_t width, height;
-    TextureEncoding encoding;  ///< of the codes
-    /// Its coarser levels, one after the other (texture_levels.hpp): of each the width and height are half those of the
-    /// one before, rounded down, and 1 at least.
+    TextureEncoding encoding;  ///< transfer function of `rgba`
+    /// Mipmap levels 1 and up, concatenated (texture_levels.hpp). Width and height of each are half those of the
+    /// previous level, rounded down, at least 1.
     const std::uint8_t* coarse_rgba = nullptr;
     const float* coarse_linear_rgba = nullptr;
     std::int32_t coarse_levels = 0;
 };
 
-/// Intensity times (cos_scale c + cos_offset)^2, that sum kept between 0 and 1, at the cosine c of the angle to the
-/// axis: a spot's (KHR_lights_punctual). As it is without an axis: the same in all directions.
+/// Point light or spot: intensity times clamp(cos_scale c + cos_offset, 0, 1)^2, where c is the cosine of the angle to
+/// the axis (KHR_lights_punctual). The default values radiate equally in all directions.
 struct PointLight {
     Vec3f position;
     Color intensity;
     Vec3f axis = {0, 0, 1};
     float cos_scale = 0, cos_offset = 1;
-    std::int32_t moves_with = -1;  ///< instance in whose object's frame position and axis are; below 0: none, which
-                                   ///< does not move
+    /// Instance in whose object frame position and axis are given; negative: fixed, in render space.
+    std::int32_t moves_with = -1;
 };
 
 /// A light at infinity: parallel rays.
 struct SunLight {
-    Vec3f direction;  ///< of travel, unit
-    Color illuminance;  ///< on a plane that it meets at a right angle
+    Vec3f direction;  ///< direction of propagation, unit
+    Color illuminance;  ///< at perpendicular incidence
 };
 
 /// A triangle that emits light.
 struct AreaLight {
-    Vec3f corner, edge_u, edge_v;  ///< of one that moves: at the begin of the exposure (area_light_at)
-    Vec3f normal;  ///< unit; light leaves on this side
-    std::int32_t is_two_sided;  ///< not 0: and on the other
+    Vec3f corner, edge_u, edge_v;  ///< for a moving light: at shutter open (area_light_at)
+    Vec3f normal;  ///< unit, on the emitting side
+    std::int32_t is_two_sided;  ///< not 0: emits on both sides
     Color radiance;
     float area;  ///< square metres
     float margin;  ///< see TrianglePlane
-    std::uint32_t triangle, instance;  ///< where a ray meets it (see Hit)
+    std::uint32_t triangle, instance;  ///< of a hit on it (see Hit)
 };
 
-/// Light from infinity all around: constant, or a latitude-longitude image (row 0 up, +y; the middle column -z).
+/// Environment light at infinity: constant, or a latitude-longitude image (row 0 is +y, the middle column -z).
 struct EnvironmentView {
     Color constant;
-    const Color* pixels;  ///< null: constant
+    const Color* pixels;  ///< null: the environment is constant
     const float* marginal_cdf;  ///< height + 1 values, for importance sampling (math/cdf.hpp)
-    const float* conditional_cdf;  ///< height rows of width + 1 values
+    const float* conditional_cdf;  ///< `height` rows of width + 1 values
     std::int32_t width, height;
     float mean_luminance;  ///< over all directions
 };
 
-/// LightNode::cos_spread of lights that shine in all directions alike.
+/// LightNode::cos_spread of lights that radiate equally in all directions.
 inline constexpr float kIsotropic = 2;
 
-/// Part of a tree over all point and area lights, from which one is chosen by what it may contribute to a point
-/// (Conty Estevez and Kulla 2018). The first child of a node follows it. A leaf has one light, or the triangles of one
-/// flat lamp.
+/// Node of a light tree over all point and area lights, for choosing one by its contribution to a point (Conty Estevez
+/// and Kulla 2018). The first child follows its parent. A leaf holds one light, or the triangles of one flat lamp.
 struct alignas(16) LightNode {
-    Vec3f middle;  ///< of the box about the lights
-    float squared_radius;  ///< of the ball about that box
-    Vec3f axis;  ///< middle of the normals of area lights
-    float cos_spread;  ///< of the angle about it in which all normals lie; -1: all directions; or kIsotropic
-    float intensity;  ///< luminous, along the normal, of all of them, cd
-    std::int32_t second_child;  ///< below 0: a leaf, whose first light is -1 - second_child
-    std::int32_t partner;  ///< of a leaf: its second light; -1: it has one; less: all are from -2 - partner on in
-                           ///< leaf_lights, which takes a GPU longer than these two
-    float first_share;  ///< probability of the first of two
+    Vec3f middle;  ///< centre of the bounding box of the lights
+    float squared_radius;  ///< of the bounding sphere of that box
+    Vec3f axis;  ///< axis of the cone of the area lights' normals
+    /// Cosine of the half angle of the cone that holds all normals; -1: all directions; or kIsotropic.
+    float cos_spread;
+    float intensity;  ///< sum of the luminous intensities along the normals, cd
+    /// Index of the second child; negative for a leaf, whose first light is -1 - second_child.
+    std::int32_t second_child;
+    /// For a leaf: its second light; -1 if it has only one; below -1 if it has more, which start at -2 - partner in
+    /// leaf_lights (slower on a GPU than one or two).
+    std::int32_t partner;
+    float first_share;  ///< for a leaf: probability of its first light
 };
 
-/// One of more than two lights of a leaf, which follow each other.
+/// Light of a leaf with more than two lights; those of a leaf are contiguous.
 struct LeafLight {
-    std::int32_t light;  ///< a point light, or an area light after all point lights; -1: the last one was before
-    float below;  ///< probability of those before it in its leaf
+    std::int32_t light;  ///< index among the point lights, then the area lights; -1 terminates the list
+    float below;  ///< cumulative probability of the preceding lights of the leaf
 };
 
-/// What the diffuse colour of a surface, and where its material says so emission and opacity, are multiplied by at a
-/// vertex; in between it is interpolated.
+/// Vertex colour: multiplies the diffuse colour of a surface and, if its material says so, emission and opacity;
+/// interpolated over triangles.
 struct VertexColor {
     Color color = {1, 1, 1};  ///< linear
     float alpha = 1;
@@ -115,49 +117,51 @@ struct VertexColor {
     constexpr bool operator==(const VertexColor&) const = default;
 };
 
-// Every array of the following is also named in scene_arrays.hpp.
+// Every array of the following structs must also be listed in scene_arrays.hpp.
 
-/// Triangles and what they are made of.
+/// Triangle mesh with its materials and textures.
 struct MeshView {
     const Triangle* triangles;
     const TrianglePlane* planes;  ///< one for each triangle
     const Vec3f* positions;
-    const Vec3f* normals;  ///< per vertex, zero where the triangle is flat; null: all flat
+    const Vec3f* normals;  ///< per vertex, zero for flat shading; null: all flat
     const Vec2f *uvs, *second_uvs;  ///< per vertex; null: none
     const VertexColor* colors;  ///< per vertex; null: white
     const Material* materials;
     const TextureView* textures;
-    const std::uint32_t* emitters;  ///< the triangles that emit light, in rising order
+    const std::uint32_t* emitters;  ///< indices of the triangles that emit light, ascending
     std::int32_t triangle_count, vertex_count, material_count, texture_count, emitter_count;
 };
 
-/// An instance of an object. Of one that moves, transforms are those at the begin of the exposure (instance_at).
+/// Instance of an object. If it moves, the transforms are those at shutter open (instance_at).
 struct InstanceView {
     Affine<float> render_from_object;
     InverseAffine<float> object_from_render;
-    Vec3f margin;  ///< how far off along the object's axes a point may be for each unit of its placed coordinates
-    float reach_margin;  ///< and, in the placed scene, for what the object's own coordinates leave, at most
+    Vec3f margin;  ///< error bound along the object's axes per unit of a point's render-space coordinates
+    float reach_margin;  ///< upper limit, in render space, of the error that the object's own coordinates contribute
     std::uint32_t object;
-    std::int32_t first_area;  ///< area light of the object's first emitter
-    std::int32_t first_key, key_count;  ///< of its motion; 0: it does not move
+    std::int32_t first_area;  ///< index of the area light of the object's first emitter
+    std::int32_t first_key, key_count;  ///< keys of its motion; a count of 0: it does not move
 };
 
-/// What depends on instance transforms: the instances, the lights that may move with them, and whether anything moves.
+/// Part of a scene that depends on instance transforms: the instances, the lights that move with them, and the scene
+/// kind, which tells whether anything moves.
 struct InstancesView {
     SceneKind kind;
     const InstanceView* instances;
-    const Affine<float>* keys;  ///< render_from_object of instances that move, at even times of the exposure
+    const Affine<float>* keys;  ///< render_from_object of moving instances, at equally spaced times of the exposure
     const PointLight* points;
-    const AreaLight* areas;  ///< those of static geometry first, in the order of its emitters
-    const LightNode* light_nodes;  ///< null: no point and no area light
-    const LeafLight* leaf_lights;  ///< leaf by leaf
-    const std::uint64_t* light_trails;  ///< of the point lights, then of the area lights: the turns from the root to
-                                        ///< its leaf, 1 for a second child, the first turn in the lowest bit
-    const float* light_shares;  ///< of the same lights: probability in its leaf
+    const AreaLight* areas;  ///< static geometry's lights first, in the order of its emitters
+    const LightNode* light_nodes;  ///< null: there is no point or area light
+    const LeafLight* leaf_lights;  ///< of leaves with more than two lights, leaf by leaf
+    /// For point lights, then area lights: the path from the root to the light's leaf, one bit per step, 1 for a second
+    /// child, first step in the lowest bit.
+    const std::uint64_t* light_trails;
+    const float* light_shares;  ///< for the same lights: probability within the leaf
     std::int32_t instance_count, key_count, point_count, area_count, light_node_count, leaf_light_count;
 };
 
-/// Static geometry's triangles, objects in frames of their own, and lights.
+/// Complete scene: static geometry, objects in frames of their own, and lights.
 struct SceneView : MeshView, InstancesView {
     const MeshView* objects;
     const SunLight* suns;

@@ -102,7 +102,7 @@ std::uint32_t SplitTriangles::add_vertex(const Triangle& t, std::array<double, 3
     const std::uint32_t* v = t.vertices;
     const std::array<float, 3> w{static_cast<float>(weights[0]), static_cast<float>(weights[1]),
                                  static_cast<float>(weights[2])};
-    // Not made a unit vector: the interpolation then stays the one over the whole triangle.
+    // Left unnormalised, so that interpolation equals that over the original triangle.
     if (!normals_.empty()) normals_.push_back(w[0] * normals_[v[0]] + w[1] * normals_[v[1]] + w[2] * normals_[v[2]]);
     for (std::vector<Vec2f>* uvs : {&uvs_, &second_uvs_}) {
         if (uvs->empty()) continue;

@@ -9,22 +9,22 @@
 
 namespace REALCAM_NAMESPACE {
 
-// If a triangle is much larger than its distance from the camera, the rounding of its float corners is larger than what
-// stands on it. A plain of 1e7 m would be half a metre off under the camera's feet. It is cut into pieces, each of
-// about the size of its own distance, whose corners are as exact as they need to be.
+// If a triangle is much larger than its distance from the camera, the rounding of its float corners exceeds the size of
+// objects that stand on it: a plane of 1e7 m would be half a metre off below the camera. Such triangles are split into
+// pieces about as large as their distance, whose corners are accurate enough.
 
 enum class LargeTriangles { cut, keep };
 
-/// Into a frame that is only shifted.
+/// Translation into a frame whose origin is `origin_m`.
 Affine<double> relative_to(Vec3d origin_m);
 
-/// The triangles of a scene in another frame, those that are large about its origin in pieces: the first piece takes
-/// the place of the triangle, the others are appended. Normals are those of the scene's own frame.
+/// Triangles of a scene in another frame, with those that are large relative to their distance from its origin split:
+/// the first piece replaces the triangle, the others are appended. Normals stay in the scene's frame.
 class SplitTriangles {
 public:
     SplitTriangles(const Scene& scene, const Affine<double>& frame, LargeTriangles large, Checkpoint& checkpoint);
 
-    /// Whether any triangle was cut. If not, the lists are the scene's own.
+    /// True if any triangle was split; otherwise the lists are the scene's own.
     bool any() const { return !triangles_.empty(); }
     const std::vector<Triangle>& triangles() const { return any() ? triangles_ : scene_.triangles; }
     const std::vector<Vec3f>& normals() const { return any() ? normals_ : scene_.normals; }
@@ -33,37 +33,41 @@ public:
     const std::vector<VertexColor>& colors() const { return any() ? colors_ : scene_.colors; }
 
     std::size_t position_count() const { return scene_.positions_m.size() + added_.size(); }
-    /// In the frame.
+    /// Position in the new frame.
     Vec3d position(std::size_t vertex) const;
-    /// The scene's triangle of which this one is a piece.
+    /// Index of the scene's triangle from which a triangle was split.
     std::size_t parent(std::size_t triangle) const;
 
 private:
-    /// An edge may be so many times as long as its distance: roundings to 24 bits are then 1e-5 of the distance, a
-    /// small part of a pixel. Every large piece among small triangles slows all rays down, so that it is not less.
+    /// Largest ratio of an edge's length to its distance: roundings to 24 bits are then 1e-5 of the distance, a small
+    /// fraction of a pixel. A smaller ratio would make more large pieces, and a large piece among small triangles slows
+    /// down all rays.
     static constexpr double kRatio = 128;
-    /// Nothing is nearer than this: inside the lens there is no scene. Metres.
+    /// Least distance of scene geometry, in metres: closer points would be inside the lens.
     static constexpr double kNearest = 0.01;
-    /// More cuts in a row than the range of coordinates can ask for; ends the recursion whatever the roundings do.
+    /// Limit of the recursion depth, beyond what the range of coordinates can require.
     static constexpr int kMostCuts = 200;
 
     static double longest_squared(Vec3d a, Vec3d b, Vec3d c) {
         return std::max({dot(b - a, b - a), dot(c - b, c - b), dot(a - c, a - c)});
     }
 
-    /// Most triangles are ruled out by their corners: the nearest lies farther away than 1 + 1 / kRatio edges.
+    /// Quick rejection by the corners: false if the nearest corner is farther away than 1 + 1 / kRatio edge lengths.
     bool may_be_too_large(const Triangle& t) const;
 
-    /// Depends on the two ends alone and not on their order: neighbours cut their common edge alike, and no gap opens.
+    /// Independent of the order of the two ends: neighbours split their common edge in the same way, and no crack
+    /// opens.
     static bool too_long(Vec3d p, Vec3d q);
 
-    /// Barycentric coordinates of the origin's foot on the plane; some are negative where it lies outside.
+    /// Barycentric coordinates of the origin's projection onto the plane; negative ones if it lies outside the
+    /// triangle.
     static std::array<double, 3> foot(Vec3d a, Vec3d b, Vec3d c);
 
-    /// Edges first, from the longest on; then, where the origin lies above the middle, the part below it.
+    /// Splits edges that are too long, the longest first; then, if the origin is above the interior, splits at its
+    /// projection.
     void split(const Triangle& t, int cuts_left);
 
-    /// Across the middle of the edge that begins at this corner.
+    /// Splits at the midpoint of the edge that starts at this corner.
     void halve(const Triangle& t, int corner, int cuts_left);
 
     std::uint32_t add_vertex(const Triangle& t, std::array<double, 3> weights);

@@ -8,12 +8,12 @@ namespace REALCAM_NAMESPACE {
 inline constexpr std::uint32_t kNoTriangle = 0xffffffffu;
 inline constexpr std::uint32_t kNoInstance = 0xffffffffu;
 
-/// What traversal says of a ray: the nearest triangle, and where on it.
+/// Closest hit of a ray: triangle and barycentric coordinates.
 struct Hit {
     float distance;
-    std::uint32_t triangle;  ///< kNoTriangle: none
+    std::uint32_t triangle;  ///< kNoTriangle: the ray hits nothing
     float u, v;              ///< barycentric, of the second and third corner
-    std::uint32_t instance = kNoInstance;  ///< of which the triangle is a part; none: static geometry
+    std::uint32_t instance = kNoInstance;  ///< kNoInstance: static geometry
 };
 
 template <int N>
@@ -28,29 +28,29 @@ struct Hits {
     }
 };
 
-/// The triangles of an instance's object, or of static geometry.
+/// Mesh of an instance's object, or of static geometry for kNoInstance.
 REALCAM_INLINE const MeshView& mesh_of(const SceneView& scene, std::uint32_t instance) {
     if (instance == kNoInstance) return scene;
     return scene.objects[scene.instances[instance].object];
 }
 
-/// A place on a surface, turned to the side from which the ray came.
+/// Position on a surface; the normal faces the ray's origin.
 struct SurfacePlace {
     Vec3f position;
     Vec3f geometric_normal;
-    float self_offset;  ///< how far off the surface the next ray must start, so as not to meet it again
+    float self_offset;  ///< offset along the normal at which the next ray must start to avoid self-intersection
 };
 
-/// A place, and what is there.
+/// Surface point with its shading parameters.
 struct SurfacePoint : SurfacePlace {
-    Vec3f normal;  ///< interpolated
+    Vec3f normal;  ///< shading normal
     const Material* material;
-    Color diffuse;      ///< the material's, times its texture
+    Color diffuse;  ///< the material's, times texture and vertex colour
     Color emission;     ///< radiance towards the ray's origin
-    bool is_front;      ///< the ray came from the side of the triangle's normal
-    Color specular;  ///< this and what follows: where materials are not plain
+    bool is_front;  ///< the ray arrives on the side of the triangle's normal
+    Color specular;  ///< this and the following members are set only if the scene kind is not plain
     float metallic, roughness, shininess, transmission, specular_weight, clearcoat, clearcoat_roughness;
-    Vec3f coat_normal;  ///< of the clear coat, where there is one
+    Vec3f coat_normal;  ///< shading normal of the clear coat, if there is one
 };
 
 REALCAM_INLINE float largest_coordinate(Vec3f p) {
@@ -58,11 +58,12 @@ REALCAM_INLINE float largest_coordinate(Vec3f p) {
     return x > y ? (x > z ? x : z) : (y > z ? y : z);
 }
 
-/// Where a ray has met the mesh.
+/// Position of a hit on the mesh.
 REALCAM_INLINE Vec3f hit_position(const MeshView& mesh, const TrianglePlane& plane, Hit hit, Vec3f ray_origin,
                                   Vec3f ray_direction) {
-    // Along the ray: barycentric coordinates of a sliver are uncertain by its aspect ratio times the rounding, and
-    // would carry the point along it. Not from afar, where the error of the distance exceeds that of the corners.
+    // Computed along the ray, because barycentric coordinates of a sliver have an error of its aspect ratio times the
+    // rounding, which would shift the point along it; but not from afar, where the error of the distance exceeds that
+    // of the corners.
     const Vec3f way = hit.distance * ray_direction;
     Vec3f p = ray_origin + way;
     if ((largest_coordinate(ray_origin) + largest_coordinate(way)) * kMarginShare > 16.0f * plane.margin) {
@@ -73,12 +74,12 @@ REALCAM_INLINE Vec3f hit_position(const MeshView& mesh, const TrianglePlane& pla
     return p + (plane.height - dot(p, plane.normal)) * plane.normal;
 }
 
-/// The texture coordinates of a hit, and how they grow over its triangle.
+/// Texture coordinates of a hit and their derivatives over the triangle.
 struct SurfaceUv {
-    Vec2f at, along_u, along_v;  ///< along_...: from the first corner to the second and the third
+    Vec2f at, along_u, along_v;  ///< derivatives: difference from the first corner to the second and to the third
 };
 
-/// `uvs`: of the vertices; null: none.
+/// `uvs`: texture coordinates of the vertices; null: all results are 0.
 REALCAM_INLINE SurfaceUv surface_uv(const Vec2f* uvs, const Triangle& triangle, Hit hit) {
     if (!uvs) return {{0, 0}, {0, 0}, {0, 0}};
     const Vec2f a = uvs[triangle.vertices[0]], b = uvs[triangle.vertices[1]], c = uvs[triangle.vertices[2]];
@@ -88,7 +89,7 @@ REALCAM_INLINE SurfaceUv surface_uv(const Vec2f* uvs, const Triangle& triangle, 
             {c.x - a.x, c.y - a.y}};
 }
 
-/// Those by which a texture lies.
+/// Coordinates of the UV set that a texture reference uses.
 REALCAM_INLINE SurfaceUv surface_uv(const MeshView& mesh, const Triangle& triangle, Hit hit,
                                     const TextureReference& reference) {
     return surface_uv(reference.uv_set == 0 ? mesh.uvs : mesh.second_uvs, triangle, hit);
@@ -99,42 +100,42 @@ REALCAM_INLINE Vec2f transformed(const TextureReference& reference, Vec2f uv) {
     return {dot(reference.to_u, place), dot(reference.to_v, place)};
 }
 
-/// How much of a surface one ray stands for, for textures of colours. On the film that is a pixel over the number of
-/// samples up to this one, because all of them together cover a pixel. So the first are without shimmer, and the mean
-/// of many is as sharp as the texture. Not the circle of a lens that is out of focus: its rays meet the surface in many
-/// places already, and a texture of their width would be blurred twice.
+/// Area of a surface that a ray represents, for filtering colour textures. On the film it is a pixel divided by the
+/// number of samples taken so far, because all samples together cover the pixel: so the first samples are free of
+/// aliasing, and the mean of many is as sharp as the texture. The circle of confusion is not included: its rays already
+/// hit the surface at many points, and the texture would be blurred twice.
 struct Footprint {
-    float area = 0;  ///< across the ray, over the square of the distance; 0: a point
-    float chance = 0;  ///< 0..1, by which one of two levels is taken
+    float area = 0;  ///< perpendicular to the ray, over the squared distance (a solid angle); 0: a point
+    float chance = 0;  ///< random number, 0 to 1, that chooses between two levels
 };
 
-/// The footprint of a ray that stands for a point alone.
+/// Footprint of zero area.
 struct PointFootprint {
     REALCAM_INLINE Footprint operator()() const { return {}; }
 };
 
-/// A footprint on the texture coordinates of a triangle.
+/// Footprint in texture coordinates.
 struct UvFootprint {
-    float area = 0;  ///< in units of the square of the coordinates
+    float area = 0;  ///< in squared texture-coordinate units
     float chance = 0;
 };
 
-/// In the frame of an object the ray's direction is no unit vector, and areas are others: for that the footprint's area
-/// has been divided by the determinant of the object's transform. What that does to the normal cancels.
+/// In an object's frame the ray's direction is not normalised and areas are scaled; the caller compensates by dividing
+/// the footprint's area by the determinant of the object's transform. The transform's effect on the normal cancels.
 REALCAM_INLINE UvFootprint uv_footprint(const MeshView& mesh, const Triangle& triangle, const SurfaceUv& uv, Hit hit,
                                         Vec3f normal, Vec3f ray_direction, Footprint footprint) {
     const Vec3f a = mesh.positions[triangle.vertices[0]];
     const Vec3f twice = cross(mesh.positions[triangle.vertices[1]] - a, mesh.positions[triangle.vertices[2]] - a);
     const float twice_uv = std::fabs(uv.along_u.x * uv.along_v.y - uv.along_u.y * uv.along_v.x);
-    // At grazing incidence it is long; no longer than a hundred times its width.
+    // The footprint is elongated at grazing incidence; its length is limited to a hundred times its width.
     const float across = std::fabs(dot(normal, ray_direction)), least = 0.01f * length(ray_direction);
     const float on_surface = footprint.area * hit.distance * hit.distance / (across > least ? across : least);
     const float area = on_surface * twice_uv / length(twice);
     return {area < 1e30f ? area : 0.0f, footprint.chance};
 }
 
-/// The level of a texture whose texels have the footprint's area, or the next finer one, by chance: the mean of both is
-/// what lies between them (Pharr et al. 2024).
+/// Level of a texture whose texels have the footprint's area, or the next finer one, chosen at random: the mean is the
+/// interpolation between both (Pharr et al. 2024).
 REALCAM_INLINE TextureView level_for(const TextureView& texture, const TextureReference& reference,
                                      UvFootprint footprint) {
     if (!(footprint.area > 0.0f) || texture.coarse_levels == 0) return texture;
@@ -145,20 +146,20 @@ REALCAM_INLINE TextureView level_for(const TextureView& texture, const TextureRe
     return level_of(texture, static_cast<int>(0.5f * std::log2(texels < 1e30f ? texels : 1e30f) + footprint.chance));
 }
 
-/// What a texture shows at a place of a surface.
+/// Filtered texture lookup.
 REALCAM_ONE_COPY Color color_of(const TextureView& texture, const TextureReference& reference, Vec2f uv,
                                 UvFootprint footprint) {
     return sample_texture(level_for(texture, reference, footprint), transformed(reference, uv), reference.sampler);
 }
 
-/// White where there is no texture. `footprint`: of a part of the surface, or of a point.
+/// Texture colour; white without a texture. An empty footprint samples the finest level.
 REALCAM_INLINE Color texture_color(const MeshView& mesh, const TextureReference& reference, Vec2f uv,
                                    UvFootprint footprint = {}) {
     if (reference.texture < 0 || !mesh.uvs) return {1, 1, 1};
     return color_of(mesh.textures[reference.texture], reference, uv, footprint);
 }
 
-/// The same of a texture that lies by second_uvs, as few do.
+/// Texture colour for a texture that uses second_uvs, which few do.
 REALCAM_GPU_CALL Color color_by_second_uvs(const MeshView& mesh, const Triangle& triangle, Hit hit,
                                            const TextureReference& reference, Vec3f normal, Vec3f ray_direction,
                                            Footprint footprint) {
@@ -168,7 +169,7 @@ REALCAM_GPU_CALL Color color_by_second_uvs(const MeshView& mesh, const Triangle&
     return texture_color(mesh, reference, uv.at, seen);
 }
 
-/// The colour of the vertices at a hit; white where they have none.
+/// Interpolated vertex colour at a hit; white without vertex colours.
 REALCAM_INLINE Color vertex_color(const MeshView& mesh, const Triangle& triangle, Hit hit) {
     if (!mesh.colors) return {1, 1, 1};
     const VertexColor a = mesh.colors[triangle.vertices[0]], b = mesh.colors[triangle.vertices[1]],
@@ -176,7 +177,7 @@ REALCAM_INLINE Color vertex_color(const MeshView& mesh, const Triangle& triangle
     return (1.0f - hit.u - hit.v) * a.color + hit.u * b.color + hit.v * c.color;
 }
 
-/// The same for their alpha.
+/// Interpolated vertex alpha at a hit; 1 without vertex colours.
 REALCAM_INLINE float vertex_alpha(const MeshView& mesh, const Triangle& triangle, Hit hit) {
     if (!mesh.colors) return 1.0f;
     const std::uint32_t* corner = triangle.vertices;
@@ -184,7 +185,7 @@ REALCAM_INLINE float vertex_alpha(const MeshView& mesh, const Triangle& triangle
            hit.v * mesh.colors[corner[2]].alpha;
 }
 
-/// The alpha of a texture that there is.
+/// Alpha of a texture, which must exist.
 REALCAM_INLINE float texture_alpha(const MeshView& mesh, const Triangle& triangle, Hit hit,
                                    const TextureReference& reference) {
     return sample_texture_alpha(mesh.textures[reference.texture],
@@ -192,12 +193,12 @@ REALCAM_INLINE float texture_alpha(const MeshView& mesh, const Triangle& triangl
                                 reference.sampler);
 }
 
-/// The shading normal that a normal map gives. `normal`: without it; `scale`: of the map's x and y.
+/// Shading normal from a normal map. `normal`: the unperturbed normal; `scale`: factor of the map's x and y.
 REALCAM_INLINE Vec3f mapped_normal(const MeshView& mesh, const Triangle& triangle, const TextureReference& map,
                                    float scale, const SurfaceUv& uv, Vec3f normal) {
     const Color texel = texture_color(mesh, map, uv.at);
     const Vec3f bump = {scale * (2.0f * texel.r - 1.0f), scale * (2.0f * texel.g - 1.0f), 2.0f * texel.b - 1.0f};
-    // The direction in which the texture's u grows (its v: upwards, as glTF's tangent space has it).
+    // Tangent: the direction of increasing u (v points up, as in glTF's tangent space).
     const Vec3f p = mesh.positions[triangle.vertices[0]], to_second = mesh.positions[triangle.vertices[1]] - p,
                 to_third = mesh.positions[triangle.vertices[2]] - p;
     const Vec3f along_u = {uv.along_u.x, uv.along_u.y, 0}, along_v = {uv.along_v.x, uv.along_v.y, 0};
@@ -215,7 +216,8 @@ REALCAM_INLINE Vec3f mapped_normal(const MeshView& mesh, const Triangle& triangl
     return size2 > 0.0f ? (1.0f / std::sqrt(size2)) * mapped : normal;
 }
 
-/// `footprint_of`: () -> Footprint of the ray, asked for where there are textures.
+/// Shading parameters at a hit on a mesh. `footprint_of`: () -> Footprint of the ray, called only if there are
+/// textures.
 template <SceneKind scene_kind, class FootprintOf>
 REALCAM_INLINE SurfacePoint point_on_mesh(const MeshView& mesh, Hit hit, Vec3f ray_origin, Vec3f ray_direction,
                                           FootprintOf&& footprint_of) {
@@ -228,7 +230,7 @@ REALCAM_INLINE SurfacePoint point_on_mesh(const MeshView& mesh, Hit hit, Vec3f r
     SurfacePoint point;
     point.position = hit_position(mesh, plane, hit, ray_origin, ray_direction);
     point.is_front = dot(plane.normal, ray_direction) <= 0;
-    // In variables until the end: gcc keeps what belongs to `point` in memory, and reading it back there waits.
+    // Local variables until the end: gcc keeps members of `point` in memory, and reading them back stalls.
     const Vec3f geometric = (point.is_front ? 1.0f : -1.0f) * plane.normal;
     Vec3f normal = geometric;
     const bool is_textured = scene_kind != SceneKind::plain || material.diffuse_texture.texture >= 0;
@@ -272,7 +274,7 @@ REALCAM_INLINE SurfacePoint point_on_mesh(const MeshView& mesh, Hit hit, Vec3f r
         normal = mapped(material.normal_texture, material.normal_scale);
     }
     point.geometric_normal = geometric;
-    // On the ray's side too, so that a silhouette seen from behind its shading normal does not turn black.
+    // Faces the ray, too, so that a silhouette seen from behind its shading normal does not turn black.
     point.normal = (dot(normal, geometric) < 0 ? -1.0f : 1.0f) * normal;
     point.material = &material;
     point.diffuse = material.diffuse;
@@ -298,9 +300,9 @@ REALCAM_INLINE SurfacePoint point_on_mesh(const MeshView& mesh, Hit hit, Vec3f r
     return point;
 }
 
-/// How far off a triangle of an instance lies, and what is traced to it: TrianglePlane's margin in the placed scene.
-/// `stretch`: of lengths along the unit normal, by the way there. By axes, because an object that is flat or long in
-/// its own frame is not as far off in one direction as in another.
+/// Error bound of a triangle of an instance and of hits on it: TrianglePlane::margin in render space. `stretch`: scale
+/// of lengths along the unit normal under the instance's transform. Computed per axis, because an object that is flat
+/// or long in its own frame has different errors in different directions.
 REALCAM_INLINE float instance_margin(const InstanceView& instance, float plane_margin, Vec3f object_normal,
                                      float stretch, Vec3f placed) {
     const float own = stretch * plane_margin;
@@ -310,8 +312,8 @@ REALCAM_INLINE float instance_margin(const InstanceView& instance, float plane_m
     return select(own < instance.reach_margin, own, instance.reach_margin) + stretch * off * coordinates;
 }
 
-/// The same on an instance of a mesh. The ray is transformed into the object's frame, with the same distances, and the
-/// result is transformed back.
+/// Shading parameters at a hit on an instance: transforms the ray into the object's frame, which keeps distances, and
+/// the result back.
 template <SceneKind scene_kind, class FootprintOf>
 REALCAM_INLINE SurfacePoint point_on_instance(const MeshView& object, const InstanceView& instance, Hit hit,
                                               Vec3f ray_origin, Vec3f ray_direction, FootprintOf&& footprint_of) {
@@ -326,7 +328,7 @@ REALCAM_INLINE SurfacePoint point_on_instance(const MeshView& object, const Inst
     point.position = instance.render_from_object.point(point.position);
     const Vec3f geometric = into.normal_of(point.geometric_normal), shading = into.normal_of(point.normal);
     const float stretch = 1.0f / length(geometric);
-    // The next ray is met in the object's frame again.
+    // The next ray is intersected in the object's frame again, with the errors of its transform.
     point.self_offset = instance_margin(instance, point.self_offset, point.geometric_normal, stretch, point.position);
     point.geometric_normal = stretch * geometric;
     point.normal = normalized(dot(shading, geometric) < 0 ? -shading : shading);
@@ -337,7 +339,7 @@ REALCAM_INLINE SurfacePoint point_on_instance(const MeshView& object, const Inst
     return point;
 }
 
-/// What a ray has met in the scene, at a time of the exposure.
+/// Shading parameters at a hit in the scene, at a time of the exposure.
 template <SceneKind scene_kind, class FootprintOf = PointFootprint>
 REALCAM_INLINE SurfacePoint surface_point(const SceneView& scene, Hit hit, Vec3f ray_origin, Vec3f ray_direction,
                                           float time, FootprintOf&& footprint_of = {}) {

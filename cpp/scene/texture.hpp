@@ -10,7 +10,7 @@ namespace texture_detail {
 /// sRGB transfer function (IEC 61966-2-1), from a code value of 0..255 to linear.
 constexpr float linear_of_code(int code) {
     const double v = code / 255.0, base = (v + 0.055) / 1.055, square = base * base;
-    // base^2.4: Newton's method for the fifth root of base^2, because std::pow is not for compilers.
+    // base^2.4 by Newton's method for the fifth root of base^2, because std::pow is not constexpr.
     double root = 1;
     for (int i = 0; i < 60; ++i) root -= (root - square / (root * root * root * root)) / 5;
     return static_cast<float>(v <= 0.04045 ? v / 12.92 : square * root);
@@ -18,20 +18,20 @@ constexpr float linear_of_code(int code) {
 
 template <int... codes>
 REALCAM_INLINE float linear_by_table(std::uint8_t code, std::integer_sequence<int, codes...>) {
-    // An array of numbers: of a class with a constructor nvcc makes zeros.
+    // An array of floats: nvcc initialises an array of a class with a constructor to zeros.
     static constexpr float kLinear[] = {linear_of_code(codes)...};
     return kLinear[code];
 }
 
 }  // namespace texture_detail
 
-/// By a table, because a lookup of a texture asks twelve times.
+/// Uses a table, because a bilinear lookup decodes twelve values.
 REALCAM_INLINE float srgb_to_linear(std::uint8_t code) {
     return texture_detail::linear_by_table(code, std::make_integer_sequence<int, 256>{});
 }
 
-/// Where a row or column of texels lies in the picture. It is one of the picture itself, or the next to it on either
-/// side. That one is at the picture's other end, or its own end where the picture does not repeat.
+/// Maps a row or column index from -1 to count into the texture: to the opposite edge if the texture repeats, otherwise
+/// to the edge texel.
 REALCAM_INLINE int wrapped_texel(int texel, int count, TextureWrap wrap) {
     const bool repeats = wrap == TextureWrap::repeat;
     if (texel < 0) return repeats ? texel + count : 0;
@@ -60,12 +60,12 @@ REALCAM_INLINE float texel_alpha(const TextureView& texture, int column, int row
     return texture.rgba ? static_cast<float>(texture.rgba[at]) * (1.0f / 255.0f) : texture.linear_rgba[at];
 }
 
-/// The width or height of the next coarser level.
+/// Width or height of the next coarser mipmap level.
 REALCAM_INLINE std::int32_t half_size(std::int32_t size) {
     return size > 1 ? size / 2 : 1;
 }
 
-/// Texels of all coarser levels together.
+/// Number of texels of all coarser levels.
 REALCAM_INLINE std::int64_t coarse_texels(const TextureView& texture) {
     std::int64_t sum = 0;
     std::int32_t width = texture.width, height = texture.height;
@@ -77,7 +77,7 @@ REALCAM_INLINE std::int64_t coarse_texels(const TextureView& texture) {
     return sum;
 }
 
-/// A level of its own: 0 is the texture itself, and what lies beyond the coarsest is that.
+/// View of a single mipmap level: 0 is the texture itself; levels beyond the coarsest are clamped to it.
 REALCAM_INLINE TextureView level_of(TextureView texture, int level) {
     std::int64_t before = 0, texels = 0;
     const int last = level < texture.coarse_levels ? level : texture.coarse_levels;
@@ -95,14 +95,14 @@ REALCAM_INLINE TextureView level_of(TextureView texture, int level) {
     return texture;
 }
 
-/// The four texels about a point, and where between them it lies.
+/// The four texels around a point, with the bilinear weights.
 struct TextureSpot {
-    int column, row;  ///< of the upper left one
-    float right, down;  ///< 0..1
+    int column, row;  ///< indices of the upper left texel
+    float right, down;  ///< weights of the right column and of the lower row, 0 to 1
     int next_column, next_row;
 };
 
-/// A coordinate from 0 to 1 that says the same.
+/// Maps a coordinate to 0..1 according to the wrap mode.
 REALCAM_INLINE float wrapped_coordinate(float u, TextureWrap wrap) {
     if (wrap == TextureWrap::repeat) return u - std::floor(u);
     if (wrap == TextureWrap::clamp) return u < 0.0f ? 0.0f : u > 1.0f ? 1.0f : u;
@@ -111,9 +111,9 @@ REALCAM_INLINE float wrapped_coordinate(float u, TextureWrap wrap) {
 }
 
 REALCAM_INLINE TextureSpot texture_spot(const TextureView& texture, Vec2f uv, TextureSampler sampler) {
-    // Transforms may take coordinates beyond what a float holds.
+    // Texture transforms may make coordinates overflow.
     if (!(std::fabs(uv.x) + std::fabs(uv.y) < 1e30f)) uv = {0, 0};
-    // Far outside 0..1 the fraction is taken first, so that the integers below cannot overflow.
+    // The fraction is taken first, so that the integers below cannot overflow for coordinates far outside 0..1.
     const float x = wrapped_coordinate(uv.x, sampler.u) * static_cast<float>(texture.width) - 0.5f;
     const float y = (1.0f - wrapped_coordinate(uv.y, sampler.v)) * static_cast<float>(texture.height) - 0.5f;
     const float left = std::floor(x), top = std::floor(y);
@@ -131,7 +131,7 @@ REALCAM_INLINE TextureSpot texture_spot(const TextureView& texture, Vec2f uv, Te
     return spot;
 }
 
-/// texel_at(column, row) of the four, bilinearly.
+/// Bilinear interpolation of texel_at(column, row).
 template <class TexelAt>
 REALCAM_INLINE auto between_texels(TextureSpot s, TexelAt&& texel_at) {
     const auto upper = (1.0f - s.right) * texel_at(s.column, s.row) + s.right * texel_at(s.next_column, s.row);
@@ -140,13 +140,13 @@ REALCAM_INLINE auto between_texels(TextureSpot s, TexelAt&& texel_at) {
     return (1.0f - s.down) * upper + s.down * lower;
 }
 
-/// Bilinear lookup, linear light.
+/// Bilinear lookup; returns linear values.
 REALCAM_INLINE Color sample_texture(const TextureView& texture, Vec2f uv, TextureSampler sampler = {}) {
     return between_texels(texture_spot(texture, uv, sampler),
                           [&](int column, int row) { return texel(texture, column, row); });
 }
 
-/// The same for the fourth channel.
+/// Bilinear lookup of the alpha channel.
 REALCAM_INLINE float sample_texture_alpha(const TextureView& texture, Vec2f uv, TextureSampler sampler = {}) {
     return between_texels(texture_spot(texture, uv, sampler),
                           [&](int column, int row) { return texel_alpha(texture, column, row); });

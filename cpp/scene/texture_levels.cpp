@@ -12,19 +12,19 @@ namespace realcam {
 
 namespace {
 
-/// Means of light, as floats: sRGB codes are decoded first, since the mean of codes is too dark.
+/// Averages texels in linear light: sRGB codes are decoded first, because the mean of codes is too dark.
 class Averaging {
 public:
     Averaging(const TextureView& texture, Checkpoint& checkpoint)
         : checkpoint_(checkpoint), light_(light_of_codes(texture.encoding)) {
         if (texture.rgba) {
-            // Codes by light; 4096 steps of a square root keep dark codes apart.
+            // Inverse transfer table, linear value to code; 4096 steps of the square root separate dark codes.
             for (std::size_t i = 0; i < codes_.size(); ++i) codes_[i] = exact_code(light_at(i));
         }
     }
 
-    /// The next coarser level of a level that begins at `from`. Sizes that are odd: each texel is the mean of the part
-    /// of the finer level that it covers.
+    /// Appends the next coarser level of the level that starts at `from`. For odd sizes each texel is the area-weighted
+    /// mean of the part of the finer level that it covers.
     template <class Value>
     void append(std::vector<Value>& levels, const Value* from, int width, int height) {
         const int out_width = half_size(width), out_height = half_size(height);
@@ -96,7 +96,7 @@ TextureLevels coarser_levels(TextureView& texture, Checkpoint& checkpoint) {
     for (std::int32_t w = texture.width, h = texture.height; w > 1 || h > 1; w = half_size(w), h = half_size(h))
         ++texture.coarse_levels;
     const std::size_t numbers = 4 * static_cast<std::size_t>(coarse_texels(texture));
-    // Once, because levels are made of each other.
+    // Reserved at once, because each level is computed from the previous one in the same vector.
     if (texture.rgba)
         levels.rgba.reserve(numbers);
     else

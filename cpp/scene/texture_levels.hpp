@@ -8,15 +8,16 @@
 
 namespace REALCAM_NAMESPACE {
 
-// The coarser levels of a texture, a third of its memory more. On the host.
+// Mipmap levels of a texture; they take a third of its memory in addition. Host only.
 
-/// What the coarse arrays of a TextureView point to: one of the two.
+/// Memory of a TextureView's coarse levels; only one of the two vectors is used.
 struct TextureLevels {
     std::vector<std::uint8_t> rgba;
     std::vector<float> linear_rgba;
 };
 
-/// All coarser levels, down to one texel; the view gets them, and must not outlive what is returned.
+/// Computes all coarser levels, down to one texel, and sets the view's pointers to them; the view must not outlive the
+/// result.
 TextureLevels coarser_levels(TextureView& texture, Checkpoint& checkpoint);
 
 }  // namespace REALCAM_NAMESPACE

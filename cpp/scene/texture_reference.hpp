@@ -5,13 +5,13 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// What is seen of a picture beyond its edges: it again, its outermost texels, or its mirror image.
+/// Wrap mode outside 0..1: repeat the texture, clamp to the edge texels, or mirror it.
 enum class TextureWrap : std::int8_t { repeat, clamp, mirror };
 
-/// What is seen between the middles of texels: what lies between them, or the nearest.
+/// Interpolation between texel centres: bilinear, or nearest texel.
 enum class TextureFilter : std::int8_t { linear, nearest };
 
-/// How a picture is looked up: what glTF calls a sampler.
+/// Texture sampler, as in glTF.
 struct TextureSampler {
     TextureWrap u = TextureWrap::repeat, v = TextureWrap::repeat;
     TextureFilter filter = TextureFilter::linear;
@@ -19,10 +19,11 @@ struct TextureSampler {
     constexpr bool operator==(const TextureSampler&) const = default;
 };
 
-/// A texture of a scene, and where on its picture the vertices of a surface lie.
+/// Texture with the mapping of the vertices' UV coordinates to it.
 struct TextureReference {
-    std::int32_t texture = -1;  ///< number in Scene::textures; -1: none
-    /// The coordinates in the picture of a vertex at (u, v) are the dot products with (u, v, 1), v upwards in both.
+    std::int32_t texture = -1;  ///< index in Scene::textures; -1: no texture
+    /// Affine texture transform: the texture coordinates of (u, v) are dot(to_u, (u, v, 1)) and dot(to_v, (u, v, 1)),
+    /// with v up in both.
     Vec3f to_u = {1, 0, 0}, to_v = {0, 1, 0};
     TextureSampler sampler = {};
     std::int8_t uv_set = 0;  ///< 0: the vertices' uvs; 1: their second_uvs
