@@ -8,21 +8,22 @@
 
 namespace realcam {
 
-/// float32 as float64. Arrays here lie on the current device; all throw DeviceError where they cannot be started.
+/// Converts float32 to float64. All arrays of this file are in the current device's memory; functions throw DeviceError
+/// if a kernel cannot be launched.
 void launch_widen(const float* from, std::int64_t count, double* to, cudaStream_t stream);
 
-/// Converts rays with origins relative to the camera, spp for each pixel, from the ray `first` on. It writes their
-/// origins in the scene, their times, and their pixels. The camera's place is added in double, as on the CPU: far from
-/// the scene's origin float would lose the pupil.
+/// Converts rays whose origins are relative to the camera, spp for each pixel, starting at ray `range.first`: writes
+/// origins in scene space, times and pixel indices. The camera position is added in double, as on the CPU: far from the
+/// scene's origin float would not resolve the pupil.
 struct PlaceRays {
     const float* relative;  ///< range.count x 3, m
-    const float* shares;    ///< range.count, of the exposure
+    const float* shares;  ///< range.count; times as fractions of the exposure
     Vec3d place;
     TimeInterval exposure;
     RayRange range;
     std::uint32_t spp;
     double* origins;  ///< range.count x 3, m
-    double* times;    ///< range.count, s
+    double* times;  ///< range.count, s
     int* pixels;
 };
 void launch_place(const PlaceRays& rays, cudaStream_t stream);

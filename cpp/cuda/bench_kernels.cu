@@ -45,10 +45,10 @@ __global__ void generate(const __grid_constant__ CameraView camera, int samples,
         sum += rays.weight[0] + rays.origin.x[0] + rays.direction.x[0];
     }
     atomicAdd(passed, static_cast<unsigned long long>(count));
-    if (sum == 12345.678f) *sink = sum;  // no compiler knows that it is not
+    if (sum == 12345.678f) *sink = sum;  // never true, but keeps the compiler from removing the work
 }
 
-/// The rays that generate_rays would send into the lens.
+/// Samples the rays that generate_rays traces through the lens.
 __global__ void sample_lens_rays(const __grid_constant__ CameraView camera, BenchRay* rays) {
     const std::int32_t pixel = static_cast<std::int32_t>(blockIdx.x * kBlockSize + threadIdx.x);
     if (pixel >= camera.width * camera.height) return;
@@ -90,7 +90,8 @@ __global__ void camera_rays(const __grid_constant__ CameraView camera, BenchRay*
     rays[pixel] = {made.origin[0], made.direction[0]};
 }
 
-/// Replaces each ray by one that leaves the point where it meets the scene. Rays that meet nothing stay.
+/// Replaces each ray by one that is scattered at its hit, cosine-weighted or uniformly over the hemisphere. Rays
+/// without a hit stay unchanged.
 template <bool instanced>
 __global__ void bounce(const __grid_constant__ SceneView scene, SceneBvhView bvh, BenchRay* rays, int count,
                        bool uniform) {
@@ -117,7 +118,7 @@ __global__ void hit_all(SceneBvhView bvh, const BenchRay* rays, int count, float
     distances[i] = closest_hit<instanced>(bvh, ray.origin, ray.direction, kFarAway).distance;
 }
 
-/// Work per second, `count` pieces to a launch.
+/// Work items per second, with `count` items per launch, in the best of kRounds launches.
 template <class Launch>
 double rate_of(cudaStream_t stream, double count, Launch&& launch) {
     CudaEvent start, end;

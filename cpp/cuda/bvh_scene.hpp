@@ -4,8 +4,7 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// The SceneT of render_samples on a GPU: one ray of one thread. `instanced`: whether there is anything but static
-/// geometry.
+/// The SceneT argument of render_samples on a GPU: one ray per thread. `instanced`: true if the scene has instances.
 template <SceneKind scene_kind, bool instanced>
 struct BvhScene {
     const SceneView& scene;

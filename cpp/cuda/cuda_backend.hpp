@@ -9,9 +9,8 @@
 
 namespace realcam {
 
-/// Where the CUDA backend is a library of its own, the plug-in: what realcam calls in it. Classes of the core cross
-/// this border as they are, exceptions too. So both sides are compiled from the same headers, which cuda_backend_stamp
-/// tells.
+/// Function table of the CUDA backend if it is a plug-in, a library of its own. C++ objects and exceptions of the core
+/// cross this border, so both sides must be compiled from the same headers, which cuda_backend_stamp verifies.
 struct CudaBackend {
     decltype(&realcam::cuda_devices) cuda_devices;
     decltype(&realcam::why_no_cuda_device) why_no_cuda_device;
@@ -28,18 +27,18 @@ struct CudaBackend {
     decltype(&realcam::hit_rates) hit_rates;
 };
 
-/// What the plug-in calls in realcam, because it needs Embree and TBB.
+/// Functions of realcam that the plug-in calls, because they need Embree and TBB.
 struct CudaHost {
     decltype(&realcam::build_scene_bvh) build_scene_bvh;
     decltype(&realcam::refit_instances) refit_instances;
     decltype(&realcam::bvh_instances) bvh_instances;
 };
 
-/// The version, and a number made of all headers. Defined by cmake/RealcamCudaStamp.cmake.
+/// Version and a hash of all headers. Defined by cmake/RealcamCudaStamp.cmake.
 const char* cuda_backend_stamp();
 
-/// The two functions of the plug-in, by their names there. The second is called only where the stamps are equal; `host`
-/// stays.
+/// The two exported functions of the plug-in and their symbol names. The second is called only if the stamps are equal;
+/// `host` must outlive the plug-in.
 using CudaPluginStamp = const char*();
 using CudaPluginBackend = const CudaBackend*(const CudaHost* host);
 inline constexpr const char* kCudaPluginStamp = "realcam_cuda_stamp";

@@ -6,7 +6,7 @@ namespace realcam {
 namespace {
 
 int device_count() {
-    // Where the driver is older than the runtime the count is left alone, and only the code tells.
+    // If the driver is older than the runtime, `count` is not written, and only the error code tells.
     int count = 0;
     check_cuda(cudaGetDeviceCount(&count), "looking for GPUs");
     return count;
@@ -24,7 +24,7 @@ std::vector<CudaDevice> cuda_devices() {
             devices.push_back({i, p.name, p.major, p.minor, p.multiProcessorCount, p.totalGlobalMem});
         }
     } catch (const DeviceError&) {
-        // why_no_cuda_device tells whoever asks for a GPU.
+        // why_no_cuda_device reports the cause to callers that need a GPU.
     }
     return devices;
 }

@@ -14,19 +14,19 @@ class UnsupportedGpu : public DeviceError {
 
 struct CudaDevice {
     int ordinal;
-    std::string name;       ///< as "NVIDIA H100 80GB HBM3"
+    std::string name;  ///< for example "NVIDIA H100 80GB HBM3"
     int major, minor;       ///< compute capability
     int multiprocessors;
     std::size_t memory;     ///< bytes
 };
 
-/// The GPUs that can be used: none where there is no driver, or where it is too old.
+/// Returns the usable GPUs; empty if there is no driver or it is too old.
 std::vector<CudaDevice> cuda_devices();
 
-/// Why that list is empty, as a DeviceError's message; empty where there are some.
+/// Returns why cuda_devices() is empty, as the message of a DeviceError; empty if there is a usable GPU.
 std::string why_no_cuda_device();
 
-/// The one of that ordinal. Throws DeviceError where there is none.
+/// Returns the GPU with this CUDA ordinal. Throws DeviceError if it does not exist.
 CudaDevice cuda_device(int ordinal);
 
 }  // namespace realcam

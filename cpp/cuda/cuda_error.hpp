@@ -7,15 +7,15 @@
 
 namespace realcam {
 
-/// More memory was wanted than the GPU has free; less may do.
+/// An allocation exceeded the GPU's free memory; a smaller one may succeed.
 class OutOfDeviceMemory : public DeviceError {
     using DeviceError::DeviceError;
 };
 
-/// Throws DeviceError where a call of the CUDA runtime failed. `doing`: what was tried, as "copying the scene".
+/// Throws DeviceError if a call of the CUDA runtime failed. `doing`: the operation, such as "copying the scene".
 inline void check_cuda(cudaError_t code, const std::string& doing) {
     if (code == cudaSuccess) return;
-    cudaGetLastError();  // a failure that leaves the device usable is not to be reported twice
+    cudaGetLastError();  // clears the error, so that it is not reported again if the device is still usable
     const std::string cause = std::string(cudaGetErrorString(code)) + " (" + cudaGetErrorName(code) + ")";
     switch (code) {
         case cudaErrorNoKernelImageForDevice:

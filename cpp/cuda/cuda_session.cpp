@@ -38,7 +38,7 @@ public:
         try {
             cancel();
         } catch (const DeviceError&) {
-            // A GPU that is lost has nothing to be stopped.
+            // A lost GPU runs no kernels that could be stopped.
         }
     }
 
@@ -58,7 +58,7 @@ private:
             run_heeding(place, keep_going, stop);
             if (stop) throw Cancelled();
         } else {
-            place();  // which takes less time than a thread to start
+            place();  // takes less time than starting a thread
         }
         CameraView view = setup_->view(scene_.placed().origin_m(), scene_.placed().moves());
         traced_lights_ = traced_lights(scene_.placed().view(), view, *setup_, settings.lights_traced(), tracer_);
@@ -224,7 +224,7 @@ private:
             try {
                 renderer->stop_flag().lower();
             } catch (const DeviceError&) {
-                // A GPU that is lost says so to whoever uses it next.
+                // The next use of a lost GPU reports the error.
             }
         }
     }
@@ -239,14 +239,15 @@ private:
         return view_of(film, width(), height(), settings(), splats);
     }
 
-    /// The settings of a range of samples. The seed changes where a random sequence ends.
+    /// Render settings for a range of samples, which may have another seed: the seed changes when a low-discrepancy
+    /// sequence is exhausted.
     RenderSettings settings_of(const SampleRange& range) const {
         RenderSettings result = settings();
         result.seed = range.seed;
         return result;
     }
 
-    /// An empty film: on the first GPU, or where that is too small on the host, from where it travels in bands.
+    /// Allocates an empty film: on the first GPU, or, if it does not fit, in host memory, to be transferred in bands.
     void lay_out_film() {
         const int rows = make_room();
         const std::int64_t pixels = static_cast<std::int64_t>(width()) * height();
@@ -257,7 +258,7 @@ private:
         rows_ = rows;
     }
 
-    /// f(first row, rows) for bands of some rows of the picture, of some 100 MB of layers each.
+    /// Calls f(first row, row count) for bands of the picture, of about 100 MB of layer data each.
     template <class F>
     void for_bands(int first_row, int row_count, OwnStop& stop, F&& f) {
         constexpr int kPixels = 1 << 20;
@@ -265,7 +266,7 @@ private:
         for (int row = first_row; row < end && !stop; row += most) f(row, std::min(most, end - row));
     }
 
-    /// How many rows of the picture fit into every GPU's memory at once.
+    /// Reserves memory and returns the number of rows that fit into the memory of every GPU.
     int make_room() {
         for (int rows = height();; rows = (rows + 1) / 2) {
             try {
@@ -278,8 +279,8 @@ private:
         }
     }
 
-    /// Samples of some rows, whose film the first GPU has: each GPU takes a range of them. One that fails stops the
-    /// others.
+    /// Exposes the film band by band; each GPU takes a range of the samples, and the first GPU holds the film. An error
+    /// on one GPU stops the others.
     void expose_bands(const SampleRange& range, const PixelCounts& counts, OwnStop& stop,
                       std::atomic<std::int64_t>& done) {
         const std::int64_t columns = width();
@@ -332,7 +333,7 @@ private:
                 share(std::move(depth), front().ordinal(), {rows, columns})};
     }
 
-    /// Of all GPUs, since the film was empty.
+    /// Counts of all GPUs since the film was cleared.
     RenderCounts all_counts() const {
         RenderCounts sum{};
         for (const auto& renderer : renderers_) sum += renderer->counts();
@@ -359,9 +360,9 @@ private:
     std::shared_ptr<const CameraSetup> setup_;
     TracedLights traced_lights_;
     HostScene scene_;
-    int rows_ = 0;  ///< of the film that a GPU holds at a time; 0: the film has no place yet
-    FilmSums film_;  ///< where the GPU holds a part of it
-    RenderStats stats_;  ///< seconds: while it was exposed, until the picture is developed
+    int rows_ = 0;  ///< rows of the film that a GPU holds at a time; 0: the film is not allocated yet
+    FilmSums film_;  ///< the whole film if a GPU holds only a part of it
+    RenderStats stats_;  ///< `seconds` accumulates the exposure time until the picture is developed
 };
 
 }  // namespace

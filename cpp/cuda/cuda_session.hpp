@@ -8,21 +8,22 @@
 
 namespace realcam {
 
-/// GPUs of this host, by their CUDA ordinals: each takes its share of every pixel's samples. Frames are shot on one
-/// GPU. `tracer`: see Pupil. Throws DeviceError where one is missing or cannot run this build's code.
+/// Session on one or more GPUs of this host, given by CUDA ordinals: each takes a share of every pixel's samples. Live
+/// frames need a single GPU. `tracer`: see Pupil. Throws DeviceError if a GPU is missing or cannot run this build's
+/// code.
 std::unique_ptr<Session> make_cuda_session(const std::vector<int>& ordinals, PupilTracer tracer);
 
-/// A picture in a GPU's memory. float32, as Image: exposure (height, width, 3) and depth (height, width).
+/// Picture in a GPU's memory, float32 like Image: exposure (height, width, 3) and depth (height, width).
 struct DevicePicture {
     SharedDeviceArray exposure, depth;
 };
 
-/// What a session on one GPU offers besides.
+/// Additional interface of CUDA sessions.
 class DevicePictures {
 public:
     virtual ~DevicePictures() = default;
 
-    /// As Session::picture, but on the GPU.
+    /// Like Session::picture, with the result in the GPU's memory.
     virtual DevicePicture device_picture(const KeepGoing& keep_going) = 0;
 };
 

@@ -5,7 +5,7 @@
 
 namespace realcam {
 
-/// Work in order on the device that is current when it is made.
+/// CUDA stream on the device that is current at construction.
 class CudaStream {
 public:
     CudaStream() { check_cuda(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking), "making a stream"); }
@@ -20,7 +20,7 @@ private:
     cudaStream_t stream_ = nullptr;
 };
 
-/// A moment in a stream.
+/// CUDA event: a point in a stream.
 class CudaEvent {
 public:
     CudaEvent() { check_cuda(cudaEventCreate(&event_), "making an event"); }

@@ -8,13 +8,14 @@
 
 namespace realcam {
 
-/// Makes a GPU the thread's current one, and afterwards the one that was: other libraries of the process go by it.
+/// Makes a GPU the thread's current device and restores the previous one on destruction, because other libraries of the
+/// process rely on it.
 class CurrentDevice {
 public:
     explicit CurrentDevice(int ordinal) : CurrentDevice(ordinal, std::nothrow) {
         check_cuda(code_, "choosing GPU " + std::to_string(ordinal));
     }
-    /// For what is destroyed, perhaps after the GPU is lost or while the process ends, when no call succeeds any more.
+    /// For destructors, which may run after the GPU is lost or while the process ends, when all calls fail.
     CurrentDevice(int ordinal, std::nothrow_t) noexcept : ordinal_(ordinal), before_(ordinal) {
         cudaGetDevice(&before_);
         code_ = cudaSetDevice(ordinal_);

@@ -6,8 +6,8 @@
 
 namespace realcam {
 
-/// Memory of the current device. Grows when more is wanted and never shrinks, so that what changes with every frame
-/// does not allocate with every frame.
+/// Array in the current device's memory. Grows on demand and never shrinks, so that data that changes every frame is
+/// not reallocated every frame.
 template <class T>
 class DeviceArray {
 public:
@@ -25,7 +25,7 @@ public:
     T* data() const { return data_; }
     std::size_t size() const { return size_; }
 
-    /// Contents are lost where the array grows. Throws DeviceError with what was wanted and what was free.
+    /// Contents are lost if the array grows. Throws DeviceError with the requested and the free memory.
     void resize(std::size_t count) {
         if (count > capacity_) {
             cudaFree(std::exchange(data_, nullptr));

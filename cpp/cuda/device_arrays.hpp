@@ -5,10 +5,10 @@
 
 namespace realcam {
 
-/// Arrays of any type on one device. Allocations are kept from one filling to the next.
+/// Arrays of any type on one device. Allocations are reused after restart().
 class DeviceArrays {
 public:
-    /// What follows replaces what was copied before.
+    /// Makes subsequent copies overwrite the previous ones.
     void restart() { next_ = 0; }
 
     template <class T>

@@ -12,15 +12,15 @@
 
 namespace realcam {
 
-/// What a frame leaves in memory of the host.
+/// Host memory of a finished frame.
 struct FrameMemory {
     explicit FrameMemory(std::size_t size) : codes(size), stopped(1) {}
 
     PinnedArray<std::uint8_t> codes;
-    PinnedArray<int> stopped;  ///< not 0: it may hold fewer samples than it should
+    PinnedArray<int> stopped;  ///< not 0: the frame was stopped and may lack samples
 };
 
-/// Memory for pictures that is used again when nobody holds it any more: pinning it takes longer than a frame.
+/// Pool of pinned frame memory, reused when a frame is released: pinning takes longer than a frame.
 class FramePool {
 public:
     std::shared_ptr<FrameMemory> take(std::size_t size) {
@@ -35,7 +35,7 @@ private:
     std::vector<std::shared_ptr<FrameMemory>> frames_;
 };
 
-/// A frame that a GPU takes. Made by make_on_device.
+/// Live frame rendered on a GPU. Created by make_on_device.
 class DeviceFrame final : public LiveFrame {
 public:
     DeviceFrame(const Film& film, std::int64_t samples, FramePool& pool)
@@ -48,7 +48,7 @@ public:
     int height() const override { return height_; }
     std::int64_t samples() const override { return samples_; }
     bool wait_for(std::chrono::microseconds longest) const override {
-        // A frame takes a few milliseconds, and a thread that sleeps wakes up late.
+        // Spins at first: a frame takes a few milliseconds, and a sleeping thread wakes up late.
         constexpr auto kAwake = std::chrono::milliseconds(5);
         const auto start = std::chrono::steady_clock::now();
         while (!end_.reached()) {
@@ -67,7 +67,7 @@ public:
         return memory_->codes.data();
     }
 
-    /// Starts to develop it, behind all that exposes it.
+    /// Queues the development of the frame behind its exposure in the renderer's stream.
     void develop(DeviceRenderer& renderer, const FilmBalance& balance, const Camera& camera, ToneCurve curve) {
         renderer.develop_codes(balance, camera.exposure_time_s, camera.iso, curve, memory_->codes.data());
         renderer.stop_flag().download(memory_->stopped.data(), renderer.stream());

@@ -13,16 +13,17 @@
 
 namespace realcam {
 
-/// Light that is traced apart from the samples of pixels. The view is the host's.
+/// Source of splatted light (ghosts, starbursts, traced lights), sampled separately from the pixels. The view is the
+/// host's.
 struct SplatSource {
     GhostView view;
     double units_per_lux;
 };
 
-/// One such light of one GPU's picture. All functions throw DeviceError.
+/// Device copy of one SplatSource with its film, on one GPU. All functions throw DeviceError.
 class DeviceGhosts {
 public:
-    /// The host's copy may go afterwards. Null: the picture has none.
+    /// Copies a source to the device; the host's copy may be freed afterwards. Null: the picture has no such source.
     void set(const SplatSource* source, CudaStream& stream) {
         arrays_.restart();
         view_ = {};
@@ -32,7 +33,7 @@ public:
             source->view, [&](const auto* from, std::size_t count) { return arrays_.copy(from, count, stream); });
     }
 
-    /// So many empty films (GhostFilmView) of so many pixels.
+    /// Allocates and clears `films` films (GhostFilmView) of width x height pixels.
     void clear(int width, int height, int films, CudaStream& stream) {
         width_ = width;
         height_ = height;
@@ -44,8 +45,8 @@ public:
         blocks_done_.clear(stream);
     }
 
-    /// Starts to take the samples that belong to so many of each pixel. Of many there are so many launches that those
-    /// which do nothing after a stop would take minutes, too.
+    /// Launches the samples that correspond to a range of the pixels' samples. Stops launching when the stop flag is
+    /// raised: even empty launches, of which there may be a great number, would take minutes.
     void add(const DeviceScene& scene, const CameraView& camera, const StopFlag& stop, const SampleRange& range,
              const PathSettings& settings, CudaStream& stream) {
         if (sums_.size() == 0) return;
@@ -66,7 +67,7 @@ public:
         return {view_.light, sums_.data(), films_, units_per_lux_, blocks_done_.data(), width_, height_};
     }
 
-    /// Copies all to the host, and waits for it.
+    /// Copies all films to the host. Synchronous.
     SplatFilm download(const CudaStream& stream) const {
         SplatFilm here{view_.light,
                        std::vector<GhostSum>(sums_.size()),

@@ -10,19 +10,21 @@
 namespace realcam {
 namespace {
 
-/// How long a launch may take: short enough that progress is told often, long enough that starting it costs nothing.
+/// Target duration of a launch: short enough for frequent progress reports, long enough that its overhead is
+/// negligible.
 constexpr double kLaunch_ms = 10;
-/// The first launches of a picture. How fast the GPU was with another scene, lens or number of bounces tells nothing.
+/// Samples of the first launches of a picture. Throughput measured with another scene, lens or number of bounces is no
+/// guide.
 constexpr double kFirstSamples = 1 << 20;
 
-/// Launch after launch of one part: all samples of some rows, or a few samples of all.
+/// Splits a film part into launches: all samples of some rows, or a few samples of all rows.
 class LaunchPlan {
 public:
     LaunchPlan(const FilmPart& part, int columns) : part_(part), columns_(columns), row_(0), sample_(0) {}
 
     bool over() const { return sample_ == part_.sample_count; }
 
-    /// The next piece of about so many samples.
+    /// Returns the next launch, of about this many samples.
     FilmPart next(double samples) {
         const double row = columns_;
         const int rows_left = part_.row_count - row_;
@@ -37,7 +39,7 @@ public:
             sample_ += piece.sample_count;
             return piece;
         }
-        // Whole tiles, whose pixels may share samples.
+        // Whole rows of tiles, because the pixels of a tile may share samples.
         const double tiles = std::max(1.0, std::floor(samples / (row * SampleSharing::kTileSide)));
         piece.row_count = static_cast<int>(std::min(tiles * SampleSharing::kTileSide, static_cast<double>(rows_left)));
         row_ += piece.row_count;
@@ -137,7 +139,7 @@ FilmSums DeviceRenderer::expose_region(const FilmRegion& region, const SampleRan
     const CurrentDevice current(ordinal_);
     const FilmPart part{region.row, region.height, range.first, range.count};
     const auto columns = static_cast<std::size_t>(camera_.width), pixels = static_cast<std::size_t>(pixels_of(part));
-    // A launch is of whole rows.
+    // Launches cover whole rows; pixels outside the region get no samples.
     std::vector<std::uint32_t> of_pixels(pixels);
     for (int row = region.row; row < region.row + region.height; ++row)
         for (int column = region.column; column < region.column + region.width; ++column)
@@ -211,9 +213,10 @@ void DeviceRenderer::expose(const FilmPart& part, const RenderSettings& settings
         const std::size_t pixels = static_cast<std::size_t>(part.row_count) * static_cast<std::size_t>(camera_.width);
         sample_counts_.upload(counts.counts, pixels, stream_);
     }
-    // Where pixels share samples, a launch that has begun ends: as many samples of one pixel as of its neighbours.
+    // If pixels share samples, a running launch is always completed: neighbouring pixels must have equal numbers of
+    // samples.
     const volatile int* const stop = shares_samples(camera_, settings, counts) ? stop_.never() : stop_.data();
-    // Two launches are under way at any time, so that the GPU never waits for the host.
+    // Two launches are queued at any time, so that the GPU never waits for the host.
     std::array<CudaEvent, 3> ends;
     std::array<std::int64_t, 3> sizes{};
     LaunchPlan plan(part, camera_.width);
@@ -262,7 +265,7 @@ void DeviceRenderer::develop_codes(const FilmBalance& balance, double exposure_t
 
 void DeviceRenderer::merge_film(const DeviceRenderer& other) {
     const CurrentDevice current(ordinal_);
-    // What clears and fills it runs in a stream of that GPU, which this one knows nothing of.
+    // The other film is cleared and filled in a stream of the other GPU, with which this stream is not synchronised.
     other.stream_.wait("rendering");
     others_.resize(other.sums_.size());
     check_cuda(cudaMemcpyPeerAsync(others_.data(), ordinal_, other.sums_.data(), other.ordinal_,
@@ -314,7 +317,7 @@ void DeviceRenderer::see_layers(const FilmPart& part, std::uint32_t seed, LayerS
                                 std::atomic<std::int64_t>& done) {
     const CurrentDevice current(ordinal_);
     const std::int64_t pixels = static_cast<std::int64_t>(part.row_count) * camera_.width;
-    // Some ten milliseconds each.
+    // About ten milliseconds per launch.
     constexpr std::int64_t kLaunchSamples = 1 << 24;
     const auto most = static_cast<std::uint32_t>(std::max<std::int64_t>(1, kLaunchSamples / pixels));
     layer_sums_.resize(static_cast<std::size_t>(pixels));

@@ -17,109 +17,112 @@
 
 namespace realcam {
 
-/// A range of rows of the picture, and of the samples of each of its pixels.
+/// Range of rows of the picture and of the samples of their pixels.
 struct FilmPart {
     int first_row, row_count;
     std::uint32_t first_sample, sample_count;
 };
 
-/// One GPU with its copy of scene, camera and film. Made by make_on_device; used by one thread at a time, on which
-/// every member function works with that GPU current; all of them throw DeviceError.
+/// One GPU with its copies of scene, camera and film. Created by make_on_device and used by one thread at a time; every
+/// member function makes that GPU current and throws DeviceError.
 class DeviceRenderer {
 public:
     explicit DeviceRenderer(int ordinal);
 
     int ordinal() const { return ordinal_; }
-    /// The stop flag, which any thread may raise. Exposing kernels then end within the time of a sample, and the pixels
-    /// may differ in their number of samples.
+    /// Stop flag, which any thread may raise. Render kernels then end within the time of a sample, and pixels may
+    /// differ in their numbers of samples.
     StopFlag& stop_flag() { return stop_; }
 
-    /// Copies a scene, what changes in it as objects move, or a camera. The host's copies may go afterwards.
+    /// Copy a scene, its instance transforms, or a camera to the GPU. The host's copies may be freed afterwards.
     void set_scene(const RenderSpaceScene& scene, const SceneBvh& bvh);
     void set_instances(const RenderSpaceScene& scene, const SceneBvh& bvh);
     void set_camera(const CameraView& camera);
-    /// Begins a new picture, whose pixels learn where light passes, or not.
+    /// Resets the learned pupils (PixelPupil) for a new picture. `learns`: true if its pixels learn their pupils.
     void forget_pupils(bool learns);
-    /// Later samples know what those until now have found.
+    /// Makes the results of all samples so far available to later samples.
     void learn_pupils();
 
-    /// Of the pictures that follow, at most kMostSplats, and empty films for them, so many for each (GhostFilmView).
+    /// Set the sources of splatted light for the following pictures, at most kMostSplats, and allocate `films` empty
+    /// films for each (GhostFilmView).
     void set_splats(const std::vector<SplatSource>& sources);
     void clear_splats(int width, int height, int films);
-    /// Starts to add the samples that belong to those of pixels.
+    /// Launches the splatted light's samples that correspond to a range of the pixels' samples.
     void splat(const SampleRange& range, const PathSettings& settings);
     std::vector<SplatFilm> download_splats();
-    /// The samples that belong to those of pixels, in so many films each that no picture has.
+    /// Traces splatted light for a range of samples into separate films, `films` for each source, and leaves the
+    /// picture's films unchanged.
     std::vector<SplatFilm> splats_apart(const std::vector<SplatSource>& sources, int films, const SampleRange& range,
                                         const PathSettings& settings);
 
-    /// Makes room for all that exposing, merging and developing so many pixels takes. Throws OutOfDeviceMemory.
+    /// Reserves memory for exposing, merging and developing this many pixels. Throws OutOfDeviceMemory.
     void reserve_film(std::int64_t pixels, bool merges);
 
-    /// Makes room for the sums of so many pixels, and sets them to 0.
+    /// Allocates the sums of this many pixels and sets them to 0.
     void clear_film(std::int64_t pixels);
 
-    /// Adds samples to the film, which holds the part's rows. Returns when they are done or it was stopped. `done`
-    /// counts samples. `counts`: of the part's pixels; those of `counts.taken` were taken before its samples.
+    /// Adds samples to the film, which holds the rows of `part`. Returns when they are done or rendering was stopped.
+    /// `done` counts samples. `counts`: sample counts of the part's pixels, including `counts.taken` samples before the
+    /// part's first one.
     void expose(const FilmPart& part, const RenderSettings& settings, const PixelCounts& counts,
                 std::atomic<std::int64_t>& done);
 
-    /// Samples of a region into the host's memory, apart from the film. They are summed in the order of the whole film,
-    /// whatever the region. `counts`: of the region's pixels.
+    /// Renders the samples of a region into host memory, separately from the film. The order of summation is that of
+    /// the whole film, whatever the region. `counts`: of the region's pixels.
     FilmSums expose_region(const FilmRegion& region, const SampleRange& range, const RenderSettings& settings,
                            const PixelCounts& counts);
 
-    /// Starts to add samples, and returns at once.
+    /// Adds samples to the film asynchronously.
     void add(const FilmPart& part, const RenderSettings& settings);
 
-    /// Starts to develop the film as 8-bit sRGB, 3 per pixel, into memory of the host that it can write to.
+    /// Develops the film asynchronously to 8-bit sRGB, 3 values per pixel, into pinned host memory.
     void develop_codes(const FilmBalance& balance, double exposure_time_s, double iso, ToneCurve curve,
                        std::uint8_t* codes);
 
-    /// The stream in which all of this runs.
+    /// The stream in which all work of this renderer runs.
     cudaStream_t stream() const { return stream_; }
 
-    /// Adds what another GPU has collected of the same pixels.
+    /// Adds another GPU's film of the same pixels to this film.
     void merge_film(const DeviceRenderer& other);
 
-    /// Copies the sums of so many pixels to the film, or those of the whole film to the host.
+    /// Copy the sums of `pixels` pixels to the film, or the whole film to the host.
     void upload_film(const PixelSum* from, std::int64_t pixels);
     void download_film(PixelSum* to);
 
-    /// Starts to develop the film as exposure and depth into memory of this GPU, 3 and 1 numbers per pixel.
+    /// Develops the film asynchronously to exposure and depth, 3 and 1 values per pixel, in this GPU's memory.
     void develop_here(const FilmBalance& balance, double exposure_time_s, float* exposure, float* depth);
 
-    /// Exposure and depth of the film's pixels, into the host's memory.
+    /// Develops the film to exposure and depth in host memory. Synchronous.
     void develop(const FilmBalance& balance, double exposure_time_s, float* exposure, float* depth);
 
-    /// The number of samples of each pixel, into the host's memory.
+    /// Writes the number of samples of each pixel to host memory.
     void count_samples(std::int64_t* counts);
 
-    /// What the samples of the part's rows see first, summed, and the surfaces in the middle rays of its pixels, into
-    /// the host's memory. They end early where it was stopped, and then leave what is of no use. `done` counts samples.
+    /// Trace the first hits of the part's samples, summed per pixel, and the first hits of its pixel-centre rays, into
+    /// host memory. If rendering was stopped, they end early and their results are unusable. `done` counts samples.
     void see_layers(const FilmPart& part, std::uint32_t seed, LayerSum* sums, std::atomic<std::int64_t>& done);
     void see_middle_surfaces(const FilmPart& part, MiddleSurface* surfaces);
 
-    /// What was counted since clear_counts, which does not wait for it.
+    /// Returns the counts since clear_counts(), which is asynchronous.
     RenderCounts counts();
     void clear_counts();
 
-    /// For all that was started.
+    /// Waits for all queued work.
     void wait() const;
 
 private:
-    /// Starts everything on no pixels: the GPU loads the code and makes room for what threads keep in memory.
+    /// Launches every kernel on zero pixels, so that the GPU loads the code and reserves the threads' local memory.
     void rehearse();
-    /// Starts to add samples to `sums`, those of the part's first row. `counts`: in this GPU's memory.
-    /// `pixels`: by which the threads of a pixel are chosen. `sharing`: the part of the film whose pixels share
-    /// samples.
+    /// Launches samples that are added to `sums`, which starts at the part's first row. `counts`: in this GPU's memory.
+    /// `pixels`: the number of pixels by which the threads per pixel are chosen. `sharing`: the region of the film
+    /// whose pixels share samples.
     void launch(const FilmPart& part, const RenderSettings& settings, PixelSum* sums, const PixelCounts& counts,
                 std::int64_t pixels, const FilmRegion& sharing, const volatile int* stop);
 
-    /// The film that this GPU holds.
+    /// View of the film in this GPU's memory.
     FilmView film(const FilmBalance& balance) const;
 
-    /// The region, if its pixels share samples; else an empty one.
+    /// Returns the region if its pixels share samples; otherwise an empty one.
     FilmRegion sharing_in(const FilmRegion& region, const RenderSettings& settings, const PixelCounts& counts) const;
     FilmRegion rows_of(const FilmPart& part) const { return {0, part.first_row, camera_.width, part.row_count}; }
     std::int64_t film_pixels() const { return static_cast<std::int64_t>(camera_.width) * camera_.height; }
@@ -140,7 +143,7 @@ private:
     std::array<DeviceGhosts, kMostSplats> splats_;
     DeviceArray<PixelSum> sums_, others_, region_sums_;
     DeviceArray<std::uint32_t> sample_counts_;
-    DeviceArray<PixelPupil> known_, found_;  ///< of each pixel: PixelPupils
+    DeviceArray<PixelPupil> known_, found_;  ///< one for each pixel; see PixelPupils
     DeviceArray<LayerSum> layer_sums_;
     DeviceArray<MiddleSurface> middle_surfaces_;
     DeviceArray<float> exposure_, depth_;

@@ -8,12 +8,12 @@
 
 namespace realcam {
 
-/// One GPU's copy of a scene and its hierarchies. The host's may go when a function has returned. All throw
-/// DeviceError.
+/// One GPU's copy of a scene and its BVHs. The host's data may be freed when a function has returned. All functions
+/// throw DeviceError.
 class DeviceScene {
 public:
     void set(const RenderSpaceScene& scene, const SceneBvh& bvh, CudaStream& stream);
-    /// Only what changes as objects move.
+    /// Updates only the data that depend on instance transforms.
     void set_instances(const RenderSpaceScene& scene, const SceneBvh& bvh, CudaStream& stream);
 
     const SceneView& view() const { return view_; }

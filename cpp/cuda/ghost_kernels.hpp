@@ -7,24 +7,24 @@
 
 namespace realcam {
 
-/// One launch: some blocks of ghost samples. All pointers are the device's.
+/// Parameters of a launch over some blocks of ghost samples. All pointers are device pointers.
 struct GhostJob {
     SceneView scene;
     SceneBvhView bvh;
     CameraView camera;
     GhostView ghosts;
-    const volatile int* stop;  ///< not 0: no block is begun
-    GhostSum* sums;  ///< of all pixels, film by film; added to
-    int films;       ///< 1, or 2: of blocks with even and with odd numbers
-    unsigned long long* blocks_done;  ///< in each film
+    const volatile int* stop;  ///< if not 0, no further block starts
+    GhostSum* sums;  ///< for all pixels, film by film; results are added
+    int films;  ///< 1, or 2: for blocks with even and with odd indices
+    unsigned long long* blocks_done;  ///< per film
     std::uint64_t first_block;
     std::uint32_t block_count, seed;
     PathSettings settings;
     double units_per_lux;
 };
 
-/// The job's GhostView says which of them serves it: ghosts and starbursts of lights, ghosts of objects, or the lights
-/// themselves. All throw DeviceError.
+/// Launch the kernel for ghosts and starbursts of lights, for ghosts of objects, or for directly imaged lights,
+/// according to the job's GhostView. All throw DeviceError.
 void launch_splat_ghosts(const GhostJob& job, cudaStream_t stream);
 void launch_gather_ghosts(const GhostJob& job, cudaStream_t stream);
 void launch_trace_lights(const GhostJob& job, cudaStream_t stream);

@@ -1,12 +1,12 @@
 #pragma once
 #include "ghost_kernels.hpp"
 
-// What the kernels of ghosts have in common, for nvcc alone. A block of threads takes one block of samples, whose way
-// through the lens is the same.
+// Common parts of the ghost kernels, for nvcc only. A thread block takes one block of samples, which share one optical
+// path through the lens.
 
 namespace realcam {
 
-/// Asked by all threads of a block together.
+/// Must be called by all threads of a block.
 __device__ inline bool is_stopped(const GhostJob& job) {
     __shared__ int stopped;
     if (threadIdx.x == 0) stopped = *job.stop;

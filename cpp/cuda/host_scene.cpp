@@ -13,7 +13,7 @@ void HostScene::place(const Assembly& assembly, const Camera& camera, const Keep
         placed->move(assembly, camera.exposure());
         refit_instances(bvh_, *placed);
     } else {
-        placed.reset();  // before the next takes as much memory
+        placed.reset();  // freed before the next scene is allocated
         bvh_ = {};
         placed =
             std::make_unique<RenderSpaceScene>(assembly, position_when_open(camera), camera.exposure(), keep_going);

@@ -7,20 +7,20 @@
 
 namespace realcam {
 
-/// The scene that some GPUs have, and what of it the host needs to change it.
+/// Host side of the scene that some GPUs hold, kept for incremental updates.
 class HostScene {
 public:
-    /// Once for each GPU, before the first scene.
+    /// Must be called once for each GPU, before the first scene.
     void add(DeviceRenderer& renderer) { renderers_.push_back(&renderer); }
 
-    /// What `place` will have to do.
+    /// Returns the kind of update that `place` will perform.
     SceneChange change_to(const Assembly& assembly, const Camera& camera) const {
         return scene_change(placed_.get(), assembly, camera);
     }
 
-    /// Copies what has changed: nothing, the transforms of instances, or everything; the latter also for a camera that
-    /// is too far from the place of the last. Throws DeviceError; the next call begins anew then.
-    /// Throws Cancelled where `keep_going`, asked on any thread, returns false.
+    /// Updates the GPUs: nothing, instance transforms, or the whole scene, the latter also if the camera is too far
+    /// from its previous position. Throws DeviceError, after which the next call starts from scratch. Throws Cancelled
+    /// if `keep_going`, called on any thread, returns false.
     void place(const Assembly& assembly, const Camera& camera, const KeepGoing& keep_going = {});
 
     const RenderSpaceScene& placed() const { return *placed_; }

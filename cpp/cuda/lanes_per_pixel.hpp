@@ -3,11 +3,11 @@
 
 namespace realcam {
 
-/// Threads of a launch that share the samples of a pixel: 1, 2, 4 ... 32 of them, none without a sample.
+/// Returns the number of threads that share the samples of a pixel: a power of two up to 32, at most one per sample.
 inline int lanes_per_pixel(std::int64_t pixels, std::int64_t samples) {
-    constexpr int kMost = 32;  // a warp
-    /// More threads than a large GPU runs at once; and so many that the last ones, which leave it half empty, count for
-    /// little.
+    constexpr int kMost = 32;  // warp size
+    /// kAtOnce exceeds the number of threads that a large GPU runs at once. With kEnough threads in a launch the tail,
+    /// which leaves the GPU half empty, is negligible.
     constexpr std::int64_t kAtOnce = 1 << 17, kEnough = 1 << 22;
     int best = 1;
     std::int64_t least = 0;

@@ -4,20 +4,20 @@
 
 namespace realcam {
 
-/// One launch over some rows of pixels. All pointers are the device's.
+/// Parameters of a launch over some rows of pixels. All pointers are device pointers.
 struct LayerJob {
     SceneView scene;
     SceneBvhView bvh;
     CameraView camera;
-    const volatile int* stop;  ///< not 0: no thread begins another sample
+    const volatile int* stop;  ///< if not 0, no thread starts another sample
     std::uint32_t seed, first_sample, sample_count;
-    int first_row, row_count;  ///< of the picture
+    int first_row, row_count;  ///< rows of the picture
 };
 
-/// Adds what samples see first to the sums of the rows, row by row. Throws DeviceError.
+/// Adds the samples' first hits to the sums of the rows. Throws DeviceError.
 void launch_see_layers(const LayerJob& job, LayerSum* sums, cudaStream_t stream);
 
-/// The surfaces in the middle rays of the rows' pixels. Throws DeviceError.
+/// Traces the first hits of the pixel-centre rays of the rows. Throws DeviceError.
 void launch_see_middle_surfaces(const LayerJob& job, MiddleSurface* surfaces, cudaStream_t stream);
 
 }  // namespace realcam

@@ -7,7 +7,7 @@
 namespace realcam {
 namespace {
 
-/// A kernel of its own, because it needs other registers than that of ghosts.
+/// Separate from the ghost kernel because of its different register usage.
 template <LensKind lens_kind, SceneKind scene_kind, bool instanced, bool has_wavelengths>
 __global__ void __launch_bounds__(kGhostBlock, 2) trace_lights_of(const __grid_constant__ GhostJob job) {
     if (is_stopped(job)) return;

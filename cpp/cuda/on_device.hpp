@@ -16,8 +16,8 @@ struct DestroyOnDevice {
     }
 };
 
-/// Owns what holds memory, streams or events of one GPU: they are made and given back while that GPU is current, on
-/// whichever thread.
+/// Owner of an object that holds memory, streams or events of one GPU: the object is created and destroyed with that
+/// GPU current, on any thread.
 template <class T>
 using OnDevice = std::unique_ptr<T, DestroyOnDevice>;
 

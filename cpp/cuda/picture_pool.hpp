@@ -8,8 +8,8 @@
 
 namespace realcam {
 
-/// Memory for pictures that is used again when nobody holds it any more. Pinning it takes longer than the copy of one
-/// picture, so it is pinned from the second picture of a size on.
+/// Pool of host memory for pictures, reused when a picture is released. Pinning takes longer than copying one picture,
+/// so memory is pinned only from the second picture of a size on.
 class PicturePool {
 public:
     PictureFloats take(std::size_t size) {
@@ -25,7 +25,7 @@ public:
     }
 
 private:
-    /// Who keeps many pictures does not keep them in memory that cannot be paged out.
+    /// Limit of pinned arrays, so that a caller who keeps many pictures does not exhaust the memory that can be paged.
     static constexpr std::size_t kMost = 3;
 
     static PictureFloats floats_of(const std::shared_ptr<PinnedArray<float>>& array) {

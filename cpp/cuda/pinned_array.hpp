@@ -5,7 +5,7 @@
 
 namespace realcam {
 
-/// Memory of the host that a GPU reads and writes by itself, at full speed and while the host does something else.
+/// Pinned host memory, which the GPU reads and writes asynchronously at full speed.
 template <class T>
 class PinnedArray {
 public:

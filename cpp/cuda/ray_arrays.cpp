@@ -9,7 +9,7 @@
 namespace realcam {
 namespace {
 
-/// float64 numbers as they are, or float32 ones converted.
+/// Array as float64: the original, or a converted copy if it is float32.
 class Doubles {
 public:
     Doubles(const ForeignNumbers& numbers, std::int64_t count, cudaStream_t stream)
@@ -49,7 +49,7 @@ CameraRayArrays generate_ray_arrays(int ordinal, const CameraSetup& setup, std::
                                     RayRange range) {
     const Camera& camera = setup.camera();
     const std::int64_t count = range.count;
-    // Beyond that their bytes have no number.
+    // Above this limit the size in bytes would overflow.
     if (count > (std::int64_t{1} << 48))
         throw OutOfDeviceMemory(
             std::to_string(count) +

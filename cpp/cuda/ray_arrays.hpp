@@ -8,31 +8,31 @@ namespace realcam {
 
 class CameraSetup;
 
-/// Numbers in a GPU's memory that somebody else owns: float32 or float64, in C order.
+/// Array in a GPU's memory that another library owns: float32 or float64, in C order.
 struct ForeignNumbers {
     const void* data;
     int ordinal;
     NumberType type;
 };
 
-/// As TracedRays, in arrays of their own.
+/// Results like TracedRays, in owned device arrays.
 struct TracedArrays {
     SharedDeviceArray origins, directions, optical_path;
     SharedDeviceArray status, surface_index;
 };
 
-/// As trace_rays_on_device. Both inputs are count x 3 numbers on one GPU, which traces them. Throws InputError and
-/// DeviceError.
+/// Like trace_rays_on_device. Both inputs are arrays of count x 3 numbers on the same GPU, which traces them. Throws
+/// InputError and DeviceError.
 TracedArrays trace_arrays(const LensSystem& lens, LightDirection direction, double wavelength_nm, Precision precision,
                           int surface_count, std::int64_t count, ForeignNumbers origins, ForeignNumbers directions);
 
-/// As generate_camera_rays of the CPU, in arrays of their own.
+/// Results like those of generate_camera_rays on the CPU, in owned device arrays.
 struct CameraRayArrays {
     SharedDeviceArray origins_m, directions, weights, wavelengths_nm, times_s;
     SharedDeviceArray pixels;  ///< row * width + column
 };
 
-/// Throws InputError and DeviceError.
+/// Generates camera rays on a GPU. Throws InputError and DeviceError.
 CameraRayArrays generate_ray_arrays(int ordinal, const CameraSetup& setup, std::uint32_t spp, std::uint32_t seed,
                                     RayRange range);
 

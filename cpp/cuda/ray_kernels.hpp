@@ -6,7 +6,7 @@
 
 namespace realcam {
 
-/// Requests whose arrays lie on the current device. Throw DeviceError where they cannot be started.
+/// Launch requests whose arrays are in the current device's memory. Throw DeviceError if a kernel cannot be launched.
 void launch_trace(const TraceRequest<double>& request, cudaStream_t stream);
 void launch_trace(const TraceRequest<float>& request, cudaStream_t stream);
 void launch_generate(const RayRequest& request, cudaStream_t stream);

@@ -10,7 +10,7 @@
 namespace realcam {
 namespace {
 
-/// take(channel, exposure) of a pixel.
+/// Calls take(channel, exposure) for the channels of a pixel.
 template <class Take>
 __device__ void expose(const FilmView& film, std::int64_t pixel, double exposure_time_s, Take&& take) {
     PixelNeighbourhood around;
@@ -48,7 +48,7 @@ __global__ void merge(PixelSum* sums, const PixelSum* other, std::int64_t pixels
     if (i < pixels) sums[i] += other[i];
 }
 
-/// One of the kernels that were compiled.
+/// Entry of the table of compiled kernels.
 struct CompiledKernel {
     int effects;
     LensKind lens;
@@ -71,8 +71,9 @@ constexpr CompiledKernel kKernels[] = {
 #undef REALCAM_RENDER_KERNEL
 };
 
-/// A kernel serves the kinds in front of its own in their list too. The last ones of each set serve any lens and any
-/// scene, with halves of dual pixels and without.
+/// Returns the first kernel that can run a job. A kernel also serves lens kinds that precede its own in the
+/// enumeration. The last kernels of each set of effects serve any lens and any scene, with and without dual-pixel
+/// halves.
 RenderKernel kernel_for(const RenderJob& job) {
     const CompiledKernel* kernel = kKernels;
     while (!kernel->serves(job)) ++kernel;

@@ -13,10 +13,10 @@
 
 namespace realcam {
 
-/// What the threads of all launches have counted.
+/// Counts of all launches.
 struct RenderCounts {
     unsigned long long sampled_rays, passed_rays, scene_rays;
-    unsigned long long lens_clocks, scene_clocks, all_clocks;  ///< of the threads that counted them
+    unsigned long long lens_clocks, scene_clocks, all_clocks;  ///< sums over the threads that measure
 
     RenderCounts& operator+=(const RenderCounts& other) {
         sampled_rays += other.sampled_rays;
@@ -33,37 +33,39 @@ struct RenderCounts {
     }
 };
 
-/// One launch: some samples of some rows of pixels. All pointers are the device's.
+/// Parameters of a launch over some samples of some rows of pixels. All pointers are device pointers.
 struct RenderJob {
     SceneView scene;
     SceneBvhView bvh;
     CameraView camera;
-    PixelSum* sums;  ///< of the rows of the job's band, row by row; added to
+    PixelSum* sums;  ///< for the rows of the job, row by row; results are added
     RenderCounts* counts;
-    const volatile int* stop;  ///< not 0: no thread begins another sample
+    const volatile int* stop;  ///< if not 0, no thread starts another sample
     PathSettings path;
     std::uint32_t seed, first_sample, sample_count;
-    const std::uint32_t* of_pixels;  ///< how many of them single pixels of the band take, after pixels_taken; none: all
+    /// Sample counts of individual pixels, which include the first `pixels_taken` samples, already taken; null: all
+    /// pixels take sample_count.
+    const std::uint32_t* of_pixels;
     std::uint32_t pixels_taken;
-    int first_row, row_count;  ///< of the picture
-    bool adds_squares, adds_half, balances;  ///< PixelSum::besides, too, for one of them
+    int first_row, row_count;  ///< rows of the picture
+    bool adds_squares, adds_half, balances;  ///< if one of them is set, PixelSum::besides is summed for it
 };
 
-/// Throws UnsupportedGpu where the current device cannot run this build's code.
+/// Throws UnsupportedGpu if the current device cannot run this build's code.
 void check_render_code();
 
-/// Starts a job. `pixels`: of the job, or of the film where pixels are to be summed as in a job of all of it. Throws
-/// DeviceError.
+/// Launches a job. `pixels`: the number of pixels by which the threads per pixel are chosen: that of the job, or that
+/// of the film if the order of summation must equal that of a job over the whole film. Throws DeviceError.
 void launch_render(const RenderJob& job, std::int64_t pixels, cudaStream_t stream);
 
-/// A film as exposure (3 per pixel, lux seconds) and depth (metres).
+/// Develops a film to exposure (3 per pixel, lux seconds) and depth (metres).
 void launch_develop(const FilmView& film, double exposure_time_s, float* exposure, float* depth, cudaStream_t stream);
 
-/// The same as 8-bit sRGB (3 per pixel).
+/// Develops a film to 8-bit sRGB (3 per pixel).
 void launch_develop_codes(const FilmView& film, double exposure_time_s, double iso, ToneCurve curve,
                           std::uint8_t* codes, cudaStream_t stream);
 
-/// The number of samples of each pixel.
+/// Writes the number of samples of each pixel.
 void launch_count(const PixelSum* sums, std::int64_t pixels, std::int64_t* counts, cudaStream_t stream);
 
 /// sums += other, for each of `pixels`.

@@ -6,8 +6,8 @@ namespace realcam {
 
 using RenderKernel = void (*)(RenderJob, int);
 
-/// The kernel for a kind of lens and of scene, and a set of effects by its number. `instanced`: whether there is
-/// anything but static geometry. `halves`: it sums those of dual pixels.
+/// Returns the kernel for a lens kind, a scene kind and the index of a set of effects. `instanced`: true if the scene
+/// has instances. `halves`: true if it sums the halves of dual pixels.
 template <LensKind lens_kind, SceneKind scene_kind, int effects, bool halves>
 RenderKernel render_kernel_of(bool instanced);
 

@@ -5,22 +5,23 @@
 #include "render_kernel_of.hpp"
 #include "warp_tiles.hpp"
 
-// The kernel that takes samples, for nvcc alone. cmake/RealcamRenderKernels.cmake says for what it is instantiated.
+// The render kernel, for nvcc only. cmake/RealcamRenderKernels.cmake lists its instantiations.
 
 namespace realcam {
 
 namespace render_kernel_detail {
 
-/// Six blocks of four warps hide more latency than four hold registers: 4% faster on an H200 for all that is spilled.
+/// Six blocks of four warps hide more latency than four blocks without register spills: 4% faster on an H200, in spite
+/// of the spills.
 constexpr int kBlocksPerMultiprocessor = 6;
 
-/// The clocks that the first thread of every sixteenth block spends in each stage. Whether a block counts them is the
-/// same for all its threads, which costs two instructions. What was counted lies in shared memory, because no registers
-/// are free while a ray is on its way.
+/// Clock cycles that the first thread of every sixteenth block spends in each stage. The test whether a block measures
+/// is uniform over the block and costs two instructions. Counts are in shared memory, because no registers are free
+/// while a ray is traced.
 class StageClock {
 public:
     struct Count {
-        std::uint32_t clocks[3];  ///< of each stage; a thread's share of a launch is short
+        std::uint32_t clocks[3];  ///< per stage; 32 bits suffice for a launch, which is short
         std::uint32_t since;
         RenderStage stage;
     };
@@ -56,7 +57,7 @@ private:
     Count& count_;
 };
 
-/// What a thread has collected of its pixel, in shared memory for the same reason.
+/// Sums of a thread for its pixel, in shared memory because no registers are free.
 struct ThreadSums {
     double of[8][kBlockSize];
 
@@ -71,7 +72,7 @@ struct ThreadSums {
         if (!has_besides) return;
         for (int c = 0; c < 3; ++c) (*this)[5 + c] += sample.besides[c];
     }
-    /// Of all threads of the pixel, but for the numbers of samples.
+    /// Sum over all threads of the pixel, without the sample counts.
     __device__ PixelSum of_pixel(int lanes) {
         PixelSum sum{};
         for (int c = 0; c < 3; ++c) sum.irradiance[c] = sum_of_neighbours((*this)[c], lanes);
@@ -82,8 +83,9 @@ struct ThreadSums {
     }
 };
 
-/// What neighbours bring to a pixel comes in any order. Whole numbers of a unit have the same sum in each, up to 2^53
-/// of them. `dither`: a random number from 0 to 1, so that what is less than a unit is not lost in the mean.
+/// Adds a contribution from a neighbouring pixel. Contributions arrive in any order; rounded to integer multiples of a
+/// unit, up to 2^53 of them, they have the same sum in every order. `dither`: a random number from 0 to 1, which makes
+/// the rounding unbiased.
 __device__ inline void add_shared(double& sum, double value, float dither) {
     atomicAdd(&sum, 0x1p-24 * floor(0x1p24 * value + static_cast<double>(dither)));
 }
@@ -93,7 +95,7 @@ __device__ inline void add_shared(double (&sums)[3], Color c, float dither) {
     add_shared(sums[2], static_cast<double>(c.b), dither);
 }
 
-/// What a sample brings to other pixels than its own.
+/// Adds a sample's contributions to pixels other than its own.
 template <Effects effects>
 __device__ inline void add_shared(const SampleBlock<1>& block, const PathResultsWith<1, effects>& results,
                                   PixelSum* own) {
@@ -107,14 +109,14 @@ __device__ inline void add_shared(const SampleBlock<1>& block, const PathResults
     }
 }
 
-/// How many samples a pixel of the job's band takes.
+/// Number of samples that a pixel of the job takes.
 __device__ inline std::uint32_t samples_of(const RenderJob& job, std::int64_t pixel) {
     if (!job.of_pixels) return job.sample_count;
     const std::uint32_t wanted = job.of_pixels[pixel];
     return wanted > job.pixels_taken ? min(wanted - job.pixels_taken, job.sample_count) : 0;
 }
 
-/// Returns whether the job asks for them.
+/// Sums PixelSum::besides of a sample. Returns true if the job uses them.
 template <Effects effects>
 __device__ inline bool add_besides(const RenderJob& job, const PathResultsWith<1, effects>& results, PixelSum& sample) {
     if constexpr (effects.have_wavelengths()) {
@@ -174,7 +176,7 @@ __global__ void __launch_bounds__(kBlockSize, kBlocksPerMultiprocessor)
             sampled += static_cast<std::uint32_t>(results.sampled[0]);
             passed += static_cast<std::uint32_t>(results.passed[0]);
         }
-        samples = s / static_cast<std::uint32_t>(tiles.lanes);  // counted in the loop it would be spilled
+        samples = s / static_cast<std::uint32_t>(tiles.lanes);  // a counter in the loop would be spilled to memory
     }
     PixelSum sum = sums.of_pixel(tiles.lanes);
     sum.samples = sum_of_neighbours(samples, tiles.lanes);

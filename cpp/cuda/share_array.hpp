@@ -18,12 +18,12 @@ constexpr NumberType number_type_of(unsigned char) {
     return NumberType::uint8;
 }
 
-/// Hands an array of GPU `ordinal` over to whoever will use it last. It holds as many numbers as the shape says, and
-/// what fills it is done.
+/// Transfers an array of GPU `ordinal` to shared ownership. It must hold as many numbers as the shape says, and all
+/// writes to it must be complete.
 template <class T>
 SharedDeviceArray share(DeviceArray<T> array, int ordinal, std::vector<std::int64_t> shape) {
     void* const data = array.data();
-    // Other libraries give it back on threads that have a device of their own.
+    // Other libraries may free it on threads with a different current device.
     const std::shared_ptr<void> owner = make_on_device<DeviceArray<T>>(ordinal, std::move(array));
     return {std::shared_ptr<void>(owner, data), ordinal, number_type_of(T()), std::move(shape)};
 }

@@ -15,7 +15,7 @@ SharedDeviceArray SharedDeviceArray::duplicate() const {
     DeviceArray<unsigned char> other(bytes());
     if (bytes() > 0) {
         check_cuda(cudaMemcpy(other.data(), data(), bytes(), cudaMemcpyDeviceToDevice), "copying an array");
-        // A copy within the device may return before it is done.
+        // A copy within the device may return before it is complete.
         check_cuda(cudaDeviceSynchronize(), "copying an array");
     }
     const SharedDeviceArray copy = share(std::move(other), ordinal_, {});

@@ -13,11 +13,11 @@ constexpr std::size_t size_of(NumberType type) {
     return type == NumberType::float64 ? 8 : type == NumberType::uint8 ? 1 : 4;
 }
 
-/// Numbers in a GPU's memory, in C order, as other libraries are given them. Copies share the memory, and the last one
-/// frees it, on any thread. Nothing that writes there is under way.
+/// Array in a GPU's memory, in C order, that can be shared with other libraries. Copies share the memory, which the
+/// last one frees, on any thread. No write to it is pending.
 class SharedDeviceArray {
 public:
-    /// See `share` for what DeviceArray holds. `memory` frees itself without throwing.
+    /// Use `share` for a DeviceArray. The deleter of `memory` must not throw.
     SharedDeviceArray(std::shared_ptr<void> memory, int ordinal, NumberType type, std::vector<std::int64_t> shape)
         : memory_(std::move(memory)), ordinal_(ordinal), type_(type), shape_(std::move(shape)) {}
 
@@ -32,9 +32,9 @@ public:
         return product;
     }
 
-    /// Copies all of it to the host's memory. Throws DeviceError.
+    /// Copies the whole array to host memory. Throws DeviceError.
     void download(void* to) const;
-    /// The same numbers in memory of their own, on the same GPU. Throws DeviceError.
+    /// Returns a deep copy on the same GPU. Throws DeviceError.
     SharedDeviceArray duplicate() const;
 
 private:

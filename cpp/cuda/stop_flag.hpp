@@ -9,8 +9,8 @@
 
 namespace realcam {
 
-/// Asks the kernels of one GPU to end early. Their threads read it before each sample: from the GPU's memory, because
-/// reading the host's takes longer than a sample. Made and destroyed while that GPU is current.
+/// Flag that makes the kernels of one GPU end early. Their threads read it before each sample, from the GPU's memory,
+/// because reading host memory takes longer than a sample. Created and destroyed with that GPU current.
 class StopFlag {
 public:
     explicit StopFlag(int ordinal) : ordinal_(ordinal), values_(2), flag_(1), never_(1) {
@@ -21,8 +21,8 @@ public:
         stream_.wait("stopping it");
     }
 
-    /// May be called from any thread. The flag stands until it was lowered as often as it was raised. A GPU that cannot
-    /// be reached runs no kernel that could be stopped; a thread that waits for its work gets the error.
+    /// May be called from any thread. The flag stays set until it has been lowered as often as it was raised. Errors
+    /// are ignored: a GPU that cannot be reached runs no kernel, and a thread that waits for its work gets the error.
     void raise() noexcept {
         const std::lock_guard lock(mutex_);
         if (raised_++ > 0) return;
@@ -32,7 +32,7 @@ public:
         } catch (const DeviceError&) {
         }
     }
-    /// When the work that was to stop is over. Throws DeviceError.
+    /// Must be called after the stopped work has ended. Throws DeviceError.
     void lower() {
         const std::lock_guard lock(mutex_);
         if (--raised_ > 0) return;
@@ -44,8 +44,8 @@ public:
     const volatile int* data() const { return flag_.data(); }
     /// A flag that is never raised.
     const volatile int* never() const { return never_.data(); }
-    /// Starts to copy it to the host's memory. Not 0 there, if any kernel before it in the stream has read a raised
-    /// flag and it has not been lowered since.
+    /// Copies the flag asynchronously to host memory. The result is not 0 if a kernel earlier in the stream has read a
+    /// raised flag that has not been lowered since.
     void download(int* to, cudaStream_t stream) const { flag_.download(to, stream); }
 
 private:
@@ -56,7 +56,7 @@ private:
     }
 
     int ordinal_;
-    CudaStream stream_;  // of its own, beside the work that it stops
+    CudaStream stream_;  // separate from the stream of the work that it stops
     PinnedArray<int> values_;
     DeviceArray<int> flag_, never_;
     std::mutex mutex_;

@@ -5,10 +5,10 @@ namespace realcam {
 
 inline constexpr int kWarpSize = 32;
 
-/// Where the threads of a launch stand in the picture. Warps are side by side, each over a small rectangle of pixels,
-/// so its rays meet the same part of the scene. `lanes` threads share a pixel's samples.
+/// Mapping of a launch's threads to pixels. Each warp covers a small rectangle of pixels, so that its rays traverse the
+/// same part of the scene. `lanes` threads share a pixel's samples.
 struct WarpTiles {
-    int lanes, width, height;  ///< threads of a pixel; pixels of a warp
+    int lanes, width, height;  ///< threads per pixel; width and height of a warp's rectangle in pixels
 
     __host__ __device__ explicit WarpTiles(int lanes_per_pixel) : lanes(lanes_per_pixel), width(1), height(1) {
         for (int pixels = kWarpSize / lanes; pixels > 1; pixels /= 2) (width > height ? height : width) *= 2;
@@ -19,7 +19,7 @@ struct WarpTiles {
     struct Pixel {
         int column, row;
     };
-    /// The pixel of a thread, by its number in the launch, over a part of the picture with so many columns.
+    /// Returns the pixel of a thread of the launch, in a part of the picture with this many columns.
     __device__ Pixel pixel_of(std::int64_t thread, int columns) const {
         const std::int64_t warp = thread / kWarpSize, tiles = across(columns);
         const int place = static_cast<int>(thread % kWarpSize) / lanes;
