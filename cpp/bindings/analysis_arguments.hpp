@@ -10,11 +10,12 @@
 
 namespace realcam::bindings {
 
-// What the analyses of one object point ask of the user alike.
+// Arguments common to the analyses of one object point.
 
 inline constexpr int kMaxPatternSamples = 2048;
 
-/// Places on the stop: of a pattern's name and its samples, or `pupil`, an array of shape (N, 2). Throws InputError.
+/// Returns the sample points on the stop: `pupil`, an array of shape (N, 2), if it is given, otherwise those of the
+/// named pattern. Throws InputError.
 std::vector<PupilPoint> pattern_from(const std::string& pattern, int samples,
                                      const std::optional<InputArray<double>>& pupil);
 

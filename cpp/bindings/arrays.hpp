@@ -9,11 +9,12 @@
 
 namespace realcam::bindings {
 
-/// What a caller gives as an array, in C order; a copy where it is another type.
+/// Input array in C order; converted (copied) if its dtype differs.
 template <class T>
 using InputArray = pybind11::array_t<T, pybind11::array::c_style | pybind11::array::forcecast>;
 
-/// Numbers in C order as an array that keeps them. `values` is moved from or copied, which shows in the call.
+/// Returns an array that owns `values` (in C order) and shares their memory. Taken by value: the caller chooses between
+/// move and copy.
 template <class Numbers>
 auto array_from(Numbers values, std::vector<pybind11::ssize_t> shape) {
     auto kept = std::make_unique<Numbers>(std::move(values));
@@ -23,7 +24,7 @@ auto array_from(Numbers values, std::vector<pybind11::ssize_t> shape) {
     return pybind11::array_t<std::remove_pointer_t<decltype(data)>>(std::move(shape), data, owner);
 }
 
-/// An array of shape (n,) of f(i).
+/// Returns an array of shape (n,) with elements f(i).
 template <class T = double, class F>
 pybind11::array_t<T> array_of(std::size_t n, F&& f) {
     pybind11::array_t<T> array(static_cast<pybind11::ssize_t>(n));
@@ -32,7 +33,7 @@ pybind11::array_t<T> array_of(std::size_t n, F&& f) {
     return array;
 }
 
-/// An array of shape (n, m) of f(i, k).
+/// Returns an array of shape (n, m) with elements f(i, k).
 template <class F>
 pybind11::array_t<double> table_of(std::size_t n, std::size_t m, F&& f) {
     pybind11::array_t<double> array({static_cast<pybind11::ssize_t>(n), static_cast<pybind11::ssize_t>(m)});

@@ -86,7 +86,7 @@ AimedRays aim(const LensSystem& lens, const Points& pupil, double field_deg, std
 struct PythonWavefront {
     Wavefront wavefront;
     double wavelength_nm, stop_radius_mm, last_vertex_mm;
-    int columns;  ///< of the grid; 0: no grid
+    int columns;  ///< side of the grid of samples; 0 for other patterns
 };
 
 PythonWavefront make_wavefront(const LensSystem& lens, double field_deg, std::optional<double> object_distance_m,
@@ -181,7 +181,7 @@ namespace {
 
 using PythonLens = py::class_<LensSystem>;
 
-/// What results have of the rays that they are made of.
+/// Defines the properties of a result that describe its rays.
 template <class T, class RaysOf>
 void def_rays(py::class_<T>& type, const RaysOf& rays_of) {
     type.def_property_readonly(

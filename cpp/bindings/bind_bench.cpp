@@ -25,7 +25,7 @@ constexpr int kBlocks = 64;
 
 using Block = LensRays<float, kLanes>;
 
-/// Rays from all over the film into the pupil, as a picture sends them.
+/// Samples rays over the whole film and pupil, as rendering does.
 std::vector<Block> rays_of_a_frame(const LensSystem& lens) {
     const Pupil pupil(lens, 0.5 * hypotenuse(lens.film_width, lens.film_height), fast_pupil_tracer());
     std::vector<Block> blocks(kBlocks);
@@ -43,8 +43,8 @@ std::vector<Block> rays_of_a_frame(const LensSystem& lens) {
     return blocks;
 }
 
-/// Rays per second through the lens on the calling thread, by instruction set: the best of several rounds, because
-/// other programs can only slow one down.
+/// Measures rays per second through the lens on the calling thread, for each instruction set: the best of several
+/// rounds, because other programs can only slow a round down.
 std::map<std::string, double> lens_ray_rates(const LensSystem& lens, double seconds) {
     using Clock = std::chrono::steady_clock;
     const std::vector<Block> blocks = rays_of_a_frame(lens);

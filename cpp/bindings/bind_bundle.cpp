@@ -18,7 +18,7 @@ namespace {
 
 using Array = py::array_t<double>;
 
-constexpr int kBundleLook = 12;  ///< rays across the stop that find where the light is
+constexpr int kBundleLook = 12;  ///< rays across the stop in the initial search for the transmitted light
 
 struct ChiefRay {
     std::array<double, 2> at_mm;
@@ -87,7 +87,7 @@ RayBundle make_bundle(const LensSystem& lens, double field_deg, std::optional<do
         bundle.mirrored};
 }
 
-/// (M, 2) float32: the rays of `count` that pass.
+/// Returns an array (M, 2) of float32: the film points of those of `count` rays that pass.
 py::array make_film_points(const LensSystem& lens, double field_deg, std::int64_t count,
                            std::optional<double> object_distance_m, const FilmPlace& film_mm,
                            std::optional<double> wavelength_nm, std::optional<double> film_distance_mm,

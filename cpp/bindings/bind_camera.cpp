@@ -45,7 +45,7 @@ Film changed_film(const Film& film, std::optional<double> width_mm, std::optiona
                      shift_mm.value_or(std::pair(film.shift_mm.x, film.shift_mm.y)));
 }
 
-/// (time_s, position, look_at), or with up.
+/// Keyframe: (time_s, position, look_at) or (time_s, position, look_at, up).
 using Key = std::variant<std::tuple<double, Triple, Triple>, std::tuple<double, Triple, Triple, Triple>>;
 
 std::vector<PoseKey> motion_from(const std::vector<Key>& keys) {
@@ -108,7 +108,7 @@ Camera changed_camera(Camera camera, const std::optional<LensSystem>& lens, cons
     return camera;
 }
 
-/// A named tuple of Python, in degrees.
+/// Returns a Python named tuple, in degrees.
 py::object field_of_view_deg(const Camera& camera) {
     const FieldOfView view = field_of_view(camera);
     const auto degrees = [](double radians) { return radians * 180 / std::numbers::pi; };

@@ -22,15 +22,15 @@ using namespace py::literals;
 
 namespace {
 
-/// Arrays of numpy, or DeviceArrays.
+/// Camera rays as numpy arrays or DeviceArrays.
 struct CameraRaysResult {
     py::object origins_m, directions, weights, pixels, wavelengths_nm, times_s;
 };
 
-/// First and last, nm; none: the lens's design wavelength.
+/// Shortest and longest wavelength in nm; std::nullopt: the lens's design wavelength.
 using GivenWavelengths = std::optional<std::pair<double, double>>;
 
-/// What is asked for, checked.
+/// Validated request for camera rays.
 struct RayOrder {
     Camera camera;
     std::uint32_t spp, seed;
@@ -40,12 +40,12 @@ struct RayOrder {
     RayRange all() const { return all_rays(camera.film.width, camera.film.height, spp); }
 };
 
-/// Rays that have each a wavelength of these.
+/// Effects that give each ray a wavelength of its own, drawn from the given range.
 LensEffects effects_for(const Camera& camera, const GivenWavelengths& given) {
     LensEffects effects;
     if (!given) return effects;
     const auto [first, last] = *given;
-    // Polynomials follow the indices of glasses so far to a hundred-thousandth (WavelengthVariable).
+    // In this range polynomials reproduce the refractive indices of glasses to within 1e-5 (WavelengthVariable).
     if (!(first >= 300 && first <= last && last <= 2500))
         throw InputError("wavelengths_nm must be two numbers between 300 and 2500, the shorter one first");
     if (camera.model != CameraModel::full_lens)
@@ -65,7 +65,7 @@ RayOrder order_of(const Camera& camera, int spp, std::int64_t seed, const std::s
             effects_for(camera, wavelengths)};
 }
 
-/// To be called without the interpreter's lock.
+/// Must be called without the GIL.
 std::shared_ptr<const CameraSetup> setup_of(const RayOrder& order) {
     static LastSetup last;
     return last.make(order.camera, fast_pupil_tracer(), order.effects);
@@ -81,7 +81,7 @@ CameraRaysResult rays_on_gpu(const RayOrder& order, RayRange range) {
 }
 
 CameraRaysResult rays_on_host(const RayOrder& order, RayRange range) {
-    constexpr std::int64_t kBetweenSignals = 1 << 20;  // some ten milliseconds
+    constexpr std::int64_t kBetweenSignals = 1 << 20;  // about ten milliseconds of work
     const std::int64_t count = range.count;
     py::array_t<double> origins_m({count, std::int64_t{3}}), times_s(count);
     py::array_t<float> directions({count, std::int64_t{3}}), weights(count), wavelengths_nm(count);
@@ -103,7 +103,7 @@ CameraRaysResult rays_of(const RayOrder& order, RayRange range) {
     return order.gpu ? rays_on_gpu(order, range) : rays_on_host(order, range);
 }
 
-/// An iterator over pieces of all rays.
+/// Iterator over chunks of the camera's rays.
 struct RayChunks {
     RayOrder order;
     std::int64_t max_rays, next = 0;
@@ -123,7 +123,8 @@ CameraRaysResult next_chunk(RayChunks& chunks) {
     return rays_of(chunks.order, range);
 }
 
-/// A row for each wavelength cell: where it begins and ends, and what its light, were it all, makes of white.
+/// Returns an array with one row per wavelength cell: its first and last wavelength in nm, and the film's response
+/// (red, green, blue) to white if all light is in this cell.
 py::array_t<double> film_of_white(const std::string& illuminant) {
     const FilmSpectrum spectrum(Illuminant::parse(illuminant));
     py::array_t<double> rows({static_cast<py::ssize_t>(spectrum.cells().size()), py::ssize_t{5}});

@@ -39,7 +39,7 @@ std::optional<CoatingMaterial> points_from(const py::object& material) {
             result.points.push_back({nm, n, k});
         if (!result.points.empty()) return result;
     } catch (const py::cast_error&) {
-        // Not (nm, n, k) points: something else that a medium may be.
+        // The value is not a list of (nm, n, k) points; the caller tries the other forms of a medium.
     }
     return std::nullopt;
 }
@@ -87,7 +87,7 @@ Coating make_coating(const std::vector<CoatingLayer>& layers, const py::object& 
     return coating;
 }
 
-/// Arrays of one shape, that of angles and wavelengths together.
+/// Response of a coating: arrays of the broadcast shape of angles and wavelengths.
 struct CoatingResponse {
     py::object reflectance_s, reflectance_p, transmittance_s, transmittance_p, absorptance_s, absorptance_p, r_s, r_p,
         t_s, t_p;
@@ -122,7 +122,8 @@ CoatingResponse response(const Coating& coating, const py::object& angle_deg, co
             surface.emplace(coating, mirror, nm, from_inside ? n_in : n_out, from_inside ? n_out : n_in, !from_inside);
             wavelength = nm;
         }
-        // The cosine, by way of a difference that is exact: a rounded angle has none of its digits near 90 degrees.
+        // cos(angle) as sin(90 - angle): the difference is exact, whereas the cosine of a rounded angle in radians
+        // loses all digits near 90 degrees.
         const PolarisedResponse at = surface->at(std::sin((90 - angle) * std::numbers::pi / 180));
         const double numbers[] = {at.s.reflectance,   at.p.reflectance, at.s.transmittance,
                                   at.p.transmittance, at.s.absorptance, at.p.absorptance};

@@ -12,7 +12,7 @@ using namespace py::literals;
 
 namespace {
 
-/// Calls realcam.video.
+/// Film writer that calls realcam.video.
 class FilmWriterInPython : public app::FilmWriter {
 public:
     void check(const std::string& film) const override {
@@ -63,7 +63,7 @@ py::list listed_commands() {
 
 }  // namespace
 
-// Words are bytes, as os.fsencode makes them.
+// Words are bytes objects, from os.fsencode.
 void bind_command(py::module_& m) {
     m.def("_run_command", &run_command, "words"_a);
     m.def("_listed_commands", &listed_commands);

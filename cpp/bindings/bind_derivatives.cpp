@@ -57,7 +57,8 @@ std::vector<LensVariable> variables_from(const Variables& variables) {
     return list;
 }
 
-/// Derivatives by the caller's origin and direction, for those by a start on the same line with an optical direction.
+/// Writes the derivatives with respect to the caller's origin and direction, given those with respect to a start point
+/// on the same line and an optical direction (index times unit direction).
 void write_by_ray(const RayDerivatives& ray, Vec3d given, const LensEntry& entry, double index, Vec3d from,
                   double* out) {
     const double size = length(given);

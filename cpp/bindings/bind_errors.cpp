@@ -19,14 +19,14 @@ using namespace py::literals;
 
 namespace {
 
-// Owned for ever: Python may translate an error while the module is torn down.
+// Never destroyed: Python may translate an error while the module is torn down.
 template <class Tag>
 py::object& type_of() {
     static auto* type = new py::object;
     return *type;
 }
 
-/// Raised in Python alone.
+/// Tag of an exception that only Python code raises.
 struct ArgumentError;
 
 template <class E>
@@ -52,7 +52,7 @@ void raise(const LensFileError& error) {
     instance.attr("glass") = text_from(remedy.glass);
     instance.attr("candidate") = text_from(remedy.candidate);
     instance.attr("can_be_forced") = remedy.can_be_forced;
-    // Python prints notes under a traceback. They are no part of the message, which the browser shows too.
+    // Python prints notes below a traceback. They are not part of the message, which the browser shows as well.
     py::list notes;
     if (remedy.can_be_forced) notes.append("Lens.load(..., force=True) reads it all the same");
     if (!remedy.glass.empty())
@@ -63,7 +63,7 @@ void raise(const LensFileError& error) {
     PyErr_SetObject(type_of<LensFileError>().ptr(), instance.ptr());
 }
 
-/// Starts or ends the recording of the inputs of a command in Python.
+/// Starts or ends the recording of the input files of a command that is written in Python.
 void record_inputs(bool is_on) {
     static std::optional<io::InputRecording> recording;
     if (!is_on)
@@ -123,9 +123,9 @@ void bind_errors(py::module_& m) {
         } catch (const std::bad_alloc&) {
             PyErr_SetString(PyExc_MemoryError, "out of memory");
         } catch (const py::builtin_exception&) {
-            throw;  // pybind11's own
+            throw;  // an exception of pybind11
         } catch (const std::runtime_error& e) {
-            // TBB's words where it cannot start a thread.
+            // TBB's message if it cannot start a thread.
             if (!std::string(e.what()).starts_with("pthread_create has failed")) throw;
             raise<DeviceError>(NoThread());
         }

@@ -50,7 +50,7 @@ std::vector<SplatFilm> splat_films_from(const py::list& splats) {
     return films;
 }
 
-/// Exposure, 3 numbers per pixel in lux seconds.
+/// Returns the exposure: 3 values per pixel, in lux seconds.
 py::array_t<float> developed_exposure(const FilmArrays& arrays, const RenderSettings& settings,
                                       double exposure_time_s) {
     const CollectedFilm film = arrays.film();

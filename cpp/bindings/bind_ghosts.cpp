@@ -21,7 +21,7 @@ namespace {
 struct Ghost {
     int first, second;
     double effective_focal_length, back_focal_distance;
-    std::optional<double> share;  ///< nothing where it was not asked for
+    std::optional<double> share;  ///< std::nullopt if it was not requested
 };
 
 Ghost ghost_of(const LensSystem& lens, GhostPair pair, double wavelength_nm, std::optional<double> share = {}) {

@@ -18,7 +18,7 @@ Glass glass_from(const py::object& material) {
         try {
             pair = material.cast<std::vector<double>>();
         } catch (const py::cast_error&) {
-            // Named below: not two numbers.
+            // Values that are not pairs of numbers are reported below.
         }
         if (pair.size() != 2) throw InputError("a material given as a pair must be (n_d, V_d)");
         Glass glass = Glass::from_abbe_number(pair[0], pair[1]);

@@ -1,4 +1,4 @@
-// What the commands in Python say in the same words as those in C++.
+// Help texts that the commands in Python share with those in C++.
 
 #include <pybind11/stl.h>
 

@@ -14,7 +14,7 @@ using namespace py::literals;
 
 namespace {
 
-/// The affine map of a (4, 4) or (3, 4) matrix.
+/// Returns the affine transform of a (4, 4) or (3, 4) matrix in row-major order.
 Affine<double> affine_from(const double* m, bool has_last_row) {
     if (has_last_row && !(m[12] == 0 && m[13] == 0 && m[14] == 0 && m[15] == 1))
         throw InputError("the last row of scene_from_object must be 0, 0, 0, 1");
@@ -24,7 +24,7 @@ Affine<double> affine_from(const double* m, bool has_last_row) {
 
 struct Transforms {
     std::vector<Affine<double>> list;
-    bool several;  ///< given as an array of matrices
+    bool several;  ///< true if given as an array of matrices
 };
 
 Transforms transforms_from(const py::object& matrices) {
@@ -106,7 +106,7 @@ py::tuple instances_of(const Assembly& scene) {
     return py::tuple(list);
 }
 
-/// A stack of (4, 4) matrices.
+/// Returns an array of (4, 4) matrices, one for each transform.
 py::array_t<double> matrices_of(const std::vector<Affine<double>>& maps) {
     py::list list;
     for (const Affine<double>& map : maps) list.append(matrix_of(map));

@@ -62,7 +62,7 @@ LensSystem make_lens(std::vector<Surface> surfaces, const std::string& name, std
         lens.focusing.group_first = focus_group->first;
         lens.focusing.group_last = focus_group->second;
     }
-    // Its sign decides whether a lens with mirrors is a centred one of revolution, which the checks depend on.
+    // Set before the checks: its sign decides whether a lens with mirrors is centred and rotationally symmetric.
     lens.film_distance = film_distance.value_or(0);
     validate(lens);
     lens.stop_semi_diameter = lens.stop().clear_semi_diameter;
@@ -85,7 +85,7 @@ std::string text_of(const LensSystem& lens) {
            digits(data.f_number) + ", focused at " + focus + '>';
 }
 
-/// (N, 4, 3).
+/// Returns an array of shape (N, 4, 3).
 py::array_t<double> frames_array(const std::vector<Affine<double>>& frames) {
     py::array_t<double> array({static_cast<py::ssize_t>(frames.size()), py::ssize_t{4}, py::ssize_t{3}});
     double* to = array.mutable_data();
@@ -114,7 +114,7 @@ std::optional<std::string> zoom_position_of(const LensSystem& lens) {
     return lens.zoom.positions[static_cast<std::size_t>(lens.zoom.current)].name;
 }
 
-/// A whole number is a position's index, as in Python, where 1 and 1.0 are different things.
+/// An int is the index of a zoom position and a float is a focal length: Python distinguishes 1 and 1.0.
 LensSystem zoomed_to(const LensSystem& lens, const std::variant<std::string, int, double>& to) {
     if (const double* focal_length_mm = std::get_if<double>(&to)) return zoomed_to_focal_length(lens, *focal_length_mm);
     if (const int* position = std::get_if<int>(&to)) return zoomed(lens, *position);

@@ -14,11 +14,11 @@ using namespace py::literals;
 namespace {
 
 void warn(const std::string& message) {
-    // On the line of the user's call.
+    // Attributes the warning to the line of the user's call.
     if (PyErr_WarnEx(PyExc_UserWarning, message.c_str(), 1) < 0) throw py::error_already_set();
 }
 
-/// The lens of a file, and notes on what was computed or assumed. Other threads run meanwhile, and Ctrl-C ends it.
+/// Reads the lens of a file with notes on computed or assumed values. Releases the GIL; Ctrl-C interrupts it.
 std::pair<LensSystem, std::vector<std::string>> read_unlocked(const std::string& path, io::LensReadOptions options) {
     std::vector<std::string> notes;
     options.warn = [&](const std::string& note) { notes.push_back(note); };
@@ -28,7 +28,7 @@ std::pair<LensSystem, std::vector<std::string>> read_unlocked(const std::string&
     return {std::move(lens), std::move(notes)};
 }
 
-/// The lens, and the field angles in degrees and wavelengths in nm of another program's file.
+/// Returns the lens, and the field angles in degrees and wavelengths in nm that a file of another program specifies.
 std::tuple<LensSystem, std::vector<double>, std::vector<double>> load_with_light(
     const py::object& name, const std::optional<std::map<std::string, py::object>>& glass, bool force,
     const std::optional<std::string>& pbrt_thickness, const py::object& glass_catalogue) {
@@ -58,7 +58,7 @@ std::pair<LensSystem, std::vector<std::string>> read_lens_with_notes(const py::o
     return read_unlocked(path_from(path), {});
 }
 
-/// The content of its file, and what a file with that suffix cannot say.
+/// Returns the content of a file for the lens, and notes on properties that the format of that suffix cannot represent.
 std::pair<py::bytes, std::vector<std::string>> file_content(const LensSystem& lens, const py::object& path) {
     const std::string file = path_from(path);
     if (io::suffix_of(file) == ".osl")

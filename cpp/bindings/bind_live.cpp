@@ -34,7 +34,7 @@ public:
         });
     }
 
-    /// Of the last frame's camera and settings, but with layers.
+    /// Renders the last frame's camera and settings with layers.
     py::dict image(const Camera& camera, const RenderSettings& settings) {
         Image image = session_.use([&](const auto&) { return view_->picture(camera, settings, heed_signals); });
         return picture_from(std::move(image), settings.layers);
@@ -65,7 +65,8 @@ private:
     std::optional<LiveView> view_;
 };
 
-/// Without a copy: the array keeps the frame alive, which keeps the memory from being used again.
+/// Returns the frame's 8-bit values without a copy: the array keeps the frame alive, and with it its memory out of the
+/// pool.
 py::array_t<std::uint8_t> codes_of(const FramePointer& frame) {
     const std::uint8_t* codes = nullptr;
     {

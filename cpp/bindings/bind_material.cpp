@@ -24,7 +24,7 @@ std::size_t place_of(TextureReference Material::* wanted) {
     return i;
 }
 
-// What Python has for each kind of a material's members.
+// Conversions between the members of a material and their Python values.
 
 Colour value(const PythonMaterial& m, Color Material::* member) {
     const Color c = m.values.*member;
@@ -42,7 +42,7 @@ bool value(const PythonMaterial& m, FresnelTerm Material::* member) {
 std::string value(const PythonMaterial& m, std::string PythonMaterial::* member) {
     return m.*member;
 }
-/// Without a copy, and not to be written to.
+/// Returns a read-only array that shares the texture's memory, or None.
 py::object value(const PythonMaterial& m, TextureReference Material::* member) {
     const std::shared_ptr<const Texture>& texture = m.textures[place_of(member)];
     if (!texture) return py::none();
@@ -70,13 +70,13 @@ void set(PythonMaterial& m, FresnelTerm Material::* member, bool value) {
 void set(PythonMaterial& m, std::string PythonMaterial::* member, const std::string& value) {
     m.*member = value;
 }
-/// None: no texture.
+/// Sets or, for None, removes a texture.
 void set(PythonMaterial& m, TextureReference Material::* member, const py::object& pixels) {
     m.textures[place_of(member)] = pixels.is_none() ? nullptr : texture_from(pixels, io::use_of(member));
     m.values.*member = {};
 }
 
-/// A member under the name that users know. `text`: of the property.
+/// Member of a material with its public name. `text`: docstring of the property.
 template <class Member>
 struct Field {
     const char* name;
@@ -87,7 +87,7 @@ struct Field {
     Field(const char* name, Member member, const char* text = "") : name(name), member(member), text(text) {}
 };
 
-/// A function of the values of fields. All others are as in `initial`.
+/// Returns a function that makes a material from the values of `fields`; all other members are those of `initial`.
 template <class... Members>
 auto maker(const PythonMaterial& initial, const Field<Members>&... fields) {
     return [initial, ... members = fields.member](const typename Field<Members>::Value&... values) {
@@ -152,7 +152,7 @@ std::string text_of(const PythonMaterial& material) {
     return text + '>';
 }
 
-// A scene's materials.
+// Materials of a scene.
 
 py::dict materials_of(const Assembly& scene) {
     py::dict materials;
@@ -237,7 +237,7 @@ void bind_material(py::module_& m) {
                                         Field{"clearcoat_texture", &M::clearcoat_texture},
                                         Field{"clearcoat_roughness_texture", &M::clearcoat_roughness_texture},
                                         Field{"clearcoat_normal_map", &M::clearcoat_normal_texture}};
-    // Names of constructors alone.
+    // Names that exist only as constructor arguments.
     const std::tuple also_phong{Field{"shininess_texture", &M::metallic_roughness_texture}};
     const std::tuple also_metallic_roughness{Field{"base_color", &M::diffuse}, Field{"specular_color", &M::specular}};
     std::apply([&](const auto&... fields) { (def_property(material, fields), ...); },

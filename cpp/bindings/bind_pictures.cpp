@@ -1,4 +1,4 @@
-// Picture files for Python.
+// Bindings for reading and writing picture files.
 
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
@@ -17,7 +17,7 @@ using namespace py::literals;
 
 namespace {
 
-/// The pixels, and what the reader put up with.
+/// Returns the pixels and the reader's warnings.
 py::tuple read_environment(const std::string& path, const std::string& layer) {
     Environment environment;
     std::vector<std::string> warnings;
@@ -33,7 +33,8 @@ py::tuple read_environment(const std::string& path, const std::string& layer) {
 
 using FloatArray = py::array_t<float, py::array::c_style | py::array::forcecast>;
 
-/// Layers by their names, as arrays of the picture's size. `kept`: what they point to, in case they were converted.
+/// Returns views of the named layers, which are arrays of the picture's size. `kept` receives arrays that had to be
+/// converted and must outlive the views.
 std::vector<image_io::PictureView::Layer> layers_from(const py::dict& layers, const FloatArray& depth,
                                                       std::vector<py::array>& kept) {
     std::vector<image_io::PictureView::Layer> views;
@@ -66,7 +67,7 @@ T member(const py::object& image, const char* name) {
     }
 }
 
-/// `image`: a realcam.Image.
+/// Writes a realcam.Image, `image`, to a file.
 void write_picture(const std::string& path, const py::object& image, bool film_tone) {
     const auto exposure = member<FloatArray>(image, "pixels"), depth = member<FloatArray>(image, "depth");
     if (exposure.ndim() != 3 || exposure.shape(2) != 3 || depth.ndim() != 2 || depth.shape(0) != exposure.shape(0) ||
@@ -113,7 +114,7 @@ void write_codes(const std::string& path, const py::array_t<std::uint8_t, py::ar
 
 }  // namespace
 
-// Paths are bytes, as os.fsencode makes them.
+// Paths are bytes objects, from os.fsencode.
 void bind_pictures(py::module_& m) {
     m.def("_read_environment", &read_environment, "path"_a, "layer"_a);
     m.def("_write_picture", &write_picture, "path"_a, "image"_a, "film_tone"_a);

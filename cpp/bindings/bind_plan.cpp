@@ -16,7 +16,7 @@ using namespace py::literals;
 
 namespace {
 
-/// As Python's users see it.
+/// Decision of a plan as Python exposes it.
 struct Decision {
     std::string effect, unit, by, reason;
     double size, threshold;
@@ -49,14 +49,14 @@ Planned plan(const Assembly& scene, const Camera& camera, const RenderSettings& 
     });
 }
 
-/// The camera model, the settings, the summary and a warning of a film, given by its first camera and those of other
-/// frames.
+/// Returns the camera model, the settings, the summary and a warning for a film sequence, from the camera of its first
+/// frame and those of other frames.
 std::tuple<std::string, RenderSettings, std::string, std::string> settled_film(const Assembly& scene,
                                                                                const Camera& camera,
                                                                                const std::vector<Camera>& others,
                                                                                const RenderSettings& settings,
                                                                                const std::string& device) {
-    if (!settings.needs_plan()) return {io::name_of(camera.model), settings, "", ""};  // without a session
+    if (!settings.needs_plan()) return {io::name_of(camera.model), settings, "", ""};  // avoids creating a session
     std::vector<Camera> cameras = {camera};
     cameras.insert(cameras.end(), others.begin(), others.end());
     SettledFilm film = OwnedSession::shared(device).use([&](const auto& session) {

@@ -27,12 +27,12 @@ SightRay sight_ray_from(const std::string& name) {
     throw InputError("unknown ray \"" + name + "\"; light or chief is wanted");
 }
 
-/// Keeps the last lines, because most programs ask again with the same lens and film. To be called without the
-/// interpreter's lock.
+/// Returns the projection rays of a camera; caches the last result, because most programs use the same lens and film
+/// repeatedly. Must be called without the GIL.
 std::shared_ptr<const LinesOfSight> lines_of(const Camera& camera, SightRay ray) {
     struct Last {
         LensSystem lens;
-        double film_radius_mm;  ///< all that counts for a lens of revolution
+        double film_radius_mm;  ///< sufficient for a rotationally symmetric lens
         Vec2<double> film_mm, film_shift_mm;
         CameraModel model;
         SightRay ray;
@@ -53,9 +53,10 @@ std::shared_ptr<const LinesOfSight> lines_of(const Camera& camera, SightRay ray)
         const std::lock_guard lock(mutex);
         if (last == wanted) return lines;
     }
-    Camera still = camera;  // only lens and film count, and no motion of it is too fast
+    // Without motion: the result depends only on lens and film, and a fast motion must not be refused.
+    Camera still = camera;
     still.motion.clear();
-    // What lies a little beside the film shows where its corners' light goes.
+    // Points slightly outside the film are needed to interpolate at its corners.
     constexpr double kMargin = 1.05;
     if (has_real_pupil(camera.model)) {
         still.film.width_mm *= kMargin;

@@ -54,7 +54,7 @@ PsfMethod method_from(const std::string& name) {
     throw InputError("unknown method \"" + name + "\"; direct, fft or geometric is wanted");
 }
 
-/// The transforms are numpy's.
+/// Computes the PSF with numpy's FFT.
 Psf psf_by_fft(const LensSystem& lens, const PsfRequest& request) {
     std::vector<PsfPupil> pupils;
     Psf psf;

@@ -64,7 +64,7 @@ Progress progress_of(const py::object& callback) {
 
 namespace {
 
-/// `keeps_stopped`: what was taken when progress stops the picture is the picture.
+/// `keeps_stopped`: if the progress function stops rendering, returns the picture of the samples taken so far.
 py::dict render(const Assembly& scene, const Camera& camera, const RenderSettings& settings, const std::string& device,
                 const py::object& progress, bool keeps_stopped) {
     const Progress report = progress_of(progress);
@@ -80,7 +80,7 @@ py::array_t<std::uint8_t> develop(const InputArray<float>& exposure, double iso,
     py::array_t<std::uint8_t> codes(std::vector<py::ssize_t>(exposure.shape(), exposure.shape() + exposure.ndim()));
     const float* from = exposure.data();
     std::uint8_t* to = codes.mutable_data();
-    constexpr py::ssize_t kBetweenSignals = 1 << 20;  // some ten milliseconds
+    constexpr py::ssize_t kBetweenSignals = 1 << 20;  // about ten milliseconds of work
     const Unlocked unlocked;
     const CodeTable code(iso, curve);
     for (py::ssize_t done = 0; done < exposure.size(); done += kBetweenSignals) {
@@ -125,7 +125,7 @@ void bind_render(py::module_& m) {
         "lens"_a, "settings"_a);
     py::class_<EffectInfo> effect_type(m, "EffectInfo", "What can be simulated besides. str() is a line of it.");
     def_copy(effect_type);
-    // Each effect is one object, of the table itself.
+    // Each effect is one Python object that refers to the static table.
     py::tuple effect_rows(std::size(kEffects));
     for (std::size_t i = 0; i < std::size(kEffects); ++i)
         effect_rows[i] = py::cast(kEffects[i], py::return_value_policy::reference);

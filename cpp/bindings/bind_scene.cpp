@@ -41,7 +41,7 @@ Assembly with_valid_static_geometry(const Assembly& scene, Change&& change) {
     return changed;
 }
 
-/// `warnings` gets what the reader of a picture put up with.
+/// `warnings` receives the picture reader's warnings.
 Environment environment_from(const py::object& radiance, const std::string& layer, std::vector<std::string>& warnings) {
     if (py::isinstance<py::str>(radiance) || py::hasattr(radiance, "__fspath__"))
         return picture_readers().environment(path_from(radiance), layer,

@@ -102,7 +102,7 @@ void set_angular_response(SensorRequest& request, const Sensor& sensor, double f
     response.steps_per_square = static_cast<float>(AngularResponse::kSteps * per_pixel * per_pixel);
 }
 
-/// Which filter, of red, green and blue, lies at a place of the mosaic.
+/// Returns the colour filter, 0 to 2 for red, green and blue, at an index of the mosaic.
 std::size_t filter_at(const Sensor& sensor, std::size_t place) {
     return sensor.has_filters() ? std::string_view("RGB").find(sensor.color_filter_array[place]) : 0;
 }

@@ -13,7 +13,7 @@ using namespace py::literals;
 
 namespace {
 
-/// What realcam.Session has of the core.
+/// Core part of realcam.Session.
 class PythonSession {
 public:
     PythonSession(const Assembly& scene, const Camera& camera, const RenderSettings& settings,
@@ -33,11 +33,11 @@ public:
         });
     }
 
-    /// Returns take(session, progress) for the scene, camera and settings that were set last, in one turn.
+    /// Returns take(session, progress) for the current scene, camera and settings, in one turn of the session.
     template <class Take>
     auto taken(Take&& take) {
         return session_.use([&](const auto& session) {
-            session->set(scene_, camera_, settings_, heed_signals);  // prepares everything again after an error
+            session->set(scene_, camera_, settings_, heed_signals);  // prepares the session again after an error
             return take(*session, [](double) { return heed_signals(); });
         });
     }
@@ -46,7 +46,7 @@ public:
         taken([&](Session& session, const Progress& progress) { session.add(spp, progress); });
     }
 
-    /// `wanted`: the settings of which the goal of the noise counts.
+    /// `wanted`: settings; only their noise goal is used.
     py::dict add_until(const RenderSettings& wanted) {
         const NoiseGoal goal = wanted.noise.value_or(NoiseGoal());
         const ReachedNoise reached =
@@ -115,7 +115,7 @@ public:
 private:
     OwnedSession session_;
     std::string device_;
-    Assembly scene_;  ///< the scene, camera and settings that were set last, which make a picture
+    Assembly scene_;  ///< current scene, camera and settings of the picture
     Camera camera_;
     RenderSettings settings_;
 };

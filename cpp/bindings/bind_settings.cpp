@@ -13,7 +13,7 @@ using namespace py::literals;
 
 namespace {
 
-/// Settings while words are read into them: what is said of noise makes a goal at the end.
+/// Settings while keyword arguments are applied: the noise arguments are collected and converted to a goal at the end.
 struct Draft {
     RenderSettings settings;
     bool has_noise_goal;
@@ -39,7 +39,7 @@ std::string short_repr(const py::handle& value) {
     return py::module_::import("reprlib").attr("repr")(value).cast<std::string>();
 }
 
-/// One name, some or none (None).
+/// Converts a name, an iterable of names, or None (no names).
 std::vector<std::string> names_from(const py::object& names, const std::string& what) {
     if (names.is_none()) return {};
     if (py::isinstance<py::str>(names)) return {names.cast<std::string>()};
@@ -56,7 +56,7 @@ std::vector<std::string> names_from(const py::object& names, const std::string& 
     return list;
 }
 
-/// A name, a wavelength, or (wavelength_nm, power) pairs.
+/// Converts a name, a wavelength in nm, (wavelength_nm, power) pairs, or None.
 std::optional<Illuminant> light_from(const py::object& light) {
     if (light.is_none()) return std::nullopt;
     if (py::isinstance<py::str>(light)) return Illuminant::parse(light.cast<std::string>());
@@ -90,13 +90,13 @@ std::string name_of(LightTracing tracing) {
 using S = const RenderSettings&;
 using Word = const py::object&;
 
-/// A setting as Python's users write it.
+/// Keyword argument of RenderSettings in Python.
 struct Setting {
     const char* name;
-    const char* type;  ///< in Python's words
+    const char* type;  ///< Python type annotation
     void (*set)(Draft&, Word);
-    py::object (*get)(S);  ///< null: others say it
-    const char* initial = nullptr;  ///< in Python's words; null: what `get` says of RenderSettings()
+    py::object (*get)(S);  ///< null: there is no property, because the argument sets other settings
+    const char* initial = nullptr;  ///< Python text of the default; null: the repr of `get(RenderSettings())`
 };
 
 template <auto member>
@@ -116,7 +116,7 @@ void set_noise(Draft& d, Word word) {
     value = word.cast<std::remove_reference_t<decltype(value)>>();
 }
 
-/// What the goal of the noise says, as who wants it has said it. None where there is no goal, or it says nothing.
+/// Returns a noise setting as the user gave it. None if there is no noise goal or the goal does not specify it.
 template <auto member>
 py::object get_noise(S s) {
     return py::cast(draft_of(s).noise.*member);
@@ -132,7 +132,7 @@ py::object get_threshold(S s) {
     return py::float_(s.thresholds.*member);
 }
 
-/// One of some names. `find`: what it means; nothing for another.
+/// Sets a member by name. `find` returns the value of a name, or std::nullopt for an unknown one.
 template <auto member, class Find>
 void set_named(Draft& d, Word word, const char* what, const Find& find, const char* wanted) {
     const auto name = word.cast<std::string>();
@@ -146,7 +146,7 @@ void set_spp(Draft& d, Word word) {
     d.has_noise_goal = py::isinstance<py::str>(word) && word.cast<std::string>() == "auto";
     d.settings.spp = RenderSettings().spp;
     if (d.has_noise_goal) return;
-    d.noise = {};  // in place of what was said before
+    d.noise = {};  // a number of samples replaces any earlier noise goal
     try {
         d.settings.spp = word.cast<int>();
     } catch (const py::cast_error&) {
@@ -154,7 +154,7 @@ void set_spp(Draft& d, Word word) {
     }
 }
 
-// They are read in this order.
+// Applied in this order.
 const Setting kSettings[] = {
     {"spp", "int | str", set_spp, [](S s) -> py::object { return s.noise ? py::cast("auto") : py::cast(s.spp); }},
     {"noise", "float | None", set_noise<&NoiseRequest::noise>, get_noise<&NoiseRequest::noise>},
@@ -215,7 +215,7 @@ const Setting kSettings[] = {
      [](S s) -> py::object { return py::cast(name_of(s.light_tracing)); }},
 };
 
-/// The constructor, as pybind11 would write it.
+/// Returns the constructor's signature in pybind11's format.
 std::string signature() {
     std::string text = "__init__(self: RenderSettings, *";
     for (const Setting& setting : kSettings)
@@ -224,8 +224,8 @@ std::string signature() {
     return text + ") -> None";
 }
 
-/// With changes by their names. What a change leaves without a meaning goes: the goal of the noise where there is a
-/// number of samples, an illuminant that no effect uses. Throws InputError.
+/// Returns the settings with changes given by name. Settings that a change makes meaningless are removed: the noise
+/// goal if a number of samples is set, and the illuminant if no effect uses it. Throws InputError.
 RenderSettings changed(const RenderSettings& before, const py::dict& words) {
     Draft draft = draft_of(before);
     RenderSettings& settings = draft.settings;
@@ -255,7 +255,7 @@ RenderSettings changed(const RenderSettings& before, const py::dict& words) {
     return settings;
 }
 
-/// What makes the settings anew: the words of all that is not as it is in RenderSettings().
+/// Returns the keyword arguments that reproduce the settings: those that differ from RenderSettings().
 py::dict words_of(const RenderSettings& settings) {
     py::dict words;
     for (const Setting& setting : kSettings)
@@ -307,7 +307,7 @@ void bind_settings(py::module_& m) {
     py::class_<RenderSettings> type(m, "RenderSettings", kDoc);
     {
         py::options options;
-        options.disable_function_signatures();  // each is called with any words, which are looked up in kSettings
+        options.disable_function_signatures();  // these functions accept any keywords and look them up in kSettings
         type.def(py::init([](const py::kwargs& words) { return changed({}, words); }), signature().c_str())
             .def(
                 "with_", [](const RenderSettings& self, const py::kwargs& changes) { return changed(self, changes); },

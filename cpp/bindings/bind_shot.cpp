@@ -121,7 +121,7 @@ py::tuple curve_of(const Shake& shake) {
     return py::tuple(curve);
 }
 
-/// Throws InputError where keys are none, or the camera cannot be as one of them says.
+/// Throws InputError if the keys are invalid or the camera cannot take the state of one of them.
 void check_camera_keys(const Camera& camera, const std::vector<CameraKey>& keys) {
     validate(keys);
     check_keys(keys, "the camera", [&](const CameraKey& key) { check_key(camera, key_at(keys, key.time_s)); });
@@ -213,7 +213,7 @@ z_m; but for the time any may be missing. Raises InputError naming file and line
         .def("__repr__", &text_of_shake);
 }
 
-/// Those of the command line.
+/// Returns the shot keys that are command line options.
 py::list listed_shot_keys() {
     py::list keys;
     for (const shot::ShotKey& key : shot::shot_keys())
@@ -221,7 +221,7 @@ py::list listed_shot_keys() {
     return keys;
 }
 
-/// Options of the command line by the names of their keys.
+/// Returns the command line options for values given by key name.
 std::vector<std::pair<const shot::ShotKey*, std::string>> options_of(const std::map<std::string, std::string>& words) {
     std::vector<std::pair<const shot::ShotKey*, std::string>> options;
     for (const shot::ShotKey& key : shot::shot_keys())
@@ -229,9 +229,9 @@ std::vector<std::pair<const shot::ShotKey*, std::string>> options_of(const std::
     return options;
 }
 
-/// Returns the fields of realcam.Shot by their names, and whether nobody has said how many samples it has or how little
-/// noise. `changes` and `words`: those of shot::ShotChanges. `given`: a scene in place of a file, which messages call
-/// by the path; `lens`: in place of the request's; `denoises`: the picture is to be denoised.
+/// Returns the fields of realcam.Shot by name, and true if neither a number of samples nor a noise goal is specified.
+/// `changes` and `words`: see shot::ShotChanges. `given`: a scene that replaces the file's, which messages call by the
+/// path; `lens`: replaces the request's; `denoises`: the picture will be denoised.
 py::tuple read_shot(const py::object& path, const std::string& changes, const std::map<std::string, std::string>& words,
                     const std::optional<Assembly>& given, std::optional<LensSystem> lens, bool denoises,
                     const std::string& device) {
@@ -252,7 +252,7 @@ py::tuple read_shot(const py::object& path, const std::string& changes, const st
         request.lens_options.warn = [&](const std::string& note) { notes.push_back(note); };
         shot::settle_keys(request);
         camera = shot::camera_of(request);
-        request.lens_options = {};  // which must not outlive what they name
+        request.lens_options = {};  // its functions refer to local variables
         scene = given ? shot::scene_of(request, *given, readers, heed_signals)
                       : shot::scene_of(request, readers, heed_signals);
     }

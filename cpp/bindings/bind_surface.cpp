@@ -30,7 +30,7 @@ std::vector<double> aspheric_from(const std::map<int, double>& coefficients) {
     return list;
 }
 
-/// x, y and z; of a decentre z may be left out.
+/// Converts (x, y, z); a decentre may omit z.
 Vec3d triple_from(const std::vector<double>& values, std::size_t least, const char* what) {
     if (values.size() < least || values.size() > 3)
         throw InputError(std::string(what) + " is " + (least < 3 ? "(x, y) or (x, y, z)" : "(x, y, z)"));

@@ -17,7 +17,7 @@ using namespace py::literals;
 
 namespace {
 
-/// In the order of ErrorKind.
+/// Names in the order of ErrorKind.
 constexpr std::array<std::string_view, 16> kKinds = {
     "radius",         "radius_percent", "radius_fringes",     "thickness",          "index",
     "abbe_percent",   "surface_tilt_x", "surface_tilt_y",     "surface_decentre_x", "surface_decentre_y",
@@ -70,7 +70,8 @@ py::dict judge(const CopyJudge& judge, const ErrorNames& names, const Numbers& s
     std::vector<CopyFigures> found(count);
     {
         const Unlocked unlocked;
-        // A copy is the work of milliseconds, and its numbers are those of one thread whatever their number.
+        // One item per task, because evaluating a perturbed lens takes milliseconds; the results do not depend on the
+        // number of threads.
         parallel_ray_loop(heed_signals, 1).for_all(count, [&](std::size_t first, std::size_t last) {
             for (std::size_t i = first; i < last; ++i)
                 found[i] = judge(with_errors(judge.nominal(), errors, rows + i * errors.size()));

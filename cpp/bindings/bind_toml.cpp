@@ -15,7 +15,7 @@ namespace {
     throw InputError(file + (line > 0 ? ":" + std::to_string(line) : "") + ": " + message);
 }
 
-/// f(key, node) in the order of the file, which the parser does not keep.
+/// Calls f(key, node) in the order of the file, which the parser does not preserve.
 template <class F>
 void for_each_in_order(const toml::table& table, F&& f) {
     std::vector<std::pair<const toml::key*, const toml::node*>> entries;
@@ -45,7 +45,7 @@ py::object value_of(const toml::node& node) {
     if (const auto* number = node.as_integer()) return py::int_(number->get());
     if (const auto* number = node.as_floating_point()) return py::float_(number->get());
     if (const auto* flag = node.as_boolean()) return py::bool_(flag->get());
-    return py::none();  // dates, of which no file of realcam has any
+    return py::none();  // dates, which realcam's files do not use
 }
 
 py::tuple read_toml(const std::string& text, const std::string& file) {

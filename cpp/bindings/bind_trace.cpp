@@ -23,12 +23,12 @@ namespace {
 
 using Doubles = InputArray<double>;
 
-/// Arrays of numpy, or DeviceArrays.
+/// Traced rays as numpy arrays or DeviceArrays.
 struct TraceResult {
     py::object origins_mm, directions, optical_path_mm, status, surface_index, transmission;
 };
 
-/// What is asked of the rays, checked.
+/// Validated options of a trace.
 struct TraceOptions {
     LightDirection way;
     double wavelength_nm;
@@ -57,7 +57,8 @@ std::int64_t ray_count(const Doubles& origins, const Doubles& directions) {
     return origins.shape(0);
 }
 
-/// (N,), or None where it is not asked for. In double whatever the precision of the trace.
+/// Returns an array (N,), or None if it is not requested. Computed in double precision whatever the precision of the
+/// trace.
 py::object transmission_of(const LensSystem& lens, const Doubles& origins, const Doubles& directions,
                            const TraceOptions& options) {
     if (!options.transmission) return py::none();
@@ -96,7 +97,7 @@ TraceResult trace_host_arrays(const LensSystem& lens, const Doubles& origins, co
     return {to, towards, path, status, surface, transmission_of(lens, origins, directions, options)};
 }
 
-/// The GPU of both inputs, which must be the one that `device` names.
+/// Returns the GPU that holds both inputs. Throws InputError if `device` names another one.
 int gpu_of(const DeviceInput& origins, const DeviceInput& directions, const std::optional<std::string>& device) {
     const int from = origins.numbers.ordinal, along = directions.numbers.ordinal, there = std::max(from, along);
     if (from >= 0 && along >= 0 && from != along)

@@ -62,58 +62,59 @@ void bind_help(py::module_& m);
 void bind_pictures(py::module_& m);
 void bind_command(py::module_& m);
 
-/// What all functions and classes of the module have in common; the last of all.
+/// Post-processes all functions and classes of the module. Must be called last.
 void finish_module(py::module_& m);
 
-/// A DeviceNotice: a UserWarning on the line of the user's call. Called with or without the interpreter's lock.
+/// DeviceNotice that issues a UserWarning on the line of the user's call. May be called with or without the GIL.
 void warn_of_device(const std::string& text);
 
-/// "film" or "linear". Throws InputError.
+/// Converts "film" or "linear". Throws InputError.
 ToneCurve tone_curve_from(const std::string& name);
 
-/// Throws InputError for what does not fit 32 bits.
+/// Throws InputError if the number does not fit into 32 bits.
 std::uint32_t seed_from(std::int64_t seed, const char* what = "seed");
 
-/// A number of bounces; none for "auto".
+/// Converts a number of bounces; std::nullopt for "auto".
 inline std::optional<int> bounces_from(py::handle word) {
     const bool is_automatic = py::isinstance<py::str>(word) && word.cast<std::string>() == "auto";
     return is_automatic ? std::nullopt : std::optional(word.cast<int>());
 }
 
-/// Python's share of the progress: signals (Ctrl-C), then the caller's function (None: nothing more). Called without
-/// the interpreter's lock. The callback must outlive the result.
+/// Returns a progress function that handles signals (Ctrl-C), then calls the caller's function (None: no call). It is
+/// called without the GIL. The callback must outlive the result.
 Progress progress_of(const py::object& callback);
 
-/// A KeepGoing: true, or raises what a signal has raised in Python, above all KeyboardInterrupt. Called with or without
-/// the interpreter's lock, on the thread that Python called.
+/// KeepGoing function: returns true, or raises the exception of a signal handler, typically KeyboardInterrupt. Called
+/// with or without the GIL, on the thread that Python called.
 bool heed_signals();
 
-/// A path as users give it, a text or anything with __fspath__, in the bytes that the system knows it by. Throws
-/// InputError for a null character, at which the system would cut the name.
+/// Converts a path, a str or any object with __fspath__, to the bytes of the file system. Throws InputError for a null
+/// character, at which the system would truncate the name.
 inline std::string path_from(const py::object& path) {
     std::string bytes = py::module_::import("os").attr("fsencode")(path).cast<std::string>();
     if (bytes.find('\0') != std::string::npos) throw InputError("a file name cannot hold a null character");
     return bytes;
 }
 
-/// A text of the core, in which names of files may be no UTF-8, as Python has such names (os.fsdecode).
+/// Converts a text of the core, which may contain file names that are not valid UTF-8, in the way of os.fsdecode.
 inline py::str text_from(const std::string& text) {
     return py::reinterpret_steal<py::str>(
         PyUnicode_DecodeFSDefaultAndSize(text.data(), static_cast<py::ssize_t>(text.size())));
 }
 
-/// A medium as users write it: an index, (n_d, V_d), the name of a glass of the catalogue, a Glass; None is air.
+/// Converts a medium: an index, (n_d, V_d), the name of a catalogue glass, or a Glass; None is air.
 Glass glass_from(const py::object& material);
-/// A medium in words, for __repr__.
+/// Describes a medium, for __repr__.
 std::string glass_text(const Glass& glass);
 
-/// The design wavelength where none is given. Throws InputError outside the limits of Lens.trace.
+/// Returns the wavelength, or the design wavelength for std::nullopt. Throws InputError outside the limits of
+/// Lens.trace.
 double wavelength_or_design(const LensSystem& lens, std::optional<double> nm);
 
-/// A film point as users write it: (x, y), mm from the film's middle; none: the field is named by its angle.
+/// Film point: (x, y), mm from the film's centre; std::nullopt: the field is given by its angle.
 using FilmPlace = std::optional<std::pair<double, double>>;
 
-/// A place in the field as users write it; no distance: the plane in focus. Throws InputError where both an angle and a
+/// Converts a field point; without a distance it is in the plane of focus. Throws InputError if both an angle and a
 /// film point are given.
 FieldPoint field_from(double field_deg, std::optional<double> object_distance_m, const FilmPlace& film_mm = {});
 

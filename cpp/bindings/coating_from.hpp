@@ -5,7 +5,7 @@
 
 namespace realcam::bindings {
 
-/// A coating as users write it: the name of one that has a name, or a Coating. Throws InputError.
+/// Converts the name of a known coating or a Coating. Throws InputError.
 Coating coating_from(const pybind11::object& coating);
 
 }  // namespace realcam::bindings

@@ -14,7 +14,7 @@ namespace {
 
 struct Layout {
     std::vector<std::int64_t> shape;
-    std::optional<std::vector<std::int64_t>> strides;  ///< bytes; none: C order
+    std::optional<std::vector<std::int64_t>> strides;  ///< in bytes; std::nullopt: C order
     NumberType type;
     std::uintptr_t address;
 };
@@ -23,7 +23,7 @@ struct Layout {
     throw InputError(name + " lies on a GPU and holds numbers of type " + type + "; float64 or float32 is wanted");
 }
 
-/// The number N of rows of an array of shape (N, 3) in C order. Strides of an extent of 1 or 0 do not matter.
+/// Returns the number of rows N of an array of shape (N, 3) in C order. Strides of extents of 0 or 1 are ignored.
 std::int64_t count_of(const Layout& layout, const std::string& name) {
     if (layout.shape.size() != 2 || layout.shape[1] != 3 || layout.shape[0] < 0)
         throw InputError(name + " lies on a GPU, and must be of shape (N, 3)");
@@ -55,7 +55,8 @@ bool given(const py::dict& interface, const char* key) {
     return interface.contains(key) && !interface[key].is_none();
 }
 
-/// Without a stream: from version 3 on that nothing is under way, before that nothing is known.
+/// Without a stream, version 3 and later of the interface guarantee that no work is pending; earlier versions guarantee
+/// nothing.
 struct Readiness {
     bool wait;
     std::optional<std::uintptr_t> stream;
@@ -117,7 +118,7 @@ Layout layout_of(const dlpack::Tensor& tensor, const std::string& name) {
     return layout;
 }
 
-/// The capsule is read and not taken, so that it frees itself at the end.
+/// Reads the capsule without consuming it, so that the capsule frees the memory.
 DeviceInput from_dlpack(const py::object& array, int ordinal, const std::string& name) {
     using namespace py::literals;
     py::object capsule;
@@ -126,7 +127,7 @@ DeviceInput from_dlpack(const py::object& array, int ordinal, const std::string&
             capsule = array.attr("__dlpack__")("stream"_a = 1, "max_version"_a = py::make_tuple(1, 0));
         } catch (py::error_already_set& error) {
             if (!error.matches(PyExc_TypeError)) throw;
-            capsule = array.attr("__dlpack__")("stream"_a = 1);  // of a producer older than version 1
+            capsule = array.attr("__dlpack__")("stream"_a = 1);  // for a producer older than DLPack 1.0
         }
     } catch (py::error_already_set& error) {
         throw InputError(name + " lies on a GPU and cannot be read: " + py::str(error.value()).cast<std::string>());
@@ -156,12 +157,12 @@ std::optional<DeviceInput> device_input(const py::object& array, const char* nam
         DeviceInput input =
             input_of({own.shape(), std::nullopt, own.type(), reinterpret_cast<std::uintptr_t>(own.data())},
                      own.ordinal(), name, array);
-        // Whoever shares it may be writing to it.
+        // Other owners may still be writing to the array.
         const Unlocked unlocked;
         wait_for_gpu(own.ordinal(), std::nullopt);
         return input;
     }
-    // Tensors of the host have the attribute too, and raise when it is read.
+    // Host tensors have the attribute, too, and raise when it is read.
     if (py::hasattr(array, "__cuda_array_interface__"))
         return from_interface(array, array.attr("__cuda_array_interface__").cast<py::dict>(), name);
     if (py::hasattr(array, "__dlpack__") && py::hasattr(array, "__dlpack_device__")) {

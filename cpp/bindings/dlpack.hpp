@@ -1,8 +1,8 @@
 #pragma once
 #include <cstdint>
 
-// The binary interface of DLPack 1.0 (https://dmlc.github.io/dlpack/latest/c_api.html), by which Python's array
-// libraries hand memory to each other. Names and order of the fields are the standard's.
+// Binary interface of DLPack 1.0 (https://dmlc.github.io/dlpack/latest/c_api.html), by which Python's array libraries
+// share memory. Names and order of the fields are those of the standard.
 
 namespace realcam::dlpack {
 
@@ -25,11 +25,11 @@ struct Tensor {
     std::int32_t ndim;
     DataType dtype;
     std::int64_t* shape;
-    std::int64_t* strides;  ///< in numbers, not bytes; may be null in C order
+    std::int64_t* strides;  ///< in elements, not bytes; may be null for C order
     std::uint64_t byte_offset;
 };
 
-/// In capsules named "dltensor".
+/// Content of capsules named "dltensor".
 struct ManagedTensor {
     Tensor tensor;
     void* manager_context;
@@ -43,7 +43,7 @@ struct Version {
 
 inline constexpr std::uint64_t kReadOnly = 1, kIsCopied = 2;
 
-/// In capsules named "dltensor_versioned", for consumers of version 1.
+/// Content of capsules named "dltensor_versioned", for consumers of version 1.
 struct ManagedTensorVersioned {
     Version version;
     void* manager_context;

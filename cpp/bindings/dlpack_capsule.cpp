@@ -18,8 +18,8 @@ dlpack::DataType type_of(NumberType type) {
     return {};
 }
 
-/// What a capsule points to. Its consumer frees it by the deleter, which touches no Python object: it may run without
-/// the interpreter's lock, or after the interpreter.
+/// Content of a capsule with its owner. The consumer frees it through the deleter, which must not touch Python objects:
+/// it may run without the GIL, or after the interpreter has ended.
 template <class Managed>
 struct Exported {
     Managed managed{};
@@ -37,7 +37,7 @@ struct Exported {
     }
 };
 
-/// Frees what nobody has taken. Whoever takes it gives the capsule another name.
+/// Capsule destructor: frees a tensor that was not consumed. A consumer renames the capsule.
 void free_capsule(PyObject* capsule, const char* name, void (*free)(void*)) {
     if (PyCapsule_IsValid(capsule, name)) free(PyCapsule_GetPointer(capsule, name));
 }

@@ -22,21 +22,22 @@ inline FilmRegion region_from(const RegionNumbers& region) {
     return {region[0], region[1], region[2], region[3]};
 }
 
-/// What a region has collected, as a dict of an array (height, width) with the fields of PixelSum, and of its stats.
+/// Converts the sums of a region to a dict with an array (height, width) that has the fields of PixelSum, and with its
+/// stats.
 py::dict region_sums_to(RegionSums sums, const FilmRegion& region);
 
-/// An array (height, width) with the fields of LayerSum.
+/// Converts the layer sums of a region to an array (height, width) with the fields of LayerSum.
 py::array layer_sums_to(std::vector<LayerSum> sums, const FilmRegion& region);
 
-/// Each as a dict: light (a number), sums (films, height, width, 3) int64, blocks and units_per_lux.
+/// Converts each film to a dict: light (a number), sums (films, height, width, 3) int64, blocks and units_per_lux.
 py::list splats_to(std::vector<SplatFilm> films);
 
-/// Numbers of a picture's cost, under their names in Python.
+/// Rendering statistics by their names in Python.
 using StatNumbers = std::map<std::string, double>;
 
 RenderStats stats_from(const StatNumbers& numbers);
 
-/// Numbers in Python that a film was collected as: see the functions above. Throws InputError where shapes differ.
+/// Accumulated film as Python arrays, in the formats of the functions above. Throws InputError if shapes differ.
 struct FilmArrays {
     InputArray<PixelSum> pixels;
     std::optional<InputArray<LayerSum>> layers;

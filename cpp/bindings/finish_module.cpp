@@ -5,25 +5,26 @@
 
 #include "bindings.hpp"
 
-// What all functions and classes of the module have in common is done once, when they exist. Their signatures are
-// written as Python's users write types. Arguments of the wrong type are refused in a sentence, and no class makes an
-// object without a value. pybind11 has no hook for it; the definitions of its functions are where Python finds both.
+// Post-processing of all functions and classes of the module, once they exist: signatures are written with Python's
+// type names, arguments of the wrong type raise a one-sentence error, and no class creates an object without a value.
+// pybind11 has no hook for this, so the definitions of its functions are found through Python.
 namespace realcam::bindings {
 namespace {
 
 using Arguments = PyObject* const*;
 using FastCall = PyObject* (*)(PyObject*, Arguments, Py_ssize_t, PyObject*);
 
-/// pybind11's own call of a function, the same for all of them.
+/// The C function by which pybind11 calls every bound function.
 PyCFunction pybind_call = nullptr;
 
-/// By what Python hands to that call. Never torn down: functions are called while Python exits.
+/// Definitions by the object that Python passes to that C function. Never destroyed: functions are called while Python
+/// exits.
 std::unordered_map<PyObject*, const PyMethodDef*>& definitions() {
     static auto* map = new std::unordered_map<PyObject*, const PyMethodDef*>;
     return *map;
 }
 
-/// Whether the error under way says that no overload takes the arguments.
+/// True if the current error says that no overload accepts the arguments.
 bool no_overload_fits() {
     if (!PyErr_ExceptionMatches(PyExc_TypeError)) return false;
     py::error_scope error;
@@ -32,7 +33,7 @@ bool no_overload_fits() {
     return text.find("(): incompatible ") != std::string::npos && text.find("Invoked with:") != std::string::npos;
 }
 
-/// Puts a sentence in place of pybind11's list of signatures.
+/// Replaces pybind11's list of signatures by a one-sentence error.
 void explain(PyObject* function, const py::tuple& arguments, const py::dict& named) {
     py::error_already_set theirs;
     try {
@@ -41,7 +42,7 @@ void explain(PyObject* function, const py::tuple& arguments, const py::dict& nam
         const py::object type = py::module_::import("realcam._core").attr("ArgumentError");
         PyErr_SetString(type.ptr(), text.c_str());
     } catch (const std::exception&) {
-        theirs.restore();  // a signature that is not understood: pybind11's own words stay
+        theirs.restore();  // keeps pybind11's message if its signature cannot be parsed
     }
 }
 
@@ -58,7 +59,7 @@ PyObject* fast_call(PyObject* function, Arguments arguments, Py_ssize_t count, P
     return nullptr;
 }
 
-/// As pybind11 before version 3 is called.
+/// Calling convention of pybind11 before version 3.
 PyObject* tuple_call(PyObject* function, PyObject* arguments, PyObject* names) {
     PyObject* result = reinterpret_cast<PyCFunctionWithKeywords>(reinterpret_cast<void (*)()>(pybind_call))(
         function, arguments, names);
@@ -68,7 +69,7 @@ PyObject* tuple_call(PyObject* function, PyObject* arguments, PyObject* names) {
     return nullptr;
 }
 
-/// The function itself of a method, static method or property; null where there is none of pybind11's.
+/// Returns the function behind a method, static method or property; null if it is not a pybind11 function.
 PyMethodDef* definition_of(py::object thing, PyObject*& function) {
     if (Py_TYPE(thing.ptr()) == &PyProperty_Type) thing = thing.attr("fget");
     if (Py_TYPE(thing.ptr()) == &PyStaticMethod_Type) thing = thing.attr("__func__");
@@ -89,12 +90,12 @@ void finish_function(const py::object& thing, const py::object& cleaned) {
                               : reinterpret_cast<PyCFunction>(reinterpret_cast<void (*)()>(&tuple_call));
     if (!definition->ml_doc) return;
     const std::string doc = cleaned(definition->ml_doc).cast<std::string>();
-    std::free(const_cast<char*>(definition->ml_doc));  // as pybind11 does, which has it from strdup
+    std::free(const_cast<char*>(definition->ml_doc));  // allocated by pybind11 with strdup
     definition->ml_doc = strdup(doc.c_str());
 }
 
-/// Class.__new__ as users find it would make an object without a value. What Python calls itself is the slot, which
-/// stays: only the entry of that name is another one.
+/// Makes Class.__new__ raise an error, because it would create an object without a value. Python itself calls the
+/// type's slot, which is unchanged: only the dict entry is replaced.
 void refuse_new(const py::object& type) {
     const std::string name = type.attr("__name__").cast<std::string>();
     const py::cpp_function refuse(

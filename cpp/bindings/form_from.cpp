@@ -11,7 +11,7 @@ using namespace py::literals;
 
 namespace {
 
-/// Refuses keys that are not wanted.
+/// Throws InputError for unknown keys.
 void allow(const py::dict& given, const std::string& what, const std::vector<std::string>& keys) {
     for (const auto& [key, value] : given) {
         const auto name = py::str(key).cast<std::string>();
@@ -78,7 +78,7 @@ void change_terms(std::optional<Terms>& terms, const std::optional<py::dict>& to
         terms = terms_from<Terms>(*to, what);
 }
 
-/// The one of these keys that is there.
+/// Returns the one of these keys that is present.
 std::string one_of(const py::dict& given, const std::string& what, const std::vector<const char*>& keys) {
     std::string found, list;
     int count = 0;

@@ -12,7 +12,7 @@
 
 namespace realcam::bindings {
 
-/// What a user gives of a surface's form and aperture; the rest stays as it is.
+/// Changes of a surface's form and aperture; omitted ones are left unchanged.
 struct FormChanges {
     using Number = std::optional<double>;
     std::optional<std::string> form;
@@ -23,10 +23,11 @@ struct FormChanges {
     std::optional<std::vector<py::dict>> obscurations;
 };
 
-/// Throws InputError where a name, a key or a value is none. An empty dict takes away what there is.
+/// Applies changes to a surface. An empty dict removes the respective form or aperture. Throws InputError for an
+/// invalid name, key or value.
 void change_form(Surface& surface, const FormChanges& to);
 
-/// As change_form takes them.
+/// Returns the values in the format that change_form accepts.
 std::string form_name(const Surface& surface);
 std::map<int, double> radial_terms_of(const Surface& surface);
 std::map<std::pair<int, int>, double> xy_terms_of(const Surface& surface);

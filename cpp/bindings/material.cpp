@@ -51,7 +51,7 @@ void check_range(const py::array& pixels) {
                      " are wanted");
 }
 
-/// Some rows of (H, W, C) as red, green, blue and alpha, each through `decode(value, channel)`.
+/// Appends some rows of an array (H, W, C) as red, green, blue and alpha, each converted by `decode(value, channel)`.
 template <class Value, class Decode>
 void append_rgba(std::vector<Value>& rgba, const py::array& band, py::ssize_t channels, Value white, io::TextureUse use,
                  Decode&& decode) {
@@ -119,7 +119,7 @@ std::shared_ptr<const Texture> texture_from(const py::object& object, io::Textur
         texture->linear_rgba.reserve(count);
     else
         texture->rgba.reserve(count);
-    // Some rows at a time: little memory, and Ctrl-C is heard in between.
+    // Converts some rows at a time, to limit memory and to check for Ctrl-C in between.
     const py::ssize_t rows = std::max<py::ssize_t>(1, (py::ssize_t{1} << 20) / (channels * pixels.shape(1)));
     for (py::ssize_t row = 0; row < pixels.shape(0); row += rows) {
         heed_signals();

@@ -10,13 +10,13 @@ namespace realcam::bindings {
 
 namespace members_detail {
 
-/// Stands for a value of whatever type a member has.
+/// Converts to any type, for counting an aggregate's members.
 struct Anything {
     template <class T>
     operator T() const;
 };
 
-/// How many values the braces of an aggregate take: its members, as long as none is a C array.
+/// Number of initialisers of an aggregate, which is its number of members if none is a C array.
 template <class T, class... Given>
 consteval std::size_t count() {
     if constexpr (requires { T{Given{}..., Anything{}}; })
@@ -27,8 +27,8 @@ consteval std::size_t count() {
 
 }  // namespace members_detail
 
-/// References to all members of a struct without constructors, in their order. Found by the compiler, so that a member
-/// that is added later takes part in comparisons and pickles too.
+/// Returns references to all members of an aggregate, in order. Found by the compiler, so that members added later take
+/// part in comparisons and pickles.
 template <class T>
 auto members(T& x) {
     constexpr std::size_t n = members_detail::count<std::remove_const_t<T>>();

@@ -21,8 +21,8 @@ namespace {
 namespace py = pybind11;
 using namespace py::literals;
 
-/// An open file, which the package finds under a name that does not depend on the file's own: that need not be UTF-8,
-/// and a file may have none.
+/// Open file, passed to the package by a name that is independent of the file's own, which need not be UTF-8 or exist
+/// at all.
 class Descriptor {
 public:
     explicit Descriptor(int number) : number_(number) {
@@ -43,7 +43,7 @@ int memory_file() {
     return memfd_create("realcam", MFD_CLOEXEC);
 }
 
-/// False, with errno, where a write fails.
+/// Returns false, with errno set, if a write fails.
 bool write_all(int descriptor, const char* data, std::size_t size) {
     while (size > 0) {
         const ssize_t written = write(descriptor, data, size);
@@ -55,7 +55,7 @@ bool write_all(int descriptor, const char* data, std::size_t size) {
     return true;
 }
 
-/// An object of the module, let go of with the interpreter's lock, which nobody here holds.
+/// Object of the Python module. Created and released with the GIL; callers do not hold the GIL.
 class PackageObject {
 public:
     template <class... Arguments>
@@ -77,7 +77,7 @@ public:
         object_ = py::object();
     }
 
-    /// With the lock.
+    /// Requires the GIL.
     py::object attr(const char* name) const { return object_.attr(name); }
 
 private:
@@ -119,7 +119,7 @@ private:
         return header;
     }
 
-    /// The name of the file, which has these bytes if it is one of memory.
+    /// Writes the bytes to the file, if it is a memory file, and returns its name.
     std::string with(std::span<const std::uint8_t> bytes) const {
         if (!write_all(file_.number(), reinterpret_cast<const char*>(bytes.data()), bytes.size()))
             throw Error(std::strerror(errno));
@@ -145,7 +145,7 @@ private:
     PackageObject input_;
 };
 
-/// The file is encoded in memory. The package would not tell of a disk that is full.
+/// Encodes the file in memory and then copies it, because the package does not report a full disk.
 class PackageEncoder final : public PictureEncoder {
 public:
     PackageEncoder(const EncodedPicture& picture, UnfinishedFile& file)
@@ -157,7 +157,7 @@ public:
                   picture.attributes) {}
 
     Outcome write(int first, int end, const void* pixels) override {
-        if (is_full_) return {true, ""};  // whoever writes on waits for ever in OpenEXR
+        if (is_full_) return {true, ""};  // after an error OpenEXR would block for ever in further writes
         const py::gil_scoped_acquire acquire;
         const auto size = static_cast<py::ssize_t>(static_cast<std::size_t>(end - first) * row_bytes_);
         return outcome_of(output_.attr("write")(first, end, py::memoryview::from_memory(pixels, size)));
@@ -182,7 +182,7 @@ private:
         return channels;
     }
 
-    /// A limit on file sizes counts for files in memory, too. The file is to tell of it, as of a full disk.
+    /// Limits on file sizes apply to memory files, too; such a failure is reported by the file, like a full disk.
     Outcome outcome_of(const py::object& result) {
         const auto [good, said] = result.cast<std::pair<bool, std::string>>();
         struct stat status{};

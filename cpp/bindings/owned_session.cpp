@@ -11,8 +11,8 @@ namespace realcam::bindings {
 
 namespace {
 
-/// The owners whose work Python's end stops, guarded by the interpreter's lock. Those of `shared` are not among them:
-/// their calls stop by themselves, and a user's progress function may never return.
+/// Owners whose work is stopped when Python exits, guarded by the GIL. Shared sessions are not included: their calls
+/// stop by themselves, and a user's progress function may never return.
 std::set<const OwnedSession*>& owners() {
     static auto* const set = new std::set<const OwnedSession*>;
     return *set;
@@ -32,12 +32,12 @@ OwnedSession::OwnedSession(std::string device, Make make, std::shared_ptr<Turnst
 
 OwnedSession::~OwnedSession() {
     owners().erase(this);
-    // The session would wait for threads that a forked process does not have.
+    // Leaks the session, whose destructor would wait for threads that a forked process does not have.
     if (has_lost_threads()) static_cast<void>(new std::shared_ptr<Session>(std::move(session_)));
 }
 
 OwnedSession& OwnedSession::shared(const std::string& device) {
-    // The interpreter's lock guards the map: nothing here runs Python or waits.
+    // The GIL guards the map: this function neither runs Python code nor waits.
     static auto* const sessions = new std::map<std::string, OwnedSession*>;
     static auto* const turnstile = new std::shared_ptr<Turnstile>(std::make_shared<Turnstile>());
     OwnedSession*& session = (*sessions)[device];
@@ -71,7 +71,7 @@ void OwnedSession::cancel_all() {
         try {
             session->cancel(Collected::drop);
         } catch (const DeviceError&) {
-            // A GPU that is lost has nothing to be stopped.
+            // A lost GPU runs no kernels that could be stopped.
         }
     }
 }

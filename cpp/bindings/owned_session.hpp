@@ -11,28 +11,27 @@
 
 namespace realcam::bindings {
 
-/// A session of the core that Python uses; sessions for Python have no other owner.
+/// Owner of a core session used from Python; no session used from Python has another owner.
 ///
-/// There are two locks, the interpreter's and the session's turn. A thread that waits for the turn does not hold the
-/// interpreter's lock; the holder of the turn may take the interpreter's lock for a while, for signals, warnings and
-/// progress functions. Data of the owner are written under both locks, and so may be read under either.
+/// There are two locks, the GIL and the session's turn. A thread that waits for the turn does not hold the GIL; the
+/// holder of the turn may take the GIL for a while, for signals, warnings and progress functions. The owner's data are
+/// written under both locks, and so may be read under either.
 class OwnedSession {
 public:
     using Make = std::unique_ptr<Session> (*)(const std::string& device, const DeviceNotice& notice);
 
-    /// `make` is called at the first use.
+    /// `make` is called on first use.
     explicit OwnedSession(std::string device, Make make);
     ~OwnedSession();
     OwnedSession(const OwnedSession&) = delete;
     OwnedSession& operator=(const OwnedSession&) = delete;
 
-    /// The process's session on a device, which keeps the last scene. These sessions have one turn together, as each
-    /// works with all cores.
+    /// Returns the process-wide session on a device, which keeps the last scene. All shared sessions have a common
+    /// turn, because each uses all cores.
     static OwnedSession& shared(const std::string& device);
 
-    /// Returns work(session), which holds the turn and not the interpreter's lock. `session` is a
-    /// std::shared_ptr<Session>. Throws InputError in a progress function or a signal handler of work under the same
-    /// turn, and DeviceError.
+    /// Returns work(session), called with the turn and without the GIL. `session` is a std::shared_ptr<Session>. Throws
+    /// InputError if called in a progress function or signal handler of work under the same turn, and DeviceError.
     template <class Work>
     auto use(Work&& work) {
         const Unlocked unlocked;
@@ -40,7 +39,7 @@ public:
         return work(made());
     }
 
-    /// Ends the work under way, from any thread. Called with the interpreter's lock.
+    /// Cancels the current work, from any thread. Called with the GIL.
     void cancel(Collected collected) const;
 
 private:

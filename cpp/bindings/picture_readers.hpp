@@ -3,8 +3,8 @@
 
 namespace realcam::bindings {
 
-/// The readers of realcam._pictures, which links OpenImageIO. That of textures may be called without the interpreter's
-/// lock. They throw ImageFileError where this build of realcam has no such module.
+/// Returns the picture readers of realcam._pictures, which links OpenImageIO. The texture reader may be called without
+/// the GIL. They throw ImageFileError if this build of realcam lacks that module.
 shot::PictureReaders picture_readers();
 
 }  // namespace realcam::bindings

@@ -8,21 +8,21 @@
 
 namespace realcam::bindings {
 
-// What may be made of a pickle: it is input as any other, so everything that is read of one is held to what the
-// constructors hold it to. Each type has to say what that is, or it does not compile.
+// Validation of unpickled values: a pickle is untrusted input, so its values must satisfy the checks of the
+// constructors. Every pickled type must declare its check, or the code does not compile.
 
-/// `static void check(const T&)` throws a realcam::Error where a value, of which the members are good, is none.
+/// `static void check(const T&)` throws a realcam::Error if a value is invalid although each of its members is valid.
 /// Declared for every struct that is pickled.
 template <class T>
 struct RestoredCheck;
 
-/// For structs whose members may be anything, or are checked by the struct that holds them.
+/// For structs whose members have no joint constraint, or are checked by the enclosing struct.
 struct AnyMembers {
     template <class T>
     static void check(const T&) {}
 };
 
-/// `value`: of an enumeration that begins at 0 and has no gaps, its last enumerator.
+/// `value`: the last enumerator of an enumeration that starts at 0 and has no gaps.
 template <class E>
 struct LastEnumerator;
 
@@ -31,7 +31,7 @@ struct LastIs {
     static constexpr auto value = last;
 };
 
-/// Whether the names in it are those of files and their content, which need not be UTF-8.
+/// True if a type's strings are names or contents of files, which need not be UTF-8.
 template <class T>
 inline constexpr bool has_names_of_files = false;
 
@@ -45,8 +45,8 @@ constexpr bool is_enumerator(Number number) {
     return number >= 0 && number <= static_cast<Plain>(LastEnumerator<E>::value);
 }
 
-/// Checks an item that was copied as bytes. A truth value or an enumerator among them may not even be looked at before
-/// its bytes are known to be those of one.
+/// Checks an item that was copied bytewise. The bytes of a bool or enumerator must be checked before the value is read:
+/// any other bit pattern would be undefined behaviour.
 template <class T>
 void check_copied(const T& value) {
     using namespace value_compare_detail;

@@ -8,13 +8,13 @@
 
 namespace realcam::bindings {
 
-/// What a pickled result has to have in place of an array.
+/// Required type and shape of an array in a pickled result.
 struct WantedArray {
-    char kind;  ///< numpy's letter: f floats, c complex numbers, i integers
+    char kind;  ///< numpy's kind character: f floats, c complex numbers, i integers
     std::vector<pybind11::ssize_t> shape;
 };
 
-/// Throws InputError where it is no array of that shape, of numpy or on a GPU.
+/// Throws InputError if the object is not a numpy array or DeviceArray of that kind and shape.
 inline void check_restored_array(const pybind11::object& array, const WantedArray& wanted) {
     namespace py = pybind11;
     require_restored(py::isinstance<py::array>(array) || py::isinstance<SharedDeviceArray>(array));
@@ -25,7 +25,7 @@ inline void check_restored_array(const pybind11::object& array, const WantedArra
     for (std::size_t i = 0; i < shape.size(); ++i) require_restored(shape[i].cast<py::ssize_t>() == wanted.shape[i]);
 }
 
-/// The length of the first dimension. Throws InputError where it is no array, or has none.
+/// Returns the length of the first dimension. Throws InputError if the object is not an array or has no dimension.
 inline pybind11::ssize_t restored_length(const pybind11::object& array) {
     namespace py = pybind11;
     require_restored(py::isinstance<py::array>(array) || py::isinstance<SharedDeviceArray>(array));

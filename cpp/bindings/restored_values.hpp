@@ -16,8 +16,7 @@
 
 namespace realcam::bindings {
 
-// What holds for values of the core that come out of a pickle. Results of a calculation are in the file that binds
-// them.
+// Checks of unpickled values of the core. Results of calculations are checked in the files that bind them.
 
 template <class T>
 struct RestoredCheck<Vec2<T>> : AnyMembers {};
@@ -28,7 +27,7 @@ struct RestoredCheck<Affine<T>> : AnyMembers {};
 template <>
 struct RestoredCheck<Color> : AnyMembers {};
 
-// A lens.
+// Types of a lens.
 
 template <>
 struct LastEnumerator<Glass::Formula> : LastIs<Glass::Formula::table> {};
@@ -40,9 +39,9 @@ struct LastEnumerator<SurfaceType> : LastIs<SurfaceType::aperture> {};
 template <>
 struct RestoredCheck<Glass::TablePoint> : AnyMembers {};
 template <>
-struct RestoredCheck<Glass::Parts> : AnyMembers {};  // by what makes a glass of them
+struct RestoredCheck<Glass::Parts> : AnyMembers {};  // checked by restored_glass
 
-/// Made as anybody makes one. Throws InputError.
+/// Creates a glass through the public constructors. Throws InputError.
 inline Glass restored_glass(Glass::Parts parts) {
     const auto made = [&] {
         if (parts.formula == Glass::Formula::table) return Glass::table(std::move(parts.points));
@@ -62,7 +61,7 @@ inline Glass restored_glass(Glass::Parts parts) {
 template <>
 struct RestoredCheck<CoatingMaterial::Point> : AnyMembers {};
 template <>
-struct RestoredCheck<CoatingMaterial> : AnyMembers {};  // by the coating, which says in which layer
+struct RestoredCheck<CoatingMaterial> : AnyMembers {};  // checked by the coating, whose error names the layer
 template <>
 struct RestoredCheck<CoatingLayer> {
     static void check(const CoatingLayer& layer) { check_coating(layered_coating({layer})); }
@@ -70,8 +69,8 @@ struct RestoredCheck<CoatingLayer> {
 template <>
 struct RestoredCheck<Coating> {
     static void check(const Coating& coating) {
-        // The metal is checked even where the kind does not use it, because code that asks for the index of a material
-        // relies on its points.
+        // Checks the metal even if the coating's kind does not use it, because code that evaluates a material's index
+        // relies on valid points.
         check_coating(metal_mirror(coating.metal));
         check_coating(coating);
     }
@@ -85,7 +84,7 @@ struct LastEnumerator<ForbesKind> : LastIs<ForbesKind::con> {};
 template <>
 struct LastEnumerator<ApertureOutline> : LastIs<ApertureOutline::polygon> {};
 
-// By the surface, or the lens.
+// Checked by the surface or the lens.
 template <>
 struct RestoredCheck<SurfacePlacement> : AnyMembers {};
 template <>
@@ -102,7 +101,7 @@ template <>
 struct RestoredCheck<ApertureShape> : AnyMembers {};
 template <>
 struct RestoredCheck<Surface> {
-    /// As far as it can be said without its lens.
+    /// Checks that do not depend on the lens.
     static void check(const Surface& surface) {
         if (!std::isfinite(surface.curvature)) throw InputError("a radius of curvature of 0 is no surface");
         if (surface.aspheric.size() > static_cast<std::size_t>(kMaxAsphericTerms))
@@ -121,7 +120,8 @@ struct RestoredCheck<ZoomRange> : AnyMembers {};
 template <>
 struct RestoredCheck<LensSystem> {
     static void check(const LensSystem& lens) {
-        // First, because indices are asked for at that wavelength, and it stands in messages as a whole number.
+        // Checked first, because refractive indices are evaluated at this wavelength, and messages print it as an
+        // integer.
         if (!(lens.wavelength_nm >= 100 && lens.wavelength_nm <= 20000))
             throw LensFileError("the design wavelength must lie between 100 and 20000 nm");
         validate(lens);
@@ -137,7 +137,7 @@ struct RestoredCheck<FirstOrder> : AnyMembers {};
 template <>
 struct RestoredCheck<Meridian> : AnyMembers {};
 
-// A camera and what is behind it.
+// Types of a camera and its film, sensor and exposure.
 
 template <>
 struct LastEnumerator<CameraModel> : LastIs<CameraModel::full_lens_double> {};
@@ -173,7 +173,7 @@ struct RestoredCheck<Sensor> {
 template <>
 struct RestoredCheck<RenderStats> : AnyMembers {};
 
-// A scene.
+// Types of a scene.
 
 template <>
 struct LastEnumerator<MaterialModel> : LastIs<MaterialModel::metallic_roughness> {};
@@ -256,7 +256,7 @@ struct RestoredCheck<Assembly> {
 };
 template <>
 struct RestoredCheck<PythonMaterial> {
-    /// Its numbers are checked with the scene that it comes into.
+    /// Values are checked together with the scene that receives the material.
     static void check(const PythonMaterial& material) {
         for (const auto member : kMaterialTextures)
             if ((material.values.*member).texture != -1)

@@ -14,7 +14,7 @@ void check_shape(const py::array& array, py::ssize_t columns, const char* what) 
         throw InputError(std::string(what) + " must be an array of shape (N, " + std::to_string(columns) + ")");
 }
 
-/// Whole numbers of any type. A cast from floats would cut their fractions off.
+/// Converts integers of any dtype. Floats are refused, because a cast would truncate them.
 InputArray<std::int64_t> indices_from(const py::object& sequence, const char* what) {
     const py::array values = py::array::ensure(sequence);
     if (!values) {
@@ -64,7 +64,7 @@ Assembly scene_from_arrays(const InputArray<double>& vertices, const py::object&
     if (triangle_materials && (triangle_materials->ndim() != 1 || triangle_materials->shape(0) != triangles.shape(0)))
         throw InputError("triangle_materials must hold one index for each triangle");
     const auto corners = triangles.unchecked<2>();
-    // Checked here, before a negative or huge index is cut down to 32 bits.
+    // Checked before a negative or huge index is truncated to 32 bits.
     const auto index = [](std::int64_t value, std::int64_t count, const char* what, py::ssize_t triangle) {
         if (value < 0 || value >= count)
             throw InputError("triangle " + std::to_string(triangle) + " names " + what + ' ' + std::to_string(value) +

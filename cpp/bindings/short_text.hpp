@@ -8,16 +8,16 @@
 
 namespace realcam::bindings {
 
-// Words for __repr__, which fits a line.
+// Texts for __repr__, which must fit on a line.
 
-/// With four digits, as %g writes them.
+/// Formats a number with four significant digits, like %g.
 inline std::string digits(double value) {
     char text[40];
     std::snprintf(text, sizeof text, "%.4g", value);
     return text;
 }
 
-/// A number, a blank and what is counted: "1 ray", "12 rays".
+/// Formats a count with its noun: "1 ray", "12 rays".
 inline std::string counted(std::size_t count, const std::string& what) {
     return std::to_string(count) + ' ' + what + (count == 1 ? "" : "s");
 }
@@ -32,7 +32,7 @@ inline std::string color_text(Color c) {
     return point_text(Vec3f{c.r, c.g, c.b});
 }
 
-/// A name as far as it has room, on one line.
+/// Truncates a name to a single line of limited length.
 inline std::string shortened(std::string name) {
     constexpr std::size_t kRoom = 40;
     for (char& c : name)
@@ -41,7 +41,7 @@ inline std::string shortened(std::string name) {
     return name.substr(0, io::utf8_begin(name, kRoom - 3)) + "...";
 }
 
-/// "1/125 s", "2 s".
+/// Formats a time: "1/125 s", "2 s".
 inline std::string time_text(double seconds) {
     return seconds < 0.5 ? "1/" + digits(1 / seconds) + " s" : digits(seconds) + " s";
 }

@@ -12,7 +12,7 @@
 
 namespace realcam::bindings {
 
-/// What a user gives of a surface; the rest stays as it is.
+/// Changes of a surface; omitted ones are left unchanged.
 struct SurfaceChanges {
     using Number = std::optional<double>;
     using Numbers = std::optional<std::vector<double>>;
@@ -34,14 +34,14 @@ struct SurfaceChanges {
     FormChanges form;
 };
 
-/// Throws InputError for values that no surface has.
+/// Returns the changed surface. Throws InputError for invalid values.
 Surface changed_surface(Surface surface, const SurfaceChanges& to);
 
 template <class>
 using Index = int;
 
-/// Defines a method whose arguments are `first`, and by their names those of Surface. What is left out stays; because
-/// None is air, a material that stays is `...`.
+/// Defines a method with the arguments `first` and, by keyword, those of Surface. Omitted ones are left unchanged; the
+/// default of a material is `...`, because None is air.
 template <class T, class Function, class... First>
 void def_surface_changes(py::class_<T>& type, const char* name, Function function, const char* text, First... first) {
     using C = SurfaceChanges;

@@ -7,7 +7,7 @@
 
 namespace realcam::bindings {
 
-/// As Python gives points and colours.
+/// Point or colour as passed from Python.
 using Triple = std::array<double, 3>;
 using Colour = std::array<float, 3>;
 

@@ -15,7 +15,7 @@ namespace py = pybind11;
 
 namespace {
 
-// No mutex: one that another thread holds would stay locked in a forked process.
+// Atomics instead of a mutex: a mutex held by another thread would stay locked in a forked process.
 std::atomic<int> under_way{0};
 std::atomic<bool> ends{false}, lost_threads{false};
 
@@ -29,7 +29,8 @@ void wait_for_all_work() {
     ends = true;
     const py::gil_scoped_release release;
     for (void (*const stop)() : others()) stop();
-    // Work looks up 20 times a second. A user's progress function that does not return must not keep Python for ever.
+    // Work checks 20 times a second whether Python exits. A user's progress function that does not return must not
+    // delay the exit for ever.
     for (auto waited = 0ms; under_way > 0 && waited < 10s; waited += 5ms) std::this_thread::sleep_for(5ms);
 }
 
@@ -63,7 +64,7 @@ void stop_too_at_exit(void (*stop)()) {
 void watch_exit_and_fork() {
     py::module_::import("atexit").attr("register")(py::cpp_function(&wait_for_all_work));
     pthread_atfork(nullptr, nullptr, [] {
-        // The child has none of the threads that would end that work; its own end must not wait for them.
+        // The child lacks the threads that would finish that work, so its exit must not wait for them.
         if (under_way.exchange(0) > 0) lost_threads = true;
     });
 }

@@ -5,33 +5,33 @@
 
 namespace realcam::bindings {
 
-/// Counts a call that works without the interpreter's lock. Python's end waits for those, because their threads may not
-/// take the lock any more then; and a process that is forked meanwhile has lost their threads.
+/// Counts a call that runs without the GIL. Python's exit waits for these calls, because their threads can no longer
+/// take the GIL afterwards; and a process that is forked meanwhile lacks their threads.
 class WorkUnderWay {
 public:
-    /// Throws Cancelled while Python ends, and InputError in a process that was forked amid such work.
+    /// Throws Cancelled while Python exits, and InputError in a process that was forked during such work.
     WorkUnderWay();
     ~WorkUnderWay();
     WorkUnderWay(const WorkUnderWay&) = delete;
     WorkUnderWay& operator=(const WorkUnderWay&) = delete;
 };
 
-/// While it lives the thread does not hold the interpreter's lock, as with py::gil_scoped_release.
+/// Releases the GIL for its lifetime, like py::gil_scoped_release.
 class Unlocked {
-    WorkUnderWay work_;  // ends after the lock is taken again
+    WorkUnderWay work_;  // destroyed after the GIL has been reacquired
     pybind11::gil_scoped_release release_;
 };
 
-/// In a process that was forked amid such work: what waits for its threads would wait for ever.
+/// True in a process that was forked during such work: waiting for its threads would never end.
 bool has_lost_threads();
 
-/// Throws Cancelled while Python ends.
+/// Throws Cancelled while Python exits.
 void stop_at_exit();
 
-/// Python's end calls this as well, without the interpreter's lock: it stops what goes on without a call.
+/// Registers a function that Python's exit calls without the GIL, to stop work that is not within a call.
 void stop_too_at_exit(void (*stop)());
 
-/// Makes Python's end stop all work and wait for it; forked processes look whether they can work.
+/// Makes Python's exit stop all work and wait for it, and makes forked processes detect whether threads were lost.
 void watch_exit_and_fork();
 
 }  // namespace realcam::bindings

@@ -14,8 +14,8 @@
 
 namespace realcam::bindings {
 
-// What == and hash() of Python say of the values of C++. Numbers that are no numbers count as equal to themselves, so
-// that a result with rays that did not pass equals its copy.
+// Python's == and hash() for C++ values. NaNs compare equal, so that a result with rays that did not pass equals its
+// copy.
 
 template <class T>
 bool equal(const T& a, const T& b);
@@ -53,7 +53,7 @@ inline constexpr bool is_shared<std::shared_ptr<T>> = true;
 
 inline bool equal_objects(const pybind11::object& a, const pybind11::object& b) {
     if (a.is(b)) return true;
-    // Arrays: == gives an array, and their own comparison of two of them takes shape and numbers.
+    // For arrays == is elementwise; same_arrays compares shape and values.
     return pybind11::module_::import("realcam.pickling").attr("same_arrays")(a, b).cast<bool>();
 }
 
@@ -85,7 +85,7 @@ bool equal(const T& a, const T& b) {
         }(std::make_index_sequence<std::tuple_size_v<decltype(members(a))>>());
 }
 
-/// The same for equal values.
+/// Returns a hash that is equal for equal values.
 template <class T>
 std::size_t hash_of(const T& value) {
     using namespace value_compare_detail;

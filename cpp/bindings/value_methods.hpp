@@ -7,7 +7,8 @@
 
 namespace realcam::bindings {
 
-/// Gives a class pickles. `state`: of an object; `restored`: makes one of its state, which it checks.
+/// Defines pickling of a class. `state` returns the state of an object; `restored` makes an object from a state, which
+/// it checks.
 template <class T, class... Options, class State, class Restored>
 void def_pickle(pybind11::class_<T, Options...>& type, const State& state, const Restored& restored) {
     namespace py = pybind11;
@@ -21,8 +22,8 @@ void def_pickle(pybind11::class_<T, Options...>& type, const State& state, const
     type.def_static("_restored", restored, "state"_a);
 }
 
-/// Gives a class ==, copy, deepcopy and pickle. What is unpickled is checked (restored.hpp). Copies go the way of
-/// pickles: for results whose arrays the user may write to.
+/// Defines ==, copy, deepcopy and pickle for a class. Unpickled values are checked (restored.hpp). Copies are made
+/// through the pickle state: for results whose arrays the user may modify.
 template <class T, class... Options>
 void def_result(pybind11::class_<T, Options...>& type) {
     namespace py = pybind11;
@@ -39,7 +40,7 @@ void def_result(pybind11::class_<T, Options...>& type) {
         [](const py::object& state) { return StateReader().made<T>(state); });
 }
 
-/// Copies of what nothing changes are the same object.
+/// Defines copy and deepcopy of an immutable class, which return the object itself.
 template <class T, class... Options>
 void def_copy(pybind11::class_<T, Options...>& type) {
     type.def("__copy__", [](const pybind11::object& self) { return self; });
@@ -48,14 +49,14 @@ void def_copy(pybind11::class_<T, Options...>& type) {
         pybind11::arg("memo"));
 }
 
-/// The same as def_result for a value, which nothing changes.
+/// Like def_result, for immutable values.
 template <class T, class... Options>
 void def_value(pybind11::class_<T, Options...>& type) {
     def_result(type);
     def_copy(type);
 }
 
-/// The same, and hash(): for values small enough to be keys.
+/// Like def_value, and defines hash(): for values small enough to be dict keys.
 template <class T, class... Options>
 void def_hashable_value(pybind11::class_<T, Options...>& type) {
     def_value(type);

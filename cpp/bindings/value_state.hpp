@@ -10,20 +10,20 @@
 
 namespace realcam::bindings {
 
-// What is pickled of a value: numbers, bytes, tuples, and arrays of numpy for what may be large. Pickle's protocol 5
-// takes such arrays over without a copy where its user asks for that.
+// Pickle state of a value: numbers, bytes, tuples, and numpy arrays for large members, which pickle protocol 5 can
+// transfer without a copy.
 
-/// Counted up whenever a value of an older version would be read wrongly.
+/// Must be incremented whenever a value written by an older version would be misread.
 inline constexpr int kStateFormat = 1;
 
-/// Made as the bytes of an array; without pointers, hence.
+/// True for types that are pickled as the bytes of an array; they must not contain pointers.
 template <class T>
 inline constexpr bool is_flat = std::is_trivially_copyable_v<T> && !std::is_pointer_v<T>;
 
-/// Writes one value. What several parts share is written once.
+/// Writes one value. Objects that several parts share are written once.
 class StateWriter {
 public:
-    /// `owner` keeps the value alive, so that large lists need not be copied; a null object: they are copied.
+    /// `owner` keeps the value alive, so that large lists need not be copied; with a null object they are copied.
     explicit StateWriter(pybind11::object owner) : owner_(std::move(owner)) {}
 
     template <class T>
@@ -34,11 +34,11 @@ public:
         else if constexpr (std::is_enum_v<T>)
             return pybind11::cast(static_cast<std::int64_t>(value));
         else if constexpr (std::same_as<T, std::string>)
-            return pybind11::bytes(value);  // a file's names need not be UTF-8
+            return pybind11::bytes(value);  // file names need not be UTF-8
         else if constexpr (std::derived_from<T, pybind11::object>)
             return value;
         else if constexpr (std::same_as<T, Glass>)
-            return StateWriter(pybind11::object()).write(value.parts());  // which nothing keeps: copied
+            return StateWriter(pybind11::object()).write(value.parts());  // a temporary, so its lists are copied
         else if constexpr (is_shared<T>)
             return write_shared(value);
         else if constexpr (is_optional<T>)
@@ -50,7 +50,7 @@ public:
     }
 
 private:
-    /// One after the other: the reader meets what is shared in the same order.
+    /// Writes members in order, so that the reader sees shared objects in the same order.
     template <class... T>
     pybind11::object write_members(const std::tuple<T...>& all) {
         pybind11::tuple items(sizeof...(T));
@@ -74,7 +74,7 @@ private:
         }
     }
 
-    /// None, the value itself, or the number of one that was written before.
+    /// Returns None, the state of the value, or the index of a shared value written before.
     template <class T>
     pybind11::object write_shared(const std::shared_ptr<T>& pointer) {
         if (!pointer) return pybind11::none();
@@ -87,8 +87,8 @@ private:
     std::map<const void*, std::size_t> written_;
 };
 
-/// Reads what StateWriter wrote. Throws a realcam::Error for anything else, and pybind11's errors where a Python object
-/// is of another type. What it returns is as good as what a constructor makes (restored.hpp).
+/// Reads the state written by StateWriter. Throws a realcam::Error for any other state, and pybind11's errors if a
+/// Python object has another type. Results satisfy the checks of the constructors (restored.hpp).
 class StateReader {
 public:
     template <class T>
@@ -133,7 +133,7 @@ private:
         value = static_cast<T>(number);
     }
 
-    /// An array has the right numbers already; it is not made of something else.
+    /// Arrays must have the exact type; no conversion takes place.
     template <class T>
     void read_object(T& value, const pybind11::handle& state) {
         require_restored(pybind11::isinstance<T>(state));
@@ -184,7 +184,8 @@ private:
         if (state.is_none()) return pointer.reset();
         if (pybind11::isinstance<pybind11::int_>(state)) {
             const auto number = state.cast<std::size_t>();
-            // One of another type, or of which this is a part: none that was written has such.
+            // Rejects references to values of another type and to values that contain this one, which StateWriter never
+            // writes.
             require_restored(number < read_.size() && read_[number].value && read_[number].type == typeid(T));
             pointer = std::static_pointer_cast<T>(read_[number].value);
             return;
@@ -198,11 +199,11 @@ private:
     }
 
     struct Shared {
-        std::shared_ptr<const void> value;  ///< null while it is read
+        std::shared_ptr<const void> value;  ///< null while it is being read
         std::type_index type;
     };
     std::vector<Shared> read_;
-    bool any_bytes_ = false;  ///< whether texts may be other than UTF-8
+    bool any_bytes_ = false;  ///< true if strings need not be UTF-8
 };
 
 }  // namespace realcam::bindings
