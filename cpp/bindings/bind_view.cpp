@@ -52,7 +52,7 @@ Assembly with_daylight(const Assembly& scene, const Camera& camera) {
 
 }  // namespace
 
-// Defaults that the command line chooses; the C++ program chooses in the same way.
+// Choices of the command line for options that the user omits; the C++ program makes the same ones.
 void bind_view(py::module_& m) {
     py::reinterpret_borrow<py::class_<Film>>(m.attr("Film"))
         .def_static("for_lens", &film_for_lens, "lens"_a, "size_mm"_a = py::none(), "resolution"_a = py::none(),

@@ -182,7 +182,7 @@ private:
         return channels;
     }
 
-    /// Limits on file sizes apply to memory files, too; such a failure is reported by the file, like a full disk.
+    /// Limits on file sizes apply to memory files, too; the failure is reported by the file, like a full disk.
     Outcome outcome_of(const py::object& result) {
         const auto [good, said] = result.cast<std::pair<bool, std::string>>();
         struct stat status{};

@@ -9,7 +9,7 @@ namespace realcam::bindings {
 /// take the GIL afterwards; and a process that is forked meanwhile lacks their threads.
 class WorkUnderWay {
 public:
-    /// Throws Cancelled while Python exits, and InputError in a process that was forked during such work.
+    /// Throws Cancelled while Python exits, and InputError in a process that was forked during a call without the GIL.
     WorkUnderWay();
     ~WorkUnderWay();
     WorkUnderWay(const WorkUnderWay&) = delete;
@@ -22,7 +22,7 @@ class Unlocked {
     pybind11::gil_scoped_release release_;
 };
 
-/// True in a process that was forked during such work: waiting for its threads would never end.
+/// True in a process that was forked during a call without the GIL: waiting for its threads would never end.
 bool has_lost_threads();
 
 /// Throws Cancelled while Python exits.

@@ -24,7 +24,7 @@ struct FilmPart {
 };
 
 /// One GPU with its copies of scene, camera and film. Created by make_on_device and used by one thread at a time; every
-/// member function makes that GPU current and throws DeviceError.
+/// member function makes that GPU current and may throw DeviceError.
 class DeviceRenderer {
 public:
     explicit DeviceRenderer(int ordinal);

@@ -25,7 +25,8 @@ public:
     }
 
 private:
-    /// Limit of pinned arrays, so that a caller who keeps many pictures does not exhaust the memory that can be paged.
+    /// Limit of pinned arrays, so that a caller who keeps many pictures does not hold all of them in memory that cannot
+    /// be paged out.
     static constexpr std::size_t kMost = 3;
 
     static PictureFloats floats_of(const std::shared_ptr<PinnedArray<float>>& array) {

@@ -3,9 +3,9 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Albedo of a surface point, 0 to 1, independent of light and view (an auxiliary image for Open Image Denoise): the
-/// reflectances of its lobes at normal incidence, layered. Transmitted light counts as reflected, so that clear glass
-/// is white. Clear coats are ignored.
+/// Albedo of a surface point, 0 to 1, independent of light and view, as Open Image Denoise defines it: the reflectances
+/// of the lobes at normal incidence, layered. Transmitted light counts as reflected, so that clear glass is white.
+/// Clear coats are ignored.
 REALCAM_INLINE Color albedo_of(const SurfacePoint& point) {
     using make_bsdf_detail::unit_range;
     const Material& m = *point.material;

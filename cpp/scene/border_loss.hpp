@@ -32,7 +32,7 @@ REALCAM_INLINE TablePlace layer_of(float critical) {
 }  // namespace border_loss_detail
 
 /// Loss (1 - directional albedo) of single scattering at the cosine of the angle of incidence. `found`: the directional
-/// albedo of perfectly reflecting facets, ggx_albedo(cosine, alpha).all.
+/// albedo of perfectly reflecting facets with single scattering, ggx_albedo(cosine, alpha).all.
 REALCAM_HD inline float border_loss(BorderSide side, float cosine, float alpha, float critical, float found) {
     using namespace border_loss_detail;
     static constexpr float kLoss[] = {REALCAM_BORDER_LOSS};

@@ -64,8 +64,8 @@ private:
     /// Estevez and Kulla 2018).
     static double cost(const LightBounds& b);
 
-    /// Partitions the leaves along the best axis and returns the first one of the second half. Splits at the median if
-    /// all centroids coincide, or below a depth that keeps trails within 64 bits.
+    /// Partitions the leaves along the best axis and returns the first leaf of the second part. Splits at the median if
+    /// all centroids coincide, and from a fixed depth on, so that trails fit into 64 bits.
     Leaves split(Leaves first, Leaves last, int depth, Checkpoint& checkpoint) const;
 
     static int bin_of(const LightLeaf& leaf, int axis, float from, float size, int bins);

@@ -27,7 +27,7 @@ struct DielectricBorder {
     /// Must be called after eta and alpha have been set.
     REALCAM_HD void prepare(float eye_cosine) {
         const float index = eta > 1.0f ? eta : 1.0f / eta;
-        // For such an index facets deflect light by less than three degrees, and not at all for an index of 1, where
+        // Near an index of 1 facets deflect light by less than three degrees, and not at all at an index of 1, where
         // single scattering would leave no undeflected light.
         if (!is_thin && index < kLeastRoughIndex) alpha = 0.0f;
         if (is_smooth()) return;

@@ -93,8 +93,8 @@ REALCAM_INLINE Vec2f sample_triangle(Vec2f u) {
     return {root * (1.0f - u.y), root * u.y};
 }
 
-/// True if points on an area light are sampled uniformly by solid angle. Sampled by area, points close to the receiver
-/// would have unbounded weights. This holds up to a distance of about 1.2 times the light's size, so that for lights
+/// True if points on an area light are sampled uniformly by solid angle, because sampled by area, points close to the
+/// receiver would have unbounded weights. True up to a distance of about 1.2 times the light's size, so that for lights
 /// sampled by area the nearest corner is at least a third of the centroid's distance away.
 REALCAM_INLINE bool is_near(const AreaLight& light, Vec3f position) {
     const Vec3f to_middle = light.corner + (1.0f / 3.0f) * (light.edge_u + light.edge_v) - position;
@@ -339,7 +339,7 @@ REALCAM_INLINE LightPick pick_light_by(const SceneView& scene, LightReceiver rec
     for (int i = 0; i < scene.sun_count; ++i) {
         u.x -= probability;
         probability = kinds.sun_probability(scene.suns[i], receiver.normal);
-        // The last sun also takes what rounding leaves over.
+        // The last sun also takes the remainder due to rounding.
         if (u.x < probability || i + 1 == scene.sun_count) return {LightKind::sun, i, probability, u};
     }
     return {LightKind::environment, 0, 0.0f, u};

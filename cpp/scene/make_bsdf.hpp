@@ -60,8 +60,8 @@ REALCAM_INLINE void add_phong(Bsdf& bsdf, const SurfacePoint& point) {
         if (m.fresnel == FresnelTerm::none) {
             bsdf.mirror = m.mirror;
         } else {
-            // Keeps the total reflectance at normal incidence: the diffuse lobe below the mirror is scaled up by what
-            // the mirror takes.
+            // Keeps the total reflectance at normal incidence: the diffuse lobe below the mirror is scaled up to
+            // compensate for the mirror's reflectance.
             const Color f0 = unit_range(m.mirror);
             bsdf.specular = MicrofacetReflection(0.0f, bsdf.eye.z);
             bsdf.specular.reflectance = bsdf.above_diffuse = FacetReflectance::between(f0, 1.0f, 0.0f);
