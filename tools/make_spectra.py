@@ -60,7 +60,11 @@ def main() -> None:
         )
     for i, name in enumerate(("Red", "Green", "Blue")):
         values = row(BASIS.values[:, i], BASIS.wavelengths)
-        text += table(f"kBasis{name}", f"What a reflectance has of linear sRGB's {name.lower()}, by Mallett.", values)
+        text += table(
+            f"kBasis{name}",
+            f"{name} basis spectrum for upsampling linear sRGB reflectance (Mallett and Yuksel 2019).",
+            values,
+        )
     TARGET.write_text(text + "\n}  // namespace REALCAM_NAMESPACE\n", encoding="utf-8")
 
 
