@@ -11,8 +11,9 @@ namespace realcam {
 
 namespace {
 
-/// By rays aimed one by one at Gauss's nodes, which tell polynomials of twice the degree apart. Nothing where the stop
-/// is not met from everywhere, so that there is no telling how the map goes on.
+/// Fits a map from stop to entry plane to rays aimed one by one at Gauss's nodes, which distinguish polynomials of up
+/// to twice the degree. Returns std::nullopt if some of the stop cannot be reached, so that the map has no unique
+/// continuation.
 std::optional<StopMap> stop_map(const RayAimer& aim, double reach, const RayLoop& loop) {
     const std::vector<PupilPoint> nodes = gauss_rings(8);
     std::vector<AimedRay> rays;
@@ -43,7 +44,7 @@ std::optional<StopMap> stop_map(const RayAimer& aim, double reach, const RayLoop
 
 std::vector<AimedRay> aim_all(const RayAimer& aim, const std::vector<PupilPoint>& pattern, double reach,
                               const RayLoop& loop) {
-    constexpr std::size_t kMany = 1000;  // the map takes as long as some 500 rays
+    constexpr std::size_t kMany = 1000;  // fitting the map takes as long as aiming some 500 rays
     std::vector<AimedRay> rays;
     const std::optional<StopMap> map = pattern.size() < kMany ? std::nullopt : stop_map(aim, reach, loop);
     loop.append_all(rays, pattern.size(), [&](std::size_t first, std::size_t last) {

@@ -8,9 +8,9 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// The rays through all places of a pattern, as shares of `reach`. Many are aimed together, from where a map of the
-/// stop says that they cross the entry plane, and meet their places as nearly as if they were aimed one by one. Those
-/// that the map does not lead to are. Throws what `loop` throws to stop it.
+/// Returns the rays through all points of a pattern on the stop, in units of `reach`. Large patterns are aimed
+/// together, starting from a fitted map from stop to entry plane, and as accurately as one by one; rays for which this
+/// fails are aimed one by one. Passes on what `loop` throws to stop it.
 std::vector<AimedRay> aim_all(const RayAimer& aim, const std::vector<PupilPoint>& pattern, double reach,
                               const RayLoop& loop = {});
 

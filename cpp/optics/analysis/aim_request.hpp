@@ -7,43 +7,43 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// A ray of one object point that was aimed at a place on the stop, behind the lens.
+/// A ray of one object point, aimed at a point on the stop and traced through the lens.
 struct AimedRay {
-    RayStatus status;  ///< no_convergence: no ray was found that meets this place
-    Vec2<double> entry;  ///< where it crosses the entry plane (ObjectPoint::Entry), mm; NaN where there is no ray
-    Vec3d origin;  ///< on the last surface met, relative to the last vertex
-    Vec3d direction;  ///< optical: unit times the index behind the lens
-    double path;  ///< optical path up to there, mm, less that from the object to the middle of the entry plane
+    RayStatus status;  ///< no_convergence: no ray through this point was found
+    Vec2<double> entry;  ///< intersection with the entry plane (ObjectPoint::Entry), mm; NaN if there is no ray
+    Vec3d origin;  ///< on the last surface hit, relative to the last vertex
+    Vec3d direction;  ///< optical: unit vector times the index behind the lens
+    double path;  ///< optical path to `origin`, mm, less that from the object to the entry plane's centre
 };
 
-/// An approximation of where the rays of one object point cross the entry plane, by their places on the stop. Each
-/// coordinate is a polynomial in x and y, shares of `reach`. Its terms x^i y^j are in the order of i, and of j.
+/// Approximate map from the stop to the entry plane for the rays of one object point. Each coordinate is a polynomial
+/// in x and y on the stop, in units of `reach`. Terms x^i y^j are ordered by i, then by j.
 struct StopMap {
     static constexpr int kDegree = 10, kTerms = (kDegree + 1) * (kDegree + 2) / 2;
     double reach;  ///< radius inside which the polynomials hold, mm
     double x[kTerms], y[kTerms];
 };
 
-/// Rays to be aimed together at places on the stop. Lenses as LensView has them, relative to the first vertex.
+/// Rays to be aimed together at points on the stop. Lens views and positions are relative to the first vertex.
 struct AimRequest {
     LensView<double> to_stop;  ///< without rims, up to the stop
-    LensView<double> lens;     ///< as it is
-    Vec3d centre;              ///< of the entry plane, relative to the first vertex, mm
-    Vec3d towards;             ///< unit: of the ray through the entry plane's middle
-    Vec3d across, upwards;     ///< the axes of the entry plane
-    double inverse_distance;   ///< of the object from the entry plane's middle, 1/mm
-    double index;              ///< of the medium from which the rays enter
-    double miss;               ///< how far from its place a ray may meet the stop, mm
+    LensView<double> lens;  ///< with rims
+    Vec3d centre;  ///< centre of the entry plane, relative to the first vertex, mm
+    Vec3d towards;  ///< unit vector: ray through the entry plane's centre
+    Vec3d across, upwards;  ///< axes of the entry plane
+    double inverse_distance;  ///< inverse distance of the object from the entry plane's centre, 1/mm
+    double index;  ///< refractive index of the medium from which the rays enter
+    double miss;  ///< tolerance of a ray's point on the stop, mm
     const StopMap* map;
     std::int64_t count;
-    const Vec2<double>* places;  ///< mm
+    const Vec2<double>* places;  ///< target points on the stop, mm
     AimedRay* rays;
 };
 
 namespace aim_detail {
 
-/// c[0] + c[1] u + ... of `count` terms. By recursion, because gcc does not unroll two nested loops of which one is as
-/// long as the other says, and so would not make vector code of the lanes.
+/// Horner's scheme for c[0] + c[1] u + ... of `count` terms. Recursive, because gcc does not unroll nested loops if the
+/// inner one's length depends on the outer index, and then does not vectorise over the lanes.
 template <int count>
 REALCAM_INLINE double horner(const double* c, double u) {
     if constexpr (count == 1)
@@ -52,7 +52,7 @@ REALCAM_INLINE double horner(const double* c, double u) {
         return c[0] + u * horner<count - 1>(c + 1, u);
 }
 
-/// The terms of a StopMap from x^i on, over x^i.
+/// The terms of a StopMap from x^i on, divided by x^i.
 template <int i = 0>
 REALCAM_INLINE double map_terms(const double* c, double x, double y) {
     constexpr int kRow = StopMap::kDegree + 1 - i;
@@ -90,10 +90,12 @@ REALCAM_HD inline void start_rays(const AimRequest& request, const Vec2Lanes<dou
 
 }  // namespace aim_detail
 
-/// Aims the rays of a request, N at a time, and traces them through the lens. The place at which the map is evaluated
-/// is moved by the distance by which the map's ray misses its place. Each such step leaves a share of the miss that is
-/// the error of the map's slopes, about a millionth. It needs no derivatives. A ray that has not come near enough after
-/// a few steps, and one whose place lies beyond the map's, has the status no_convergence.
+/// Aims the rays of a request, N at a time, and traces them through the lens.
+///
+/// Each iteration moves the argument of the map by the distance by which its ray misses its target. What remains of the
+/// miss is the fraction by which the map's slopes are wrong, about a millionth; no derivatives are needed. A ray that
+/// is not within tolerance after a few iterations, and one whose target lies outside the map's reach, has the status
+/// no_convergence.
 template <int N>
 REALCAM_HD inline void aim_rays(const AimRequest& request) {
     using namespace aim_detail;

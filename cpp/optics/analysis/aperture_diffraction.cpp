@@ -22,7 +22,7 @@ Point operator-(Point a, Point b) {
     return {a.x - b.x, a.y - b.y};
 }
 
-/// The same width as in diffraction_cells.hpp, with all digits.
+/// Width of the fine rings of diffraction_cells.hpp, in double precision.
 constexpr double kFineStep = static_cast<double>(kDiffractionReach) / kDiffractionFineRings;
 
 }  // namespace
@@ -39,21 +39,21 @@ double turn_between(double from, double to) {
     return turn - std::round(turn);
 }
 
-/// Beyond this turn from one side to the second after it a corner lies between them: of nine straight blades it is
-/// 1/9, while a circle turns by 2/128.
+/// If a side and the second one after it differ by more than this in direction, a corner lies between them, in turns:
+/// at a corner of nine straight blades it is 1/9, while a circle of 128 sides turns by 2/128.
 constexpr double kCorner = 12.0 / 360;
 
 struct Side {
     Point from, to;
-    double angle;  ///< of its outward normal, turns
+    double angle;  ///< direction of the outward normal, turns
     bool begins_at_corner = false, ends_at_corner = false;
 
     Side(Point from, Point to) : from(from), to(to), angle(normal_angle(from, to)) {}
     double length() const { return hypotenuse(to.x - from.x, to.y - from.y); }
 };
 
-/// The sides of a polygon. Its points lie beside the corners of the edge, of which it cuts off a little: there its
-/// neighbours are made longer until they meet.
+/// Returns the sides of a polygon, with sharp corners. The polygon's points lie beside the corners of the true edge, so
+/// that a short side cuts each corner off: it is dropped, and its neighbours are extended until they intersect.
 std::vector<Side> sides_of(const std::vector<Point>& polygon) {
     const std::size_t count = polygon.size();
     std::vector<Side> sides;
@@ -82,10 +82,10 @@ std::vector<Side> sides_of(const std::vector<Point>& polygon) {
     return sharp;
 }
 
-/// With the normals at both ends, which turn evenly along a smooth edge.
+/// Appends the sides as edges with the normals at both ends; the normal turns uniformly along a smooth edge.
 void add_edges(const std::vector<Side>& sides, std::vector<ApertureDiffraction::Edge>& edges) {
     const std::size_t count = sides.size();
-    // The length of the smooth edge of which a side is a part: up to the next corner on both sides.
+    // Length of the smooth edge that contains a side: to the next corner in both directions.
     std::vector<double> smooth_length(count);
     double perimeter = 0;
     for (const Side& side : sides) perimeter += side.length();
@@ -110,7 +110,7 @@ void add_edges(const std::vector<Side>& sides, std::vector<ApertureDiffraction::
     }
 }
 
-/// Adds |F|^2 along one direction at the middles of the rings. By Gauss's theorem for exp(-2 pi i f u.x) over the
+/// Adds |F|^2 along one direction at the centres of the rings. By Gauss's theorem for exp(-2 pi i f u.x) over the
 /// aperture, F is the sum over the sides of i / (2 pi f) (u x e) sinc(f u.e) exp(-2 pi i f u.m).
 void add_power_along(const std::vector<Side>& sides, double angle, std::array<double, kDiffractionFineRings>& power) {
     constexpr double kPi = std::numbers::pi;
@@ -133,7 +133,7 @@ void add_power_along(const std::vector<Side>& sides, double angle, std::array<do
         double sum_re = 0, sum_im = 0;
 #pragma omp simd reduction(+ : sum_re, sum_im)
         for (std::size_t k = 0; k < count; ++k) {
-            // sin x / x up to the largest x, 0.4, within 1e-7.
+            // sin x / x, with an error below 1e-7 up to the largest x, 0.4.
             const double x2 = f * f * along[k], sinc = 1 - x2 * (1.0 / 6 - x2 * (1.0 / 120 - x2 * (1.0 / 5040)));
             sum_re += across[k] * sinc * re[k];
             sum_im += across[k] * sinc * im[k];

@@ -6,18 +6,18 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Where an aperture spreads light of one direction, by the square of its Fourier transform (Fraunhofer diffraction).
-/// Frequencies are in periods over `width`; shares are of all light.
+/// Fraunhofer diffraction of light of one direction by an aperture: the normalised square of the aperture's Fourier
+/// transform. Frequencies are in periods over `width`; fractions are of all light.
 struct ApertureDiffraction {
-    double width;  ///< the longer side of the box around the aperture, optical direction cosines
-    std::vector<double> cells;  ///< shares of the cells of diffraction_cells.hpp
-    double edge_share;          ///< of the light beyond the cells, which comes from the edges
+    double width;  ///< longer side of the aperture's bounding box, optical direction cosines
+    std::vector<double> cells;  ///< fractions of light in the cells of diffraction_cells.hpp
+    double edge_share;  ///< fraction of light beyond the cells, which the edges diffract
     struct Edge {
-        double length;  ///< in widths
+        double length;  ///< in units of `width`
         DiffractionEdge edge;
     };
     std::vector<Edge> edges;
-    double found_share;  ///< what cells and edges have before they are scaled to 1
+    double found_share;  ///< sum over cells and edges before normalisation to 1
 };
 
 namespace aperture_diffraction_detail {
@@ -29,8 +29,8 @@ double normal_angle(Point from, Point to);
 
 }  // namespace aperture_diffraction_detail
 
-/// The diffraction of an aperture that is evenly lit. Beyond the cells its light is that of its edges, which spread it
-/// along their normals as one over the square of the frequency. This is the method of stationary phase; its error there
+/// Computes the diffraction of a uniformly illuminated aperture. Beyond the cells its light is that of the edges, which
+/// spread it along their normals as one over the square of the frequency (method of stationary phase); the error there
 /// is a tenth of the rings' variation.
 ApertureDiffraction diffraction_of(const PupilEdges& edges);
 

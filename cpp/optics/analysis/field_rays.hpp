@@ -10,29 +10,29 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// The rays of one object point over the stop, behind the lens: what wavefronts and spots are made from. Lengths in mm;
-/// points relative to the last vertex.
+/// Rays of one object point over the stop, behind the lens: the input of wavefronts and spots. Lengths in mm; points
+/// relative to the last vertex.
 struct FieldRays {
     double field_angle_rad;
     double film_curvature;  ///< 1/mm
-    /// From the exit pupil on the chief ray to the film, mm along the ray: the mean of both meridians. Only where the
-    /// field is named by its film point, or the lens is not of revolution.
+    /// Distance from the exit pupil to the film along the chief ray, mm: the mean of both meridians. Set only if the
+    /// field is specified by its film point, or the lens is not a lens of revolution.
     std::optional<double> exit_pupil_distance;
     std::vector<PupilPoint> pattern;
-    std::vector<AimedRay> rays;  ///< one for each point of the pattern; only those whose status is ok count
-    AimedRay chief;  ///< through the middle of the stop, even where the lens blocks it
+    std::vector<AimedRay> rays;  ///< one per point of the pattern; valid if the status is ok
+    AimedRay chief;  ///< through the stop's centre, even if the lens blocks it
 
     bool passes(std::size_t i) const { return rays[i].status == RayStatus::ok; }
 
-    /// Where a ray, as a straight line, meets the film, whose vertex is at z.
+    /// Intersection of a ray, as a straight line, with the film, whose vertex is at z.
     Vec3d on_film(const AimedRay& ray, double z) const {
         const FilmSurface<double> film{z, film_curvature};
         return film.place(film.landing(ray.origin, ray.direction));
     }
 };
 
-/// Aims a ray at every point of the pattern. Throws InputError where the field point makes no sense, or where the lens
-/// lets none of the rays pass, and what `loop` throws to stop it.
+/// Aims a ray at every point of the pattern. Throws InputError if the field point is invalid or no ray passes the lens,
+/// and what `loop` throws to stop it.
 FieldRays field_rays(const LensSystem& lens, double wavelength_nm, const FieldPoint& field,
                      std::vector<PupilPoint> pattern, const RayLoop& loop = {});
 

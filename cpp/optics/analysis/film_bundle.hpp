@@ -5,19 +5,19 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// The lens with a round stop of the same area: its light is then the same in every direction from the axis.
+/// Returns the lens with a round stop of the same area, so that its light is rotationally symmetric.
 LensSystem with_round_stop(LensSystem lens);
 
-/// All light that reaches one film point, by the optical direction cosines of its rays in the film's tangent plane: in
-/// them it is even (pupil_view.hpp).
+/// All light that reaches one film point, parametrised by the optical direction cosines of its rays in the film's
+/// tangent plane, in which it is uniform (pupil_view.hpp).
 class FilmBundle {
 public:
     using Entry = Vec2<double>;
 
-    Entry middle, reach;  ///< of a rectangle that holds what passes, or nearly
-    bool mirrored;        ///< x and -x are alike
+    Entry middle, reach;  ///< approximate bounds of what passes: centre and half sides
+    bool mirrored;  ///< true: symmetric in x
 
-    /// `path`: to the scene, from the frame of the film (film_path_ends); it must outlive this.
+    /// `path`: from the film frame to the scene (film_path_ends); it must outlive this object.
     FilmBundle(const LensPath<double>& path, FilmSurface<double> film, Vec2<double> at, EntryRectangle in,
                bool mirrored = false)
         : middle(in.middle),
@@ -28,7 +28,7 @@ public:
           film_(film),
           at_(at) {}
 
-    /// Whether the lens lets these rays pass.
+    /// For each entry: true if its ray passes the lens.
     template <int N>
     void pass(const Entry (&entries)[N], bool (&passed)[N]) const {
         LensRays<double, N> rays;
@@ -36,7 +36,7 @@ public:
         for (int i = 0; i < N; ++i) passed[i] = rays.status[i] == 0;
     }
 
-    /// Rays in front of the lens.
+    /// Traces rays through the lens to the scene.
     template <int N>
     void trace(const Entry (&entries)[N], LensRays<double, N>& rays) const {
         const Vec3d from = film_.place(at_);

@@ -4,34 +4,34 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Which places of the entry rectangle the rays of a spot go through.
+/// Distribution of a spot's rays over the entry rectangle.
 enum class EntryPattern {
-    even,  ///< the additive sequence of M. Roberts (2018) in two dimensions: evenly spread in any number
-    grid,  ///< a square of points
+    even,  ///< additive sequence of M. Roberts (2018) in two dimensions: uniform for any number of rays
+    grid,  ///< square grid
 };
 
-/// Where the light of one object point lands on the film, by many rays that are not aimed at the stop. They fill a
-/// rectangle of the entry plane (ObjectPoint) over which the light is even, and those that pass are kept.
+/// Film points of the light of one object point, by many rays that are not aimed at the stop. They fill a rectangle of
+/// the entry plane (ObjectPoint), over which the light is uniform; only those that pass are recorded.
 template <class T>
 struct FilmPointsRequest {
     LensView<T> lens;
-    Vec3<T> centre;  ///< of the rectangle, relative to the first vertex, mm
-    Vec3<T> towards;  ///< unit: of the ray through the entry plane's middle
-    Vec3<T> across, upwards;  ///< the axes of the entry plane
-    Vec2<T> middle, reach;  ///< of the rectangle: from the entry plane's middle, and half its sides, mm
-    T inverse_distance;     ///< of the object from the entry plane's middle, 1/mm
-    T index;                ///< of the medium from which the rays enter
+    Vec3<T> centre;  ///< centre of the entry plane, relative to the first vertex, mm
+    Vec3<T> towards;  ///< unit vector: ray through the entry plane's centre
+    Vec3<T> across, upwards;  ///< axes of the entry plane
+    Vec2<T> middle, reach;  ///< the rectangle's centre, relative to the entry plane's centre, and half sides, mm
+    T inverse_distance;  ///< inverse distance of the object from the entry plane's centre, 1/mm
+    T index;  ///< refractive index of the medium from which the rays enter
     T film;                 ///< z of the film plane relative to the last vertex, mm
     EntryPattern pattern;
-    std::int64_t columns;  ///< of the grid
-    std::int64_t first, count;  ///< rays to take
-    float* points;  ///< x and y of those that pass, mm from the axis; room for `count`
-    std::int64_t passed;  ///< is added to
+    std::int64_t columns;  ///< points per row of the grid
+    std::int64_t first, count;  ///< range of rays to trace
+    float* points;  ///< x and y of the rays that pass, mm from the axis; room for `count`
+    std::int64_t passed;  ///< incremented by the number of rays that pass
 };
 
 namespace film_points_detail {
 
-/// Places of N rays from `first` on, each coordinate between -1 and 1.
+/// Positions of N rays from index `first` on in the rectangle; each coordinate lies between -1 and 1.
 template <int N, class T>
 REALCAM_HD inline void places_of(const FilmPointsRequest<T>& request, std::int64_t first, T (&x)[N], T (&y)[N]) {
     if (request.pattern == EntryPattern::grid) {

@@ -12,7 +12,7 @@ namespace realcam {
 
 namespace {
 
-/// Of the light of a film point, by rays close to its chief ray.
+/// Approximate bounds of the light of a film point, from rays close to its chief ray.
 EntryRectangle rectangle_about(const ChiefRay& chief, const ParabasalRays& rays, double index, double stop_radius,
                                const FilmSurface<double>& film, Vec2<double> at) {
     const Matrix2 by_stop = rays.stop_by_film_direction.inverse();
@@ -23,7 +23,8 @@ EntryRectangle rectangle_about(const ChiefRay& chief, const ParabasalRays& rays,
              stop_radius * hypotenuse(by_stop.second.x, by_stop.second.y)}};
 }
 
-/// Pieces between the edges of neighbouring spokes. Where the light ends between two spokes, along the lit one.
+/// Returns segments between the edges on neighbouring radial scan lines. An interval of light on only one of the two
+/// lines is closed by a segment along that line.
 std::vector<std::array<Vec2<double>, 2>> outline_of(const FilmBundle& light, const std::vector<LitSpoke>& spokes) {
     std::vector<std::array<Vec2<double>, 2>> pieces;
     const auto towards_film = [&](const LitSpoke& spoke, double r) {

@@ -8,17 +8,18 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// The pupil as a film point sees it, in optical direction cosines across the film's normal: x and y of light on its
-/// way to the film.
+/// Exit pupil as seen from a film point, in optical direction cosines across the film's normal: x and y of light
+/// travelling towards the film.
 struct FilmPupil {
-    /// Irradiance for unit radiance of all that the lens sees: the area of the pupil. In the middle of a lens of
-    /// revolution that is pi sin^2(theta').
+    /// Irradiance for unit radiance of the whole scene: the area of the pupil. At the centre of a lens of revolution it
+    /// is pi sin^2(theta').
     double irradiance = 0;
-    std::vector<std::array<Vec2<double>, 2>> outline;  ///< pieces of the edge of what passes
+    std::vector<std::array<Vec2<double>, 2>> outline;  ///< segments of the edge of what passes
 };
 
-/// By real rays at one wavelength, whose edges are found on spokes about the chief ray; the diaphragm counts as it is.
-/// Dark where no ray of the film point reaches the middle of the stop.
+/// Computes the pupil with real rays at one wavelength; its edges are found on radial scan lines about the chief ray,
+/// and the diaphragm has its real shape. The result is empty, with an irradiance of 0, if no ray of the film point
+/// reaches the stop's centre.
 FilmPupil film_pupil(const LensSystem& lens, double wavelength_nm, Vec2<double> film, const RayLoop& loop = {});
 
 }  // namespace REALCAM_NAMESPACE

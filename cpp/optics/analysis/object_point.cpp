@@ -28,7 +28,7 @@ std::string FieldPoint::text() const {
 
 namespace {
 
-/// mm from the plane in focus to the front vertex.
+/// Distance from the plane in focus to the front vertex, mm.
 double distance_in_focus(const LensSystem& lens) {
     return lens.focus_distance - lens.film_position();
 }
@@ -75,7 +75,8 @@ void ObjectPoint::set_by_angle(const LensSystem& lens, double wavelength_nm, con
 }
 
 void ObjectPoint::set_by_chief_ray(const LensSystem& lens, const FieldPoint& field) {
-    // In the frame of the camera. It is the film, not the front surface, from which a lens is focused.
+    // z of the object plane in the camera frame. The focus distance is measured from the film, not from the front
+    // surface.
     const double plane =
         field.object_distance ? -object_distance_of(lens, field) : camera_film_position(lens) - lens.focus_distance;
     const RaysFromFilm rays(lens, lens.wavelength_nm);

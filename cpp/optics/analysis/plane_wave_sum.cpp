@@ -17,7 +17,7 @@ PlaneWaveSum::PlaneWaveSum(FilmGrid grid, double wave_number)
 
 void PlaneWaveSum::add(const PlaneWaves& light, const RayLoop& loop) {
     const std::vector<PlaneWave>& waves = light.waves;
-    // A part of a loop may be 64 items: so is a row, that threads can share few of them.
+    // The loop may assign 64 items at a time to a thread. A row counts as 64 items, so that threads can share few rows.
     constexpr std::size_t kItems = 64;
     const auto row_from = [](std::size_t item) { return (item + kItems - 1) / kItems; };
     for (std::size_t from = 0; from < waves.size(); from += kWaves) {
@@ -48,7 +48,7 @@ void PlaneWaveSum::tabulate(const PlaneWave* waves, std::size_t count) {
                      phase.real() * step.imag() + phase.imag() * step.real()};
         }
     }
-    // Whole groups of waves are added, and the last may be smaller.
+    // Waves are added in whole groups; the last one is padded with zeros.
     const std::size_t end = (count + kAtOnce - 1) / kAtOnce * kAtOnce;
     std::fill(cos_.begin() + static_cast<std::ptrdiff_t>(count * half_),
               cos_.begin() + static_cast<std::ptrdiff_t>(end * half_), 0.0);
@@ -63,8 +63,8 @@ void PlaneWaveSum::add_to_rows(const PlaneWave* waves, std::size_t count, bool m
         step_re[w] = std::cos(wave_number_ * waves[w].slope.y * grid_.pitch);
         step_im[w] = std::sin(wave_number_ * waves[w].slope.y * grid_.pitch);
     }
-    // Phases are turned from row to row, and begin anew at the same rows whatever part of them is asked for: so
-    // sums come out the same whatever the threads.
+    // Phases advance from row to row by a rotation, and are recomputed at fixed rows, whatever range of rows is
+    // requested: the sums do not depend on the division among threads.
     for (std::size_t row = first / kTurns * kTurns; row < last; ++row) {
         if (row % kTurns == 0) start(waves, count, row, re, im);
         double* sums = sums_.data() + row * 4 * half_;

@@ -35,7 +35,7 @@ PointBundle::PointBundle(const LensSystem& lens, double wavelength_nm, const Fie
 WaveRay PointBundle::as_wave(const FilmRay& ray) const {
     const Vec2<double> q = ray.at;
     const double tilt = chief_direction_.x * q.x + chief_direction_.y * q.y, square = q.x * q.x + q.y * q.y;
-    // |q + R d| - R and its gradient, d the chief ray's direction, in a form that holds for R = infinity too.
+    // |q + R d| - R and its gradient, with d the chief ray's direction, in a form that also holds for R = infinity.
     const double root = std::sqrt(1 + curvature_ * (2 * tilt + curvature_ * square));
     const double sphere = (2 * tilt + curvature_ * square) / (1 + root);
     const Vec2<double> slope = {ray.direction.x - (chief_direction_.x + curvature_ * q.x) / root,
@@ -61,7 +61,7 @@ FieldRays PointBundle::look_for(const LensSystem& lens, double wavelength_nm, co
         for (std::size_t i = 0; i < rays.rays.size(); ++i) passing += rays.passes(i);
         if (passing >= few(look)) return rays;
     } catch (const InputError&) {
-            // The same error is thrown where it makes no sense to look closer; then it is thrown again.
+        // If a denser probe cannot help, it throws the same error again below.
     }
     return field_rays(lens, wavelength_nm, field, square_grid(kCloseLook, loop), loop);
 }
@@ -87,7 +87,7 @@ void PointBundle::measure(const FieldRays& rays, int look) {
     }
     centroid = {centroid.x / weight, centroid.y / weight};
     middle = {0.5 * (low.x + high.x), 0.5 * (low.y + high.y)};
-    // What lies beyond the outermost rays: half a cell on either side, and a hair where all are in one line.
+    // Margin beyond the outermost rays: half a cell on either side, and a small one in case all rays lie on one line.
     const double beyond = 1 + 2.0 / look, hair = 1e-3 * hypotenuse(high.x - low.x, high.y - low.y);
     if (mirrored) middle.x = centroid.x = 0;
     reach = {beyond * 0.5 * (high.x - low.x) + hair, beyond * 0.5 * (high.y - low.y) + hair};

@@ -12,11 +12,11 @@ namespace psf_detail {
 
 namespace {
 
-/// Some seconds; only a caller who names the number of rays waits for more.
+/// Limit of some seconds; only callers who specify the number of rays may take longer.
 constexpr double kMostWavesUnasked = 1 << 20, kMostWaves = 1 << 24;
 
-/// um: a quarter of wavelength x f-number, of the finest detail of an image half; for a spot that is larger than the
-/// window, up to twice that, which all of the detail still needs.
+/// Default pitch, um: a quarter of wavelength x f-number, half the Nyquist pitch of the image; for a spot that is
+/// larger than the window, up to the Nyquist pitch.
 double psf_pitch(const PointBundle& bundle, int size) {
     const double across = std::max(bundle.slope_high.x - bundle.slope_low.x, bundle.slope_high.y - bundle.slope_low.y);
     const double detail = 2e3 * std::numbers::pi / (bundle.wave_number * across);
@@ -24,13 +24,13 @@ double psf_pitch(const PointBundle& bundle, int size) {
     return std::clamp(spot / size, 0.25 * detail, 0.5 * detail);
 }
 
-/// Irradiance per um^2 of a sum of 1.
+/// Irradiance per um^2 for a squared sum of waves of 1.
 double scale_of(const Part& part) {
     const double per_mm2 = part.bundle.wave_number / (2 * std::numbers::pi);
     return 1e-6 * part.weight * per_mm2 * per_mm2 / part.light.energy;
 }
 
-/// Largest value of the same light without aberrations: all waves in phase, all colours in one place.
+/// Largest value of the same light without aberrations: all waves in phase, all colours at one point.
 double ideal_peak(const std::vector<Part>& parts) {
     double ideal = 0;
     for (const Part& part : parts) {
@@ -41,7 +41,7 @@ double ideal_peak(const std::vector<Part>& parts) {
     return ideal;
 }
 
-/// The largest value near the largest of the array's: between its points, by smaller and smaller grids.
+/// Largest value near the array's maximum, found between its points on finer and finer grids.
 double peak_near(const std::vector<Part>& parts, const Psf& psf, const RayLoop& loop) {
     const auto largest = [](const std::vector<double>& values, FilmGrid grid) {
         const auto at = static_cast<int>(std::max_element(values.begin(), values.end()) - values.begin());
@@ -60,7 +60,7 @@ double peak_near(const std::vector<Part>& parts, const Psf& psf, const RayLoop& 
     return peak;
 }
 
-/// Without diffraction: the energy of the rays that land around each point.
+/// Geometric PSF: adds the energy of each ray to the grid point nearest to its film point.
 void add_rays(const Part& part, Psf& psf, std::int64_t rays, const RayLoop& loop) {
     const auto points_across = [&](double spot) { return 1 + 2e3 * spot / psf.pitch_um; };
     const double enough = 16 * points_across(part.bundle.spot.x) * points_across(part.bundle.spot.y);

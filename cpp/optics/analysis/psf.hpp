@@ -6,17 +6,17 @@
 namespace REALCAM_NAMESPACE {
 
 enum class PsfMethod {
-    direct,  ///< the sum of the rays' plane waves at each point
-    fft,     ///< the same light by a Fourier transform of its slopes, sampled evenly
-    geometric,  ///< the rays themselves, without diffraction
+    direct,  ///< sum of the rays' plane waves at each point
+    fft,  ///< the same light by a Fourier transform over evenly sampled slopes
+    geometric,  ///< density of the rays, without diffraction
 };
 
 enum class PsfCentre {
-    chief,     ///< where the chief ray of the first wavelength meets the film
+    chief,  ///< film point of the chief ray of the first wavelength
     centroid,  ///< the centroid of the spot of all wavelengths
 };
 
-/// A wavelength and its share of the light.
+/// A wavelength and its weight.
 struct PsfColour {
     double wavelength_nm, weight;
 };
@@ -27,25 +27,25 @@ struct PsfRequest {
     double film_distance;  ///< mm behind the last vertex
     PsfMethod method = PsfMethod::direct;
     int size = 128;
-    double pitch_um = 0;  ///< 0: psf_pitch
+    double pitch_um = 0;  ///< 0: automatic (psf_pitch)
     PsfCentre centre = PsfCentre::chief;
-    std::int64_t rays = 0;  ///< at least, for each wavelength; 0: as many as the wavefront and the window need
+    std::int64_t rays = 0;  ///< minimum for each wavelength; 0: as many as the wavefront and the window need
 };
 
-/// The light of one object point on the film.
+/// Point-spread function: the light of one object point on the film.
 struct Psf {
     int size;
     double pitch_um;
-    Vec2<double> centre_mm;  ///< on the film, from the axis: of the point (size / 2, size / 2)
-    std::vector<PsfColour> colours;  ///< with weights whose sum is 1
-    std::vector<double> values;  ///< share of the light that passes the lens, per um^2; row by row from the lowest y
+    Vec2<double> centre_mm;  ///< film position of the point (size / 2, size / 2), from the axis
+    std::vector<PsfColour> colours;  ///< weights add up to 1
+    std::vector<double> values;  ///< fraction of the light that passes the lens, per um^2; rows by ascending y
     double strehl;  ///< largest value over that of the same rays all in phase; NaN without diffraction
     std::int64_t rays;
 };
 
 namespace psf_detail {
 
-/// A colour of a PSF that is under way: its light, its grid relative to its own chief ray, and its share of the sum.
+/// One colour of a PSF in progress: its bundle, its weight, the grid's centre relative to its chief ray, and its waves.
 struct Part {
     PointBundle bundle;
     double weight;
@@ -53,12 +53,12 @@ struct Part {
     PlaneWaves light{};
 };
 
-/// Throws InputError where too many or too few rays would be taken.
+/// Returns the sampling for a colour. Throws InputError if it needs too many rays, or `rays` is too small.
 BundleSampling checked_sampling(const Part& part, const Psf& psf, std::int64_t rays);
 
 void add_waves(const std::vector<Part>& parts, FilmGrid grid, std::vector<double>& values, const RayLoop& loop);
 
-/// The request's light on a grid that is laid, of which nothing is summed yet.
+/// Bundles and empty grid of a request, before any light is summed.
 struct Start {
     std::vector<Part> parts;
     Psf psf;
@@ -68,9 +68,8 @@ Start start(const LensSystem& lens, const PsfRequest& request, const RayLoop& lo
 
 }  // namespace psf_detail
 
-/// The PSF by the direct sum, or of the rays alone. Throws InputError for an impossible request, for a wavelength at
-/// which a glass is not known, where no light passes, and where a sum would take too many rays. Also throws what `loop`
-/// throws to stop it.
+/// Computes the PSF by the direct sum, or geometrically. Throws InputError if the request is invalid, a glass is not
+/// known at a wavelength, no light passes, or the sum would take too many rays; also what `loop` throws to stop it.
 Psf psf_of(const LensSystem& lens, const PsfRequest& request, const RayLoop& loop = {});
 
 }  // namespace REALCAM_NAMESPACE

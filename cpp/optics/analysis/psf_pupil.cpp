@@ -15,11 +15,11 @@ struct Cell : LocalWave {
     bool passes;
 };
 
-/// How near to a cell's slope its ray is looked for, as a share of the cell. Its path to the slope itself is then
-/// right to the square of that, in units of what a cell's wavefront bends: a few millionths of a radian.
+/// Tolerance of the slope of a cell's ray, relative to the cell. The extrapolated path at the exact slope is then right
+/// to the square of that, in units of the wavefront's bending over a cell: to a few millionths of a radian.
 constexpr double kClose = 1e-3;
 
-/// Newton's method from a cell nearby.
+/// Finds the ray of a slope by Newton's method, starting with a nearby wave. Returns std::nullopt without convergence.
 std::optional<Cell> cell_with(const PointBundle& bundle, Vec2<double> slope, LocalWave near, double tolerance) {
     for (int i = 0; i < 8; ++i) {
         const std::optional<LocalWave> next = local_wave(bundle, near.entry_at(slope));
@@ -35,13 +35,13 @@ std::optional<Cell> cell_with(const PointBundle& bundle, Vec2<double> slope, Loc
     return {};
 }
 
-/// The part of a cell that passes.
+/// Part of a cell that passes.
 struct Piece {
     double share;
     Vec2<double> middle;  ///< its mean slope
 };
 
-/// By rays over the cell of this slope, which lie where a wave nearby says.
+/// Samples the cell of this slope by rays, whose entries are extrapolated from a nearby wave.
 Piece piece_of(const PointBundle& bundle, const LocalWave& near, Vec2<double> slope, double step) {
     constexpr int kAcross = 16;
     int count = 0;
@@ -65,13 +65,13 @@ Piece piece_of(const PointBundle& bundle, const LocalWave& near, Vec2<double> sl
 
 struct Light {
     double energy, amplitude;
-    Vec2<double> middle;  ///< slope
+    Vec2<double> middle;  ///< mean slope
     const LocalWave* near = nullptr;
 };
 
-/// A power of two, for a pupil of at least 256 cells. There are enough that the wavefront is even over a piece of a
-/// cell on the edge of the light, because only the size and the middle of a piece are known. Throws InputError where
-/// that is too many.
+/// Returns the transform's size, a power of two, for a pupil of at least 256 cells. The wavefront must be nearly flat
+/// over a partial cell at the edge of the light, because only the cell's open fraction and mean slope are known. Throws
+/// InputError if that takes too many points.
 int transform_size(const psf_detail::Part& part, const Psf& psf) {
     const PointBundle& bundle = part.bundle;
     const double across = std::max(bundle.slope_high.x - bundle.slope_low.x, bundle.slope_high.y - bundle.slope_low.y);
@@ -98,7 +98,7 @@ PsfPupil psf_pupil(const psf_detail::Part& part, const Psf& psf, const RayLoop& 
     const PointBundle& bundle = part.bundle;
     PsfPupil pupil{transform_size(part, psf), {}, 0};
     const double step = 2e3 * std::numbers::pi / (bundle.wave_number * pupil.size * psf.pitch_um);
-    // Beyond the outermost rays that were looked at.
+    // Margin beyond the outermost probe rays.
     const double beyond =
         0.05 * std::max(bundle.slope_high.x - bundle.slope_low.x, bundle.slope_high.y - bundle.slope_low.y);
     const auto cell_of = [&](double slope) { return static_cast<int>(std::lround(slope / step)); };
@@ -114,8 +114,8 @@ PsfPupil psf_pupil(const psf_detail::Part& part, const Psf& psf, const RayLoop& 
     if (!middle) throw InputError("psf: no ray in the middle of the light reaches the film; use the method \"direct\"");
     loop.for_all(static_cast<std::size_t>(rows), [&](std::size_t first, std::size_t last) {
         for (auto row = static_cast<int>(first); row < static_cast<int>(last); ++row) {
-            // Outwards from the middle column, each cell from the last one that passes: beyond the edge of the light
-            // rays may do anything.
+            // From the middle column outwards, each cell starts with the last one that passes: rays beyond the edge of
+            // the light may be erratic.
             for (const int way : {1, -1}) {
                 std::optional<LocalWave> before;
                 for (int column = columns / 2 - (way < 0); column >= 0 && column < columns; column += way) {
@@ -135,8 +135,8 @@ PsfPupil psf_pupil(const psf_detail::Part& part, const Psf& psf, const RayLoop& 
         for (std::size_t i = first; i < last; ++i) {
             const int column = static_cast<int>(i) % columns, row = static_cast<int>(i) / columns;
             int passing = 0;
-            // It may be that no ray reaches the middle of a cell on the edge, or that it lies beyond the rim of an
-            // asphere, where the surface has another shape. Then a cell beside it tells where its rays are.
+            // The centre of a cell on the edge of the light may have no ray, or may lie beyond the rim of an asphere,
+            // where the surface has another shape. A neighbouring cell then locates its rays.
             const LocalWave* near = passes(column, row) ? &*cells[i] : nullptr;
             for (int k = 0; k < 9; ++k) {
                 if (!passes(column + k % 3 - 1, row + k / 3 - 1)) continue;
@@ -165,7 +165,7 @@ PsfPupil psf_pupil(const psf_detail::Part& part, const Psf& psf, const RayLoop& 
     for (const Light& light : lights) {
         if (!light.near) continue;
         energy += light.energy;
-        // The middle of a piece lies between four points of the grid, which share its light so that its mean stays.
+        // The mean slope lies between four grid points, which share the light so that its mean is preserved.
         const double x = light.middle.x / step, y = light.middle.y / step;
         const int column = static_cast<int>(std::floor(x + 1e-9)), row = static_cast<int>(std::floor(y + 1e-9));
         const double right = std::max(x - column, 0.0), up = std::max(y - row, 0.0);

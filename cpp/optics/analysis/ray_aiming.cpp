@@ -22,7 +22,7 @@ RayAimer::RayAimer(const LensSystem& lens, double wavelength_nm, const FieldPoin
     step_ = 1e-6 * data.entrance_pupil_diameter;
     if (const PathEnds ends = film_path_ends(lens, LightDirection::to_film); ends.entry) frame_ = ends.entry->origin;
     if (field.film || !lens.is_rotational())
-        find_chief_ray(lens, field);  // it is that of the design wavelength, or close to it
+        find_chief_ray(lens, field);  // starts with that of the design wavelength
     else
         follow_chief_ray(lens, wavelength_nm, field);
 }

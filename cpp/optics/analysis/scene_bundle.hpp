@@ -7,12 +7,12 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// A ray in front of the lens, relative to its front vertex, or in the frame of the camera (film_path_ends).
+/// A ray in front of the lens, relative to its front vertex, or in the camera frame (film_path_ends).
 struct SceneRay {
     Vec3d origin, direction;
 };
 
-/// Unit vectors across a direction: x has nothing of the y axis, if the direction has nothing of the x axis.
+/// Unit vectors perpendicular to a direction; x is the x axis if the direction lies in the y-z plane.
 struct AcrossRay {
     Vec3d x, y;
 
@@ -25,17 +25,17 @@ struct AcrossRay {
     Vec3d at(Vec2<double> v) const { return v.x * x + v.y * y; }
 };
 
-/// All light of a scene point that reaches the film. It is described by where it crosses a plane perpendicular to one
-/// of its rays. There it is even, except for the obliquity of the other rays.
+/// All light of a scene point that reaches the film, parametrised by its intersection with a plane perpendicular to one
+/// of its rays. Over it the light is uniform, except for the obliquity of the other rays.
 class SceneBundle {
 public:
     using Entry = Vec2<double>;  ///< mm from where the ray leaves the lens, in the axes of AcrossRay
 
-    Entry middle, reach;  ///< of a rectangle that holds what passes
-    bool mirrored;        ///< x and -x are alike
+    Entry middle, reach;  ///< bounds of what passes: centre and half sides
+    bool mirrored;  ///< true: symmetric in x
 
-    /// `path`: to the film and into its frame (film_path_ends); it must outlive this. `ray`: from the lens to the
-    /// point, unit direction. `distance`: of the point from the ray's origin, infinity allowed.
+    /// `path`: to the film, ending in the film frame (film_path_ends); it must outlive this object. `ray`: from the
+    /// lens to the point, unit direction. `distance`: from the ray's origin to the point, infinity allowed.
     SceneBundle(const LensPath<double>& path, FilmSurface<double> film, const SceneRay& ray, double distance,
                 EntryRectangle in, bool mirrored)
         : middle(in.middle),
@@ -48,7 +48,7 @@ public:
           across_(ray.direction),
           inverse_distance_(1 / distance) {}
 
-    /// Whether the lens lets these rays pass.
+    /// For each entry: true if its ray passes the lens.
     template <int N>
     void pass(const Entry (&entries)[N], bool (&passed)[N]) const {
         LensRays<double, N> rays;
@@ -56,7 +56,7 @@ public:
         for (int i = 0; i < N; ++i) passed[i] = rays.status[i] == 0;
     }
 
-    /// Where the light of entries meets the film, mm; NaN where the lens blocks it.
+    /// Film points of the entries' rays, mm; NaN if the lens blocks the ray.
     template <int N>
     void land(const Entry (&entries)[N], Vec2<double> (&places)[N]) const {
         constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
@@ -66,7 +66,7 @@ public:
             places[i] = rays.status[i] == 0 ? film_.landing(rays.origin[i], rays.direction[i]) : Entry{kNone, kNone};
     }
 
-    /// Light for each area of the entry plane, over that in its middle: even in solid angle.
+    /// Light per area of the entry plane, relative to its centre: uniform in solid angle.
     double light(Entry entry) const {
         return std::pow(1 + (entry.x * entry.x + entry.y * entry.y) * inverse_distance_ * inverse_distance_, -1.5);
     }

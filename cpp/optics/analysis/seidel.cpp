@@ -60,7 +60,7 @@ SeidelRow row_of(const Surface& surface, double before, double after, ParaxialRa
     row.sums[1] = -a * b * y * change + sag * y * y * y_chief;
     row.sums[2] = -b * b * y * change + sag * y * y_chief * y_chief;
     row.sums[3] = -invariant * invariant * c * inverse;
-    // b/a (S_III + S_IV) without the quotient, which has no value where the marginal ray meets the surface along its
+    // b/a (S_III + S_IV) without the quotient, which is undefined if the marginal ray hits the surface along its
     // normal: D(u/n) = a D(1/n^2) - y c D(1/n), and b y = H + a y'.
     row.sums[4] = -b * b * b * y * (1 / after - 1 / before) * (1 / after + 1 / before) +
                   b * y_chief * c * inverse * (b * y + invariant) + sag * y_chief * y_chief * y_chief;
@@ -96,7 +96,7 @@ SeidelTable seidel(const LensSystem& lens, double wavelength_nm, const FieldPoin
         marginal.height += surface.thickness * marginal.slope;
         chief.height += surface.thickness * chief.slope;
     }
-    // What rounding leaves of a slope that is zero.
+    // A smaller slope is the rounding error of 0.
     if (!(std::fabs(marginal.slope) > 1e-12 * steepest))
         throw InputError("lens \"" + lens.name +
                          "\" is afocal for this object: its image lies at infinity, and transverse aberrations do too");

@@ -17,17 +17,17 @@ namespace REALCAM_NAMESPACE {
 // Behind a mirror n is negative. W is positive where the wavefront is ahead of the reference sphere, as in
 // wavefront.hpp.
 
-/// What one surface adds. Lengths in mm.
+/// Contribution of one surface to the third-order sums. Lengths in mm.
 struct SeidelRow {
     ParaxialRay marginal, chief;  ///< at the surface; slopes behind it
     double marginal_invariant, chief_invariant;  ///< n i, i the angle of incidence
     std::array<double, 5> sums;                  ///< S_I to S_V
-    std::array<double, 2> colour;                ///< C_I, C_II between the two wavelengths of colour
-    double petzval_curvature;  ///< share of the Petzval surface's curvature in the image space, 1/mm
+    std::array<double, 2> colour;  ///< C_I, C_II between the short and the long wavelength
+    double petzval_curvature;  ///< contribution to the Petzval curvature in image space, 1/mm
 };
 
-/// Transverse aberrations at the edge of the field for the edge of the pupil, mm, along y: of a real ray to
-/// third order, less the paraxial image. The names and signs are CODE V's.
+/// Transverse aberrations at the edge of the field for the edge of the pupil, mm, along y: a real ray to third order,
+/// less the paraxial image. The names and signs are CODE V's.
 struct TransverseAberrations {
     double spherical;  ///< SA
     double tangential_coma;  ///< TCO
@@ -40,7 +40,7 @@ struct TransverseAberrations {
 };
 
 /// Coefficients of W = W040 r^4 + W131 h r^3 cos + W222 h^2 r^2 cos^2 + W220 h^2 r^2 + W311 h^3 r cos, and of colour,
-/// W020 r^2 + W111 h r cos. r and h are shares of the pupil's radius and of the field. In waves.
+/// W020 r^2 + W111 h r cos. r and h are relative to the pupil's radius and to the field. In waves.
 struct WaveCoefficients {
     double w040, w131, w222, w220, w311;
     double w020_colour, w111_colour;
@@ -56,9 +56,9 @@ struct SeidelTable {
     WaveCoefficients waves(const SeidelRow& row) const;
 };
 
-/// Third-order sums surface by surface, for the edge of the field and of the stop's opening; colour between two
-/// wavelengths, short and long. Throws InputError for what is no place in the field, and for an afocal lens, whose
-/// transverse aberrations are infinite.
+/// Computes third-order sums surface by surface, for the edge of the field and of the stop's opening; colour between
+/// two wavelengths, short and long. Throws InputError if the field point is invalid, if a surface has terms beyond
+/// conics and even aspheres, and for an afocal lens, whose transverse aberrations are infinite.
 SeidelTable seidel(const LensSystem& lens, double wavelength_nm, const FieldPoint& field, double short_nm,
                    double long_nm);
 

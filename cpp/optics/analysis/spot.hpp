@@ -3,22 +3,22 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Distances of a spot's points from one of them, mm.
+/// Distances of a spot's points from a reference point, mm.
 struct SpotSize {
     double rms_radius, max_radius;
 };
 
-/// Where the rays of one object point meet the film, mm, x and y from the axis.
+/// Spot diagram: film points of the rays of one object point, mm, x and y from the axis.
 struct Spot {
     FieldRays rays;
-    std::vector<Vec2<double>> points;  ///< NaN where the ray does not pass
+    std::vector<Vec2<double>> points;  ///< NaN if the ray does not pass
     Vec2<double> centroid;             ///< mean of the points, weighted by their share of the stop's area
-    Vec2<double> chief;                ///< of the chief ray
+    Vec2<double> chief;  ///< film point of the chief ray
     SpotSize about_centroid, about_chief;
 };
 
-/// The spot on the film, whose vertex is put `film_distance` mm behind the last one. Throws what `loop` throws to stop
-/// it.
+/// Computes the spot on a film whose vertex lies `film_distance` mm behind the last vertex. Passes on what `loop`
+/// throws to stop it.
 Spot spot_of(FieldRays rays, double film_distance, const RayLoop& loop = {});
 
 }  // namespace REALCAM_NAMESPACE

@@ -8,21 +8,21 @@ namespace REALCAM_NAMESPACE {
 
 enum class Precision { float32, float64 };
 
-/// Results of a trace, arrays of `count` rays that the caller owns.
+/// Results of a trace: arrays of `count` rays that the caller owns.
 struct TracedRays {
-    double* origins;       ///< count x 3, mm, lens frame: on the last surface met
+    double* origins;  ///< count x 3, mm, lens frame: on the last surface hit
     double* directions;    ///< count x 3, unit
-    double* optical_path;  ///< count, mm: sum of index times distance up to there
+    double* optical_path;  ///< count, mm: sum of index times distance up to the origin
     int* status;           ///< count, RayStatus
-    int* surface_index;    ///< count: the last surface met or missed, from 0; -1 for bad input
+    int* surface_index;  ///< count: the last surface hit or missed, from 0; -1 for bad input
 };
 
-/// The first `surface_count` surfaces that the light meets (all where it is negative), ready for requests. Owns what
-/// their views point to.
+/// The first `surface_count` surfaces that the light meets (negative: all), prepared for trace requests. Owns the data
+/// of their views.
 template <class T>
 class TracePath {
 public:
-    /// Throws InputError for a wavelength beyond 100 to 20000 nm, or a count of surfaces that the lens has not.
+    /// Throws InputError for a wavelength outside 100 to 20000 nm, or more surfaces than the lens has.
     TracePath(const LensSystem& lens, LightDirection direction, double wavelength_nm, int surface_count)
         : path_(lens, direction, checked(wavelength_nm)) {
         const int all = static_cast<int>(lens.surfaces.size());

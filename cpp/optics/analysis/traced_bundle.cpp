@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kEdgeParts = 8;
 
-/// Where a place of the entry plane is on the edge, and its slope.
+/// A point on the edge of the light: its entry and its slope.
 struct EdgePlace {
     PointBundle::Entry entry;
     Vec2<double> slope;
@@ -30,7 +30,7 @@ EdgePlace mirrored(const EdgePlace& p) {
     return {{-p.entry.x, p.entry.y}, {-p.slope.x, p.slope.y}};
 }
 
-/// Between the middle two of four places at even steps, by the cubic through them.
+/// Interpolates between the middle two of four equally spaced points, by the cubic through them.
 EdgePlace between(const std::array<EdgePlace, 4>& p, double share) {
     const double t = share, weight[4] = {-t * (t - 1) * (t - 2) / 6, (t + 1) * (t - 1) * (t - 2) / 2,
                                          -(t + 1) * t * (t - 2) / 2, (t + 1) * t * (t - 1) / 6};
@@ -43,10 +43,12 @@ EdgePlace between(const std::array<EdgePlace, 4>& p, double share) {
     return place;
 }
 
-/// Pieces between the edges on neighbouring spokes, short ones where the edge goes on to either side: the area of a
-/// polygon of 32 straight ones would be 0.6% too small. Where the light ends between two spokes, along the lit one.
+/// Returns segments between the edges on neighbouring radial scan lines. They are subdivided if the edge continues to
+/// either side: the area of a polygon of 32 straight segments would be 0.6% too small. An interval of light on only one
+/// of the two lines is closed by a segment along that line.
 std::vector<EdgePiece> edge_of(const PointBundle& bundle, const std::vector<LitSpoke>& half) {
-    // Inner and outer edge of each stretch; no inner edge where the light begins in the middle.
+    // Inner and outer edge of each interval. If the light begins at the centre, all inner edges coincide there, and no
+    // segment is added.
     using Edges = std::vector<std::array<EdgePlace, 2>>;
     std::vector<Edges> spokes;
     for (const LitSpoke& spoke : half) {
@@ -90,8 +92,9 @@ std::vector<EdgePiece> edge_of(const PointBundle& bundle, const std::vector<LitS
     return pieces;
 }
 
-/// Where two close rays on either side of the chief ray cross, mm behind the film plane. A thousandth of the bundle's
-/// reach: what the rays' own aberration adds falls off with its square, and rounding stays below 1e-10 of the focus.
+/// Returns the distance behind the film plane at which two close rays on either side of the chief ray cross, mm. Their
+/// offset is a thousandth of the bundle's reach: the error from aberrations falls off with its square, and rounding
+/// stays below 1e-10 of the focus.
 double close_focus(const PointBundle& bundle, bool tangential) {
     const double step = 1e-3 * std::max(bundle.reach.x, bundle.reach.y);
     const PointBundle::Entry chief = bundle.chief_entry;

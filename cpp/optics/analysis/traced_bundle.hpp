@@ -7,31 +7,31 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// A ray of a bundle, with the share of the light that it stands for.
+/// A ray of a bundle, with the fraction of the light that it represents.
 struct BundleRay {
     PointBundle::Entry entry;  ///< mm
-    double energy;             ///< of all rays 1
-    Vec2<double> at;           ///< on the film, mm from the chief ray
+    double energy;  ///< fraction of the energy of all rays
+    Vec2<double> at;  ///< on the film, mm from the chief ray
     Vec3d direction;           ///< unit, behind the lens
     WaveRay wave;
-    double amplitude;  ///< root of the energy for each area of slopes, times a common factor
+    double amplitude;  ///< root of the energy per area of slopes, times a common factor
 };
 
-/// Two neighbouring places on the edge of what passes.
+/// Segment of the edge of what passes: its two end points.
 struct EdgePiece {
     std::array<PointBundle::Entry, 2> entry;
     std::array<Vec2<double>, 2> slope;
 };
 
-/// The light of one object point at one wavelength as rays, the edge of what passes, and the foci beside the chief ray.
+/// Ray bundle of one object point at one wavelength, with the edge of what passes and the foci about the chief ray.
 struct TracedBundle {
     std::vector<BundleRay> rays;
     std::vector<EdgePiece> edge;
-    double tangential_focus, sagittal_focus;  ///< of close rays, mm behind the film plane along the axis
+    double tangential_focus, sagittal_focus;  ///< foci of rays close to the chief ray, mm behind the film plane
 };
 
-/// Rays at Gauss's nodes on spokes over what passes. If a bundle is its own mirror image, the second half of the rays
-/// are the mirror images of the first.
+/// Traces rays at Gauss's nodes on radial scan lines over what passes. If a bundle is its own mirror image, the second
+/// half of the rays are the mirror images of the first.
 TracedBundle traced_bundle(const PointBundle& bundle, BundleSampling sampling, const RayLoop& loop = {});
 
 }  // namespace REALCAM_NAMESPACE

@@ -20,8 +20,8 @@ double reference_curvature(const LensSystem& lens, double wavelength_nm, const F
     const Vec3d image = rays.on_film(rays.chief, film_distance);
     if (rays.exit_pupil_distance)
         return 1 / (*rays.exit_pupil_distance + (film_distance - lens.film_distance) / direction.z);
-    // A chief ray on the axis does not cross it; one at 1e-6 crosses it within 1e-12 of the paraxial place, which is
-    // what rounding leaves of a quotient of two such numbers.
+    // A chief ray on the axis has no crossing with it. At 1e-6 rad the crossing is within 1e-12 of the paraxial one,
+    // which is the rounding error of the quotient below.
     if (exit_pupil == ExitPupil::paraxial || std::fabs(rays.field_angle_rad) < 1e-6) {
         const double pupil = first_order(lens, wavelength_nm).exit_pupil_position - lens.last_vertex();
         return direction.z / (image.z - pupil);
@@ -33,8 +33,9 @@ double reference_curvature(const LensSystem& lens, double wavelength_nm, const F
 namespace {
 
 /// Optical path of a ray to the reference sphere, mm, less a length that all rays share. With b from the centre to the
-/// ray, p their distance and 1/R the sphere's curvature, the ray meets the sphere at -b.d - sqrt(R^2 - p^2) along
-/// itself. R is subtracted in a form without cancellation, which also holds for a plane.
+/// ray, d the ray's unit direction, p the ray's distance from the centre and 1/R the sphere's curvature, the ray hits
+/// the sphere at -b.d - sqrt(R^2 - p^2) along itself. R is subtracted in a form without cancellation, which also holds
+/// for a plane.
 double path_to_sphere(const AimedRay& ray, Vec3d centre, double curvature, double index) {
     const Vec3d d = normalized(ray.direction), b = ray.origin - centre, off = cross(b, d);
     const double square = dot(off, off) * curvature;

@@ -5,41 +5,41 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Where the reference sphere has its centre.
+/// Centre of the reference sphere.
 enum class SphereCentre {
-    chief,     ///< where the chief ray crosses the film plane
-    centroid,  ///< the centroid of the spot there
+    chief,  ///< intersection of the chief ray with the film
+    centroid,  ///< centroid of the spot on the film
 };
 
-/// How far the reference sphere is from its centre: to where the chief ray meets what follows. Where the lens is not of
-/// revolution, or the field is named by its film point, there is but one: the image of the stop by rays close to the
+/// Exit pupil, whose distance from the centre is the radius of the reference sphere. For a lens that is not a lens of
+/// revolution, or a field specified by its film point, there is only one: the image of the stop by rays close to the
 /// chief ray.
 enum class ExitPupil {
-    real,  ///< the axis, as in CODE V's listings; on the axis, as below
-    paraxial,  ///< the plane of the paraxial exit pupil, as in OpticStudio
+    real,  ///< crossing of the chief ray with the axis, as in CODE V's listings; on the axis, as below
+    paraxial,  ///< crossing of the chief ray with the plane of the paraxial exit pupil, as in OpticStudio
 };
 
-/// What is fitted to the optical path difference by least squares over the open stop, in the stop's coordinates x, y,
-/// and taken away.
+/// Terms fitted to the optical path difference by least squares over the open stop, in the stop's coordinates x, y, and
+/// subtracted.
 enum class Removed {
     nothing,
     tilt,  ///< 1, x, y
     focus,  ///< 1, x, y, x^2 + y^2
 };
 
-/// The wavefront of one object point, by real rays that fill the real stop.
+/// Wavefront of one object point, from real rays that fill the real stop.
 ///
 /// W = (optical path of the chief ray - optical path of the ray) / wavelength, both from the object to the reference
 /// sphere. It is positive where the wavefront is ahead of the sphere, so an undercorrected lens has a positive W040.
-/// The sphere's radius is the distance from the chief ray's film point to the exit pupil on that ray (ExitPupil). The
-/// radius R is in W by p^2 / 2R, p the ray's distance from the centre: another radius changes little, another centre
-/// much.
+/// The sphere's radius R is the distance from the chief ray's film point to the exit pupil on that ray (ExitPupil). It
+/// enters W only through p^2 / 2R, with p the ray's distance from the centre: W depends little on the radius and
+/// strongly on the centre.
 struct Wavefront {
     FieldRays rays;
-    std::vector<double> opd;  ///< W in waves; NaN where the ray does not pass
-    Vec3d centre;  ///< of the reference sphere, mm, relative to the last vertex
-    double reference_curvature;  ///< 1/mm; positive where the light runs from the pupil to the centre; 0: plane
-    double rms;  ///< of W about its mean over the open stop, waves
+    std::vector<double> opd;  ///< W in waves; NaN if the ray does not pass
+    Vec3d centre;  ///< centre of the reference sphere, mm, relative to the last vertex
+    double reference_curvature;  ///< 1/mm; positive if the light travels from the pupil to the centre; 0: plane
+    double rms;  ///< RMS of W about its mean over the open stop, waves
     double peak_to_valley;  ///< waves
     double strehl;  ///< |mean of exp(2 pi i W)|^2
     double strehl_marechal;  ///< exp(-(2 pi rms)^2), Marechal's approximation in the form of V. N. Mahajan, 1983
@@ -47,7 +47,7 @@ struct Wavefront {
 
 namespace wavefront_detail {
 
-/// One over the distance from the exit pupil to the point where the chief ray meets the film, along the ray.
+/// Inverse distance from the exit pupil to the chief ray's film point, along the ray, 1/mm.
 double reference_curvature(const LensSystem& lens, double wavelength_nm, const FieldRays& rays, double film_distance,
                            ExitPupil exit_pupil);
 
@@ -73,10 +73,10 @@ std::array<double, N> solve_normal(std::array<std::array<double, N>, N> a, std::
 
 }  // namespace wavefront_detail
 
-/// The wavefront of the rays of one object point, with its reference sphere centred on the film, whose vertex is put
-/// `film_distance` mm behind the last one. Throws InputError where there is no reference sphere: the exit pupil lies in
-/// the film, or a ray passes the centre at more than the sphere's radius. Also throws where a fit has too few rays.
-/// Throws what `loop` throws to stop it.
+/// Computes the wavefront of the rays of one object point, with its reference sphere centred on a film whose vertex
+/// lies `film_distance` mm behind the last vertex. Throws InputError if there is no reference sphere (the exit pupil
+/// lies in the film, or a ray passes the centre at more than the sphere's radius), or if a fit has too few rays. Passes
+/// on what `loop` throws to stop it.
 Wavefront wavefront_of(const LensSystem& lens, double wavelength_nm, FieldRays rays, double film_distance,
                        SphereCentre centre, Removed removed, ExitPupil exit_pupil = ExitPupil::real,
                        const RayLoop& loop = {});
