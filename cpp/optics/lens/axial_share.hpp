@@ -6,22 +6,22 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// What is left of light along the axis, for any way through a lens: the product of what the surfaces reflect and let
-/// pass at normal incidence.
+/// Transmittance of the axial ray along any path through a lens: the product of the surfaces' reflectances and
+/// transmittances at normal incidence.
 class AxialShares {
 public:
-    /// Throws InputError where an index is not known at that wavelength.
+    /// Throws InputError if an index is not known at this wavelength.
     AxialShares(const LensSystem& lens, double wavelength_nm);
 
     double operator()(const std::vector<Crossing>& way) const;
 
 private:
-    /// A surface that bends no light keeps all of it.
+    /// Stops and apertures, which bend no light, have no losses.
     struct Face {
         double reflects = 1;
-        double sends_on = 1;  ///< towards the film: what glass lets pass and a mirror reflects
+        double sends_on = 1;  ///< on the direct path: transmittance of glass, reflectance of a mirror
     };
-    std::vector<std::array<Face, 2>> surfaces_;  ///< each met against the lens's order, and in it
+    std::vector<std::array<Face, 2>> surfaces_;  ///< for each surface, indexed by Crossing::in_order
 };
 
 }  // namespace REALCAM_NAMESPACE

@@ -15,8 +15,8 @@ namespace best_focus_detail {
 
 namespace {
 
-/// Rays from one axial object point in the meridional plane, named by the height at which they meet the stop
-/// paraxially: that is finite wherever the pupil lies.
+/// Meridional rays from one axial object point, parametrised by their paraxial height at the stop, which is finite
+/// wherever the pupil lies.
 class AxialRays {
 public:
     AxialRays(const LensSystem& lens, double wavelength_nm, double object_distance)
@@ -24,8 +24,8 @@ public:
         const int behind_stop = lens.stop_index() + 1;
         const ParaxialRay level = trace_paraxial(lens, wavelength_nm, {1, 0}, 0, behind_stop),
                           inclined = trace_paraxial(lens, wavelength_nm, {0, 1}, 0, behind_stop);
-        // At the stop: level.height y + inclined.height u for a ray of height y = u s and slope u at the front vertex,
-        // in the form that holds for any object distance s.
+        // The height at the stop is level.height y + inclined.height u for a ray of height y = u s and slope u at the
+        // front vertex, written in a form that holds for any object distance s.
         const double s = object_distance;
         if (std::fabs(level.height * s) > std::fabs(inclined.height)) {
             height_ = 1 / (level.height + inclined.height / s);
@@ -39,7 +39,8 @@ public:
     template <int N>
     void trace(const double (&at_stop)[N], LensRays<double, N>& rays) const {
         for (int i = 0; i < N; ++i) {
-            // Begun at the front vertex: from an object kilometres away the intersections would lose all their digits.
+            // Rays start at the front vertex: from an object kilometres away the intersections would lose all their
+            // digits.
             rays.origin.set(i, {height_ * at_stop[i], 0, 0});
             rays.direction.set(i, path_.entry_index * normalized(Vec3d{slope_ * at_stop[i], 0, 1}));
             rays.status[i] = 0;
@@ -50,10 +51,10 @@ public:
 
 private:
     LensPath<double> path_;
-    double height_ = 0, slope_ = 0;  ///< at the front vertex, of the ray of height 1 at the stop
+    double height_ = 0, slope_ = 0;  ///< at the front vertex, for the ray of height 1 at the stop
 };
 
-/// Intervals of the squared height at the stop whose rays pass.
+/// Returns the intervals of the squared height at the stop in which rays pass, up to the height `reach`.
 std::vector<std::pair<double, double>> passing_intervals(const AxialRays& rays, double reach) {
     constexpr int kRays = 256, kEdges = 8, kHalvings = 44;
     const double cell = reach * reach / kRays;
@@ -61,7 +62,8 @@ std::vector<std::pair<double, double>> passing_intervals(const AxialRays& rays, 
     double height[kRays];
     for (int i = 0; i < kRays; ++i) height[i] = std::sqrt((i + 0.5) * cell);
     rays.trace(height, coarse);
-    // Where the light begins or ends, to the last digit: a focus that jumps as single rays come and go cannot be found.
+    // Edges of the light are bisected to the last digit: a focus that jumps as single rays appear and vanish cannot be
+    // searched for.
     double open[kEdges], shut[kEdges];
     int edges = 0;
     for (int i = 1; i < kRays; ++i) {
@@ -71,9 +73,9 @@ std::vector<std::pair<double, double>> passing_intervals(const AxialRays& rays, 
         shut[edges] = (i + (here ? -0.5 : 0.5)) * cell;
         ++edges;
     }
-    // Where edges are few, the other lanes take what the next halvings may need. Each edge has a binary tree of
-    // middles; below each are those of its two halves. The half behind it comes first, because it follows if the middle
-    // passes.
+    // With few edges, spare lanes evaluate the midpoints that the next bisections may need. Each edge has a binary tree
+    // of midpoints, whose children are the midpoints of the two halves. The half that follows if the midpoint passes is
+    // the first child.
     const int depth = edges == 1 ? 3 : edges == 2 ? 2 : 1, nodes = (1 << depth) - 1;
     for (int k = 0; k < kHalvings && edges > 0; k += depth) {
         struct Node {
@@ -125,7 +127,7 @@ double best_focus_distance(LensSystem lens, double wavelength_nm, double object_
     if (std::isinf(object_distance) && first_order(lens, wavelength_nm).is_afocal()) return kNone;
     lens.iris.blades = 0;
     const AxialRays axial(lens, wavelength_nm, object_distance);
-    // Past the paraxial rim: real pupils are larger at times.
+    // Beyond the paraxial rim, because real pupils can be larger.
     const double reach = 1.5 * lens.open_stop_radius();
     double cross = 0, square = 0;
     for (const auto& [from, to] : passing_intervals(axial, reach)) {

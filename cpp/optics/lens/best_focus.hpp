@@ -6,7 +6,7 @@ namespace REALCAM_NAMESPACE {
 
 namespace best_focus_detail {
 
-/// Nodes and weights of Gauss and Legendre on [0, 1].
+/// Gauss-Legendre nodes and weights on [0, 1].
 template <int N>
 struct GaussRule {
     double node[N], weight[N];
@@ -22,11 +22,11 @@ struct GaussRule {
 
 }  // namespace best_focus_detail
 
-/// Last vertex to the film plane on which the real rays from an axial point make the smallest RMS spot, mm. The iris
-/// counts as round.
+/// Distance from the last vertex to the film plane on which the real rays from an axial point make the smallest RMS
+/// spot, mm. The iris is treated as round. NaN if no ray passes, or for an afocal lens with the object at infinity.
 ///
-/// The rays fill the aperture evenly; x(z) = x0 + m z is straight behind the lens, so the plane of the least mean
-/// square is z = -integral(x0 m) / integral(m^2). NaN where no ray passes, and where an afocal lens looks at infinity.
+/// The rays fill the aperture uniformly; x(z) = x0 + m z is straight behind the lens, so the plane of the least mean
+/// square is z = -integral(x0 m) / integral(m^2).
 double best_focus_distance(LensSystem lens, double wavelength_nm, double object_distance);
 
 }  // namespace REALCAM_NAMESPACE

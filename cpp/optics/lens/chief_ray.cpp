@@ -39,7 +39,7 @@ Vec3d RaysFromFilm::on_last_surface(Vec2<double> share) const {
 
 namespace {
 
-/// Directions, as optical cosines l and m, from one film point to the stop.
+/// Aims rays from one film point at the stop, by their optical direction cosines l and m.
 class StopAim {
 public:
     StopAim(const RaysFromFilm& rays, Vec3d film) : rays_(rays), film_(film) {}
@@ -59,8 +59,8 @@ public:
     }
 
     struct Probe {
-        Vec2<double> miss;  ///< place on the stop, mm
-        Matrix2 slope;      ///< its derivative by the cosines
+        Vec2<double> miss;  ///< offset from the stop's centre, mm
+        Matrix2 slope;  ///< derivative of `miss` by the cosines
 
         double error() const { return hypotenuse(miss.x, miss.y); }
     };
@@ -78,8 +78,8 @@ public:
                       {(p.y[1] - p.y[0]) / kStep, (p.y[2] - p.y[0]) / kStep}}};
     }
 
-    /// The direction whose ray comes nearest to the stop's middle: of an even grid of those to the last surface, then
-    /// of finer and finer ones about the best.
+    /// Returns the direction whose ray comes nearest to the stop's centre: from a regular grid of directions to the
+    /// last surface, then from ever finer grids about the best one. Returns std::nullopt if no ray reaches the stop.
     std::optional<Vec2<double>> nearest(bool within_rims) const {
         constexpr int kAcross = 13, kRays = kAcross * kAcross, kLevels = 3;
         std::optional<Vec2<double>> best;
@@ -125,10 +125,11 @@ private:
     Vec3d film_;
 };
 
-/// From a direction on, by Newton's method; nothing where it leads to no ray that leaves the lens.
+/// Finds the chief ray by Newton's method, starting with a direction. Returns std::nullopt if it does not converge to a
+/// ray that leaves the lens.
 std::optional<ChiefRay> followed(const RaysFromFilm& rays, const StopAim& aim, Vec3d film, Vec2<double> at) {
     constexpr int kMostSteps = 40, kMostHalvings = 24;
-    // Through aspheres rounding leaves more than through spheres; what is not near enough then is no ray.
+    // Rounding errors are larger through aspheres than through spheres, hence the looser limit for accepting a ray.
     const double close = 1e-11 * rays.stop_radius(), near_enough = 1e-7 * rays.stop_radius();
     std::optional<StopAim::Probe> here = aim.probe(at);
     for (int step = 0; here && here->error() > close && step < kMostSteps; ++step) {
@@ -142,7 +143,7 @@ std::optional<ChiefRay> followed(const RaysFromFilm& rays, const StopAim& aim, V
             if (next && next->error() < here->error()) break;
             next.reset();
         }
-        if (!next) break;  // as near as rounding lets it come, or no way leads there
+        if (!next) break;  // converged to rounding, or stuck
         here = next;
         at = there;
     }
@@ -165,7 +166,8 @@ std::optional<ChiefRay> chief_ray_near(const RaysFromFilm& rays, Vec2<double> fi
 std::optional<ChiefRay> chief_ray_of_film_point(const RaysFromFilm& rays, Vec2<double> film) {
     const Vec3d from = rays.film_point(film);
     const StopAim aim(rays, from);
-    // Rays far beyond the rims may come to the middle of the stop by other ways than the lens's image.
+    // Rays far beyond the rims may reach the stop's centre along paths that do not belong to the lens's image. Rays
+    // within the rims are therefore tried first.
     for (const bool within_rims : {true, false})
         if (const std::optional<Vec2<double>> start = aim.nearest(within_rims))
             if (const std::optional<ChiefRay> found = followed(rays, aim, from, *start)) return found;
@@ -174,13 +176,13 @@ std::optional<ChiefRay> chief_ray_of_film_point(const RaysFromFilm& rays, Vec2<d
 
 namespace {
 
-/// By which a chief ray misses the direction of an angle: across it in x, and upwards.
+/// Error of a chief ray's direction relative to a field angle: in x, and upwards in the y-z plane.
 Vec2<double> direction_error(const ChiefRay& ray, double angle_rad) {
     const Vec3d d = ray.scene_direction;
     return {d.x, d.y * std::cos(angle_rad) - d.z * std::sin(angle_rad)};
 }
 
-/// Newton's method in the film point, with differences.
+/// Newton's method in the film point, with a Jacobian by differences. `film`: the start, then the solution.
 std::optional<ChiefRay> chief_ray_at(const RaysFromFilm& rays, Vec2<double>& film, double angle_rad) {
     constexpr int kMost = 20;
     constexpr double kClose = 1e-13, kStep = 1e-5;
@@ -193,7 +195,7 @@ std::optional<ChiefRay> chief_ray_at(const RaysFromFilm& rays, Vec2<double>& fil
         if (!here || !x || !y) return {};
         const Vec2<double> error = direction_error(*here, angle_rad);
         const double size = hypotenuse(error.x, error.y);
-        if (!(size < least)) return least < 1e-9 ? best : std::nullopt;  // as near as rounding lets it come
+        if (!(size < least)) return least < 1e-9 ? best : std::nullopt;  // converged to rounding
         best = here;
         least = size;
         if (size < kClose) return best;

@@ -8,8 +8,8 @@ namespace REALCAM_NAMESPACE {
 
 /// Rays from the film of a lens of any kind to the scene, through the lens without its rims.
 ///
-/// They begin in the frame of the film, whose vertex stands at `film_distance` on its z axis, and end in that of the
-/// camera (film_path_ends). The two are the frames of the last and of the front vertex where the lens is centred.
+/// They start in the film frame, in which the film's vertex lies at z = `film_distance`, and end in the camera frame
+/// (film_path_ends). For a centred lens these are the frames of the last and of the front vertex.
 class RaysFromFilm {
 public:
     RaysFromFilm(const LensSystem& lens, double wavelength_nm);
@@ -17,18 +17,18 @@ public:
     double film_index() const { return path_.entry_index; }
     double scene_index() const { return scene_index_; }
     double film_distance() const { return film_distance_; }
-    /// The opening of the stop counts as round.
+    /// Radius of the stop's opening, which is treated as round, mm.
     double stop_radius() const { return stop_radius_; }
     Vec3d film_point(Vec2<double> film) const;
-    /// A point of the last surface: shares of its clear semi-diameter.
+    /// Point of the last surface; `share`: x and y in units of its clear semi-diameter.
     Vec3d on_last_surface(Vec2<double> share) const;
 
-    /// To the plane of the stop, and into its frame.
+    /// Traces rays to the plane of the stop, in its frame.
     template <int N>
     void to_stop(LensRays<double, N>& rays) const {
         trace_lens(open_.first(to_stop_), rays);
     }
-    /// The same for rays that the rims on the way let pass.
+    /// Traces rays to the stop like to_stop, but with the rims in front of it blocking rays.
     template <int N>
     void to_stop_within_rims(LensRays<double, N>& rays) const {
         trace_lens(within_rims_.first(to_stop_), rays);
@@ -48,23 +48,23 @@ private:
     int to_stop_;
 };
 
-/// The ray of a film point through the middle of the stop, whether or not a rim blocks it. Directions are unit vectors
-/// in the sense of the light, towards the film.
+/// Chief ray of a film point: through the stop's centre, even if a rim blocks it. Directions are unit vectors in the
+/// direction of the light, towards the film.
 struct ChiefRay {
-    Vec3d film, film_direction;    ///< where it meets the film; frame of the film, mm
-    Vec3d scene, scene_direction;  ///< where it meets the front surface; frame of the camera, mm
+    Vec3d film, film_direction;  ///< intersection with the film; film frame, mm
+    Vec3d scene, scene_direction;  ///< intersection with the front surface; camera frame, mm
 };
 
-/// Nothing where no ray is found: Newton's method, begun with the ray that comes nearest to the stop's middle of a grid
-/// of those to the last surface.
+/// Finds the chief ray of a film point by Newton's method. It starts with the ray nearest to the stop's centre out of a
+/// grid of rays to the last surface. Returns std::nullopt if no ray is found.
 std::optional<ChiefRay> chief_ray_of_film_point(const RaysFromFilm& rays, Vec2<double> film);
 
-/// The same by Newton's method alone, begun with the ray of these optical direction cosines (x and y, towards the
-/// scene).
+/// Finds the chief ray by Newton's method alone, starting with these optical direction cosines (x and y, towards the
+/// scene). Returns std::nullopt if it does not converge.
 std::optional<ChiefRay> chief_ray_near(const RaysFromFilm& rays, Vec2<double> film, Vec2<double> cosines);
 
-/// The chief ray that comes at an angle to the camera's axis, in its y-z plane: above 0 light rises towards +y. It is
-/// followed from the middle of the film in steps of at most 5 degrees.
+/// Finds the chief ray at an angle to the camera's axis, in its y-z plane; above 0 light rises towards +y. It is
+/// followed from the film's centre in steps of at most 5 degrees. Returns std::nullopt if a step fails.
 std::optional<ChiefRay> chief_ray_of_angle(const RaysFromFilm& rays, double angle_rad);
 
 }  // namespace REALCAM_NAMESPACE

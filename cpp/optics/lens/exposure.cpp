@@ -11,7 +11,7 @@ namespace realcam {
 
 namespace {
 
-/// Which rays of these sines pass the lens, from the middle of the film in the meridional plane.
+/// For each optical sine: true if the meridional ray from the film's centre passes the lens.
 std::vector<bool> passing(const LensPath<double>& path, double film_distance, const std::vector<double>& sines) {
     constexpr std::size_t kBlock = 64;
     const double n = path.entry_index;
@@ -39,10 +39,10 @@ double axis_irradiance(LensSystem lens) {
     const LensPath<double> path(lens, LightDirection::to_scene, lens.wavelength_nm);
     const Surface& last = lens.surfaces.back();
     const double n = path.entry_index, rim = last.clear_semi_diameter;
-    // The steepest ray that can meet the last surface; its rim may bulge towards the film.
+    // Steepest ray that can hit the last surface, whose rim may bulge towards the film.
     const double behind = lens.film_distance - std::max(last.sag(rim), 0.0);
     const double widest = behind > 0 ? n * std::sin(std::atan(1.02 * rim / behind)) : n;
-    // Even steps find what is blocked, and steps by a share the smallest stop.
+    // Linear steps find obstructions; geometric steps find the smallest stop.
     constexpr int kEven = 1024, kByShare = 512;
     const double smaller = std::exp2(-0.125);
     std::vector<double> sines;
@@ -52,7 +52,7 @@ double axis_irradiance(LensSystem lens) {
     std::sort(sines.begin(), sines.end());
     const std::vector<bool> passes = passing(path, lens.film_distance, sines);
 
-    // The edges of the light, halved to the last digit.
+    // Edges of the light, bisected to the last digit.
     constexpr int kHalvings = 52;
     std::vector<double> open, shut, sign;
     for (std::size_t i = 1; i < sines.size(); ++i) {

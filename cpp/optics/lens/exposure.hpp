@@ -4,8 +4,9 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Irradiance in the middle of the film for unit radiance: the area, in direction cosines, that passes the lens there,
-/// pi sin^2(theta') less what is blocked in the middle. By real rays in the meridional plane; the iris counts as round.
+/// Irradiance at the film's centre for unit radiance: the area that passes the lens in direction cosines, pi
+/// sin^2(theta') less a central obstruction. Computed with real meridional rays; the iris is treated as round. Throws
+/// InputError unless the lens is a centred lens of revolution.
 double axis_irradiance(LensSystem lens);
 
 }  // namespace REALCAM_NAMESPACE

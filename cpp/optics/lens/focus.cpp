@@ -15,7 +15,7 @@ namespace realcam {
 
 namespace {
 
-/// With as many digits as tell it from `other`.
+/// Formats a length in metres, with enough digits to tell it from `other`.
 std::string metres(double mm, double other = kInfinity) {
     char text[40], against[40];
     for (int digits = 3; digits <= 17; ++digits) {
@@ -26,7 +26,7 @@ std::string metres(double mm, double other = kInfinity) {
     return text;
 }
 
-/// The lens with its focusing group moved towards the film.
+/// Returns the lens with its focusing group moved towards the film by `shift`, mm.
 LensSystem with_group_moved(LensSystem lens, double shift) {
     const auto first = static_cast<std::size_t>(lens.focusing.group_first);
     const auto last = static_cast<std::size_t>(lens.focusing.group_last);
@@ -39,23 +39,23 @@ LensSystem with_group_moved(LensSystem lens, double shift) {
     return lens;
 }
 
-/// Tolerance of the object plane of a focused lens, as a share of the focus distance.
+/// Tolerance of the object plane of a focused lens, relative to the focus distance.
 constexpr double kFocusTolerance = 1e-9;
 
 [[noreturn]] void fail(const LensSystem& lens, double focus_distance, const std::string& reason) {
     throw InputError("cannot focus at " + metres(focus_distance) + ": lens \"" + lens.name + "\" " + reason);
 }
 
-/// Tolerance of the sum of lengths that place object, lens and film, as a share of the focus distance.
+/// Tolerance of the sum of the lengths from object to film, relative to the focus distance.
 constexpr double kRounding = 1e-14;
 
-/// The film distance for an object plane beyond `nearest`, where the image moves less than the object: by the square of
-/// the magnification, mostly next to nothing. So secants that begin far away are there in two or three steps. Nothing
-/// where they are not. `length` is the lens's.
+/// Returns the film distance for an object plane beyond `nearest`. There the image moves less than the object, by the
+/// square of the magnification, so that secants from a distant start converge in two or three steps. Returns
+/// std::nullopt if they do not. `length`: front to last vertex.
 template <class ImageOf>
 std::optional<double> image_by_secants(ImageOf&& image_of, double length, double focus_distance, double nearest) {
     constexpr int kMost = 8;
-    // As if the film stood at the last vertex.
+    // Start as if the film were at the last vertex.
     double object = focus_distance - length, before = 0, object_before = 0;
     for (int i = 0; i < kMost && object > nearest; ++i) {
         const double image = image_of(object), excess = object + length + image - focus_distance;
@@ -70,7 +70,8 @@ std::optional<double> image_by_secants(ImageOf&& image_of, double length, double
     return {};
 }
 
-/// Object to film, by real rays, has its minimum near magnification -1; the far branch is the photographic one.
+/// Focuses by moving the whole lens. The distance from object to film, by real rays, has its minimum near magnification
+/// -1; the branch of more distant objects is the photographic one.
 LensSystem moved_as_a_whole(LensSystem lens, double focus_distance) {
     const auto image_of = [&](double object) { return best_focus_distance(lens, lens.wavelength_nm, object); };
     if (std::isinf(focus_distance)) {
@@ -79,17 +80,17 @@ LensSystem moved_as_a_whole(LensSystem lens, double focus_distance) {
     }
     const double length = lens.last_vertex();
     const auto excess = [&](double object) { return object + length + image_of(object) - focus_distance; };
-    // Paraxially s = -ffd + f / |m|, so m = -1 lies at s = f - ffd; inside the lens where the front focal point lies
-    // deep in it, as in a fisheye.
+    // Paraxially s = -ffd + f / |m|, so m = -1 lies at s = f - ffd. That is inside the lens if the front focal point
+    // lies deep in it, as in a fisheye: hence the limit of 0.
     const FirstOrder data = first_order(lens, lens.wavelength_nm);
     double near = std::max(0.0, std::fabs(data.effective_focal_length) - data.front_focal_distance);
     if (const std::optional<double> image = image_by_secants(image_of, length, focus_distance, near)) {
         lens.film_distance = *image;
         return lens;
     }
-    const double far = focus_distance - length;  // there object to film is longer by the image distance
+    const double far = focus_distance - length;  // object to film is longer by the image distance here
     double excess_near = excess(near);
-    // If an object is very near, it may be that no ray passes the lens. A little further away some do.
+    // If no ray of a very near object passes the lens, move the object away until some do.
     for (int i = 30; i > 0 && std::isnan(excess_near) && near < far; --i) {
         const double further = near + std::ldexp(far - near, -i);
         excess_near = excess(further);
@@ -111,10 +112,10 @@ LensSystem moved_as_a_whole(LensSystem lens, double focus_distance) {
     return lens;
 }
 
-/// The film goes along the last axis to where the image is, which then moves by the square of the magnification: not
-/// at all, for the first step. Secants find the place.
+/// Focuses by moving the film along the last axis to the image. The image itself then moves by the square of the
+/// magnification, which is taken as 0 in the first step. Secants find the position.
 LensSystem film_moved(LensSystem lens, double focus_distance) {
-    const double start = lens.film_distance, ahead = std::copysign(1.0, start);  // where the light goes there
+    const double start = lens.film_distance, ahead = std::copysign(1.0, start);  // direction of the light there
     const double tolerance = 1e-12 * std::max(std::fabs(lens.film_position()), 1.0);
     double before = 0, at_before = start;
     constexpr int kMost = 60;
@@ -125,7 +126,8 @@ LensSystem film_moved(LensSystem lens, double focus_distance) {
         const double slope = i == 0 ? -1 : ahead * (error - before) / (lens.film_distance - at_before);
         before = error;
         at_before = lens.film_distance;
-        // An image that goes ahead of the film, or stays behind it, is that of another plane or of none.
+        // The slope is near -1 unless the image belongs to another plane or does not exist: then the step is half the
+        // error.
         lens.film_distance += ahead * (slope < -0.1 && slope > -3 ? -error / slope : 0.5 * error);
         if (!(std::fabs(lens.film_distance - start) < kLongest)) break;
     }
@@ -142,9 +144,9 @@ LensSystem moved_by_group(const LensSystem& lens, double focus_distance) {
     const double start = error(0), tolerance = kFocusTolerance * std::fabs(lens.film_position());
     if (start == 0) return lens;
     std::optional<FaceCrossing> crossing;
-    // The nearest root is wanted, as some groups image a plane at a second, far position, where the lens is quite
-    // another one. So the search goes outwards on both sides at once, by distance. A change of sign where the image
-    // goes through infinity, or where the last ray ends, is no root.
+    // The nearest root is the right one, as some groups also image a plane at a second, distant position, at which the
+    // lens is quite another one. The search therefore proceeds outwards on both sides, by distance. A sign change at
+    // which the image passes through infinity, or the last ray vanishes, is no root.
     constexpr int kSteps = 200;
     struct Side {
         double step, inner;
@@ -206,7 +208,7 @@ std::optional<double> film_distance_at_infinity(LensSystem lens) {
         const double distance = best_focus_distance(lens, lens.wavelength_nm, kInfinity);
         return distance > 0 ? std::optional(distance) : std::nullopt;
     }
-    // As if all stood on one axis, to begin with.
+    // Start with the paraxial focus of the centred lens.
     lens.film_distance = first_order(centred(lens), lens.wavelength_nm).back_focal_distance;
     if (!std::isfinite(lens.film_distance) || lens.film_distance == 0) return {};
     try {

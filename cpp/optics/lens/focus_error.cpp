@@ -14,14 +14,15 @@ namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-/// All light of the object point that the middle of the film sees, through a lens of any kind, by where it crosses the
-/// plane across the chief ray in which that meets the front surface: there it is even.
+/// All light of the object point that the chief ray of the film's centre comes from, through a lens of any kind. Rays
+/// are parametrised by their intersection with the plane perpendicular to the chief ray at the front surface, over
+/// which the light is uniform.
 class CentralBundle {
 public:
     using Entry = Vec2<double>;
 
     bool mirrored = false;
-    Entry middle = {0, 0}, reach;  ///< of a rectangle that holds what passes by first order
+    Entry middle = {0, 0}, reach;  ///< first-order bounds of what passes: centre and half sides
 
     CentralBundle(const LensSystem& lens, const ParabasalRays& rays, double inverse_distance)
         : path_(lens, LightDirection::to_film, lens.wavelength_nm, film_path_ends(lens, LightDirection::to_film)),
@@ -60,8 +61,8 @@ private:
     double inverse_distance_;
 };
 
-/// z of the plane across the z axis in which the rays come nearest together, by least squares: with x(z) = x0 + z m,
-/// all less their means, it is -sum(x0 m) / sum(m^2).
+/// z of the plane perpendicular to the z axis in which the rays make the smallest RMS spot: with x(z) = x0 + z m, both
+/// relative to their means, it is -sum(x0 m) / sum(m^2).
 double narrowest(const CentralBundle& bundle) {
     constexpr BundleSampling kSampling = {24, 8};
     constexpr int kBlock = 16;
@@ -109,7 +110,7 @@ double focus_error(const LensSystem& lens, double focus_distance) {
     LensSystem round = lens;
     round.iris.blades = 0;
     const ParabasalRays rays = parabasal_rays(round, lens.wavelength_nm);
-    // In the frame of the camera the object plane lies at this z; the light comes from there.
+    // z of the object plane in the camera frame.
     const double plane = camera_film_position(lens) - focus_distance;
     const double distance = (rays.chief.scene.z - plane) / rays.chief.scene_direction.z;
     if (!(distance > 0)) return kNone;

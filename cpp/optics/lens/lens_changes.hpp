@@ -8,12 +8,13 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Throws InputError where the lens has no surface of that number, counted from 0.
+/// Throws InputError if the lens has no surface of this index, counted from 0.
 void check_surface_exists(const LensSystem& lens, int index);
 
 namespace lens_changes_detail {
 
-/// Brings a changed value into the zoom positions: into all of them where zooming does not change it.
+/// Applies a change of a value to the zoom positions: to all of them if zooming does not change the value, otherwise to
+/// the current one.
 template <class Get>
 void change_zoom_value(ZoomRange& zoom, double change, const Get& value) {
     const double first = value(zoom.positions.front());
@@ -25,31 +26,33 @@ void change_zoom_value(ZoomRange& zoom, double change, const Get& value) {
 
 }  // namespace lens_changes_detail
 
-/// The lens with other surfaces in place of some, by their numbers from 0. All else stays, the film's place too:
-/// focused() brings the picture into focus again. A thickness that zooming changes, changes in the current position. A
-/// diaphragm that is wide open stays so. Throws InputError where there is no such surface, and LensFileError where the
-/// lens cannot be built.
+/// Returns the lens with some surfaces replaced, by their indices from 0. Everything else is unchanged, also the film's
+/// position: focused() restores the focus. If zooming changes a replaced thickness, only that of the current position
+/// is changed. A diaphragm that is wide open stays so. Throws InputError if there is no such surface, and LensFileError
+/// if the lens cannot be built.
 LensSystem with_surfaces(LensSystem lens, const std::map<int, Surface>& surfaces);
 
-/// The same for one surface.
+/// Returns the lens with one surface replaced (with_surfaces).
 inline LensSystem with_surface(LensSystem lens, int index, const Surface& surface) {
     return with_surfaces(std::move(lens), {{index, surface}});
 }
 
-/// The lens with other blades, which leave the same area open: its f-number stays. Throws LensFileError.
+/// Returns the lens with other diaphragm blades and the same open area: its f-number is unchanged. Throws LensFileError
+/// if the blades are invalid.
 LensSystem with_iris(LensSystem lens, const IrisShape& iris);
 
-/// The same where what is left out stays. Throws InputError also where a round diaphragm gets no blades.
+/// Changes the given properties of the diaphragm blades and keeps the others. Throws InputError if a round diaphragm
+/// gets a rounding or rotation without `blades`, and LensFileError if the blades are invalid.
 LensSystem with_iris(LensSystem lens, std::optional<int> blades, std::optional<double> rounding,
                      std::optional<double> rotation_deg);
 
-/// The lens with a coating on all faces that it is for: a mirror's on all mirrors, any other on all faces between air
-/// and glass; `unknown` takes what is known of both away. Cemented faces stay as they are. Throws InputError where the
-/// lens has no such face.
+/// Returns the lens with a coating on all faces that it suits: a mirror coating on all mirrors, any other on all faces
+/// between air and glass; `unknown` removes the coatings of both. Cemented faces are unchanged. Throws InputError if
+/// the lens has no such face.
 LensSystem with_coating(LensSystem lens, const Coating& coating);
 
-/// The same on given surfaces, counted from 0. Throws InputError where there is no such surface, and LensFileError
-/// where the coating does not fit it.
+/// Returns the lens with a coating on these surfaces, counted from 0. Throws InputError if there is no such surface,
+/// and LensFileError if the coating does not suit it.
 LensSystem with_coating(LensSystem lens, const Coating& coating, const std::vector<int>& surfaces);
 
 }  // namespace REALCAM_NAMESPACE

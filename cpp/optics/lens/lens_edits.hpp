@@ -9,11 +9,11 @@ namespace REALCAM_NAMESPACE {
 
 namespace lens_edits_detail {
 
-/// What zooming changes in a lens, from the lens in each of its positions.
+/// Returns the zoom range of an edited lens, given the edited lens in each of its zoom positions.
 ZoomRange zoom_of(const LensSystem& edited, const ZoomRange& before, const std::vector<LensSystem>& states);
 
-/// The lens with `edit` applied to it as it stands and in each of its zoom positions. Throws LensFileError where it
-/// cannot be built then.
+/// Returns the lens with `edit` applied to its current state and to each of its zoom positions. Throws LensFileError if
+/// the result cannot be built.
 template <class Edit>
 LensSystem edited_in_all_states(const LensSystem& lens, Edit&& edit) {
     LensSystem edited = edit(lens);
@@ -28,33 +28,33 @@ LensSystem edited_in_all_states(const LensSystem& lens, Edit&& edit) {
 
 }  // namespace lens_edits_detail
 
-/// The lens for another film. Throws LensFileError for sizes that are none.
+/// Returns the lens with another film size, mm. Throws LensFileError if a size is invalid.
 LensSystem with_film(LensSystem lens, double width, double height);
 
-/// The lens for a film of this radius of curvature, mm: below 0 hollow towards the lens, infinite flat. Throws
-/// LensFileError where the film does not reach its corners.
+/// Returns the lens with a film of this radius of curvature, mm: below 0 concave towards the lens, infinite flat.
+/// Throws LensFileError if the radius is too short for the film's corners.
 LensSystem with_film_radius(LensSystem lens, double radius_of_curvature);
 
-/// All lengths times `factor`, film and focus distances among them; coatings keep their thickness. Throws InputError
-/// for a factor that is not positive, LensFileError where the lens cannot be built.
+/// Returns the lens with all lengths multiplied by `factor`, also film and focus distances; coatings keep their
+/// thickness. Throws InputError if the factor is not positive, LensFileError if the lens cannot be built.
 LensSystem scaled(const LensSystem& lens, double factor);
 
-/// The lens turned round, its last surface towards the scene, and focused at infinity: the film is where infinity is
-/// sharpest, or `film_distance` behind the last vertex. Throws InputError for lenses that are not centred ones of
-/// revolution, and LensFileError where infinity has no real image there and
-/// no distance is given, and where the medium at the film is not air.
+/// Returns the reversed lens, its last surface towards the scene, focused at infinity: the film lies where infinity is
+/// sharpest, or `film_distance` behind the last vertex. Throws InputError unless the lens is a centred lens of
+/// revolution. Throws LensFileError if the medium at the film is not air, or if infinity has no real image there and no
+/// distance is given.
 LensSystem reversed(const LensSystem& lens, std::optional<double> film_distance = {});
 
-/// The lens with surfaces put in front of surface `index`, counted from 0, or behind the last one. `gap`: from the
-/// surface in front of them to the first, if it is to change; behind the last surface it has to be given. The film
-/// keeps its distance from the last surface, but stays in its place where surfaces are put behind that. Throws
-/// InputError for places that are none, and LensFileError where the lens cannot be built.
+/// Returns the lens with surfaces inserted in front of surface `index`, counted from 0, or behind the last one. `gap`:
+/// new distance from the preceding surface to the first inserted one; it is required behind the last surface. The film
+/// keeps its distance from the last surface, but keeps its position if surfaces are inserted behind that. Throws
+/// InputError if the index or gap is invalid, and LensFileError if the lens cannot be built.
 LensSystem inserted(const LensSystem& lens, int index, const std::vector<Surface>& surfaces,
                     std::optional<double> gap = {});
 
-/// The lens without surfaces `first` to `last`, counted from 0; those that stay do so in their places, and the film
-/// too. Throws InputError where there are no such surfaces, or where one of them moves those behind it, and
-/// LensFileError where the lens cannot be built.
+/// Returns the lens without surfaces `first` to `last`, counted from 0; the other surfaces and the film keep their
+/// positions. Throws InputError if there are no such surfaces, or one of them moves those behind it, and LensFileError
+/// if the lens cannot be built.
 LensSystem removed(const LensSystem& lens, int first, int last);
 
 }  // namespace REALCAM_NAMESPACE

@@ -12,7 +12,7 @@ namespace realcam {
 
 LensPolynomial::LensPolynomial(const LensSystem& lens, const PupilView& pupil, double film_radius) {
     const FirstOrder data = first_order(lens, lens.wavelength_nm);
-    // In the entrance pupil rays are near the axis at every angle.
+    // In the plane of the entrance pupil rays are near the axis at every field angle.
     plane_ = std::isfinite(data.entrance_pupil_position) ? data.entrance_pupil_position : 0;
     focal_length_ = std::isfinite(data.effective_focal_length) ? std::fabs(data.effective_focal_length) : 1;
     film_radius_ = film_radius;
@@ -90,7 +90,7 @@ void LensPolynomial::choose_degree(const std::vector<TracedRay>& rays, const std
     for (int degree = 0; degree <= kHighestDegree; ++degree) {
         const std::vector<float> fitted = fit(rays, degree);
         const PolynomialError error = error_of(fitted, degree, others);
-        // More terms have to be worth their time.
+        // A higher degree must reduce the error by 20% to be worth its time.
         if (degree > 0 && !(error.rms < 0.8 * error_.rms)) continue;
         floats_ = fitted;
         degree_ = degree;

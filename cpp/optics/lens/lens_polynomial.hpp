@@ -7,25 +7,25 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// How well polynomials do for a lens: on rays that they were not fitted to. Directions are compared, as the places of
-/// their rays on a film at the focal length, mm.
+/// Error of a lens's polynomials on rays that they were not fitted to: the direction error, expressed as a displacement
+/// on a film at the focal length, mm.
 struct PolynomialError {
     double rms = 0, worst = 0;
-    double worst_film_radius = 0;  ///< of the film point of the worst ray, mm
+    double worst_film_radius = 0;  ///< distance of the worst ray's film point from the axis, mm
 };
 
-/// Polynomials fitted to the traced rays of a lens in its state. Owns the memory of its view.
+/// Polynomials fitted to traced rays of a lens in its current state. Owns the memory of its view.
 class LensPolynomial {
 public:
-    static constexpr int kHighestDegree = 4;  ///< of the products, which makes up to ninth powers of film and pupil
+    static constexpr int kHighestDegree = 4;  ///< degree of the products (powers): up to ninth powers of film and pupil
 
-    /// `pupil`: of the lens, for film points up to `film_radius` mm. Throws InputError where no light passes.
+    /// `pupil`: the lens's pupil for film points up to `film_radius` mm. Throws InputError if too few rays pass.
     LensPolynomial(const LensSystem& lens, const PupilView& pupil, double film_radius);
 
     LensPolynomialView view() const;
-    /// The highest sum of the powers of film and pupil coordinates.
+    /// Highest total power of film and pupil coordinates.
     int degree() const { return 2 * degree_ + 1; }
-    /// Coefficients that are not 0.
+    /// The number of coefficients other than 0.
     int terms() const {
         return static_cast<int>(std::count_if(floats_.begin(), floats_.end(), [](float c) { return c != 0; }));
     }
@@ -35,11 +35,12 @@ private:
     static constexpr int kVectors = LensPolynomialView::kVectors;
 
     struct TracedRay {
-        Vec2d film, last;             ///< mm
-        Vec2d vectors[kVectors];      ///< as those of LensPolynomialRay
+        Vec2d film, last;  ///< mm
+        Vec2d vectors[kVectors];  ///< see LensPolynomialRay
     };
 
-    /// x^2, p^2 and x p to all powers up to a sum of theirs, in the view's order.
+    /// Products u^i v^j w^k of u = x^2, v = p^2 and w = x p with i + j + k <= degree, in the view's order; x is the
+    /// film point, p the point on the last vertex plane, both scaled.
     static std::vector<double> powers(const TracedRay& ray, int degree, double film_scale, double last_scale);
     static int products(int degree) { return (degree + 1) * (degree + 2) * (degree + 3) / 6; }
 
@@ -53,10 +54,10 @@ private:
     PolynomialError error_of(const std::vector<float>& coefficients, int degree,
                              const std::vector<TracedRay>& rays) const;
 
-    /// Takes out one coefficient after the other without which the error on other rays stays as it is, to 1%.
+    /// Removes each coefficient in turn if the error on other rays then grows by at most 1%.
     void drop_idle_terms(const std::vector<TracedRay>& others);
 
-    /// Root mean square error of the position and the place in the stop, each as a share of its rim.
+    /// RMS error of the ray's position and of its point on the stop, each in units of its rim's radius.
     double stop_rms(const std::vector<float>& coefficients, const std::vector<TracedRay>& rays) const;
 
     double plane_, focal_length_, film_radius_, last_radius_, front_radius_, last_rim_, front_rim_;

@@ -9,7 +9,7 @@ namespace realcam {
 
 namespace {
 
-/// Puts a motion in front of a surface's own placement. What is behind goes on from there if `goes_on`.
+/// Prepends a motion to a surface's own placement. `goes_on`: the surfaces behind follow it.
 void put_before(Surface& surface, const Affine<double>& motion, bool goes_on) {
     SurfacePlacement& own = surface.placement;
     own = SurfacePlacement::of(own.is_in_place() ? motion : motion * own.frame());
@@ -26,7 +26,7 @@ bool move_each_alone(LensSystem& lens, int first, int last, const Affine<double>
     const auto surface = [&](int i) -> Surface& { return lens.surfaces[static_cast<std::size_t>(i)]; };
     for (int i = first; i <= last; ++i)
         if (!moves_alone(surface(i))) return false;
-    // From the axis in front of the first surface to that in front of surface i.
+    // Frame of the axis in front of surface i, relative to that in front of the first surface.
     Affine<double> to_here;
     for (int i = first; i <= last; ++i) {
         put_before(surface(i), inverse_motion(to_here) * motion * to_here, false);

@@ -9,17 +9,17 @@ namespace realcam {
 
 namespace {
 
-/// Places and directions across a ray.
+/// Coordinates of positions and directions across a ray.
 struct Across {
     Vec3d origin, x, y, z;
 
-    /// y lies in the plane of the frame's y axis and the ray.
+    /// The y axis lies in the plane of the frame's y axis and the ray.
     Across(Vec3d origin, Vec3d direction) : origin(origin), z(direction) {
         x = normalized(cross(std::fabs(z.y) < 0.9999999 ? Vec3d{0, 1, 0} : Vec3d{0, 0, -z.y}, z));
         y = cross(z, x);
     }
 
-    /// Of a ray: where it crosses the plane through the origin, and its direction across.
+    /// Returns a ray's coordinates: its intersection with the plane through the origin, then its direction across.
     std::array<double, 4> of(Vec3d point, Vec3d direction) const {
         const Vec3d at = point - (dot(point - origin, z) / dot(direction, z)) * direction - origin;
         return {dot(at, x), dot(at, y), dot(direction, x), dot(direction, y)};
@@ -31,8 +31,8 @@ constexpr double kOffset[kOffsets] = {-2, -1, 1, 2};
 constexpr double kWeight[kOffsets] = {1.0 / 12, -8.0 / 12, 8.0 / 12, -1.0 / 12};
 using FilmFan = LensRays<double, kInputs * kOffsets>;
 
-/// Rays beside the chief ray, in each input by steps: of the derivative by four of them the errors are of the fourth
-/// order of the step.
+/// Rays about the chief ray, displaced in each input by four steps: the derivatives from them have errors of the fourth
+/// order in the step.
 FilmFan fan_of(const RaysFromFilm& rays, const Across& film, const std::array<double, kInputs>& steps) {
     const double n = rays.film_index();
     FilmFan fan;
@@ -49,7 +49,7 @@ FilmFan fan_of(const RaysFromFilm& rays, const Across& film, const std::array<do
     return fan;
 }
 
-/// By a function of a fan's lane, its derivatives by the place and by the direction at the film.
+/// Derivatives of a function of the fan's lane by the position and by the direction at the film.
 struct ByFilm {
     Matrix2 place, direction;
 
@@ -91,7 +91,8 @@ ParabasalRays parabasal_rays(const LensSystem& lens, double wavelength_nm, Vec2<
 
 ParabasalRays parabasal_rays(const LensSystem& lens, const RaysFromFilm& rays, const ChiefRay& chief) {
     const Across film(chief.film, chief.film_direction), scene(chief.scene, chief.scene_direction);
-    // First with tiny steps, which tell how far a ray moves on the stop. Then with such that it moves by a thousandth.
+    // The first pass has tiny steps, to find how far a ray moves on the stop. The second has steps that move it by a
+    // thousandth of the stop's clear semi-diameter.
     std::array<double, kInputs> steps{1e-6, 1e-6, 1e-6, 1e-6};
     ParabasalRays found{chief, {}, {}, {}, {}, {}, {}, {}, {}};
     for (int pass = 0; pass < 2; ++pass) {
@@ -120,8 +121,8 @@ ParabasalRays parabasal_rays(const LensSystem& lens, const RaysFromFilm& rays, c
             return Vec2<double>{ray[first], ray[first + 1]};
         });
     };
-    // The way back by the inverse, which for light is a transposition: what it keeps is the area of place and
-    // direction.
+    // The map from scene to film is the inverse, which follows by transposition because ray transfer is symplectic: it
+    // conserves etendue, the area in position and direction.
     const ByFilm place = part(0), direction = part(2);
     found.place_by_place = direction.direction.transposed();
     found.place_by_direction = -1 * place.direction.transposed();
@@ -151,13 +152,13 @@ ParabasalData parabasal_data(const LensSystem& lens, double wavelength_nm) {
     const double before = index.front(), behind = index.back();
     const double radius = lens.open_stop_radius();
     const SingularValues power = singular_values(rays.direction_by_place);
-    // Of quotients of differences rounding leaves about so much, 1/mm: a smaller power is none.
+    // Rounding error of the difference quotients, 1/mm: a smaller power counts as 0.
     const double none = std::max(1e-10 * power.larger, 1e-12);
     const bool is_round = power.larger - std::fabs(power.smaller) < 1e-9 * power.larger;
     const bool is_turned_over = power.smaller < 0;
     const double sign = !is_turned_over && std::cos(power.left - power.right) > 0 ? -1 : 1;
     const auto focal_length_of = [&](double p) { return std::fabs(p) < none ? kInfinity : sign / std::fabs(p); };
-    const Matrix2 pupil = rays.stop_by_place.inverse();  // where parallel light enters, by its place on the stop
+    const Matrix2 pupil = rays.stop_by_place.inverse();  // entry of parallel light, by its point on the stop
 
     const auto meridian = [&](double angle, double image_angle, double p) {
         const Vec2<double> v{std::cos(angle), std::sin(angle)}, u{std::cos(image_angle), std::sin(image_angle)};
@@ -168,7 +169,8 @@ ParabasalData parabasal_data(const LensSystem& lens, double wavelength_nm) {
         m.focal_length = focal_length_of(p);
         m.entrance_pupil_diameter = 2 * radius * hypotenuse(width.x, width.y);
         m.f_number = std::fabs(m.focal_length) / m.entrance_pupil_diameter;
-        // Parallel light of this meridian: where its rays, a v apart in front of the lens, come together in u.
+        // Focus of this meridian: rays that are parallel and offset along v in front of the lens meet in their
+        // component along u.
         const Vec2<double> at = rays.place_by_place * v, way = rays.direction_by_place * v;
         const double along =
             std::isinf(m.focal_length) ? kInfinity : -behind * (at.x * u.x + at.y * u.y) / (way.x * u.x + way.y * u.y);
@@ -189,14 +191,14 @@ ParabasalData parabasal_data(const LensSystem& lens, double wavelength_nm) {
     mean.back_focal_distance = 0.5 * (first.back_focal_distance + second.back_focal_distance);
     mean.entrance_pupil_diameter = 2 * radius / std::sqrt(ratio);
     mean.f_number = std::fabs(mean.effective_focal_length) / mean.entrance_pupil_diameter;
-    // Chief rays cross where their places in the reference plane and their directions cancel.
+    // Chief rays cross where their offsets in the reference plane and their directions cancel.
     const double front = rays.chief.scene.z, at_film = lens.film_position();
     mean.entrance_pupil_position = entrance_pupil_middle(rays, before).z;
     const Matrix2 exit = rays.stop_by_film_place.inverse();
     mean.exit_pupil_position =
         at_film + rays.chief.film_direction.z * behind * 0.5 * (exit * rays.stop_by_film_direction).trace();
     mean.exit_pupil_diameter = 2 * radius * std::sqrt(std::fabs(exit.determinant()));
-    // Rays that leave parallel: C q + D p = 0, and q + t p / n = 0 at the front focus.
+    // Rays that leave parallel have C q + D p = 0, and cross at q + t p / n = 0, the front focus.
     mean.front_focal_distance =
         std::isinf(mean.effective_focal_length)
             ? -kInfinity

@@ -46,8 +46,8 @@ FirstOrder first_order(const LensSystem& lens, double wavelength_nm) {
     // A ray through the front focal point, in front of the vertex by -ffd, leaves parallel to the axis.
     data.front_focal_distance = afocal ? -kInfinity : inclined.slope / marginal.slope;
 
-    // Height and slope at the stop are linear in those at the front vertex; the ray through the middle of the stop
-    // crosses the axis in the middle of the entrance pupil.
+    // Height and slope at the stop are linear in those at the front vertex; the ray through the stop's centre crosses
+    // the axis at the centre of the entrance pupil.
     const ParaxialRay height_at_stop = trace_paraxial(lens, wavelength_nm, {1, 0}, 0, stop + 1);
     const ParaxialRay slope_at_stop = trace_paraxial(lens, wavelength_nm, {0, 1}, 0, stop + 1);
     const double radius = lens.open_stop_radius();

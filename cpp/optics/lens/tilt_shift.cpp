@@ -11,7 +11,7 @@ Affine<double> shift(Vec3d by) {
     return {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, by};
 }
 
-/// Of the film's vertex, before anything of it is turned.
+/// Frame of the film's vertex on the last axis, before the film's own placement.
 Affine<double> film_on_axis(const LensSystem& lens) {
     return surface_frames(lens).last_axis * along_axis(lens.film_distance);
 }
@@ -27,7 +27,7 @@ LensSystem with_lens_moved(const LensSystem& lens, const SurfacePlacement& move,
     const Vec3d about = film.origin - Vec3d{0, 0, pivot};
     const Affine<double> motion = shift(about) * move.frame() * shift(-about);
     front = SurfacePlacement::of(motion * front.frame());
-    // The film stays: its placement makes good what the last axis has become.
+    // The film keeps its position: its placement compensates the motion of the last axis.
     moved.film_placement = SurfacePlacement::of(inverse_motion(film_on_axis(moved)) * film);
     validate(moved);
     return moved;

@@ -16,7 +16,7 @@
 namespace realcam {
 namespace {
 
-/// A lens that was brought into a zoom position, with its rings as they stood before.
+/// Returns a lens at rest in a zoom position with the focus and diaphragm settings of `before`.
 LensSystem with_rings_of(const LensSystem& before, LensSystem at_rest) {
     const ZoomRange& zoom = before.zoom;
     const double rest = zoom.positions[static_cast<std::size_t>(zoom.current)].focus_distance;
@@ -32,7 +32,7 @@ std::string zooms_from(const std::vector<double>& focal_lengths) {
     return text;
 }
 
-/// The lens between its zoom positions, over the logarithm of the focal length.
+/// The lens between its zoom positions, interpolated over the logarithm of the focal length.
 class ZoomCurves {
 public:
     ZoomCurves(const LensSystem& lens, const std::vector<double>& focal_lengths) : lens_(lens) {
@@ -49,7 +49,8 @@ public:
         });
     }
 
-    /// At rest, at a place of the curves, which is near the logarithm of its focal length. The film is not in place.
+    /// Returns the lens at rest at the coordinate `place`, which is near the logarithm of its focal length. The film is
+    /// not positioned yet.
     LensSystem at(double place) const {
         LensSystem lens = at_zoom_position(lens_, nearest(place));
         for (std::size_t i = 0; i < thicknesses_.size(); ++i)
@@ -128,7 +129,7 @@ LensSystem zoomed_to_focal_length(const LensSystem& lens, double focal_length_mm
     const bool falls = std::is_sorted(known.begin(), known.end(), std::greater_equal<>());
     if (!(rises || falls) || !(std::min(known.front(), known.back()) > 0))
         throw InputError(name + " has no focal lengths between zoom positions, whose own neither rise nor fall");
-    // What is printed of a focal length has five digits.
+    // Tolerance of 1e-5: focal lengths are printed with five digits.
     const double least = std::min(known.front(), known.back()), most = std::max(known.front(), known.back());
     if (!(focal_length_mm >= least * (1 - 1e-5) && focal_length_mm <= most * (1 + 1e-5))) {
         char text[64];

@@ -6,27 +6,27 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// The index of a zoom position. Throws InputError, naming those that there are.
+/// Returns the index of a zoom position. Throws InputError, listing the existing ones, if there is no such name.
 int zoom_position_named(const LensSystem& lens, const std::string& name);
 
-/// The lens with its zoom ring in another position, counted from 0. The plane in focus stays where it is, a diaphragm
-/// that is wide open stays so, and one that is closed keeps its f-number, as far as it opens there.
-/// Throws InputError where there is no such position, or the plane cannot be brought into focus there.
+/// Returns the lens with its zoom ring in another position, counted from 0. The plane in focus is unchanged, a
+/// diaphragm that is wide open stays so, and one that is closed keeps its f-number, as far as it opens there. Throws
+/// InputError if there is no such position, or the plane cannot be brought into focus there.
 LensSystem zoomed(const LensSystem& lens, int position);
 
-/// The same by name.
+/// Zooms to the position of this name.
 inline LensSystem zoomed(const LensSystem& lens, const std::string& name) {
     return zoomed(lens, zoom_position_named(lens, name));
 }
 
-/// The same at a focal length (of the lens at rest) between those of its positions, of which the nearest is then the
-/// current one. What the ring moves, and a stop whose size changes, go from position to position on monotone cubics
-/// over the logarithm of the focal length, to where the focal length is the one asked for. The film stands where
-/// distant light is sharpest, plus what the positions differ from that. Throws InputError also for a focal length that
-/// the lens does not reach, and for positions whose focal lengths neither rise nor fall.
+/// Zooms to a focal length (of the lens at rest) between those of the positions; the nearest position becomes the
+/// current one. The thicknesses that the ring changes, and a stop of varying size, follow monotone cubics over the
+/// logarithm of the focal length, to where the focal length is the requested one. The film lies where distant light is
+/// sharpest, plus the interpolated offset of the positions' films from there. Throws InputError also for a focal length
+/// that the lens does not reach, and if the focal lengths of the positions neither rise nor fall.
 LensSystem zoomed_to_focal_length(const LensSystem& lens, double focal_length_mm);
 
-/// Of the lens at rest in each of its zoom positions, mm.
+/// Focal lengths of the lens at rest in each of its zoom positions, mm.
 std::vector<double> zoom_focal_lengths(const LensSystem& lens);
 
 }  // namespace REALCAM_NAMESPACE
