@@ -58,7 +58,7 @@ double ApertureShape::reach() const {
             if (half.x > 0) reach = hypotenuse(offset.x, offset.y) + half.x;
             break;
         case ApertureOutline::ellipse:
-            // Of the box about it, cut down where the middle is the vertex.
+            // An off-centre ellipse is bounded by the corners of its bounding box.
             if (offset == Vec2d{0, 0}) return std::max(half.x, half.y);
             hold(std::fabs(offset.x) + half.x, std::fabs(offset.y) + half.y);
             break;

@@ -8,46 +8,46 @@ namespace REALCAM_NAMESPACE {
 
 enum class ApertureOutline { circle, ellipse, rectangle, polygon };
 
-/// A piece in a surface's way that light does not pass. All of them are rectangles or ellipses; a circle is an ellipse,
-/// and the arm of a spider a rectangle that begins in the middle.
+/// An opaque rectangle or ellipse on a surface. A circle is an ellipse with equal semi-axes; a spider arm is a
+/// rectangle with one end at the vertex.
 struct Obscuration {
     bool is_rectangle = false;
     Vec2d half = {0, 0};  ///< half widths or semi-axes, mm
-    Vec2d offset = {0, 0};  ///< of its middle from the vertex, mm
-    double angle_deg = 0;  ///< by which it is turned about its middle, from x towards y
+    Vec2d offset = {0, 0};  ///< centre relative to the vertex, mm
+    double angle_deg = 0;  ///< rotation about its centre, from x towards y
 
     bool operator==(const Obscuration&) const = default;
 };
 
-/// A rectangle along the axes.
+/// Axis-aligned rectangle.
 struct ApertureBox {
     Vec2d low, high;  ///< corners, mm
 };
 
-/// What a surface leaves open, beside the circle of its clear semi-diameter about the vertex. Lengths in mm.
+/// Clear aperture of a surface inside the circle of its clear semi-diameter about the vertex. Lengths in mm.
 struct ApertureShape {
     ApertureOutline kind = ApertureOutline::circle;
-    Vec2d half = {0, 0};  ///< semi-axes or half widths; of a circle both are its radius, 0: the clear semi-diameter's
-    Vec2d offset = {0, 0};  ///< of the middle from the vertex; of a polygon added to its corners
-    std::vector<Vec2d> corners;  ///< of a polygon, one after the other
+    Vec2d half = {0, 0};  ///< semi-axes or half widths; circle: both its radius, or 0 for the clear semi-diameter
+    Vec2d offset = {0, 0};  ///< centre relative to the vertex; added to a polygon's corners
+    std::vector<Vec2d> corners;  ///< polygon's corners, in order along its outline
     std::vector<Obscuration> obscurations;
 
     bool operator==(const ApertureShape&) const = default;
 
-    /// Whether the circle of the clear semi-diameter says it all.
+    /// True if the aperture is exactly the circle of the clear semi-diameter.
     bool is_plain() const { return kind == ApertureOutline::circle && half == Vec2d{0, 0} && obscurations.empty(); }
-    /// Empty: open alike in all directions. Else what it is: "has a rectangular aperture".
+    /// Reason why the aperture is not rotationally symmetric: "has a rectangular aperture"; empty if it is.
     std::string asymmetry() const;
-    /// With all lengths times `factor`.
+    /// Returns the shape with all lengths multiplied by `factor`.
     ApertureShape scaled(double factor) const;
-    /// The rectangle that holds what is open inside a rim about the vertex.
+    /// Bounding box of the open area inside a rim of radius `rim` about the vertex, mm.
     ApertureBox box(double rim) const;
-    /// Radius of the circle about the vertex that holds it, mm; 0: it is that of the clear semi-diameter.
+    /// Radius of the circle about the vertex that encloses the aperture, mm; 0 stands for the clear semi-diameter.
     double reach() const;
 };
 
-/// The arms of a spider: `count` of them, of a width, from the vertex to `length`. The first one makes an angle with
-/// the x axis.
+/// Returns `count` spider arms of the given width, from the vertex to `length`, mm, at equal angles. The first one
+/// makes the angle `angle_deg` with the x axis.
 std::vector<Obscuration> spider_arms(int count, double width, double length, double angle_deg);
 
 }  // namespace REALCAM_NAMESPACE

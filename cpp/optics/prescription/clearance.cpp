@@ -9,18 +9,20 @@ namespace realcam {
 
 namespace {
 
-/// Faces that touch by design seem to cross by what is rounded off printed radii and thicknesses, which have four
-/// digits or more.
+/// Tolerance relative to the clear semi-diameter: faces that touch by design seem to overlap because printed radii and
+/// thicknesses are rounded to four digits or more.
 constexpr double kPrintedDigits = 1e-4;
 
-/// A face between two mirrors, or from a mirror to the end: light meets these in the order of the list, and in one
-/// direction. Behind a mirror it may go through the same glass again, so that those of two runs may overlap.
+/// A face of a run: the surfaces from one mirror (or the front) to the next one (or the end), which light passes in
+/// list order and in one direction. Faces of different runs may overlap, because light may pass the same glass again
+/// behind a mirror.
 struct Face {
     int index;
     double vertex;  ///< z, mm
 };
 
-/// Where two faces are farthest into each other, between two distances from the axis. A face is edged flat at its rim.
+/// Returns the deepest overlap of two faces at distances `from` to `to` from the axis; its depth is negative if they
+/// are apart. Beyond its rim a face is edged flat, at the sag of the rim.
 FaceCrossing deepest(const LensSystem& lens, const Face& first, const Face& second, double direction, double from,
                      double to) {
     const Surface &a = lens.surfaces[static_cast<std::size_t>(first.index)],
@@ -32,8 +34,8 @@ FaceCrossing deepest(const LensSystem& lens, const Face& first, const Face& seco
                            a.sag(std::min(radius, a.clear_semi_diameter));
         if (-direction * gap > result.depth) result.radius = radius, result.depth = -direction * gap;
     };
-    // The gap between two spheres only grows, or only shrinks, on the way to the rim, as its derivative by r^2 has the
-    // sign of the difference of the curvatures. Others are looked at in steps.
+    // The gap between two spheres is monotonic in r, as its derivative by r^2 has the sign of the difference of the
+    // curvatures. Other shapes are sampled in steps.
     const auto is_sphere = [](const Surface& s) { return s.conic == 0 && !s.is_asphere() && s.form.is_none(); };
     const int steps = is_sphere(a) && is_sphere(b) ? 1 : 64;
     const double middle = std::clamp(rim, from, to);
@@ -44,29 +46,29 @@ FaceCrossing deepest(const LensSystem& lens, const Face& first, const Face& seco
     return result;
 }
 
-/// Whether the smaller of an element's faces is hollow. It may be sunk into the glass then, which reaches past it to
-/// the rim of the other, as in the front element of a fisheye.
+/// True if the smaller face of an element is concave: it may be sunk into the glass, which then extends past it to the
+/// rim of the larger face, as in the front element of a fisheye.
 bool is_sunk(const Surface& front, const Surface& back, double direction) {
     const bool is_back = back.clear_semi_diameter < front.clear_semi_diameter;
     const Surface& smaller = is_back ? back : front;
     return direction * smaller.sag(smaller.clear_semi_diameter) * (is_back ? 1 : -1) > 0;
 }
 
-/// Appends the crossings of a run of faces, at most `most` in all. `in_glass`: for each face, whether glass lies
-/// between it and the next one.
+/// Appends the overlaps of a run of faces until `crossings` has `most` entries. `in_glass`: for each face, true if
+/// glass lies between it and the next one.
 void append_crossings(const LensSystem& lens, const std::vector<Face>& run, const std::vector<bool>& in_glass,
                       double direction, std::size_t most, std::vector<FaceCrossing>& crossings) {
     const auto surface = [&](std::size_t i) -> const Surface& {
         return lens.surfaces[static_cast<std::size_t>(run[i].index)];
     };
     for (std::size_t i = 0; i + 1 < run.size(); ++i) {
-        // Out to here faces in between keep the two apart, if they are themselves in order.
+        // Up to this radius the faces between the two keep them apart, provided these do not overlap themselves.
         double between = 0;
         for (std::size_t j = i + 1; j < run.size(); ++j) {
             const Surface &a = surface(i), &b = surface(j);
             const bool element = j == i + 1 && in_glass[i] && !is_sunk(a, b, direction);
             const double from = std::max({between, a.inner_semi_diameter, b.inner_semi_diameter});
-            // Glass has to be there up to its rim; faces with air between them just must not overlap.
+            // An element needs glass up to its larger rim; faces with air between them only must not overlap.
             const double to = element ? std::max(a.clear_semi_diameter, b.clear_semi_diameter)
                                       : std::min(a.clear_semi_diameter, b.clear_semi_diameter);
             const double touch = kPrintedDigits * std::min(a.clear_semi_diameter, b.clear_semi_diameter);
@@ -98,7 +100,7 @@ std::vector<FaceCrossing> find_crossings(const LensSystem& lens, std::size_t mos
             append_crossings(lens, run, in_glass, direction, most, crossings);
             run.clear();
             in_glass.clear();
-            // Behind an axis that is turned round, light goes the other way along it.
+            // A coordinate break that reverses the z axis also reverses the light's direction along it.
             if (i > 0 && surface.placement.frame().z.z < 0) direction = -direction;
         }
         if (surface.bends_light() && alone) {

@@ -8,25 +8,28 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Two faces of a lens that could not be made: light meets the second one in front of the first.
+/// Overlap of two faces: light meets the second one in front of the first, so that the lens cannot be made.
 struct FaceCrossing {
     int first, second;  ///< surfaces, from 0
-    double radius;      ///< from the axis, mm
-    double depth;       ///< by how much they cross there, mm
+    double radius;  ///< distance from the axis, mm
+    double depth;  ///< overlap there along the axis, mm
 };
 
-/// Pairs of refracting or reflecting faces that cross inside their clear apertures, whether or not they are neighbours.
-/// The two faces of an element must not cross anywhere up to the larger of its two rims, because the smaller face is
-/// edged flat unless it is hollow. Stops and apertures are planes of no substance, and may cross a face: a stop may be
-/// given at the vertex of one. Faces of revolution are compared with those that share their axis: not across a tilt or
-/// a decentre. In the order of the light, and no more than `most`.
+/// Returns the pairs of refracting or reflecting faces that overlap inside their clear apertures, whether or not they
+/// are neighbours, in the order of the light, and at most `most` of them.
+///
+/// The two faces of an element must not overlap anywhere up to the larger of its two rims, because the smaller face is
+/// edged flat unless it is concave. Stops and apertures are planes without thickness and may cross a face: a stop may
+/// be specified at the vertex of one. Faces of revolution are compared only with those on the same axis, not across a
+/// tilt or a decentre.
 std::vector<FaceCrossing> find_crossings(const LensSystem& lens,
                                          std::size_t most = std::numeric_limits<std::size_t>::max());
 
-/// The first of them.
+/// Returns the first overlap of find_crossings; std::nullopt if no faces overlap.
 std::optional<FaceCrossing> find_crossing(const LensSystem& lens);
 
-/// Of a centred lens: whether the film lies in front of the rim of the last face, as far as its corners reach.
+/// True if the film of a centred lens cuts through the last face, up to the smaller of the face's rim and the film's
+/// half diagonal. Always false for lenses without rotational symmetry.
 bool film_crosses_lens(const LensSystem& lens);
 
 }  // namespace REALCAM_NAMESPACE

@@ -7,7 +7,7 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// One homogeneous film.
+/// One homogeneous thin film.
 struct CoatingLayer {
     CoatingMaterial material;
     double thickness_nm = 0;  ///< physical, along the normal
@@ -16,23 +16,23 @@ struct CoatingLayer {
 };
 
 enum class CoatingKind {
-    unknown,      ///< not said: whoever asks for numbers has to assume something, and to say so
-    bare,         ///< nothing between the two media
-    layers,       ///< films between the two media of a refracting surface
-    metal,        ///< a mirror: a metal too thick for light to pass, with or without films on it
-    reflectance,  ///< a mirror that reflects a stated share of the light at every angle and wavelength
+    unknown,  ///< unspecified: code that needs a reflectance has to assume a coating, and to report that it does
+    bare,  ///< uncoated
+    layers,  ///< thin films between the two media of a refracting surface
+    metal,  ///< mirror: an opaque metal, with or without films on it
+    reflectance,  ///< mirror with a stated reflectance, equal at all angles and wavelengths
 };
 
-/// What covers a surface: a value. Films keep their thickness, whatever the size of the lens.
+/// Coating of a surface. Scaling the lens does not scale the films' thicknesses.
 struct Coating {
     CoatingKind kind = CoatingKind::unknown;
-    std::string name;  ///< as its author calls it; may be empty
-    /// Layers from the air inwards. The first film touches the medium of the lower index at the d line (of two equal
-    /// ones, the one on the scene's side). The last touches the glass, or a mirror's metal. So one coating fits both
-    /// faces of an element. The first film of a mirror touches the medium that the light comes through.
+    std::string name;  ///< name given by its author; may be empty
+    /// Layers from the air inwards. The first film touches the medium of the lower index at the d line (if both are
+    /// equal, the one on the scene's side); the last touches the glass, or a mirror's metal. One coating therefore fits
+    /// both faces of an element. The first film of a mirror touches the medium that the light comes through.
     std::vector<CoatingLayer> layers;
-    CoatingMaterial metal;  ///< of the kind `metal`
-    double reflectance = 1;  ///< of the kind `reflectance`, a share of the power
+    CoatingMaterial metal;  ///< for the kind `metal`
+    double reflectance = 1;  ///< for the kind `reflectance`: fraction of the power
 
     bool operator==(const Coating&) const = default;
 
@@ -55,12 +55,13 @@ inline Coating stated_reflectance(double reflectance, std::string name = {}) {
     return {CoatingKind::reflectance, std::move(name), {}, {}, reflectance};
 }
 
-/// Physical thickness of a film whose optical thickness, at normal incidence, is so many waves. A quarter is 0.25.
+/// Physical thickness of a film, nm, whose optical thickness at normal incidence is `waves` design wavelengths (0.25: a
+/// quarter-wave film).
 inline double thickness_of_waves(const CoatingMaterial& material, double waves, double design_wavelength_nm) {
     return waves * design_wavelength_nm / material.index(design_wavelength_nm).real();
 }
 
-/// The usual single layer against reflections: a quarter of a wave thick at one wavelength.
+/// The usual single-layer antireflection coating: a quarter wave thick at the design wavelength.
 inline Coating quarter_wave_coating(const CoatingMaterial& material, double design_wavelength_nm) {
     return layered_coating({{material, thickness_of_waves(material, 0.25, design_wavelength_nm)}}, "quarter_wave");
 }

@@ -6,12 +6,13 @@
 namespace REALCAM_NAMESPACE {
 
 inline constexpr std::size_t kMaxCoatingLayers = 1000;
-inline constexpr double kThickestLayer_nm = 1e6;  ///< a millimetre: light no longer interferes in thicker ones
+inline constexpr double kThickestLayer_nm = 1e6;  ///< a millimetre: thicker layers show no interference
 
-/// Throws InputError where a coating cannot be.
+/// Throws InputError if a coating is invalid.
 void check_coating(const Coating& coating);
 
-/// Throws InputError where a coating does not fit its surface.
+/// Throws InputError if a surface's coating does not suit its type. A mirror takes a metal or a reflectance, a
+/// refracting surface takes layers or is bare, a stop or aperture cannot be coated; `unknown` suits all.
 void check_coating_fits(const Surface& surface);
 
 }  // namespace REALCAM_NAMESPACE

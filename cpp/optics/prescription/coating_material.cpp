@@ -8,7 +8,7 @@ std::complex<double> CoatingMaterial::index(double wavelength_nm) const {
     if (points.size() == 1) return {points.front().n, points.front().k};
     const auto [first, last] =
         points.empty() ? glass.known_nm() : std::pair{points.front().wavelength_nm, points.back().wavelength_nm};
-    // A tenth of a nanometre: a table that ends at 656.3 is meant for the line at 656.27.
+    // Tolerance of 0.05 nm: a table that ends at 656.3 is meant for the line at 656.27.
     if (wavelength_nm < first - 0.05 || wavelength_nm > last + 0.05) fail(wavelength_nm, first, last);
     if (points.empty()) {
         const double n = glass.index(wavelength_nm);

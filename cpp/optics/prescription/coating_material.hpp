@@ -8,8 +8,8 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Refractive index n + i k, relative to air, of a film or a metal. Light that goes as exp(i (k x - omega t)) is
-/// absorbed where k > 0.
+/// Refractive index n + i k, relative to air, of a film or a metal. In the convention exp(i (k x - omega t)), k > 0
+/// absorbs.
 struct CoatingMaterial {
     struct Point {
         double wavelength_nm, n, k;
@@ -17,10 +17,10 @@ struct CoatingMaterial {
         bool operator==(const Point&) const = default;
     };
 
-    Glass glass = Glass::air();  ///< n where there are no points; k is 0 then
-    /// Measured n and k, by rising wavelength, straight lines between them. A single point holds at all wavelengths.
+    Glass glass = Glass::air();  ///< gives n, with k = 0, if `points` is empty
+    /// Measured n and k by ascending wavelength, interpolated linearly. A single point holds at all wavelengths.
     std::vector<Point> points;
-    std::string label;  ///< as its author wrote it; empty: as the glass is called
+    std::string label;  ///< name given by its author; if empty, name() is the glass's label
 
     bool operator==(const CoatingMaterial&) const = default;
 
@@ -31,7 +31,7 @@ struct CoatingMaterial {
 
     const std::string& name() const { return label.empty() ? glass.label : label; }
 
-    /// Throws InputError, with the material's name, at a wavelength at which it is not known.
+    /// Throws InputError, naming the material, if the index is not known at this wavelength.
     std::complex<double> index(double wavelength_nm) const;
 
 private:

@@ -6,18 +6,18 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// A meeting of light with a surface.
+/// Ray-surface intersection on an optical path through the lens.
 struct Crossing {
     int surface;        ///< from 0 at the front
-    bool in_order;      ///< the light comes from the medium in front of the surface, in the lens's order
-    bool is_reflected;  ///< by a surface that otherwise lets light pass: a ghost's
+    bool in_order;  ///< true: light arrives from the medium in front of the surface, in prescription order
+    bool is_reflected;  ///< true: a surface that normally transmits reflects here, in a ghost path
 
-    // Indices of refraction; `indices`: those of LensSystem::indices.
-    /// Index of the medium from which the light comes.
+    // The `indices` below are the result of LensSystem::indices.
+    /// Refractive index of the medium from which the light comes.
     double index_before(const std::vector<double>& indices) const { return index(indices, in_order); }
-    /// Index of the medium on the other side of the surface.
+    /// Refractive index of the medium on the other side of the surface.
     double index_beyond(const std::vector<double>& indices) const { return index(indices, !in_order); }
-    /// Index of the medium into which the light goes.
+    /// Refractive index of the medium into which the light goes.
     double index_behind(const std::vector<double>& indices) const {
         return is_reflected ? index_before(indices) : index_beyond(indices);
     }
@@ -28,30 +28,29 @@ private:
     }
 };
 
-/// Two refracting surfaces, from 0 at the front, that reflect light on its way to the film: first the one nearer to the
-/// film. The film itself, which reflects first, has the number behind the last surface's.
+/// Two refracting surfaces, counted from 0 at the front, that reflect light on its path to the film; `first` is the one
+/// nearer to the film and reflects first. The film itself, as `first`, has the index after the last surface's.
 struct GhostPair {
     int first, second;
 
     bool operator==(const GhostPair&) const = default;
 };
 
-/// Whether the number of a GhostPair is the film's.
+/// True if a surface index of a GhostPair denotes the film.
 inline bool is_film(const LensSystem& lens, int surface) {
     return surface == static_cast<int>(lens.surfaces.size());
 }
 
-/// The crossings of light on its way to the film, which every surface transmits or, as a mirror, reflects.
+/// Direct (ghost-free) path to the film: every surface transmits or, as a mirror, reflects.
 std::vector<Crossing> crossings_of(const LensSystem& lens);
 
-/// The crossings of light on its way to the film that the two surfaces reflect. The film is a mirror
-/// (with_film_mirror).
+/// Ghost path to the film by reflection at the two surfaces. The film is a mirror (with_film_mirror).
 std::vector<Crossing> crossings_of(const LensSystem& lens, GhostPair pair);
 
-/// The crossings of light that goes the same way back.
+/// Returns the path of light in the opposite direction.
 std::vector<Crossing> reversed(std::vector<Crossing> way);
 
-/// All pairs whose first surface has one of these numbers and refracts, or is the film.
+/// All pairs whose first surface has an index in [first_begin, first_end) and refracts, or is the film.
 std::vector<GhostPair> ghost_pairs(const LensSystem& lens, int first_begin, int first_end);
 
 /// All pairs of refracting surfaces.

@@ -22,7 +22,7 @@ bool is_short(Vec2d v) {
     return std::fabs(v.x) <= kLongest && std::fabs(v.y) <= kLongest;
 }
 
-/// Past this at the rim a term is no surface.
+/// True if a coefficient exceeds kLargestCoefficient, or its term's sag at the rim exceeds kLongest.
 bool is_too_large(double coefficient, double rim, int power) {
     return !(std::fabs(coefficient) <= kLargestCoefficient &&
              std::fabs(coefficient) * std::pow(rim, power) <= kLongest);
@@ -86,7 +86,7 @@ std::string aperture_error(const Surface& s) {
     return "";
 }
 
-/// Whether the surface is there wherever light can meet it.
+/// True if the sag is finite all over the clear aperture, on a grid of 65 x 65 points.
 bool reaches_rim(const Surface& s) {
     constexpr int kHalf = 32;
     const double rim = s.clear_semi_diameter;

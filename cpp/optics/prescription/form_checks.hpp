@@ -5,7 +5,7 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Why a surface's form, or the shape of its aperture, is one that cannot be; empty: it can.
+/// Returns the reason why a surface's form or aperture shape is invalid; empty if it is valid.
 std::string form_error(const Surface& surface);
 
 }  // namespace REALCAM_NAMESPACE

@@ -10,7 +10,7 @@ namespace realcam {
 
 namespace {
 
-/// By powers of one variable, the constant first.
+/// Coefficients of a polynomial in one variable, the constant first.
 using Polynomial = std::vector<double>;
 
 Polynomial sum(const Polynomial& a, const Polynomial& b, double times_a, double times_b) {
@@ -20,7 +20,7 @@ Polynomial sum(const Polynomial& a, const Polynomial& b, double times_a, double 
     return result;
 }
 
-/// times (a + b t)
+/// Returns p(t) (a + b t).
 Polynomial times_linear(const Polynomial& p, double a, double b) {
     Polynomial result(p.size() + 1, 0.0);
     for (std::size_t i = 0; i < p.size(); ++i) {
@@ -40,7 +40,7 @@ double binomial(int n, int k) {
     return factorial(n) / (factorial(k) * factorial(n - k));
 }
 
-/// Q_m^bfs by Forbes's recurrence, in t = 2 w - 1: his 2 - 4 w is -2 t.
+/// Q_m^bfs by Forbes's recurrence, as polynomials in t = 2 w - 1; his factor 2 - 4 w is -2 t.
 std::vector<Polynomial> bfs_polynomials(int count) {
     std::vector<Polynomial> p = {{2.0}, {2.0, -4.0}}, q;
     std::vector<double> f, g, h;
@@ -70,7 +70,7 @@ std::vector<Polynomial> bfs_polynomials(int count) {
     return q;
 }
 
-/// Q_m^con is Jacobi's polynomial P_m^(0,4)(t).
+/// Q_m^con is the Jacobi polynomial P_m^(0,4)(t).
 std::vector<Polynomial> con_polynomials(int count) {
     std::vector<Polynomial> q = {{1.0}, {-2.0, 3.0}};
     for (int m = 2; m < count; ++m) {
@@ -89,12 +89,12 @@ ZernikeIndex zernike_index(ZernikeOrder order, int number) {
     if (order == ZernikeOrder::noll) {
         int n = 0;
         while ((n + 1) * (n + 2) / 2 < number) ++n;
-        const int place = number - n * (n + 1) / 2 - 1;  // in its row, from 0
+        const int place = number - n * (n + 1) / 2 - 1;  // position among the terms of degree n, from 0
         const int m = n % 2 == 0 ? 2 * ((place + 1) / 2) : 2 * (place / 2) + 1;
         return {n, number % 2 == 0 ? m : -m};
     }
-    // The terms of equal n + |m| are a group; its cosines and sines of falling order, and the one without azimuth last.
-    // The 37th of the usual list is the first of the next group but one.
+    // Terms of equal n + |m| form a group: pairs of cosine and sine with m descending, the term with m = 0 last. Term
+    // 37 of the usual fringe list is (12, 0) instead of the next in order, (6, 6).
     if (number == 37) return {12, 0};
     int group = 0;
     while ((group + 1) * (group + 1) < number) ++group;

@@ -15,7 +15,7 @@ inline constexpr double kLineC_nm = 656.2725;  ///< hydrogen, red
 /// An optical medium: refractive index relative to air at a wavelength in air.
 class Glass {
 public:
-    /// n_k of the Sellmeier equation n^2 = 1 + sum B l^2 / (l^2 - C), l in um, C in um^2.
+    /// One term of the Sellmeier equation n^2 = 1 + sum B l^2 / (l^2 - C), l in um, C in um^2.
     struct SellmeierTerm {
         double B, C;
     };
@@ -29,39 +29,40 @@ public:
     static Glass constant(double index) { return {Formula::cauchy, {index}, {}}; }
     static Glass air() { return constant(1.0); }
 
-    /// From the index at the d line and the Abbe number V_d = (n_d - 1) / (n_F - n_C): the two terms of Cauchy's
-    /// formula that have both. Throws InputError for an index below 1 or an Abbe number that is not positive.
+    /// Two-term Cauchy formula with this index at the d line and Abbe number V_d = (n_d - 1) / (n_F - n_C). Throws
+    /// InputError for an index below 1 or an Abbe number that is not positive.
     static Glass from_abbe_number(double n_d, double abbe_number);
-    /// n = A + B / l^2 + C / l^4 + ..., l in um. Throws InputError where there is no coefficient, or one not finite.
+    /// n = A + B / l^2 + C / l^4 + ..., l in um. Throws InputError if there is no coefficient, or one is not finite.
     static Glass cauchy(std::vector<double> coefficients);
 
-    /// Throws InputError where there is no term, or one not finite.
+    /// Throws InputError if there is no term, or a coefficient is not finite.
     static Glass sellmeier(const std::vector<SellmeierTerm>& terms);
-    /// Interpolated in 1 / l^2 by the cubic through the four nearest points (fewer where fewer are given).
-    /// Throws InputError where there is no point, two have one wavelength, or a number makes no sense.
+    /// Cubic interpolation in 1 / l^2 through the four nearest points (or all, if there are fewer). Throws InputError
+    /// if there is no point, two points have the same wavelength, or a number is invalid.
     static Glass table(std::vector<TablePoint> points);
 
-    /// NaN where the formula has no real value.
+    /// Refractive index; NaN if the formula has no real value.
     double index(double wavelength_nm) const;
 
-    /// Whether it is the same at all wavelengths, as far as is known.
+    /// True if the index is the same at all wavelengths, as far as is known.
     bool has_one_index() const;
-    /// The first and the last wavelength at which it is known, nm: of a table, those of its points; formulas have none.
+    /// Shortest and longest wavelength at which the index is known, nm: the range of a table, and (0, inf) for formulas
+    /// and tables of one point.
     std::pair<double, double> known_nm() const;
 
     bool is_air() const { return formula_ == Formula::cauchy && coefficients_ == std::vector<double>{1.0}; }
 
     bool operator==(const Glass&) const = default;
 
-    /// As the lens's author wrote it: a name, a number, a pair; empty for air.
+    /// Name given by the lens's author: a catalogue name, a number, or a pair; empty for air.
     std::string label;
 
     enum class Formula { cauchy, sellmeier, table };
 
-    /// All that a glass consists of, for whoever stores it.
+    /// The complete data of a glass, for serialisation.
     struct Parts {
         Formula formula;
-        std::vector<double> coefficients;  ///< of Cauchy's formula; B and C by turns of Sellmeier's
+        std::vector<double> coefficients;  ///< Cauchy: A, B, C, ...; Sellmeier: B and C alternating
         std::vector<TablePoint> points;
         std::string label;
     };

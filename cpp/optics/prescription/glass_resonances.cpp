@@ -11,7 +11,7 @@ WavelengthRange between_resonances(const Glass& glass) {
     if (parts.formula != Glass::Formula::sellmeier) return range;
     for (std::size_t i = 1; i < parts.coefficients.size(); i += 2) {
         if (!(parts.coefficients[i] > 0)) continue;
-        const double resonance = 1000 * std::sqrt(parts.coefficients[i]);  // C is its square in um^2
+        const double resonance = 1000 * std::sqrt(parts.coefficients[i]);  // C = wavelength^2, um^2
         if (resonance < kLineD_nm)
             range.first = std::max(range.first, resonance);
         else

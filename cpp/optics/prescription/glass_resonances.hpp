@@ -5,12 +5,12 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Wavelengths between the resonances of Sellmeier's formula on either side of the d line, nm. At a resonance the glass
-/// is opaque, and beyond it the formula gives numbers that are no glass's index. Other formulas have none.
+/// Range between the nearest resonances of Sellmeier's formula on either side of the d line, nm. At a resonance the
+/// glass is opaque, and beyond it the formula's values are no index of the glass. Returns (0, inf) for other formulas.
 WavelengthRange between_resonances(const Glass& glass);
 
-/// Throws InputError, with the surface and the glass, at a wavelength at which a glass of the lens is not known. This
-/// is outside the points of its table, or at or beyond a resonance of its formula.
+/// Throws InputError, naming the surface and the glass, if a glass of the lens is not known at this wavelength: outside
+/// the points of its table, or at or beyond a resonance of its formula. `purpose` begins the message.
 void check_wavelength_in_glasses(const LensSystem& lens, double wavelength_nm, const std::string& purpose);
 
 }  // namespace REALCAM_NAMESPACE

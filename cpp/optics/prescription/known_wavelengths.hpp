@@ -6,7 +6,7 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Wavelengths from one to another, nm.
+/// Interval of wavelengths, nm.
 struct WavelengthRange {
     double first, last;
 
@@ -21,8 +21,8 @@ std::string glass_text(const LensSystem& lens, std::size_t surface);
 
 }  // namespace known_wavelengths_detail
 
-/// Throws InputError, with the surface and the glass, where a glass is not known at all of these wavelengths: outside
-/// the points of a table whatever is said would be a guess.
+/// Throws InputError, naming the surface and the glass, if a glass is not known over the whole range: outside the
+/// points of a table any index would be a guess. `purpose` begins the message.
 void check_glasses_known(const LensSystem& lens, WavelengthRange range, const std::string& purpose);
 
 }  // namespace REALCAM_NAMESPACE

@@ -5,7 +5,7 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Whether all surfaces are of revolution about one axis. What the film does makes no difference.
+/// True if all surfaces are surfaces of revolution about one common axis. The film's placement is ignored.
 inline bool has_axis(const LensSystem& lens) {
     return std::ranges::all_of(lens.surfaces, [](const Surface& s) { return s.asymmetry().empty(); });
 }

@@ -55,7 +55,7 @@ void check_rim(const Surface& s, std::size_t i) {
     }
 }
 
-/// `direction`: of the light behind the surface, 1 or -1; 0: not known, because surfaces are tilted.
+/// `direction`: direction of the light behind the surface along z, 1 or -1; 0: unknown, because surfaces are tilted.
 void check_thickness(const Surface& s, std::size_t i, double direction) {
     if (!std::isfinite(s.thickness)) fail(i, "the thickness is not a finite number");
     if (std::fabs(s.thickness) > kLongest) fail(i, "the thickness is more than 1e9 mm");
@@ -65,7 +65,7 @@ void check_thickness(const Surface& s, std::size_t i, double direction) {
                     : "the thickness is positive; light travels back behind a mirror, so 0 or less is wanted");
 }
 
-/// Empty: it can be.
+/// Returns the reason why a placement is invalid; empty if it is valid.
 std::string placement_error(const SurfacePlacement& placement) {
     const auto& [decentre, tilt, returns] = placement;
     if (!(std::fabs(decentre.x) <= kLongest && std::fabs(decentre.y) <= kLongest && std::fabs(decentre.z) <= kLongest))
@@ -153,7 +153,7 @@ void check_iris(const IrisShape& iris) {
 }
 
 void check_film_reach(const LensSystem& lens, double corner) {
-    // At the edge of the half sphere there is no place for a pixel.
+    // The film must stay short of a full hemisphere, at whose edge it is parallel to the axis.
     constexpr double kReach = 0.995;
     if (!(corner <= kReach * std::fabs(lens.film_radius_of_curvature)))
         throw LensFileError(

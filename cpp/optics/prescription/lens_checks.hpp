@@ -13,13 +13,13 @@ namespace lens_checks_detail {
 
 std::string mm(double v);
 
-/// With as many digits as a reader wants.
+/// Formats a length with three significant digits.
 std::string short_mm(double v);
 
 }  // namespace lens_checks_detail
 
-// What makes a prescription one that cannot be built, and where. Each throws LensFileError, with the surface's number
-// where it is about one.
+// Checks that a prescription can be built. Each function throws LensFileError, with the surface's number if the error
+// concerns a surface.
 
 void check_surfaces(const LensSystem& lens);
 
@@ -29,16 +29,17 @@ void check_film_size(const LensSystem& lens);
 
 void check_focusing(const LensSystem& lens);
 
-/// That every zoom position is one that can be built.
+/// Checks that the lens can be built in every zoom position.
 void check_zoom(const LensSystem& lens);
 
-/// Everything but the place of the film, which may not be known yet. Throws LensFileError.
+/// Checks everything except the film distance, which may not be known yet. Throws LensFileError.
 void validate(const LensSystem& lens);
 
-/// Why the film cannot lie where it does; empty where it can.
-/// Throws LensFileError where a film that reaches out to `corner` from the axis, mm, is curved more than that.
+/// Throws LensFileError if the film's radius of curvature is too short for a film that reaches out to `corner` from the
+/// axis, mm.
 void check_film_reach(const LensSystem& lens, double corner);
 
+/// Returns the reason why the film distance is invalid; empty if it is valid.
 std::string film_distance_error(const LensSystem& lens);
 
 }  // namespace REALCAM_NAMESPACE

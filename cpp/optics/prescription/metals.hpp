@@ -3,7 +3,7 @@
 
 namespace REALCAM_NAMESPACE {
 
-// Measured refractive indices n + ik of metals that mirrors are made of, as evaporated and clean. wavelength in nm.
+// Measured refractive indices n + ik of mirror metals, as clean evaporated films. Wavelengths in nm.
 
 /// A. D. Rakic, "Algorithm for the determination of intrinsic optical constants of metal films: application to
 /// aluminum", Appl. Opt. 34, 4755 (1995), table 1.

@@ -22,7 +22,7 @@ double polynomial(const std::vector<double>& coefficients, double u) {
     return sum;
 }
 
-/// y^4 and on, or r^4 and on.
+/// Even aspheric terms from the fourth power on; `squared` is r^2, or y^2 for a toroid.
 double even_terms(const Surface& surface, double squared) {
     return squared * squared * polynomial(surface.aspheric, squared);
 }

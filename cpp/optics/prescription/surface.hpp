@@ -11,7 +11,7 @@ namespace REALCAM_NAMESPACE {
 
 enum class SurfaceType {
     refracting,
-    mirror,    ///< light goes back: thicknesses after it are negative until the next mirror
+    mirror,  ///< reverses the light: thicknesses after it are negative until the next mirror
     stop,      ///< the aperture stop, a plane
     aperture,  ///< a plane that only blocks: a rim, or the shadow of a secondary mirror
 };
@@ -19,17 +19,17 @@ enum class SurfaceType {
 /// One row of a lens table. Lengths in mm, lens frame.
 struct Surface {
     SurfaceType type = SurfaceType::refracting;
-    double curvature = 0;          ///< 1/mm; positive where the centre lies on the film side; 0: plane
+    double curvature = 0;  ///< 1/mm; positive if the centre lies on the film side; 0: plane
     double conic = 0;              ///< k: 0 sphere, -1 paraboloid
     std::vector<double> aspheric;  ///< coefficients of r^4, r^6, ..., mm^-3, mm^-5, ...
-    double thickness = 0;          ///< to the next vertex; of the last surface: 0
-    Glass material = Glass::air();  ///< behind the surface, on the light's way to the film
+    double thickness = 0;  ///< to the next vertex; 0 for the last surface
+    Glass material = Glass::air();  ///< medium behind the surface, for light that travels to the film
     double clear_semi_diameter = 0;
-    double inner_semi_diameter = 0;  ///< light closer to the axis is blocked; 0: none
+    double inner_semi_diameter = 0;  ///< light closer to the axis is blocked; 0: no hole
     Coating coating;
     SurfacePlacement placement;
-    SurfaceForm form;              ///< what the sag has beside its conic and its even terms
-    ApertureShape aperture_shape;  ///< what is open of the circle of the clear semi-diameter
+    SurfaceForm form;  ///< sag terms beyond the conic and the even aspheric terms
+    ApertureShape aperture_shape;  ///< open part of the circle of the clear semi-diameter
 
     bool operator==(const Surface&) const = default;
 
@@ -38,14 +38,14 @@ struct Surface {
         return std::any_of(aspheric.begin(), aspheric.end(), [](double a) { return a != 0; });
     }
 
-    /// What keeps a lens with this surface from being a centred one of revolution: "is tilted". Empty: nothing.
+    /// Reason why a lens with this surface is not a centred lens of revolution: "is tilted"; empty if it may be one.
     std::string asymmetry() const;
 
-    /// Height of the surface over its vertex plane, mm; NaN past the edge of the conic.
+    /// Height of the surface over its vertex plane, mm; NaN beyond the edge of the conic.
     double sag(double x, double y) const;
-    /// The same at a radial distance; of a surface that is not of revolution in its yz plane.
+    /// Sag at a radial distance; for a surface without rotational symmetry, in its yz plane.
     double sag(double radius) const { return sag(0, radius); }
-    /// Curvature at the vertex, 1/mm: terms of r^2 bend the surface too. Of surfaces of revolution.
+    /// Curvature at the vertex, 1/mm, including terms of r^2. For surfaces of revolution only.
     double vertex_curvature() const;
 };
 

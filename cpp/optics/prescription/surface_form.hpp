@@ -7,14 +7,15 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// What the sag of a surface begins with. Its own radius and conic are those of the section in the yz plane.
+/// Base shape to which the other terms of the sag are added. The radius and conic of Surface belong to the section in
+/// the yz plane.
 enum class BaseForm {
-    conic,     ///< of revolution
+    conic,  ///< conic of revolution
     biconic,   ///< (c_x x^2 + c_y y^2) / (1 + sqrt(1 - (1 + k_x) c_x^2 x^2 - (1 + k_y) c_y^2 y^2))
-    toroid,    ///< the section in the yz plane, even terms of y with it, turned about a line parallel to y
+    toroid,  ///< the section in the yz plane, including its even terms of y, rotated about a line parallel to y
 };
 
-/// A term of the sag: coefficient x^i y^j, mm^(1 - i - j).
+/// Term of the sag: coefficient x^i y^j, in mm^(1 - i - j).
 struct XyTerm {
     int x, y;
     double coefficient;
@@ -23,14 +24,14 @@ struct XyTerm {
 };
 
 enum class ZernikeOrder {
-    noll,    ///< Noll's order, each term of unit root mean square over the circle ("Zernike standard")
+    noll,  ///< Noll's order, each term with an RMS of 1 over the circle ("Zernike standard")
     fringe,  ///< the order of the University of Arizona, each term of amplitude 1 at the rim
 };
 
-/// The sum of Zernike polynomials over a circle, mm. The azimuth counts from the x axis towards y.
+/// Sum of Zernike polynomials over a circle, mm. The azimuth counts from the x axis towards y.
 struct ZernikeTerms {
     ZernikeOrder order = ZernikeOrder::noll;
-    double radius = 1;                 ///< of the circle, mm
+    double radius = 1;  ///< radius of the circle, mm
     std::vector<double> coefficients;  ///< from the first term on, mm
 
     bool operator==(const ZernikeTerms&) const = default;
@@ -51,7 +52,7 @@ struct ForbesTerms {
     bool operator==(const ForbesTerms&) const = default;
 };
 
-/// What the sag of a surface is beside a conic of revolution and its even asphere. The parts are added up.
+/// Sag of a surface beyond a conic of revolution and its even aspheric terms. All parts are added.
 struct SurfaceForm {
     BaseForm base = BaseForm::conic;
     double curvature_x = 0;  ///< biconic: in the xz plane; toroid: 1 / distance from the vertex to the line; 1/mm
@@ -63,13 +64,13 @@ struct SurfaceForm {
 
     bool operator==(const SurfaceForm&) const = default;
 
-    /// Whether there is no such part.
+    /// True if the surface is a conic of revolution with at most even aspheric terms.
     bool is_none() const;
-    /// With all lengths times `factor`.
+    /// Returns the form with all lengths multiplied by `factor`.
     SurfaceForm scaled(double factor) const;
-    /// With the sag turned over.
+    /// Returns the form with its sag negated.
     SurfaceForm turned() const;
-    /// Empty: the form is one of revolution. Else what it is: "is toroidal".
+    /// Reason why the form is not rotationally symmetric: "is toroidal"; empty if it is.
     std::string asymmetry() const;
 };
 

@@ -15,7 +15,7 @@ struct Turn {
     double cos, sin;
 };
 
-/// Exact for right angles, which fold mirrors have.
+/// Cosine and sine, exact for right angles, which occur in fold mirrors.
 Turn turn_by(double degrees) {
     int quarters = 0;
     const double rest = std::remquo(degrees, 90.0, &quarters);
@@ -28,7 +28,7 @@ Turn turn_by(double degrees) {
     }
 }
 
-/// Neither 0 nor any other right angle comes out a rounding off.
+/// Angle in degrees, exact for 0 and all right angles.
 double degrees_of(double sin, double cos) {
     if (sin == 0) return cos < 0 ? 180 : 0;
     if (cos == 0) return std::copysign(90.0, sin);
