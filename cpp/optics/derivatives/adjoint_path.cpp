@@ -10,7 +10,8 @@ namespace realcam {
 
 namespace {
 
-/// A frame's part of the derivative by the variable in a lane. adjoints: of its origin and axes.
+/// Contribution of a frame to the derivative by the variable in a lane. `adjoints`: those of the frame's origin and
+/// axes.
 template <class Frame>
 double sum_of_frame(const Vec3d* adjoints, const Frame& frame, std::size_t lane) {
     double sum = 0;
@@ -52,7 +53,7 @@ AdjointPath::AdjointPath(const LensSystem& lens, LightDirection direction, doubl
     : path_(lens, direction, wavelength_nm, std::move(variables), ExitFrame::lens) {}
 
 std::vector<double> AdjointPath::gradient(const AdjointRequest& request, const RayLoop& loop) const {
-    // Parts of a fixed size, added up in order: the result is the same on any number of threads.
+    // Partial sums over blocks of fixed size, added in order, make the result independent of the number of threads.
     constexpr std::size_t kPart = 1024;
     const std::size_t width = path_.variable_count(), parts = (request.count + kPart - 1) / kPart;
     std::vector<double> sums(width * parts), gradient(width);
@@ -89,7 +90,7 @@ void AdjointPath::add_rays(const AdjointRequest& request, std::size_t first, std
         add_block(request, at, static_cast<int>(std::min<std::size_t>(kLanes, last - at)), sums);
 }
 
-// Only what is inlined is built for each of the machines.
+// target_clones compiles only inlined code for each instruction set, hence `flatten`.
 __attribute__((flatten)) REALCAM_CLONES void AdjointPath::add_block(const AdjointRequest& request, std::size_t first,
                                                                     int used, Sums& sums) const {
     const auto data = [](const auto& list) { return list.empty() ? nullptr : list.data(); };
@@ -103,7 +104,7 @@ __attribute__((flatten)) REALCAM_CLONES void AdjointPath::add_block(const Adjoin
     const double index = path_.entry_index_;
     const std::size_t count = path_.views_.size();
 
-    // Towards the last surface.
+    // Forward pass: trace and record the rays.
     LensRays<double, kLanes> rays;
     Vec3d from[kLanes];
     double path_to_entry[kLanes] = {};
@@ -126,7 +127,7 @@ __attribute__((flatten)) REALCAM_CLONES void AdjointPath::add_block(const Adjoin
         steps[k + 1].origin = rays.origin, steps[k + 1].direction = rays.direction;
     }
 
-    // Where a ray has ended, one that passes goes on in its lane, with adjoints of 0.
+    // Lanes of rays that have ended repeat a ray that passes, with adjoints of 0.
     int passing = 0;
     while (passing < kLanes && rays.status[passing] != 0) ++passing;
     for (int i = 0; i < used; ++i)
@@ -141,7 +142,7 @@ __attribute__((flatten)) REALCAM_CLONES void AdjointPath::add_block(const Adjoin
             steps[k].direction.set(i, steps[k].direction[passing]);
         }
 
-    // And back.
+    // Reverse pass: adjoints from the last surface to the first.
     RayAdjoints<kLanes> adjoints;
     const Affine<Dual8>& exit = path_.exits_.front();
     const Vec3d axes[3] = {value(exit.x), value(exit.y), value(exit.z)};
@@ -170,7 +171,7 @@ __attribute__((flatten)) REALCAM_CLONES void AdjointPath::add_block(const Adjoin
         const Vec3d of_o = adjoints.origin[i], of_p = adjoints.direction[i];
         const double size = length(given), of_path = request.of_paths[ray];
         const Vec3d unit = (1 / size) * given;
-        const double way = dot(steps[0].origin[i] - from[i], unit) / size;  // to where the trace begins
+        const double way = dot(steps[0].origin[i] - from[i], unit) / size;  // to the start of the trace
         write(request.by_origins, ray, of_o);
         write(request.by_directions, ray,
               (index / size) * (of_p - dot(of_p, unit) * unit) + way * of_o + index * way * of_path * unit);

@@ -4,14 +4,14 @@
 
 namespace REALCAM_NAMESPACE {
 
-// Reverse-mode differentiation. A function of the rays behind a surface has derivatives by these rays: their adjoints.
-// Here they become those by the rays before the surface, and by the surface's numbers. Adjoints of vectors are vectors
-// of derivatives; `of_x` is the adjoint of x. Only the host runs this: nvcc has no vectors of which dual numbers are
-// made.
+// Reverse-mode differentiation. The adjoints of the rays behind a surface are the derivatives of a scalar function by
+// these rays. From them follow the adjoints of the rays before the surface and of the surface's own numbers. The
+// adjoint of a vector is a vector of derivatives; `of_x` is the adjoint of x. Host code only: nvcc lacks the vector
+// types of dual numbers.
 
-/// Where the adjoints of a surface's numbers stand in a list.
+/// Indices of a surface's numbers in its list of adjoints.
 enum SurfaceNumber : int {
-    kFrameOrigin = 0,  ///< three numbers each, for the frame of the surface in that of the one before
+    kFrameOrigin = 0,  ///< three numbers each: frame of the surface relative to the previous one
     kFrameX = 3,
     kFrameY = 6,
     kFrameZ = 9,
@@ -43,9 +43,9 @@ struct AdjointStep {
     }
 };
 
-// A surface at one of its points. It is where a function S is 0, whose gradient points towards the film. `bend` is the
-// adjoint of the point, given that of the gradient. `add_numbers` adds those of the surface's own numbers, given that
-// of the gradient and by how much the function grows as S falls.
+// A point of a surface S = 0, where the gradient of S points towards the film. `bend` returns the adjoint of the point,
+// given that of the gradient. `add_numbers` adds the adjoints of the surface's own numbers, given that of the gradient
+// and `fall`, the derivative of the function by -S.
 
 struct ConicPoint {
     double curvature, conic_factor;
@@ -67,7 +67,7 @@ struct ConicPoint {
 struct AspherePoint {
     double curvature, conic_factor;
     Vec3d at;
-    double w, root;       ///< r^2, and the square root of the conic's sag
+    double w, root;  ///< r^2, and the square root in the conic's sag
     double slope, change;  ///< twice the first and twice the second derivative of the sag by w
 
     AspherePoint(const SurfaceView<double>& surface, Vec3d point)
@@ -76,7 +76,7 @@ struct AspherePoint {
         const double steepness = conic_factor * curvature * curvature;
         root = std::sqrt(1 - steepness * w);
         const double per_w = surface.inverse_search_squared, u = w * per_w, from_middle = u - 0.5;
-        double p = 0, p1 = 0, p2 = 0;  // the polynomial, its derivative, and half of its second one
+        double p = 0, p1 = 0, p2 = 0;  // polynomial, first derivative, half the second derivative
         REALCAM_UNROLL
         for (int i = kMaxAsphericTerms - 1; i >= 0; --i) {
             p2 = p2 * from_middle + p1;
@@ -102,7 +102,7 @@ struct AspherePoint {
         step.add(kCurvature, lane, 0.5 * fall * (w + conic_factor * sag * sag) * inverse - across * cube);
         step.add(kConicFactor, lane,
                  0.5 * curvature * (fall * sag * sag * inverse - across * curvature * curvature * w * cube));
-        double power = w;  // r^2, then r^4, ...: of the derivative of each term by w, over half its power
+        double power = w;  // r^2, then r^4, ...: derivative of each term by w, over half its power
         REALCAM_UNROLL
         for (int i = 0; i < kMaxAsphericTerms; ++i) {
             step.add(kAspheric + i, lane, power * (fall * w - 2 * (i + 2) * across));
@@ -111,16 +111,16 @@ struct AspherePoint {
     }
 };
 
-/// Sag and slopes of a freeform at a place, with the derivatives that its numbers and x and y carry.
+/// Sag and slopes of a freeform at (x, y), with the derivatives carried by the freeform's numbers and by x and y.
 FreeformSags<Dual8, 1> dual_sags(const DualSurface& surface, const Lanes<Dual8, 1>& x, const Lanes<Dual8, 1>& y);
 
-/// Of the numbers of a freeform, those that its dual numbers have in their lanes.
+/// Point of a freeform. Adjoints of its numbers are summed for the variables in the lanes of its dual surfaces.
 struct FreeformPoint {
     const DualSurface* duals;
     int count;
-    Dual8* sums;  ///< of each of the duals, in place of derivatives
+    Dual8* sums;  ///< one per dual surface; `by` accumulates the adjoints of its lanes
     Vec3d at;
-    FreeformSags<Dual8, 1> first;  ///< by x and y in lanes 0 and 1
+    FreeformSags<Dual8, 1> first;  ///< with derivatives by x and y in lanes 0 and 1
 
     FreeformPoint(const DualSurface* of, int number, Dual8* to, Vec3d point)
         : duals(of), count(number), sums(to), at(point) {
@@ -145,10 +145,11 @@ struct FreeformPoint {
     }
 };
 
-/// The adjoints of one ray behind a surface become those before it, in the surface's frame. o and p: the ray before.
+/// Converts the adjoints of one ray from behind a surface to before it, in the surface's frame. `o` and `p`: origin and
+/// direction of the ray before the surface.
 ///
-/// Where S(o + t p) = 0, t changes by -dS / (gradient . p). The rest is the derivative of Snell's law (refract), whose
-/// square roots are read off the refracted ray.
+/// Because S(o + t p) = 0, t changes by -dS / (gradient . p). All other terms are the derivative of Snell's law
+/// (refract), whose square roots are read off the refracted ray.
 template <int N, class SurfacePoint>
 inline void pull_crossing(const SurfacePoint& point, const SurfaceView<double>& surface, Vec3d o, Vec3d p,
                           RayAdjoints<N>& adjoints, AdjointStep<N>& step, int lane) {
@@ -158,7 +159,7 @@ inline void pull_crossing(const SurfacePoint& point, const SurfaceView<double>& 
     const double inverse = 1 / length(gradient);
     const Vec3d normal = inverse * gradient;
     const double along = dot(p, normal), along_behind = dot(behind, normal), change = along_behind - along;
-    // At the critical angle itself, where the slope is infinite, it counts as 0.
+    // At the critical angle the derivative is infinite, and is taken as 0.
     const double share = select(along_behind != 0, dot(of_behind, normal) / along_behind, 0.0);
     const Vec3d of_normal = change * (of_behind - share * p);
     const Vec3d of_gradient = inverse * (of_normal - dot(of_normal, normal) * normal);
@@ -174,7 +175,7 @@ inline void pull_crossing(const SurfacePoint& point, const SurfaceView<double>& 
     point.add_numbers(of_gradient, fall, step, lane);
 }
 
-/// From the frame of a surface to that of the one before, which the rays `before` are in.
+/// Converts adjoints from the frame of a surface to that of the previous one, in which the rays `from` and `along` are.
 template <int N>
 inline void pull_frame(const FrameChange<double>& frame, const Vec3Lanes<double, N>& from,
                        const Vec3Lanes<double, N>& along, RayAdjoints<N>& adjoints, AdjointStep<N>& step) {
@@ -192,16 +193,16 @@ inline void pull_frame(const FrameChange<double>& frame, const Vec3Lanes<double,
     }
 }
 
-/// A surface with what its adjoints need.
+/// A surface with the data for its adjoints.
 struct AdjointSurface {
-    SurfaceView<double> view;  ///< of the kind that its variables ask for; its shift is 0 where the frame changes
+    SurfaceView<double> view;  ///< kind as its variables need; shift is 0 if the frame changes
     FrameChange<double> before;
-    const DualSurface* duals;  ///< of a freeform
+    const DualSurface* duals;  ///< dual surfaces, for a freeform
     int dual_count;
     Dual8* form_sums;
 };
 
-/// The adjoints of N rays behind a surface become those before it. before: the rays behind the surface before.
+/// Converts the adjoints of N rays from behind a surface to before it. `before`: the rays behind the previous surface.
 template <int N>
 inline void pull_surface(const AdjointSurface& surface, const AdjointStep<N>& before, AdjointStep<N>& step,
                          RayAdjoints<N>& adjoints) {

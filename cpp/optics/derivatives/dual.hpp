@@ -4,8 +4,8 @@
 
 #include "../../math/vec3.hpp"
 
-// Written before the functions that most of the time goes into. gcc builds them for several machines, of which the
-// loader picks one. clang would want it in their declarations, too, and cannot have it beside `flatten`.
+// Attribute of the hot functions: gcc compiles a version for each of several instruction sets, and the loader picks
+// one. clang would require the attribute in the declarations, too, and cannot combine it with `flatten`.
 #if defined(__x86_64__) && defined(__linux__) && !defined(__clang__)
 #define REALCAM_CLONES __attribute__((target_clones("avx512f", "avx2", "default")))
 #else
@@ -14,10 +14,10 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// A number with its derivatives by N variables: forward-mode differentiation. Comparisons are those of the value, so
-/// that code with choices takes the branch that a plain number takes.
+/// A number with its derivatives by N variables: forward-mode differentiation. Comparisons use only the value, so that
+/// branches are taken as for a plain number.
 ///
-/// For the host alone: the derivatives are a vector of gcc and clang, which becomes one or some registers of any
+/// Host code only: the derivatives are a vector type of gcc and clang, which maps to one or more registers on any
 /// machine.
 template <int N>
 struct Dual {
@@ -27,11 +27,11 @@ struct Dual {
     Derivatives by = {};
 
     Dual() = default;
-    // Not explicit: the core writes `T sum = 0`.
+    // Implicit, because the core writes `T sum = 0`.
     __attribute__((always_inline)) inline Dual(double v) : value(v) {}
     __attribute__((always_inline)) inline Dual(double v, const Derivatives& derivatives) : value(v), by(derivatives) {}
 
-    /// f(value), where f has this slope.
+    /// Returns the dual number of f(value), given f and its derivative `slope`.
     __attribute__((always_inline)) inline Dual mapped(double f, double slope) const { return {f, slope * by}; }
 
     friend __attribute__((always_inline)) inline Dual operator+(const Dual& a, const Dual& b) {
@@ -68,7 +68,8 @@ struct Dual {
         return a.value >= b.value;
     }
 
-    /// At 0 the slope, which is infinite, counts as 0: of a distance from the axis, on the axis, this is its mean.
+    /// The infinite slope at 0 is taken as 0: for the distance from the axis, at the axis, that is the mean over
+    /// directions.
     friend __attribute__((always_inline)) inline Dual sqrt(const Dual& a) {
         const double root = std::sqrt(a.value);
         return a.mapped(root, root > 0 ? 0.5 / root : 0);
@@ -80,7 +81,7 @@ struct Dual {
     friend __attribute__((always_inline)) inline Dual fabs(const Dual& a) { return a.value < 0 ? -a : a; }
 };
 
-/// More special than that of plain numbers, and so chosen in its place.
+/// More specialised than the template for plain numbers, so that overload resolution prefers it.
 template <int N>
 __attribute__((always_inline)) inline Dual<N> length(Vec3<Dual<N>> a) {
     return sqrt(dot(a, a));

@@ -39,7 +39,7 @@ REALCAM_INLINE SagWithSlopes sag_at(const DualSurface& surface, const Vec3<Dual8
     return {sag.height[0], sag.slope_x[0], sag.slope_y[0]};
 }
 
-/// Where a ray meets a surface, given where that is in double.
+/// Ray-surface intersection in dual numbers, given its point `at` in double.
 REALCAM_INLINE SurfaceHit<Dual8> hit_of(const DualSurface& surface, const Vec3<Dual8>& o, const Vec3<Dual8>& p,
                                         Vec3d at) {
     const SurfaceView<Dual8>& view = surface.view;
@@ -118,7 +118,7 @@ void DualPath::add_surfaces(const LensSystem& lens, const std::vector<DualLens>&
         plain.emplace_back(views_[k], lens.surfaces[static_cast<std::size_t>(surface(k))], own);
         duals_.push_back({plain.back()});
     }
-    std::vector<int> taken(views_.size(), kRayLanes);  // lanes of the last dual surface
+    std::vector<int> taken(views_.size(), kRayLanes);  // occupied lanes of each surface's last dual surface
     for (std::size_t first = 0; first < variables_.size() || first == 0; first += kDualLanes) {
         const DualLens& dual = lenses[first / kDualLanes];
         for (std::size_t k = 0; k < views_.size(); ++k) {
@@ -144,7 +144,7 @@ void DualPath::add_surfaces(const LensSystem& lens, const std::vector<DualLens>&
                 seeded.view.shift = dual.vertices[at] - dual.vertices[static_cast<std::size_t>(before)];
             }
             if (first == 0) {
-                // The numbers themselves, which all share.
+                // Values without derivatives, which all dual surfaces of this surface share.
                 plain[k] = seeded;
                 plain[k].clear_lanes();
                 duals_[k] = {plain[k]};
@@ -213,14 +213,14 @@ REALCAM_CLONES void DualPath::write(const DualSurface& surface, bool has_ray, Ve
 
 REALCAM_CLONES void DualPath::derivatives_behind(const Tape& tape, int surfaces, RayDerivatives& ray) const {
     constexpr std::size_t kNumbers = RayDerivatives::kNumbers;
-    // The seven numbers side by side, and one place that is left over.
+    // Vectors of eight hold the seven numbers; the last element is unused.
     using Numbers = Dual8::Derivatives;
     const std::size_t count = variables_.size();
     const Tape::Step& last = tape.steps_[static_cast<std::size_t>(surfaces) - 1];
     ray.status = RayStatus::ok;
     ray.origin = last.origin, ray.direction = last.direction, ray.path = last.path;
     ray.by_variable.assign(kNumbers * count, 0);
-    // Derivatives of what leaves by what leaves surface k.
+    // Derivatives of the exit ray by the ray behind surface k.
     Numbers by[kRayLanes] = {};
     for (int i = 0; i < kRayLanes; ++i) by[i][i] = 1;
     for (int k = surfaces - 1; k >= 0; --k) {
@@ -249,7 +249,8 @@ REALCAM_CLONES void DualPath::derivatives_behind(const Tape& tape, int surfaces,
     }
     for (int row = 0; row < RayDerivatives::kNumbers; ++row)
         for (int j = 0; j < kRayLanes; ++j) ray.by_start[row][j] = by[j][row];
-    // The start is relative to a vertex that may move, and as long as an index that may change.
+    // The start origin is relative to a vertex that may move, and the start direction is as long as an index that may
+    // change.
     const Vec3d p = tape.start_direction_;
     for (std::size_t v = 0; v < count; ++v) {
         const double moves = entry_positions_[v / kDualLanes].by[v % kDualLanes];

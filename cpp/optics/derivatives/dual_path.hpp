@@ -5,15 +5,15 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Which frame rays leave in.
+/// Frame of the exit rays.
 enum class ExitFrame {
     lens,       ///< the lens frame
-    last_axis,  ///< that of the axis behind the last surface, from its vertex on: the film stands there
-    film,       ///< that of film_path_ends, shifted to the film, whose vertex is in the origin
+    last_axis,  ///< axis behind the last surface, with origin at its vertex; the film is placed along it
+    film,  ///< frame of film_path_ends, shifted so that the film's vertex is its origin
 };
 
-/// A ray where it leaves, and the derivatives of seven numbers: its origin, its optical direction and its optical path
-/// from the start, mm.
+/// An exit ray and the derivatives of its seven numbers: origin, optical direction and optical path from the start, mm.
+/// An optical direction has the length of the refractive index.
 struct RayDerivatives {
     static constexpr int kNumbers = 7;
     RayStatus status = RayStatus::ok;
@@ -23,16 +23,16 @@ struct RayDerivatives {
     std::vector<double> by_variable;  ///< by the variables: seven numbers for each
 };
 
-/// The path of rays through a lens, with derivatives by some of its numbers.
+/// Rays through a lens, with derivatives by some of its numbers.
 ///
-/// At each surface the core's trace finds the crossing in double. From there one step of Newton's method in dual
-/// numbers has the exact derivatives, by the implicit function theorem; and so has the quadratic formula of a conic.
-/// Each surface gives the derivatives of the ray behind it by the ray before it and by the variables that it depends
-/// on. They are multiplied from the last surface backwards, which takes as long for one variable as for all.
+/// At each surface the core's trace finds the intersection in double. One step of Newton's method in dual numbers from
+/// there gives the exact derivatives, by the implicit function theorem; for a conic, the quadratic formula does. Each
+/// surface yields the derivatives of the ray behind it by the ray before it and by the variables that it depends on.
+/// These are multiplied from the last surface backwards, which takes as long for one variable as for all.
 class DualPath {
 public:
-    /// `has_rims`: whether rims, blades and obstructions block rays. Throws InputError for variables that make no
-    /// sense.
+    /// `has_rims`: true if rims, blades and obstructions block rays. Throws InputError for invalid variables
+    /// (check_variables).
     DualPath(const LensSystem& lens, LightDirection direction, double wavelength_nm,
              std::vector<LensVariable> variables, ExitFrame exit, bool has_rims = true);
 
@@ -42,10 +42,10 @@ public:
     double entry_position() const { return entry_position_; }
     double entry_reach() const { return entry_reach_; }
 
-    /// What a ray leaves behind at each surface.
+    /// Record of a traced ray at each surface.
     class Tape {
         friend class DualPath;
-        /// Of a ray's seven numbers behind a surface, by the lanes of a dual surface.
+        /// Derivatives of a ray's seven numbers behind a surface, by the lanes of a dual surface.
         struct Derivatives {
             Dual8::Derivatives of[RayDerivatives::kNumbers];
         };
@@ -59,12 +59,13 @@ public:
         RayStatus status_ = RayStatus::ok;
     };
 
-    /// Follows a ray from an origin relative to the first vertex that the light meets, with an optical direction, over
-    /// the first `surfaces`; negative: all.
+    /// Traces a ray over the first `surfaces` surfaces (negative: all). `origin` is relative to the first vertex that
+    /// the light meets; `direction` is an optical direction.
     RayStatus trace(Vec3d origin, Vec3d direction, Tape& tape, int surfaces = -1) const;
-    /// The derivatives behind the first `surfaces` of a ray that has come so far, in the frame of the last of them.
+    /// Computes the derivatives of a ray behind the first `surfaces` surfaces, which it must have passed, in the frame
+    /// of the last of them.
     void derivatives_behind(const Tape& tape, int surfaces, RayDerivatives& ray) const;
-    /// Those of a ray that has passed, in the exit frame.
+    /// Computes the derivatives of a ray that has passed all surfaces, in the exit frame.
     void derivatives(const Tape& tape, RayDerivatives& ray) const;
 
 private:
@@ -80,11 +81,12 @@ private:
     std::vector<ApertureView<double>> apertures_;
     Iris<double> iris_{};
     LensKind kind_;
-    // The same with derivatives. Of the first, lanes 0 to 5 are those of the ray; others have variables alone.
+    // Dual surfaces of each surface. In the first one, lanes 0 to 5 hold derivatives by the incoming ray; all other
+    // lanes hold those by variables.
     std::vector<std::vector<DualSurface>> duals_;
-    bool leaves_along_axis_ = false;  ///< the exit frame is shifted along z alone, whatever the variables
-    std::vector<Affine<Dual8>> exits_;  ///< from the last surface's frame to the exit frame, by eight variables each
-    std::vector<Dual8> entry_positions_, entry_indices_;  ///< by eight variables each
+    bool leaves_along_axis_ = false;  ///< the exit frame is only shifted along z, whatever the variables
+    std::vector<Affine<Dual8>> exits_;  ///< last surface's frame to exit frame, one for each eight variables
+    std::vector<Dual8> entry_positions_, entry_indices_;  ///< one for each eight variables
     double entry_index_, entry_position_, entry_reach_;
 };
 

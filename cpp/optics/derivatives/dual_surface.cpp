@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
 
-/// f(a's number, b's number) for all numbers of two surfaces that have derivatives.
+/// Calls f(a's number, b's number) for all differentiable numbers of two surface views.
 template <class A, class B, class F>
 void over_numbers(A& a, B& b, F&& f) {
     f(a.shift, b.shift);
@@ -72,7 +72,7 @@ Affine<Dual8> inverse(const Affine<Dual8>& motion) {
     return inverse;
 }
 
-/// As SurfacePlacement::frame, whose cosines and sines are exact for right angles.
+/// SurfacePlacement::frame in dual numbers, which also has exact cosines and sines for right angles.
 Affine<Dual8> frame_of(const Vec3<Dual8>& decentre, const Vec3<Dual8>& tilt_deg) {
     struct Turn {
         Dual8 cos, sin;
@@ -98,7 +98,7 @@ Dual8& component(Vec3<Dual8>& v, int axis) {
     return axis == 0 ? v.x : axis == 1 ? v.y : v.z;
 }
 
-/// With one coefficient, which is 1.
+/// Returns the terms with coefficient `number` equal to 1 and all others 0.
 ForbesTerms unit_forbes(const ForbesTerms& terms, int number) {
     ForbesTerms unit{terms.kind, terms.radius, std::vector<double>(terms.coefficients.size(), 0.0)};
     unit.coefficients[static_cast<std::size_t>(number)] = 1;
@@ -126,7 +126,7 @@ DualLens::DualLens(const LensSystem& lens, double wavelength_nm, const std::vect
             case LensQuantity::film_distance: film_distance.by[lane] = 1; break;
             case LensQuantity::index:
                 indices[s + 1].by[lane] = 1;
-                // The same medium goes on behind mirrors and stops.
+                // Mirrors, stops and apertures have the same medium behind them.
                 for (std::size_t k = s + 1; k < lens.surfaces.size(); ++k) {
                     if (lens.surfaces[k].type == SurfaceType::refracting) break;
                     indices[k + 1].by[lane] = 1;
@@ -167,7 +167,7 @@ Affine<Dual8> DualLens::film(const LensSystem& lens) const {
     const Affine<Dual8> on_axis = along_axis(film_distance) * frame_of(static_cast<Vec3<Dual8>>(own.decentre),
                                                                        static_cast<Vec3<Dual8>>(own.tilt_deg));
     Affine<Dual8> film = inverse(on_axis) * last_axis(lens);
-    // Where light comes from behind, the frame is turned about y.
+    // If light arrives from behind the film, film_path_ends turns its frame about y by 180 degrees.
     const std::optional<Affine<double>> exit = film_path_ends(lens, LightDirection::to_film).exit;
     if (exit && dot(exit->z, (surface_frames(lens).last_axis * own.frame()).z) < 0)
         film = Affine<Dual8>{{-1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, -1.0}, {0.0, 0.0, 0.0}} * film;

@@ -10,22 +10,22 @@ enum class LensQuantity {
     curvature,      ///< 1/mm
     conic,
     aspheric,       ///< coefficient of r^number, mm^(1 - number)
-    thickness,      ///< mm; what follows moves
-    index,          ///< of the medium behind the surface, by the same at all wavelengths
+    thickness,  ///< mm; all that follows moves
+    index,  ///< of the medium behind the surface; changes by the same at all wavelengths
     decentre,       ///< mm along x, y, z: number 0, 1, 2
     tilt,           ///< degrees about x, y, z: number 0, 1, 2
-    curvature_x,    ///< of a biconic or toroid, 1/mm
+    curvature_x,  ///< of a biconic or toroid, 1/mm
     conic_x,        ///< of a biconic
     radial,         ///< coefficient of r^number, mm^(1 - number)
     xy,             ///< coefficient of x^number y^number_y
     zernike,        ///< coefficient of the term `number`, from 1, mm
     forbes,         ///< coefficient a_number, from 0, mm
-    film_distance,  ///< last vertex to film, mm; of no surface
+    film_distance,  ///< last vertex to film, mm; `surface` is ignored
 };
 
-/// One number of a lens by which something is differentiated.
+/// A number of a lens by which functions are differentiated.
 ///
-/// A surface that stands in its place is tilted and decentred alone, and one that does not as its placement says:
+/// Tilts and decentres of a surface without a placement move that surface alone. Those of a surface with one follow
 /// SurfacePlacement::returns.
 struct LensVariable {
     LensQuantity quantity = LensQuantity::curvature;
@@ -35,7 +35,7 @@ struct LensVariable {
     bool operator==(const LensVariable&) const = default;
 };
 
-/// Throws InputError for a surface or number that the lens has not, and for variables without an effect.
+/// Throws InputError for a surface or number that the lens does not have, and for variables without an effect.
 void check_variables(const LensSystem& lens, const std::vector<LensVariable>& variables);
 
 }  // namespace REALCAM_NAMESPACE
