@@ -15,21 +15,21 @@ namespace realcam {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-constexpr double kSmallField = 1e-3;  ///< rad: near the axis, where a lens does not distort
-constexpr double kCloseRays = 1e-3;   ///< share of the entrance pupil
+constexpr double kSmallField = 1e-3;  ///< rad: so near the axis that distortion is negligible
+constexpr double kCloseRays = 1e-3;  ///< ray height as a fraction of the entrance pupil diameter
 
 double angle_of(Vec2<double> field) {
     return hypotenuse(field.x, field.y);
 }
 
-/// Of a field, from the axis outwards; on the axis along y.
+/// Unit vector from the axis towards a field; along y for the field on the axis.
 Vec2<double> outwards(Vec2<double> field) {
     const double angle = angle_of(field);
     return angle > 0 ? Vec2<double>{field.x / angle, field.y / angle} : Vec2<double>{0, 1};
 }
 
-/// How much rays that are close to the axis and parallel to it converge, over the distance between them: the mean of
-/// both meridians. The power but for a sign, in a lens and in all that are nearly it.
+/// Returns by how much rays parallel to the axis at this distance from it converge: their change of slope per mm, the
+/// mean of both meridians. For centred and nearly centred lenses this is the power up to its sign.
 double convergence(const CopyPath::At& path, double distance) {
     LensRays<double, 4> rays;
     for (int i = 0; i < 4; ++i) {
@@ -65,14 +65,14 @@ struct CopyJudge::Parts {
     LensSystem nominal;
     StudyRequest request;
     std::vector<double> wavelengths;
-    std::size_t main = 0;           ///< colour that is nearest to the design wavelength
-    std::vector<Vec2<double>> towards;  ///< for each field, from the axis outwards
-    std::vector<FieldFan> fans;     ///< for each field, for each colour
-    std::vector<FieldFan> middle;   ///< of small fields to the right, left, top and bottom
-    std::vector<double> film;       ///< its place at each field, before it is set, mm behind the last vertex
+    std::size_t main = 0;  ///< index of the colour nearest to the design wavelength
+    std::vector<Vec2<double>> towards;  ///< for each field: unit vector away from the axis
+    std::vector<FieldFan> fans;  ///< for each field, then for each colour
+    std::vector<FieldFan> middle;  ///< fans of small fields to the right, left, top and bottom
+    std::vector<double> film;  ///< film position at each field before compensation, mm behind the last vertex
     int stop;
     double focal_length, close, convergence_drawn;
-    double index;  ///< of refraction, behind the lens
+    double index;  ///< refractive index behind the lens
 
     std::vector<FieldSpot> spots(const CopyPath& path, double film_shift) const {
         const std::size_t colours = wavelengths.size();
@@ -99,12 +99,12 @@ struct CopyJudge::Parts {
         return all;
     }
 
-    /// Of a lens whose element is moved.
+    /// Evaluation of a copy at one shift of its compensating element.
     struct Look {
         CopyPath path;
         std::vector<FieldSpot> spots;
         FilmSetting film;
-        double blur;  ///< what compensators make small: a mean square, or what the contrast lacks
+        double blur;  ///< merit that compensators minimise: a mean square radius, or 1 - mean contrast
     };
 
     Look look(const LensSystem& copy, Vec3d shift) const {
@@ -122,7 +122,8 @@ struct CopyJudge::Parts {
         return result;
     }
 
-    /// By the tops of parabolas through three looks, in each direction in turn and ever closer.
+    /// Minimises the blur over the element shift: the vertex of a parabola through three evaluations, in each direction
+    /// in turn, with decreasing steps.
     Look sharpest(const LensSystem& copy, Vec3d& shift) const {
         Look best = look(copy, shift);
         if (!request.compensators.shift) return best;
@@ -214,7 +215,7 @@ CopyFigures CopyJudge::operator()(const LensSystem& copy) const {
     result.focal_length = std::isfinite(p.focal_length)
                               ? p.focal_length * p.convergence_drawn / convergence(path, p.close)
                               : p.focal_length;
-    // Scale of the picture near the axis, and its middle.
+    // Image scale near the axis, and image centre.
     Vec2<double> places[4], middle{0, 0};
     const double film = copy.film_distance + look.film.shift;
     for (std::size_t k = 0; k < 4; ++k) {

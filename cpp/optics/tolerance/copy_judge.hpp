@@ -6,27 +6,28 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// What became of one field of a copy. NaN where no light passes.
+/// Image quality of one field of a lens copy. NaN if no light passes.
 struct FieldFigures {
-    double rms_spot;    ///< radius about the middle of the spot, of all colours, mm
-    double distortion;  ///< share of the picture's scale near the axis, along the field; 0 on the axis
-    double light;       ///< share of the stop from which light comes
-    Vec2<double> at;    ///< where the chief ray meets the film, mm
+    double rms_spot;  ///< RMS spot radius about the centroid, of all colours, mm
+    double distortion;  ///< along the field, relative to the image scale near the axis; 0 on the axis
+    double light;  ///< fraction of the stop's area that light passes to the film
+    Vec2<double> at;  ///< intersection of the chief ray with the film, mm
     std::vector<double>
-        mtf;  ///< of rays alone times its limit by diffraction; for each frequency along the field, then across it
+        mtf;  ///< geometric MTF times the diffraction limit: all frequencies along the field, then all across it
 };
 
 struct CopyFigures {
-    double focal_length;  ///< of close rays, the mean of both meridians, mm; inf where the lens is afocal
+    double focal_length;  ///< from paraxial rays, mean of both meridians, mm; inf if the lens is afocal
     CopySettings settings;
     std::vector<FieldFigures> fields;
 };
 
-/// Judges lenses that are nearly the one that it was made for, tilted and decentred ones too. Rays are aimed once, in
-/// that lens. It may be asked from several threads.
+/// Monte Carlo tolerance evaluation: computes the image quality of copies that differ little from a nominal lens, also
+/// tilted and decentred ones. Rays are aimed once, in the nominal lens. operator() may be called from several threads.
 class CopyJudge {
 public:
-    /// Throws InputError for an impossible request and where no light passes, and what `loop` throws to stop it.
+    /// Throws InputError if the request is invalid or no light of a field passes; passes on what `loop` throws to stop
+    /// it.
     CopyJudge(const LensSystem& nominal, StudyRequest request, const RayLoop& loop = {});
     ~CopyJudge();
     CopyJudge(CopyJudge&&) noexcept;

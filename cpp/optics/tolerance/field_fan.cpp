@@ -21,7 +21,7 @@ FieldFan::FieldFan(const LensSystem& nominal, double wavelength_nm, const FieldP
     const double reach = stop_reach(nominal);
     const std::vector<PupilPoint> pattern = gauss_rings(rings);
     const std::vector<AimedRay> rays = aim_all(aim, pattern, reach, loop);
-    // Least squares of a linear map; the pattern is not symmetric where rays are missing.
+    // Least-squares fit of a linear map; missing rays make the pattern asymmetric, so cross terms stay.
     double xx = 0, xy = 0, yy = 0;
     Vec2<double> of_x{0, 0}, of_y{0, 0};
     for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -40,7 +40,7 @@ FieldFan::FieldFan(const LensSystem& nominal, double wavelength_nm, const FieldP
                          " reach the stop of lens \"" + nominal.name + "\"");
     by_x_ = {(of_x.x * yy - of_x.y * xy) / determinant, (of_y.x * yy - of_y.y * xy) / determinant};
     by_y_ = {(of_x.y * xx - of_x.x * xy) / determinant, (of_y.y * xx - of_y.x * xy) / determinant};
-    // Chief rays fill the lanes, and count for nothing.
+    // Chief rays with weight 0 fill the last lanes.
     while (entries_.size() % kLanes != 0) {
         entries_.push_back(chief_);
         weights_.push_back(0);
@@ -70,8 +70,8 @@ void FieldFan::start(const CopyPath::At& copy, const Vec2<double>* entries, Lens
     }
 }
 
-/// Where the nominal chief ray meets the copy's stop, seen from its middle. Two lanes, because a single ray stops at
-/// the first rim in its way.
+/// Returns the intersection of the nominal chief ray with the copy's stop, relative to its centre. It takes two lanes,
+/// because a single ray stops at the first rim that blocks it.
 Vec2<double> FieldFan::miss(const CopyPath::At& copy, int stop) const {
     LensView<double> to_stop = copy.view;
     to_stop.count = stop + 1;

@@ -7,30 +7,31 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// The rays of one object point at one wavelength, as they fill the stop of the lens as it was drawn. A copy's stop is
-/// met through slightly other surfaces in front of it: all rays are moved by what its chief ray misses the middle by.
+/// Rays of one object point at one wavelength that fill the stop of the nominal lens. In a copy, slightly different
+/// surfaces in front of the stop displace them on it: all rays are shifted so that the chief ray passes the stop's
+/// centre again.
 class FieldFan {
 public:
-    /// `azimuth_cos`, `azimuth_sin`: of the direction from which the angle counts; (0, 1) is towards y, as FieldPoint
-    /// has it. Throws InputError where no ray reaches the stop.
+    /// `azimuth_cos`, `azimuth_sin`: direction in which the field angle counts; (0, 1) is towards y, as in FieldPoint.
+    /// Throws InputError if no ray reaches the stop.
     FieldFan(const LensSystem& nominal, double wavelength_nm, const FieldPoint& field, double azimuth_cos,
              double azimuth_sin, int rings, const RayLoop& loop);
 
     struct FilmRay {
         Vec2<double> at;  ///< mm, on the plane of the last vertex
         Vec2<double> slope;  ///< dx / dz, dy / dz
-        double weight;  ///< share of the stop's area; 0: the ray does not pass
+        double weight;  ///< fraction of the stop's area; 0: the ray does not pass
     };
 
     struct Traced {
-        FilmRay chief;  ///< whether or not it passes
+        FilmRay chief;  ///< included even if it does not pass
         std::vector<FilmRay> rays;
     };
 
-    /// Through a copy, at this fan's wavelength. `rays`: false leaves all but the chief ray out.
+    /// Traces the fan through a copy at the fan's wavelength. `rays`: false traces the chief ray only.
     Traced through(const CopyPath::At& copy, int stop, bool rays = true) const;
 
-    /// The sum of all rays' weights.
+    /// Sum of the weights of all rays.
     double full_weight() const;
 
 private:
@@ -41,9 +42,9 @@ private:
     Vec2<double> miss(const CopyPath::At& copy, int stop) const;
 
     ObjectPoint object_;
-    double cos_, sin_;  ///< of the turn about the axis from towards y
+    double cos_, sin_;  ///< rotation about the axis, from y to the field's azimuth
     Vec2<double> chief_;
-    Vec2<double> by_x_, by_y_;  ///< how the entry moves with the place on the stop
+    Vec2<double> by_x_, by_y_;  ///< derivatives of the entry point by x and y on the stop
     std::vector<Vec2<double>> entries_;
     std::vector<double> weights_;
 };

@@ -53,8 +53,8 @@ void FieldSpot::add_contrast(double shift, double step, Vec2<double> along, doub
         const double x = ray.at.x + (film + shift) * ray.slope.x - from.x;
         const double y = ray.at.y + (film + shift) * ray.slope.y - from.y;
         const double rise = along.x * (ray.slope.x - chief.slope.x) + along.y * (ray.slope.y - chief.slope.y);
-        // From plane to plane the phase turns on by the same angle. Products of real numbers, because those of
-        // std::complex look for infinities.
+        // The phase advances by the same angle from plane to plane. Real arithmetic, because products of std::complex
+        // check for infinities.
         double real = ray.weight * std::cos(turn * (along.x * x + along.y * y));
         double imaginary = ray.weight * std::sin(turn * (along.x * x + along.y * y));
         const double cos = std::cos(turn * step * rise), sin = std::sin(turn * step * rise);
@@ -76,7 +76,7 @@ double FieldSpot::limit(Vec2<double> along, double frequency, const std::vector<
         mean += ray.weight * cosine;
         square += ray.weight * cosine * cosine;
     }
-    // An even disc has a quarter of its squared radius as its variance.
+    // The variance of a uniform disc along one axis is a quarter of its squared radius.
     const double radius = 2 * index * std::sqrt(std::max(0.0, square - mean * mean));
     double sum = 0, weights = 0;
     for (const StudyColour& colour : colours) {

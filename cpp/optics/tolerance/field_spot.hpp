@@ -6,28 +6,31 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// The rays of one field of a copy, of all colours, behind the lens.
+/// Rays of one field of a copy, of all colours, behind the lens.
 struct FieldSpot {
-    std::vector<FieldFan::FilmRay> rays;  ///< whose weights have the sum 1, or none
-    double light;                         ///< share of the rays that pass
-    FieldFan::FilmRay chief;              ///< of the main colour
-    double film;                          ///< where the film is before it is set, mm behind the last vertex
-    double index;                         ///< of refraction, behind the lens
+    std::vector<FieldFan::FilmRay> rays;  ///< weights add up to 1; empty if no ray passes
+    double light;  ///< fraction of the rays that pass
+    FieldFan::FilmRay chief;  ///< chief ray of the main colour
+    double film;  ///< film position before compensation, mm behind the last vertex
+    double index;  ///< refractive index behind the lens
 
-    /// The mean square radius about the middle, as a function of the place of the film: a + 2 b z + c z^2, z from
+    /// Mean square spot radius about the centroid as a function of the film position: a + 2 b z + c z^2, mm^2, z from
     /// `film`.
     struct Square {
         double a, b, c;
     };
     Square square() const;
-    /// Half the width of the light behind the lens, as the slope of an even disc.
+    /// Radius, in slope, of the uniform disc with the variance of the ray slopes behind the lens.
     double half_slope() const { return std::sqrt(2 * square().c); }
+    /// Intersection of the chief ray with the plane `shift` behind `film`, mm.
     Vec2<double> chief_at(double shift) const;
-    /// Contrast of rays alone at this frequency, periods per mm, of lines across this unit vector.
+    /// Geometric MTF at this frequency, periods per mm, on the plane `shift` behind `film`. `along`: unit vector across
+    /// the lines.
     double contrast(double shift, Vec2<double> along, double frequency) const;
-    /// Adds the contrast on `sum.size()` planes, the first `shift` from the film and each `step` behind the one before.
+    /// Adds the contrast on `sum.size()` planes: the first lies `shift` behind `film`, each other one `step` behind the
+    /// previous one.
     void add_contrast(double shift, double step, Vec2<double> along, double frequency, std::vector<double>& sum) const;
-    /// The contrast of a lens without aberrations by diffraction, with a pupil that is an ellipse as wide as the light.
+    /// Diffraction-limited contrast: that of a lens without aberrations whose elliptic pupil is as wide as the light.
     double limit(Vec2<double> along, double frequency, const std::vector<StudyColour>& colours) const;
 };
 

@@ -11,9 +11,9 @@ namespace realcam {
 
 namespace {
 
-constexpr int kPlanes = 49;  ///< an eighth of the depth of focus from each other
+constexpr int kPlanes = 49;  ///< spaced by an eighth of the depth of focus
 
-/// How far off the axis the spots are, mm.
+/// Largest distance of a spot from the axis, mm; 1 if all are on the axis.
 double reach_of(const std::vector<FieldSpot>& spots) {
     double reach = 0;
     for (const FieldSpot& spot : spots)
@@ -21,7 +21,7 @@ double reach_of(const std::vector<FieldSpot>& spots) {
     return reach > 0 ? reach : 1;
 }
 
-/// The contrast of each field on planes at equal distances, read between them by parabolas.
+/// Through-focus contrast of each field on equally spaced planes, interpolated by parabolas.
 struct FocusCurves {
     double first, step;
     std::vector<std::vector<double>> fields;
@@ -43,7 +43,7 @@ private:
     }
 };
 
-/// Steps that become shorter, of one number of the film at a time.
+/// Coordinate ascent of the mean contrast: steps along one number of the film at a time, halved when no step improves.
 void climb(const FocusCurves& curves, FilmSetting& film, const std::vector<double*>& numbers,
            std::vector<double> steps) {
     double best = curves.mean(film);
@@ -73,7 +73,7 @@ FilmSetting film_of_small_spots(const std::vector<FieldSpot>& spots, FilmFreedom
     FilmSetting film;
     if (!moves && !tilts) return film;
     const double reach = reach_of(spots);
-    // Each square is c (z + b / c)^2 and a constant.
+    // Each mean square is c (z + b / c)^2 plus a constant: a linear least-squares problem.
     std::vector<std::vector<double>> columns(static_cast<std::size_t>(moves) + (tilts ? 2 : 0)), targets(1);
     for (const FieldSpot& spot : spots) {
         if (spot.rays.empty()) continue;
@@ -116,7 +116,7 @@ FilmSetting film_of_high_contrast(const std::vector<FieldSpot>& spots, const std
     for (const FieldSpot& spot : spots)
         if (!spot.rays.empty()) half = std::max(half, spot.half_slope());
     if (!(half > 0)) return film;
-    // A blur of one period, in which a perfect lens has lost its contrast.
+    // Defocus with a blur of one period, at which a perfect lens has lost its contrast.
     const double depth = 1 / (2 * half * frequency), reach = reach_of(spots);
     FocusCurves curves{0, 0.125 * depth, {}, {}};
     const double to_middle = 0.5 * (kPlanes - 1) * curves.step;

@@ -3,7 +3,7 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Where the film stands at a point of the picture: shift + slope . point, mm behind where it was drawn.
+/// Film plane after compensation: at a film point, mm, it lies shift + slope . point, mm, behind its nominal position.
 struct FilmSetting {
     double shift = 0;
     Vec2<double> slope{0, 0};
@@ -11,23 +11,24 @@ struct FilmSetting {
     double at(Vec2<double> point) const { return shift + slope.x * point.x + slope.y * point.y; }
 };
 
-/// How the film may be set.
+/// Adjustable degrees of freedom of the film.
 struct FilmFreedom {
     bool moves, tilts;
 };
 
-/// With the least sum of the spots' mean square radii.
+/// Returns the film plane with the smallest sum of the spots' mean square radii.
 FilmSetting film_of_small_spots(const std::vector<FieldSpot>& spots, FilmFreedom freedom);
 
-/// The mean of the mean square radii, mm^2. NaN where a field has no light.
+/// Mean of the fields' mean square spot radii, mm^2. NaN if a field has no light.
 double mean_square(const std::vector<FieldSpot>& spots, const FilmSetting& film);
 
-/// With the largest mean contrast at a frequency, of lines across `outwards` and along it, of each field. It is looked
-/// for around the film of the smallest spots, as far as a perfect lens loses its contrast three times over.
+/// Returns the film plane with the largest mean contrast at `frequency`, periods per mm, over all fields, of lines
+/// across and along each field's direction `outwards`. The search extends around film_of_small_spots to three times the
+/// defocus at which a perfect lens loses its contrast.
 FilmSetting film_of_high_contrast(const std::vector<FieldSpot>& spots, const std::vector<Vec2<double>>& outwards,
                                   double frequency, FilmFreedom freedom);
 
-/// That mean. NaN where a field has no light.
+/// Mean contrast that film_of_high_contrast maximises. NaN if a field has no light.
 double mean_contrast(const std::vector<FieldSpot>& spots, const std::vector<Vec2<double>>& outwards, double frequency,
                      const FilmSetting& film);
 

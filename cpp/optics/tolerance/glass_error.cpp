@@ -6,8 +6,8 @@ namespace realcam {
 
 namespace {
 
-/// n'^2 = constant + scale (n^2 - 1) keeps the poles of Sellmeier's formula; the constant is a term with C = 0. The
-/// scale is found by Newton's method from n'_F - n'_C.
+/// n'^2 = constant + scale (n^2 - 1) keeps the poles of Sellmeier's formula; the constant becomes a term with C = 0.
+/// Newton's method finds the scale from n'_F - n'_C.
 Glass with_sellmeier_error(const Glass& glass, Glass::Parts parts, double index_d, double dispersion) {
     const double square_d = glass.index(kLineD_nm) * glass.index(kLineD_nm);
     const double above = glass.index(kLineF_nm) * glass.index(kLineF_nm) - square_d;
@@ -34,7 +34,7 @@ Glass with_melt_error(const Glass& glass, double index, double abbe) {
     if (!(index_d >= 1 && abbe > -1)) throw InputError("an error of a glass leaves an index below 1");
     if (abbe != 0 && !(spread > 0))
         throw InputError("the dispersion of glass \"" + glass.label + "\" is not known, and neither its Abbe number");
-    // V = (n_d - 1) / (n_F - n_C); without a dispersion there is none to scale.
+    // V = (n_d - 1) / (n_F - n_C); a glass without dispersion needs no scaling.
     const double scale = spread > 0 ? (index_d - 1) / ((before_d - 1) * (1 + abbe)) : 1;
     Glass::Parts parts = glass.parts();
     if (parts.formula == Glass::Formula::sellmeier)

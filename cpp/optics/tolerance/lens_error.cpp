@@ -26,7 +26,7 @@ void bend(Surface& surface, ErrorKind kind, double size) {
     if (surface.form.base != BaseForm::conic) surface.form.curvature_x += after - before;
 }
 
-/// x^2 - y^2 and 2 x y have their extremes at the rim, one sign on each of two diameters.
+/// x^2 - y^2 and 2 x y have their extremes at the rim, of opposite signs on two perpendicular diameters.
 void make_irregular(Surface& surface, ErrorKind kind, double fringes) {
     const double rim = surface.clear_semi_diameter, amplitude = 0.5 * fringes * kFringe_mm / (rim * rim);
     if (kind == ErrorKind::irregularity_45) {
@@ -72,7 +72,7 @@ void move_pieces(LensSystem& lens, int first, int last, const Affine<double>& mo
 
 LensSystem with_errors(const LensSystem& lens, const std::vector<LensError>& errors, const double* sizes) {
     LensSystem result = lens;
-    std::map<int, std::pair<double, double>> melts;  // a surface's index and Abbe number
+    std::map<int, std::pair<double, double>> melts;  // surface -> errors of index and Abbe number
     std::map<std::pair<int, int>, SurfacePlacement> surfaces, elements;
     for (std::size_t i = 0; i < errors.size(); ++i) {
         const auto [kind, first, last] = errors[i];
@@ -108,7 +108,7 @@ LensSystem with_errors(const LensSystem& lens, const std::vector<LensError>& err
         move_pieces(result, which.first, which.second,
                     along_axis(0.5 * length) * placement.frame() * along_axis(-0.5 * length));
     }
-    // Faces that touch at their rims do so in every lens that is made; a thousandth of a millimetre is no clash.
+    // Faces that touch at their rims do so in every real lens; an overlap of a micrometre there is no error.
     result.allow_crossing = true;
     return result;
 }
