@@ -12,8 +12,8 @@ namespace realcam {
 namespace {
 
 /// Fits a map from stop to entry plane to rays aimed one by one at Gauss's nodes, which distinguish polynomials of up
-/// to twice the degree. Returns std::nullopt if some of the stop cannot be reached, so that the map has no unique
-/// continuation.
+/// to twice the degree. Returns std::nullopt if some points of the stop cannot be reached, so that the map cannot be
+/// extrapolated to them.
 std::optional<StopMap> stop_map(const RayAimer& aim, double reach, const RayLoop& loop) {
     const std::vector<PupilPoint> nodes = gauss_rings(8);
     std::vector<AimedRay> rays;

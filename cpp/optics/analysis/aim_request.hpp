@@ -92,10 +92,10 @@ REALCAM_HD inline void start_rays(const AimRequest& request, const Vec2Lanes<dou
 
 /// Aims the rays of a request, N at a time, and traces them through the lens.
 ///
-/// Each iteration moves the argument of the map by the distance by which its ray misses its target. What remains of the
-/// miss is the fraction by which the map's slopes are wrong, about a millionth; no derivatives are needed. A ray that
-/// is not within tolerance after a few iterations, and one whose target lies outside the map's reach, has the status
-/// no_convergence.
+/// Each iteration moves the argument of the map by the distance by which its ray misses its target. This reduces the
+/// miss by a factor equal to the relative error of the map's slopes, about a millionth; no derivatives are needed. A
+/// ray that is not within tolerance after a few iterations, and one whose target lies outside the map's reach, has the
+/// status no_convergence.
 template <int N>
 REALCAM_HD inline void aim_rays(const AimRequest& request) {
     using namespace aim_detail;

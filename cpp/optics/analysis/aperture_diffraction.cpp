@@ -39,8 +39,8 @@ double turn_between(double from, double to) {
     return turn - std::round(turn);
 }
 
-/// If a side and the second one after it differ by more than this in direction, a corner lies between them, in turns:
-/// at a corner of nine straight blades it is 1/9, while a circle of 128 sides turns by 2/128.
+/// Threshold in turns: a corner lies between a side and the second one after it if their directions differ by more.
+/// Nine straight blades turn by 1/9 at a corner; a circle of 128 sides turns by 2/128 over two sides.
 constexpr double kCorner = 12.0 / 360;
 
 struct Side {

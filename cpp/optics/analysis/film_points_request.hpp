@@ -21,7 +21,7 @@ struct FilmPointsRequest {
     Vec2<T> middle, reach;  ///< the rectangle's centre, relative to the entry plane's centre, and half sides, mm
     T inverse_distance;  ///< inverse distance of the object from the entry plane's centre, 1/mm
     T index;  ///< refractive index of the medium from which the rays enter
-    T film;                 ///< z of the film plane relative to the last vertex, mm
+    T film;  ///< z of the film plane relative to the last vertex, mm
     EntryPattern pattern;
     std::int64_t columns;  ///< points per row of the grid
     std::int64_t first, count;  ///< range of rays to trace

@@ -17,7 +17,8 @@ PlaneWaveSum::PlaneWaveSum(FilmGrid grid, double wave_number)
 
 void PlaneWaveSum::add(const PlaneWaves& light, const RayLoop& loop) {
     const std::vector<PlaneWave>& waves = light.waves;
-    // The loop may assign 64 items at a time to a thread. A row counts as 64 items, so that threads can share few rows.
+    // The loop may assign 64 items at a time to a thread. A row counts as 64 items, so that even few rows are divided
+    // among the threads.
     constexpr std::size_t kItems = 64;
     const auto row_from = [](std::size_t item) { return (item + kItems - 1) / kItems; };
     for (std::size_t from = 0; from < waves.size(); from += kWaves) {

@@ -61,7 +61,7 @@ FieldRays PointBundle::look_for(const LensSystem& lens, double wavelength_nm, co
         for (std::size_t i = 0; i < rays.rays.size(); ++i) passing += rays.passes(i);
         if (passing >= few(look)) return rays;
     } catch (const InputError&) {
-        // If a denser probe cannot help, it throws the same error again below.
+        // If a denser probe cannot help, field_rays throws the same error again below.
     }
     return field_rays(lens, wavelength_nm, field, square_grid(kCloseLook, loop), loop);
 }

@@ -79,7 +79,8 @@ public:
 private:
     static constexpr int kCloseLook = 200;
 
-    /// Least number of passing rays: a twentieth of those over the whole stop, and enough to locate the light.
+    /// Least number of passing probe rays: a twentieth of those over the whole stop, but at least 20, to locate the
+    /// light.
     static std::size_t few(int look) { return static_cast<std::size_t>(std::max(3 * look * look / 80, 20)); }
 
     static const LensSystem& in_known_glass(const LensSystem& lens, double wavelength_nm);

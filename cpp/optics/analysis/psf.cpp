@@ -12,7 +12,8 @@ namespace psf_detail {
 
 namespace {
 
-/// Limit of some seconds; only callers who specify the number of rays may take longer.
+/// Limits of the number of waves: the first takes some seconds, and only callers who specify the number of rays may
+/// exceed it.
 constexpr double kMostWavesUnasked = 1 << 20, kMostWaves = 1 << 24;
 
 /// Default pitch, um: a quarter of wavelength x f-number, half the Nyquist pitch of the image; for a spot that is

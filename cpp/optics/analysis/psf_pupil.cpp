@@ -19,7 +19,8 @@ struct Cell : LocalWave {
 /// to the square of that, in units of the wavefront's bending over a cell: to a few millionths of a radian.
 constexpr double kClose = 1e-3;
 
-/// Finds the ray of a slope by Newton's method, starting with a nearby wave. Returns std::nullopt without convergence.
+/// Finds the ray of a slope by Newton's method, starting with a nearby wave. Returns std::nullopt if it does not
+/// converge.
 std::optional<Cell> cell_with(const PointBundle& bundle, Vec2<double> slope, LocalWave near, double tolerance) {
     for (int i = 0; i < 8; ++i) {
         const std::optional<LocalWave> next = local_wave(bundle, near.entry_at(slope));

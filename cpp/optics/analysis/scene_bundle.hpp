@@ -29,7 +29,7 @@ struct AcrossRay {
 /// of its rays. Over it the light is uniform, except for the obliquity of the other rays.
 class SceneBundle {
 public:
-    using Entry = Vec2<double>;  ///< mm from where the ray leaves the lens, in the axes of AcrossRay
+    using Entry = Vec2<double>;  ///< mm from the origin of `ray`, in the axes of AcrossRay
 
     Entry middle, reach;  ///< bounds of what passes: centre and half sides
     bool mirrored;  ///< true: symmetric in x

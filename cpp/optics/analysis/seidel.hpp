@@ -10,9 +10,9 @@ namespace REALCAM_NAMESPACE {
 // Third-order aberrations by surface, after W. T. Welford, Aberrations of Optical Systems (1986), chapters 8 and 10.
 // With A = n i the refraction invariants of the marginal ray and A' of the chief ray, y and y' their heights, H the
 // Lagrange invariant, and D(q) the change of q at the surface:
-//   S_I = -A^2 y D(u/n), S_II = -A A' y D(u/n), S_III = -A'^2 y D(u/n), S_IV = -H^2 c D(1/n), S_V = A'/A (S_III +
-//   S_IV), C_I = A y D(dn/n), C_II = A' y D(dn/n),
-// and of the figure, whose departure from the sphere is g r^4 with g = a4 + k c^3 / 8:
+//   S_I = -A^2 y D(u/n), S_II = -A A' y D(u/n), S_III = -A'^2 y D(u/n), S_IV = -H^2 c D(1/n),
+//   S_V = A'/A (S_III + S_IV), C_I = A y D(dn/n), C_II = A' y D(dn/n),
+// and for an aspheric surface, which departs from the sphere by g r^4 with g = a4 + k c^3 / 8:
 //   S_I = 8 g D(n) y^4, S_II = S_I (y'/y), S_III = S_I (y'/y)^2, S_V = S_I (y'/y)^3.
 // Behind a mirror n is negative. W is positive where the wavefront is ahead of the reference sphere, as in
 // wavefront.hpp.
@@ -21,7 +21,7 @@ namespace REALCAM_NAMESPACE {
 struct SeidelRow {
     ParaxialRay marginal, chief;  ///< at the surface; slopes behind it
     double marginal_invariant, chief_invariant;  ///< n i, i the angle of incidence
-    std::array<double, 5> sums;                  ///< S_I to S_V
+    std::array<double, 5> sums;  ///< S_I to S_V
     std::array<double, 2> colour;  ///< C_I, C_II between the short and the long wavelength
     double petzval_curvature;  ///< contribution to the Petzval curvature in image space, 1/mm
 };

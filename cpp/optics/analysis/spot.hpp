@@ -12,7 +12,7 @@ struct SpotSize {
 struct Spot {
     FieldRays rays;
     std::vector<Vec2<double>> points;  ///< NaN if the ray does not pass
-    Vec2<double> centroid;             ///< mean of the points, weighted by their share of the stop's area
+    Vec2<double> centroid;  ///< mean of the points, weighted by their fraction of the stop's area
     Vec2<double> chief;  ///< film point of the chief ray
     SpotSize about_centroid, about_chief;
 };

@@ -11,9 +11,9 @@ enum class Precision { float32, float64 };
 /// Results of a trace: arrays of `count` rays that the caller owns.
 struct TracedRays {
     double* origins;  ///< count x 3, mm, lens frame: on the last surface hit
-    double* directions;    ///< count x 3, unit
+    double* directions;  ///< count x 3, unit
     double* optical_path;  ///< count, mm: sum of index times distance up to the origin
-    int* status;           ///< count, RayStatus
+    int* status;  ///< count, RayStatus
     int* surface_index;  ///< count: the last surface hit or missed, from 0; -1 for bad input
 };
 

@@ -47,8 +47,7 @@ EdgePlace between(const std::array<EdgePlace, 4>& p, double share) {
 /// either side: the area of a polygon of 32 straight segments would be 0.6% too small. An interval of light on only one
 /// of the two lines is closed by a segment along that line.
 std::vector<EdgePiece> edge_of(const PointBundle& bundle, const std::vector<LitSpoke>& half) {
-    // Inner and outer edge of each interval. If the light begins at the centre, all inner edges coincide there, and no
-    // segment is added.
+    // Inner and outer edge of each interval. If the light begins at the centre, the inner edges coincide there.
     using Edges = std::vector<std::array<EdgePlace, 2>>;
     std::vector<Edges> spokes;
     for (const LitSpoke& spoke : half) {

@@ -9,10 +9,10 @@ namespace REALCAM_NAMESPACE {
 
 /// A ray of a bundle, with the fraction of the light that it represents.
 struct BundleRay {
-    PointBundle::Entry entry;  ///< mm
+    PointBundle::Entry entry;  ///< on the entry plane, mm
     double energy;  ///< fraction of the energy of all rays
     Vec2<double> at;  ///< on the film, mm from the chief ray
-    Vec3d direction;           ///< unit, behind the lens
+    Vec3d direction;  ///< unit, behind the lens
     WaveRay wave;
     double amplitude;  ///< root of the energy per area of slopes, times a common factor
 };

@@ -26,7 +26,7 @@ double reference_curvature(const LensSystem& lens, double wavelength_nm, const F
         const double pupil = first_order(lens, wavelength_nm).exit_pupil_position - lens.last_vertex();
         return direction.z / (image.z - pupil);
     }
-    // With t along the ray from the axis: image.y = t direction.y.
+    // With t the distance along the ray from the axis, image.y = t direction.y.
     return direction.y / image.y;
 }
 

@@ -38,7 +38,7 @@ private:
     /// Sums over rays.
     struct Sums {
         std::vector<AdjointStep<kLanes>> steps;  ///< the first is that of the entering rays, then one per surface
-        std::vector<std::vector<Dual8>> forms;  ///< for freeforms: derivatives in the lanes of their dual surfaces
+        std::vector<std::vector<Dual8>> forms;  ///< for freeforms: adjoints in the lanes of their dual surfaces
         std::vector<AdjointSurface> surfaces;
         double entry_position = 0, entry_index = 0;
         Vec3d exit[4] = {};  ///< adjoints of the exit frame's origin and axes

@@ -7,7 +7,7 @@ namespace REALCAM_NAMESPACE {
 
 /// Frame of the exit rays.
 enum class ExitFrame {
-    lens,       ///< the lens frame
+    lens,  ///< the lens frame
     last_axis,  ///< axis behind the last surface, with origin at its vertex; the film is placed along it
     film,  ///< frame of film_path_ends, shifted so that the film's vertex is its origin
 };
@@ -74,7 +74,7 @@ private:
     void write(const DualSurface& surface, bool has_ray, Vec3d o, Vec3d p, Vec3d at, Tape::Derivatives& by) const;
 
     std::vector<LensVariable> variables_;
-    // The core's view, surface by surface.
+    // The core's view of the lens, surface by surface.
     std::vector<SurfaceView<double>> views_;
     std::vector<FrameChanges<double>> frames_;
     std::vector<FreeformView<double>> freeforms_;

@@ -8,7 +8,7 @@ namespace realcam {
 
 namespace {
 
-/// Messages name surfaces from 1.
+/// Throws InputError; messages count surfaces from 1.
 [[noreturn]] void refuse(int surface, const std::string& why) {
     throw InputError("surface " + std::to_string(surface + 1) + " " + why);
 }

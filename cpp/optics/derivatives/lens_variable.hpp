@@ -9,17 +9,17 @@ namespace REALCAM_NAMESPACE {
 enum class LensQuantity {
     curvature,      ///< 1/mm
     conic,
-    aspheric,       ///< coefficient of r^number, mm^(1 - number)
+    aspheric,  ///< coefficient of r^number, mm^(1 - number)
     thickness,  ///< mm; all that follows moves
     index,  ///< of the medium behind the surface; changes by the same at all wavelengths
-    decentre,       ///< mm along x, y, z: number 0, 1, 2
-    tilt,           ///< degrees about x, y, z: number 0, 1, 2
+    decentre,  ///< mm along x, y, z: number 0, 1, 2
+    tilt,  ///< degrees about x, y, z: number 0, 1, 2
     curvature_x,  ///< of a biconic or toroid, 1/mm
-    conic_x,        ///< of a biconic
-    radial,         ///< coefficient of r^number, mm^(1 - number)
-    xy,             ///< coefficient of x^number y^number_y
-    zernike,        ///< coefficient of the term `number`, from 1, mm
-    forbes,         ///< coefficient a_number, from 0, mm
+    conic_x,  ///< of a biconic
+    radial,  ///< coefficient of r^number, mm^(1 - number)
+    xy,  ///< coefficient of x^number y^number_y
+    zernike,  ///< coefficient of the term `number`, from 1, mm
+    forbes,  ///< coefficient a_number, from 0, mm
     film_distance,  ///< last vertex to film, mm; `surface` is ignored
 };
 

@@ -14,9 +14,9 @@ namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-/// All light of the object point that the chief ray of the film's centre comes from, through a lens of any kind. Rays
-/// are parametrised by their intersection with the plane perpendicular to the chief ray at the front surface, over
-/// which the light is uniform.
+/// All light of the object point on the chief ray of the film's centre, through a lens of any kind. Rays are
+/// parametrised by their intersection with the plane perpendicular to the chief ray at the front surface, over which
+/// the light is uniform.
 class CentralBundle {
 public:
     using Entry = Vec2<double>;

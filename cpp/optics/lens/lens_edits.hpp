@@ -9,7 +9,7 @@ namespace REALCAM_NAMESPACE {
 
 namespace lens_edits_detail {
 
-/// Returns the zoom range of an edited lens, given the edited lens in each of its zoom positions.
+/// Returns the zoom range of an edited lens. `states`: the edited lens in each of its zoom positions.
 ZoomRange zoom_of(const LensSystem& edited, const ZoomRange& before, const std::vector<LensSystem>& states);
 
 /// Returns the lens with `edit` applied to its current state and to each of its zoom positions. Throws LensFileError if

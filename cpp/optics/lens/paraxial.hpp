@@ -47,8 +47,8 @@ struct FirstOrder {
 /// ray.
 FirstOrder first_order(const LensSystem& lens, double wavelength_nm);
 
-/// First-order data at the design wavelength, for descriptions of a lens: if it has none, returns those of
-/// centred(lens).
+/// First-order data at the design wavelength, for descriptions of a lens. If the lens has no first-order data, returns
+/// those of centred(lens).
 FirstOrder nominal_first_order(const LensSystem& lens);
 
 /// Distance from the last vertex to the paraxial image of an axial point `object_distance` mm in front of the front

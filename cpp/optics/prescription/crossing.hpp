@@ -8,7 +8,7 @@ namespace REALCAM_NAMESPACE {
 
 /// Ray-surface intersection on an optical path through the lens.
 struct Crossing {
-    int surface;        ///< from 0 at the front
+    int surface;  ///< from 0 at the front
     bool in_order;  ///< true: light arrives from the medium in front of the surface, in prescription order
     bool is_reflected;  ///< true: a surface that normally transmits reflects here, in a ghost path
 
@@ -50,7 +50,7 @@ std::vector<Crossing> crossings_of(const LensSystem& lens, GhostPair pair);
 /// Returns the path of light in the opposite direction.
 std::vector<Crossing> reversed(std::vector<Crossing> way);
 
-/// All pairs whose first surface has an index in [first_begin, first_end) and refracts, or is the film.
+/// All pairs whose first surface has an index in [first_begin, first_end), and refracts or is the film.
 std::vector<GhostPair> ghost_pairs(const LensSystem& lens, int first_begin, int first_end);
 
 /// All pairs of refracting surfaces.

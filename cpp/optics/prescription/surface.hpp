@@ -12,15 +12,15 @@ namespace REALCAM_NAMESPACE {
 enum class SurfaceType {
     refracting,
     mirror,  ///< reverses the light: thicknesses after it are negative until the next mirror
-    stop,      ///< the aperture stop, a plane
-    aperture,  ///< a plane that only blocks: a rim, or the shadow of a secondary mirror
+    stop,  ///< the aperture stop, a plane
+    aperture,  ///< a plane that only blocks light: a rim, or the shadow of a secondary mirror
 };
 
 /// One row of a lens table. Lengths in mm, lens frame.
 struct Surface {
     SurfaceType type = SurfaceType::refracting;
     double curvature = 0;  ///< 1/mm; positive if the centre lies on the film side; 0: plane
-    double conic = 0;              ///< k: 0 sphere, -1 paraboloid
+    double conic = 0;  ///< k: 0 sphere, -1 paraboloid
     std::vector<double> aspheric;  ///< coefficients of r^4, r^6, ..., mm^-3, mm^-5, ...
     double thickness = 0;  ///< to the next vertex; 0 for the last surface
     Glass material = Glass::air();  ///< medium behind the surface, for light that travels to the film

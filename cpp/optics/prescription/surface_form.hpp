@@ -11,7 +11,7 @@ namespace REALCAM_NAMESPACE {
 /// the yz plane.
 enum class BaseForm {
     conic,  ///< conic of revolution
-    biconic,   ///< (c_x x^2 + c_y y^2) / (1 + sqrt(1 - (1 + k_x) c_x^2 x^2 - (1 + k_y) c_y^2 y^2))
+    biconic,  ///< (c_x x^2 + c_y y^2) / (1 + sqrt(1 - (1 + k_x) c_x^2 x^2 - (1 + k_y) c_y^2 y^2))
     toroid,  ///< the section in the yz plane, including its even terms of y, rotated about a line parallel to y
 };
 
@@ -56,7 +56,7 @@ struct ForbesTerms {
 struct SurfaceForm {
     BaseForm base = BaseForm::conic;
     double curvature_x = 0;  ///< biconic: in the xz plane; toroid: 1 / distance from the vertex to the line; 1/mm
-    double conic_x = 0;      ///< biconic: in the xz plane
+    double conic_x = 0;  ///< biconic: in the xz plane
     std::vector<double> radial;  ///< coefficients of r, r^2, r^3, ..., 1, mm^-1, mm^-2, ...
     std::vector<XyTerm> xy;
     std::optional<ZernikeTerms> zernike;

@@ -20,8 +20,8 @@ struct SurfacePlacement {
     /// Transform from the frame of the surface to that of the axis in front of it.
     Affine<double> frame() const;
 
-    /// Returns the placement with this rigid frame. If the y axis is tilted by 90 degrees (gimbal lock), rotations
-    /// about x and z are equivalent, and all of it is assigned to x.
+    /// Returns the placement with this rigid frame. If the tilt about y is 90 degrees (gimbal lock), rotations about x
+    /// and z are equivalent, and all of it is assigned to x.
     static SurfacePlacement of(const Affine<double>& frame);
 };
 
@@ -30,7 +30,7 @@ inline Affine<double> along_axis(double distance) {
     return {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, distance}};
 }
 
-/// The inverse of a rigid motion.
+/// Returns the inverse of a rigid motion.
 Affine<double> inverse_motion(const Affine<double>& motion);
 
 }  // namespace REALCAM_NAMESPACE

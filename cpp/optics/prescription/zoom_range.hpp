@@ -11,7 +11,7 @@ namespace REALCAM_NAMESPACE {
 struct ZoomPosition {
     std::string name;
     std::vector<double> thicknesses;  ///< thicknesses behind ZoomRange::surfaces, in their order
-    double film_distance = 0;         ///< last vertex to film
+    double film_distance = 0;  ///< last vertex to film
     double focus_distance = std::numeric_limits<double>::infinity();  ///< object plane to film
     double stop_semi_diameter = 0;  ///< clear semi-diameter of the aperture stop; 0: zooming does not change it
 

@@ -18,11 +18,11 @@ enum class ErrorKind {
     surface_decentre_x,
     surface_decentre_y,  ///< mm
     element_tilt_x,
-    element_tilt_y,  ///< several surfaces about the middle between first and last, degrees
+    element_tilt_y,  ///< surfaces `first` to `last` about the midpoint between them, degrees
     element_decentre_x,
     element_decentre_y,  ///< mm
     irregularity_0,  ///< astigmatism, half wavelengths from valley to peak, with the largest sag along x
-    irregularity_45,  ///< the same, with the largest sag along x = y
+    irregularity_45,  ///< astigmatism like irregularity_0, with the largest sag along x = y
 };
 
 struct LensError {
@@ -37,13 +37,13 @@ struct LensError {
 inline constexpr double kFringeLine_nm = 546.07;
 
 /// Returns the lens with errors of these sizes; errors of size 0 change nothing. Moved surfaces do not move what is
-/// behind them. Errors of surfaces are applied before those of the elements that contain them. Only the existence of
-/// the surfaces is checked, so that thousands of copies take little time: see lens_checks.hpp for further checks.
-/// Throws InputError.
+/// behind them. Errors of surfaces are applied before those of the elements that contain them. Checks only that the
+/// surfaces exist, so that thousands of copies take little time: see lens_checks.hpp for further checks. Throws
+/// InputError if a surface does not exist, or an error cannot be applied to it.
 LensSystem with_errors(const LensSystem& lens, const std::vector<LensError>& errors, const double* sizes);
 
 /// Moves surfaces as one rigid piece, like move_element. Each surface gets its own placement, so that it can be moved
-/// again, unless the axis turns at one of them (move_each_alone). Throws InputError.
+/// again, unless the axis turns at one of them (move_each_alone). Throws InputError as move_element does.
 void move_pieces(LensSystem& lens, int first, int last, const Affine<double>& motion);
 
 }  // namespace REALCAM_NAMESPACE

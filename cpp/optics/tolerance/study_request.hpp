@@ -40,9 +40,9 @@ struct StudyRequest {
 
 /// Settings of the compensators.
 struct CopySettings {
-    double film_shift = 0;    ///< mm, away from the lens
+    double film_shift = 0;  ///< mm, away from the lens
     Vec2<double> film_slope{0, 0};  ///< dz/dx and dz/dy of the film
-    Vec3d element_shift{0, 0, 0};      ///< mm
+    Vec3d element_shift{0, 0, 0};  ///< mm
 
     bool operator==(const CopySettings&) const = default;
 };
