@@ -1,4 +1,4 @@
-"""The extension for Blender 5 that brings lenses as cameras of Cycles."""
+"""The extension for Blender 5 that provides lenses as custom Cycles cameras."""
 
 from .extension_file import write_extension
 

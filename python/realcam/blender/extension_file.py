@@ -1,4 +1,4 @@
-"""Writes the extension: the files of its folder, a shader for each lens, and a preset for each."""
+"""Writes the Blender extension: the files of its folder, and a shader and a preset for each lens."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from ..osl import focus_range, shader_text
 from ..osl.expressible import check_expressible
 
 _FOLDER = Path(__file__).with_name("extension")
-# The earliest date of a zip file: the same lenses make the same bytes.
+# The earliest date of the zip format, so that the same lenses give the same bytes.
 _DATE = (1980, 1, 1, 0, 0, 0)
 
 
@@ -28,10 +28,10 @@ def write_extension(
     *,
     left_out: Callable[[str], None] | None = None,
 ) -> list[str]:
-    """Writes the extension as a .zip for Blender's "Install from Disk", and returns the names of its lenses.
+    """Writes the extension as a .zip for Blender's "Install from Disk", and returns the keys of its lenses.
 
-    lenses: None: all bundled ones. Of a lens that zooms, each position is a lens. Those that OSL cannot express are
-    left out, and left_out is told why. Raises InputError where none is left, and ImageFileError.
+    lenses: None: all bundled lenses. Each position of a zoom becomes a lens. A lens that OSL cannot express is skipped,
+    and left_out is called with the reason. Raises InputError if no lens can be written, and ImageFileError.
     """
     check_target(path, (".zip",))
     expressible = []
@@ -70,7 +70,7 @@ bpy.context.camera.realcam.lens = {key!r}
 
 
 def _key(lens: Lens) -> str:
-    """Also the name of the lens's file in the extension: one component of a path on any system."""
+    """Key of a lens, which is also its file name in the extension: a valid path component on any system."""
     name = f"{lens.name}-at-{lens.zoom_position}" if lens.zoom_position else lens.name
     return re.sub(r"[^\w. -]", "_", name)[:80].strip(". ") or "lens"
 

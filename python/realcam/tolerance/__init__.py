@@ -1,4 +1,4 @@
-"""What leaves the factory: tolerances of a lens, and the copies that they allow."""
+"""Tolerance analysis: tolerances of a lens, and Monte Carlo copies of it with manufacturing errors."""
 
 from .compensators import ElementShift
 from .figures import CopyFigures

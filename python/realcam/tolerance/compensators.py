@@ -1,4 +1,4 @@
-"""What may be set on a finished lens."""
+"""Compensators: adjustments of an assembled lens."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from .elements import check_element
 
 @dataclass(frozen=True)
 class ElementShift:
-    """An element, by its first and last surface from 0, that is moved until the picture is sharpest: "along" the axis
-    or "across" it, by range_mm to either side at most."""
+    """Compensator that moves an element, given by its first and last surface counted from 0, to the sharpest image:
+    "along" or "across" the axis, by at most range_mm to either side."""
 
     first: int
     last: int
@@ -41,7 +41,7 @@ class Chosen:
 
 
 def chosen(lens: Lens, compensators: Sequence[Compensator], fields_deg: NDArray[np.float64]) -> Chosen:
-    """Raises InputError for a compensator that is none, or that cannot compensate."""
+    """Parses compensators. Raises InputError for one that is invalid or has no effect on this lens or these fields."""
     if isinstance(compensators, str):
         compensators = (compensators,)
     names = [c for c in compensators if isinstance(c, str)]

@@ -1,4 +1,4 @@
-"""The pieces of glass that a lens is put together from."""
+"""Glass elements of a lens."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ def has_glass_behind(lens: Lens, surface: int) -> bool:
 
 
 def elements_of(lens: Lens) -> list[tuple[int, int]]:
-    """First and last surface of each element, from 0. What is cemented is one element."""
+    """Returns first and last surface of each element, counted from 0. A cemented group is one element."""
     found, first = [], None
     for index, surface in enumerate(lens.surfaces):
         if surface.type in ("stop", "aperture"):
@@ -25,14 +25,14 @@ def elements_of(lens: Lens) -> list[tuple[int, int]]:
 
 
 def check_surface(lens: Lens, surface: int) -> None:
-    """Raises InputError where there is no such surface."""
+    """Raises InputError if the surface does not exist."""
     if not isinstance(surface, int) or isinstance(surface, bool):
         raise InputError(f"{surface!r:.40} is no surface; a number from 0 is wanted")
     check_surface_exists(lens, surface)
 
 
 def check_element(lens: Lens, first: int, last: int) -> None:
-    """Raises InputError where there is no element of these surfaces."""
+    """Raises InputError unless both surfaces exist and `last` follows `first`."""
     check_surface(lens, first)
     check_surface(lens, last)
     if last <= first:

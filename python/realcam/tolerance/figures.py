@@ -1,4 +1,4 @@
-"""What is known of each copy of a lens."""
+"""Performance figures of the copies of a lens."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ Doubles = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class CopyFigures:
-    """Arrays over C copies, F fields and K frequencies, with each copy's compensators set. nan: no light passes.
+    """Arrays over C copies, F fields and K frequencies, with the compensators of each copy set. nan: no light passes.
 
-    mtf: (C, F, 2, K), of lines across the direction from the axis outwards (tangential), then along it. It is that of
-    rays alone times what diffraction leaves of a perfect lens with such a pupil.
-    rms_spot_mm: (C, F), radius about the middle of all colours. distortion: (C, F), of the distance from the axis,
-    against the scale of the picture near the axis. light: (C, F), share of the stop from which light comes.
-    chief_ray_mm: (C, F, 2), on the film. focal_length_mm: (C,), of close rays, mean of both meridians.
+    mtf: (C, F, 2, K), tangential (lines perpendicular to the radial direction), then sagittal: the geometric MTF times
+    the diffraction MTF of a perfect lens with the same pupil.
+    rms_spot_mm: (C, F), RMS radius about the polychromatic centroid. distortion: (C, F), relative error of the distance
+    from the axis against the paraxial scale. light: (C, F), fraction of the stop that passes light.
+    chief_ray_mm: (C, F, 2), film points. focal_length_mm: (C,), of parabasal rays, mean of both meridians.
     film_shift_mm: (C,), away from the lens. film_slope: (C, 2), of the film along x and y. element_shift_mm: (C, 3).
     """
 
@@ -40,11 +40,11 @@ class CopyFigures:
         return CopyFigures(**{name: np.concatenate([part[name] for part in parts]) for name in parts[0]})
 
     def mean_mtf(self, frequency: int) -> Doubles:
-        """(C,): of all fields and both directions. frequency: its number; a field without light has no contrast."""
+        """(C,): mean MTF of all fields and both directions. frequency: index; a field without light counts as 0."""
         mean: Doubles = np.nan_to_num(self.mtf[..., frequency]).mean((1, 2))
         return mean
 
     def lowest_mtf(self, frequency: int) -> Doubles:
-        """(C,): of the worst field, the mean of both directions."""
+        """(C,): MTF of the worst field, as the mean of both directions."""
         lowest: Doubles = np.nan_to_num(self.mtf[..., frequency]).mean(2).min(1)
         return lowest

@@ -1,9 +1,10 @@
-"""Tolerances as optical shops print them, by grade.
+"""Tolerances by grade, as published by optical shops.
 
 Radius and thickness: Edmund Optics, "Understanding Optical Specifications" (its typical, precision and high quality).
-Index and Abbe number: Optimax, "Manufacturing Tolerance Chart" (commercial, precision). What a melt's data leave is
-assumed, from their four digits. Planes, irregularity and wedge are assumed. Such charts end at the element: tilt and
-decentre of elements in their mount are assumed, for turned barrels, better ones, and cells that are centred one by one.
+Index and Abbe number: Optimax, "Manufacturing Tolerance Chart" (commercial, precision). For grade "high" they are
+assumed: the uncertainty that remains when melt data of four digits are used. Planes, irregularity and wedge are
+assumed. The charts end at the element: tilt and decentre of elements in their mount are assumed, for turned barrels
+(commercial), better barrels (precision) and individually centred cells (high).
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""How a study looks: distributions of what counts, and what costs most."""
+"""Plots of a tolerance study: yield, distributions of measures, and worst offenders."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ MEASURES = {
 
 
 def plot_yield(study: ToleranceStudy, axes: Axes) -> None:
-    """The share of the copies whose MTF is at least so high, of the mean and of the worst field."""
+    """Plots the fraction of copies that reach an MTF or more, for the mean MTF and for the worst field."""
     share = 100 * (np.arange(len(study)) + 1) / len(study)
     for number, name in enumerate(("mtf", "lowest_mtf")):
         colour = style.field_colour(number)
@@ -34,7 +34,7 @@ def plot_yield(study: ToleranceStudy, axes: Axes) -> None:
 
 
 def plot_distribution(study: ToleranceStudy, name: str, axes: Axes) -> None:
-    """A histogram of a measure, with the lens as drawn."""
+    """Plots a histogram of a measure and marks its nominal value."""
     scale = 100 if name == "distortion" else 1
     values = scale * study.measure(name)
     axes.hist(values[np.isfinite(values)], bins=min(40, max(5, len(study) // 12)), color=style.BLUE)
@@ -46,7 +46,7 @@ def plot_distribution(study: ToleranceStudy, name: str, axes: Axes) -> None:
 
 
 def plot_fields(study: ToleranceStudy, axes: Axes) -> None:
-    """Of each field, the MTF of the middle half of the copies, and of all but a tenth."""
+    """Plots for each field the interquartile and the 5 to 95 % range of the MTF over the copies."""
     values = np.nan_to_num(study.figures.mtf[..., study.main]).mean(2)
     places = np.arange(values.shape[1])
     low, quarter, middle, three, high = np.quantile(values, [0.05, 0.25, 0.5, 0.75, 0.95], axis=0)
@@ -65,7 +65,7 @@ def plot_fields(study: ToleranceStudy, axes: Axes) -> None:
 
 
 def plot_offenders(offenders: list[Sensitivity], axes: Axes) -> None:
-    """Mean MTF that single tolerances cost at their worse limit, the worst at the top."""
+    """Plots the loss of mean MTF of each tolerance at its worse limit, the worst offender at the top."""
     places = np.arange(len(offenders))[::-1]
     axes.barh(places, [offender.loss for offender in offenders], color=style.RED, height=0.65)
     axes.set_yticks(places, [with_limit(offender) for offender in offenders])
@@ -81,7 +81,7 @@ def with_limit(offender: Sensitivity) -> str:
 
 
 def study_figure(study: ToleranceStudy, offenders: list[Sensitivity]) -> Figure:
-    """All of these on one figure, in the theme in force."""
+    """Combines all plots of the study in one figure, in the current theme."""
     figure = style.new_figure(8.2, 9.4)
     rows = figure.add_gridspec(3, 2)
     plot_yield(study, figure.add_subplot(rows[0, 0]))

@@ -1,4 +1,4 @@
-"""A study as one page of HTML."""
+"""HTML report of a tolerance study."""
 
 from __future__ import annotations
 
@@ -34,8 +34,8 @@ LOSS = 0.02
 def save_tolerance_report(
     study: ToleranceStudy, path: str | os.PathLike[str], *, theme: str | None = None, loss: float = LOSS
 ) -> None:
-    """theme: "light" or "dark"; None is as its reader has set the browser. loss: of mean MTF, for which the page says
-    what each tolerance may be. Raises ImageFileError, and InputError for a theme that is none."""
+    """Writes the report. theme: "light" or "dark"; None follows the reader's browser. loss: loss of mean MTF for which
+    the report lists the inverse sensitivities. Raises ImageFileError, and InputError for an unknown theme."""
     target = files.check_target(path, (".html",))
     if theme is not None:
         theme_named(theme)

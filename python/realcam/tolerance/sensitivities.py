@@ -1,4 +1,4 @@
-"""What single tolerances cost, and what they may be."""
+"""Sensitivities and inverse sensitivities of single tolerances."""
 
 from __future__ import annotations
 
@@ -14,16 +14,17 @@ from .._core import InputError, _CopyJudge
 from .figures import CopyFigures, Doubles
 from .tolerances import MOST, TILTS_MOST_ARCMIN, Tolerance, errors_of
 
-CLOSE = 1e-3  # of a loss: limits are shown with three digits
+CLOSE = 1e-3  # relative to the loss: limits are shown with three digits
 STEPS = 20
 
 
 @dataclass(frozen=True)
 class Sensitivity:
-    """A tolerance alone, at its lower and upper limit; what has a direction, along x and y, at that which costs more.
+    """Effect of one tolerance at its lower and upper limit; a directed one is tried along x and y, and the worse
+    counts.
 
-    mtf: changes of the mean MTF at the middle frequency, lower limit and upper. lowest_mtf: of the worst field's.
-    spot_mm: of the largest RMS radius. focal_length_mm: of the focal length.
+    All values are changes against the nominal lens, at the lower limit and the upper. mtf: mean MTF at the middle
+    frequency. lowest_mtf: MTF of the worst field. spot_mm: largest RMS radius. focal_length_mm: focal length.
     """
 
     tolerance: Tolerance
@@ -34,7 +35,7 @@ class Sensitivity:
 
     @property
     def loss(self) -> float:
-        """Of mean MTF at the worse limit."""
+        """Loss of mean MTF at the worse limit."""
         return -min(self.mtf)
 
     def as_values(self) -> dict[str, Any]:
@@ -46,7 +47,7 @@ def sensitivities(judge: _CopyJudge, items: list[Tolerance], nominal: CopyFigure
     rows = _rows(items, np.array([item.limit for item in items]))
     figures = CopyFigures.joined([judge.judge(errors_of(items), rows)])
     before = nominal.mean_mtf(frequency)[0]
-    # Rows of a tolerance: for each of its errors the lower and the upper limit.
+    # Each error of a tolerance has two rows: its lower limit and its upper limit.
     mtf = figures.mean_mtf(frequency) - before
     others = (
         figures.lowest_mtf(frequency) - nominal.lowest_mtf(frequency)[0],
@@ -65,7 +66,10 @@ def sensitivities(judge: _CopyJudge, items: list[Tolerance], nominal: CopyFigure
 def inverse_sensitivities(
     judge: _CopyJudge, items: list[Tolerance], nominal: CopyFigures, frequency: int, loss: float
 ) -> list[Tolerance]:
-    """By the Illinois method (Dowell and Jarratt 1971), for those tolerances together whose loss is not met yet."""
+    """Returns the tolerances with the limits at which each alone costs `loss` of the mean MTF; inf if it never does.
+
+    Solves for all tolerances that have not converged at once, by the Illinois method (Dowell and Jarratt 1971).
+    """
     before = float(nominal.mean_mtf(frequency)[0])
     if not 0 < loss < before:
         raise InputError(
@@ -73,7 +77,7 @@ def inverse_sensitivities(
         )
 
     def excess(which: NDArray[np.intp], limits: Doubles) -> Doubles:
-        """What these tolerances cost beyond the loss."""
+        """Loss of mean MTF of each of these tolerances at its limit, minus the target loss."""
         some = [items[k] for k in which]
         mtf = CopyFigures.joined([judge.judge(errors_of(some), _rows(some, limits))]).mean_mtf(frequency)
         worst, row = [], 0
@@ -103,7 +107,7 @@ def inverse_sensitivities(
         limits[which] = low[which] + share * (high[which] - low[which])
         found = excess(which, limits[which])
         side = np.where(found < 0, -1, 1)
-        # An end that stays a second time counts half, so that it does not stay for ever.
+        # Illinois rule: halves the value at an end that is retained twice, so that it does not remain for ever.
         stays = side == last[which]
         last[which] = side
         for of, there, other, end in ((side < 0, below, above, low), (side > 0, above, below, high)):
@@ -115,12 +119,12 @@ def inverse_sensitivities(
 
 
 def _most(item: Tolerance) -> float:
-    """Beyond this it is another lens."""
+    """Largest limit that is tried; beyond it the lens would be a different one."""
     return TILTS_MOST_ARCMIN if item.kind.endswith("arcmin") else MOST.get(item.kind, 1000 * item.limit)
 
 
 def _rows(items: list[Tolerance], limits: Doubles) -> Doubles:
-    """Errors of copies that have one each: its lower and its upper limit."""
+    """Errors of copies with a single error each: for every error one copy at the lower limit and one at the upper."""
     count = sum(len(item.errors) for item in items)
     rows = np.zeros((2 * count, count))
     column = 0

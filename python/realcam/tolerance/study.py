@@ -1,4 +1,4 @@
-"""Copies of a lens as they come from the factory, and what they are worth."""
+"""Monte Carlo tolerance studies: random copies of a lens and their performance."""
 
 from __future__ import annotations
 
@@ -27,12 +27,13 @@ SHARES = (0.02, 0.1, 0.5, 0.9, 0.98)
 
 @dataclass(frozen=True)
 class ToleranceStudy:
-    """Copies of a lens with random errors.
+    """Result of a Monte Carlo tolerance study: copies of a lens with random errors.
 
-    lens, tolerances, seed: as given. items: each tolerance by itself. sizes: (C, E), the errors of each copy, in the
-    order of the items; directed ones have two. fields_deg: (F, 2), angles towards x and y. frequencies_per_mm: (K,),
-    of which the middle one counts where one does. nominal: figures of the lens as it was drawn, of one copy.
-    figures: of all copies. is_whole: False where the study was ended before all copies were looked at.
+    lens, tolerances, seed: arguments of tolerance_study. items: the individual tolerances. sizes: (C, E), errors of
+    each copy in the order of the items; a directed tolerance has two errors. fields_deg: (F, 2), angles towards x and
+    y. frequencies_per_mm: (K,); measures of a single frequency use the middle one. nominal: figures of the lens without
+    errors, as one copy. figures: figures of all copies. is_whole: False if the study ended before all copies were
+    evaluated.
     """
 
     lens: Lens
@@ -53,11 +54,12 @@ class ToleranceStudy:
 
     @property
     def main(self) -> int:
-        """The number of the middle frequency."""
+        """Index of the middle frequency."""
         return len(self.frequencies_per_mm) // 2
 
     def copy(self, number: int) -> Lens:
-        """A copy as a lens that photographs, with its compensators set. Raises InputError for a number that is none."""
+        """Returns a copy as a lens for rendering, with its compensators set. Raises InputError if there is no such
+        copy."""
         if not 0 <= number < len(self):
             raise InputError(f"there is no copy {number}; there are {len(self)}, counted from 0")
         f = self.figures
@@ -74,8 +76,8 @@ class ToleranceStudy:
         )
 
     def errors_of(self, number: int) -> list[tuple[Tolerance, Doubles]]:
-        """Each tolerance with a copy's error, in the unit of the tolerance: one number, or two for what has a
-        direction."""
+        """Returns each tolerance with the error of a copy, in the unit of the tolerance: one number, or two if the
+        tolerance is directed."""
         found, column = [], 0
         for item in self.items:
             width = len(item.errors)
@@ -84,23 +86,23 @@ class ToleranceStudy:
         return found
 
     def measure(self, name: str) -> Doubles:
-        """(C,): "mtf", the mean over the fields at the middle frequency; "lowest_mtf", of the worst field; "spot_mm",
-        the largest RMS radius; "focal_length_mm"; "distortion", the largest with its sign. Raises InputError."""
+        """(C,): "mtf", mean over the fields at the middle frequency; "lowest_mtf", MTF of the worst field; "spot_mm",
+        largest RMS radius; "focal_length_mm"; "distortion", the largest in magnitude, signed. Raises InputError."""
         return measured(self.figures, name, self.main)
 
     def nominal_measure(self, name: str) -> float:
         return float(measured(self.nominal, name, self.main)[0])
 
     def quantiles(self, name: str, shares: ArrayLike = SHARES) -> Doubles:
-        """Of a measure: the values that these shares of the copies are below."""
+        """Quantiles of a measure over the copies. shares: probabilities, 0 to 1."""
         quantiles: Doubles = np.quantile(self.measure(name), np.asarray(shares, float))
         return quantiles
 
     def yield_of(self, **limits: float) -> float:
-        """The share of the copies that meet all limits, 0 to 1.
+        """Fraction of the copies that meet all limits, 0 to 1.
 
-        Names are those of measures: mtf and lowest_mtf at least so much, spot_mm and distortion (without its sign) at
-        most, focal_length_mm off the one drawn by at most so much. Raises InputError.
+        Limits are keyed by measure: minimum of mtf and lowest_mtf, maximum of spot_mm and of the magnitude of
+        distortion, and maximum deviation of focal_length_mm from its nominal value. Raises InputError.
         """
         if not limits:
             raise InputError("yield_of wants at least one limit, as lowest_mtf=0.3")
@@ -118,7 +120,7 @@ class ToleranceStudy:
         return float(good.mean())
 
     def sensitivities(self) -> list[Sensitivity]:
-        """What each tolerance does alone at its limits, with the compensators set: those that cost most first."""
+        """Effect of each tolerance alone at its limits, with the compensators set, in descending order of loss."""
         return list(self._sensitivities)
 
     @cached_property
@@ -126,13 +128,13 @@ class ToleranceStudy:
         return sensitivities(self._judge, self.items, self.nominal, self.main)
 
     def worst_offenders(self, count: int = 10) -> list[Sensitivity]:
-        """The tolerances that cost most contrast."""
+        """The `count` tolerances with the largest loss of mean MTF."""
         return self.sensitivities()[:count]
 
     def inverse_sensitivities(self, loss: float) -> list[Tolerance]:
-        """What each tolerance may be if it alone, at its worse limit, is to cost this much of the mean MTF: 0.02.
+        """Limits at which each tolerance alone, at its worse limit, costs `loss` of the mean MTF, say 0.02.
 
-        Raises InputError. One that costs less however large has the limit inf."""
+        A tolerance that costs less at any size has the limit inf. Raises InputError."""
         return inverse_sensitivities(self._judge, self.items, self.nominal, self.main, loss)
 
     def summary(self) -> dict[str, Any]:
@@ -188,19 +190,19 @@ def tolerance_study(
     rings: int = 12,
     progress: Progress | None = None,
 ) -> ToleranceStudy:
-    """Makes copies of a lens with random errors, sets their compensators, and judges them, on all cores.
+    """Makes copies of a lens with random errors, sets their compensators, and evaluates them, on all cores.
 
-    tolerances: or the name of a grade. compensators: "refocus", "film_tilt", an ElementShift. sharpest_by: what they
-    make good in the mean of all fields, "mtf" at the middle frequency, or "spot", the mean square radius.
-    seed: the same one gives the same copies, on any number of threads; the first ones of many are those of few.
-    fields_deg: angles towards +y, or (F, 2) towards x and y; None is the axis, and 0.7 of the way to each corner of the
-    film. frequencies_per_mm: None is 10, 20 and 40 on a film of 36 x 24 mm, as fine in proportion on others.
-    wavelengths_nm: all count alike; None is F line, design wavelength and C line. object_distance_m: to the front
-    vertex; None is the plane in focus. rings: of rays in the pupil.
-    progress: is told the share that is done; the study ends where it returns False. So does an interrupt after the
-    first copies: the study then has those that are done, and says so by is_whole.
-    Raises InputError for what is no tolerance or compensator of this lens, and for lenses that are not of revolution as
-    they were drawn.
+    tolerances: Tolerances, or the name of a grade. compensators: "refocus", "film_tilt", an ElementShift. sharpest_by:
+    figure of merit of the compensators, averaged over all fields: "mtf" at the middle frequency, or "spot", the mean
+    square radius. seed: gives the same copies on any number of threads; a larger study starts with the same copies.
+    fields_deg: angles towards +y, or (F, 2) towards x and y; None: the axis, and 0.7 of the field towards each corner
+    of the film. frequencies_per_mm: None: 10, 20 and 40 for a film of 36 x 24 mm, scaled in proportion for others.
+    wavelengths_nm: equally weighted; None: F line, design wavelength and C line. object_distance_m: from object to
+    front vertex; None: the plane in focus. rings: number of rings of rays in the pupil.
+    progress: called with the fraction done; the study ends if it returns False. An interrupt after the first copies
+    also ends it: the study then holds the copies evaluated so far, and is_whole is False.
+    Raises InputError for a tolerance or compensator that does not apply to this lens, and for a nominal lens without
+    rotational symmetry.
     """
     drawing = Tolerances.grade(tolerances) if isinstance(tolerances, str) else tolerances
     if not isinstance(drawing, Tolerances):
@@ -252,8 +254,8 @@ def tolerance_study(
 
 
 def random_copy(lens: Lens, tolerances: Tolerances | str, *, seed: int | None = None) -> Lens:
-    """One copy of a lens with random errors, refocused as in a study. seed: None is another one each time. Raises
-    InputError as tolerance_study does."""
+    """Returns one copy of a lens with random errors, refocused as in a study. seed: None: a new one at each call.
+    Raises InputError as tolerance_study does."""
     drawn_seed = random.SystemRandom().randrange(1 << 32) if seed is None else seed
     return tolerance_study(lens, tolerances, 1, seed=drawn_seed, rings=6).copy(0)
 
@@ -275,7 +277,7 @@ def _judged(
 
 
 def _fields(lens: Lens, fields_deg: ArrayLike | None) -> Doubles:
-    """(F, 2), degrees towards x and y."""
+    """Field angles, (F, 2), degrees towards x and y."""
     if fields_deg is None:
         from ..analysis.fields import field_angles_deg
 

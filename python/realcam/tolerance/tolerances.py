@@ -1,4 +1,4 @@
-"""How far the numbers of a lens may be off, and what that is for each of its surfaces."""
+"""Manufacturing tolerances of a lens, and their expansion into tolerances of single surfaces and elements."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from .grades import GRADES
 Limits = float | Mapping[int, float] | None
 ElementLimits = float | Mapping[tuple[int, int], float] | None
 
-# What each field is, its unit in words, and the errors that it consists of, with the unit in which they count.
+# For each field of Tolerances: quantity, unit, errors of the core that it consists of, factor to the errors' unit.
 KINDS: dict[str, tuple[str, str, tuple[str, ...], float]] = {
     "radius_mm": ("radius", "mm", ("radius",), 1.0),
     "radius_percent": ("radius", "%", ("radius_percent",), 1.0),
@@ -32,15 +32,15 @@ KINDS: dict[str, tuple[str, str, tuple[str, ...], float]] = {
     "irregularity_fringes": ("irregularity", "fringes", ("irregularity_0", "irregularity_45"), 1.0),
 }
 RADII = ("radius_percent", "radius_mm", "radius_fringes")
-# Beyond these a number is another lens's.
+# Largest limits; beyond them the lens would be a different one.
 MOST = {"radius_percent": 50.0, "abbe_percent": 50.0, "index": 0.2}
 TILTS_MOST_ARCMIN = 600.0
 
 
 @dataclass(frozen=True)
 class Tolerance:
-    """One tolerance of a lens. kind: a field of Tolerances. first, last: surfaces, from 0; the same but for elements.
-    limit: to either side, or in any direction, in the unit of the kind."""
+    """One tolerance of a lens. kind: a field of Tolerances. first, last: surfaces, counted from 0; they differ only for
+    elements. limit: plus or minus, or in any direction, in the unit of the kind."""
 
     kind: str
     first: int
@@ -57,7 +57,7 @@ class Tolerance:
 
     @property
     def label(self) -> str:
-        """With surfaces counted from 1, as in drawings and reports: "radius of surface 3"."""
+        """Text such as "radius of surface 3", with surfaces counted from 1, as in drawings and reports."""
         where = (
             f"surface {self.first + 1}" if self.first == self.last else f"surfaces {self.first + 1} to {self.last + 1}"
         )
@@ -69,7 +69,7 @@ class Tolerance:
 
     @property
     def scale(self) -> float:
-        """From the unit to that in which its errors count."""
+        """Factor from the tolerance's unit to the unit of its errors."""
         return KINDS[self.kind][3]
 
     @property
@@ -79,17 +79,17 @@ class Tolerance:
 
 @dataclass(frozen=True)
 class Tolerances:
-    """How far the numbers of a lens may be off, to either side.
+    """Manufacturing tolerances of a lens, as plus or minus limits.
 
-    Each is a number for all surfaces that have it, a dict of surface, from 0, and limit, or None. Of elements the dict
-    has (first, last) surface; what is cemented is one element.
-    radius: of curvature; a number of fringes is for planes where one of percent or mm is for the others. Fringes are
-    half wavelengths of the e line in the sag at the rim, and so are those of irregularity, from valley to peak of an
-    astigmatic form. thickness: glass and air, to the next surface; what is behind moves with it. index: at the d line,
-    of a melt. abbe: of it, in percent. wedge: between the faces of an element, as the tilt of all but its first.
-    surface and element: about a surface's vertex or an element's middle, in any direction.
-    distribution: "uniform" up to the limit (of directed ones, over the disc), or "normal" with the limit at two
-    standard deviations, and cut there.
+    Each field is a number for all surfaces to which it applies, a dict from surface (counted from 0) to limit, or None.
+    For elements the keys are (first, last) surface; a cemented group is one element.
+    radius: of curvature; if percent or mm and fringes are all numbers, the fringes apply to planes only. A fringe is
+    half a wavelength of the e line in the sag at the rim; irregularity is the peak-to-valley of an astigmatic form in
+    fringes. thickness: of glass or air, to the next surface; everything behind moves with it. index: at the d line, of
+    a melt. abbe: Abbe number, in percent. wedge: between the faces of an element, as a tilt of every face but its
+    first. surface and element: tilt and decentre about a surface's vertex or an element's centre, in any direction.
+    distribution: "uniform" up to the limit (for directed tolerances, over the disc), or "normal" with the limit at two
+    standard deviations, truncated there.
     """
 
     radius_mm: Limits = None
@@ -108,8 +108,8 @@ class Tolerances:
 
     @staticmethod
     def grade(name: str, *, distribution: str = "uniform") -> Tolerances:
-        """Those of a shop: "commercial", "precision" or "high". docs/tolerances.md has the tables and their sources.
-        Raises InputError."""
+        """Returns the tolerances of a grade: "commercial", "precision" or "high". docs/tolerances.md has the tables and
+        their sources. Raises InputError."""
         if name not in GRADES:
             raise InputError(
                 f'unknown grade "{name!s:.40}"; {", ".join(list(GRADES)[:-1])} or {list(GRADES)[-1]} is wanted'
@@ -117,8 +117,8 @@ class Tolerances:
         return Tolerances(**GRADES[name], distribution=distribution)
 
     def of(self, lens: Lens) -> list[Tolerance]:
-        """Each tolerance of that lens by itself, those of 0 left out. Raises InputError for surfaces that do not exist
-        or cannot have it, and for limits that are none."""
+        """Expands into the individual tolerances of a lens, without those of 0. Raises InputError for a surface that
+        does not exist or to which a tolerance does not apply, and for an invalid limit."""
         check_distribution(self.distribution)
         found = []
         for field in fields(self):
@@ -139,7 +139,7 @@ class Tolerances:
         return found
 
     def _places(self, lens: Lens, kind: str) -> Iterator[tuple[int, int]]:
-        """Where a number for all surfaces applies."""
+        """(first, last) surfaces to which a number for all surfaces applies."""
         if kind.startswith("element"):
             yield from elements_of(lens)
             return
@@ -153,7 +153,8 @@ class Tolerances:
             yield surface, surface
 
     def _radius_kind(self, lens: Lens, surface: int) -> str | None:
-        """Of several limits for all surfaces, the one that counts: a plane has only fringes."""
+        """The kind of radius tolerance that applies if several are numbers for all surfaces: a plane has only
+        fringes."""
         return next(
             (
                 kind
@@ -174,7 +175,7 @@ def errors_of(tolerances: list[Tolerance]) -> list[tuple[str, int, int]]:
 
 
 def drawn(tolerances: list[Tolerance], distribution: str, copies: int, seed: int) -> NDArray[np.float64]:
-    """(copies, errors): their sizes. The first copies are the same however many follow."""
+    """Draws the errors, (copies, errors). The first copies do not depend on the number of copies."""
     from scipy.special import ndtr, ndtri  # slow to load
 
     count = sum(len(t.errors) for t in tolerances)
@@ -238,7 +239,7 @@ def _is_plane(lens: Lens, surface: int) -> bool:
 
 
 def _why_not(lens: Lens, kind: str, surface: int) -> str:
-    """Why a surface cannot have a tolerance; empty: it can."""
+    """Reason why a tolerance does not apply to a surface; empty if it does."""
     s = lens.surfaces[surface]
     if kind == "thickness_mm":
         if surface == len(lens.surfaces) - 1:

@@ -1,4 +1,4 @@
-"""Cameras as computer vision knows them: camera models fitted to real lenses, and files of poses and intrinsics."""
+"""Computer vision: camera models fitted to real lenses, and files of poses and intrinsics."""
 
 from .camera_json import camera_json, save_camera_json
 from .colmap import save_colmap, save_colmap_of_rig

@@ -16,9 +16,9 @@ from .models import distortion_coefficients, model_named
 
 
 def camera_json(camera: Camera, fits: Iterable[CameraModelFit] = ()) -> dict[str, Any]:
-    """Pose and intrinsics as json.dump takes them; docs/vision.md says what each entry means. Infinity is None.
+    """Returns pose and intrinsics as values for json.dump; docs/vision.md describes each entry. Infinity becomes None.
 
-    fits: of this camera, from fit_camera_model. Raises InputError where the entrance pupil lies at infinity.
+    fits: results of fit_camera_model for this camera. Raises InputError if the entrance pupil lies at infinity.
     """
     lens, film = camera.lens, camera.film
     rotation, translation = camera.world_to_camera
@@ -53,7 +53,7 @@ def camera_json(camera: Camera, fits: Iterable[CameraModelFit] = ()) -> dict[str
 
 
 def save_camera_json(path: str | os.PathLike[str], camera: Camera, fits: Iterable[CameraModelFit] = ()) -> None:
-    """Writes camera_json into a file. Raises InputError, ImageFileError."""
+    """Writes camera_json to a file. Raises InputError, ImageFileError."""
     write_whole(path, (json.dumps(camera_json(camera, fits), indent=1) + "\n").encode())
 
 

@@ -1,4 +1,4 @@
-"""Cameras and poses as a text model of COLMAP."""
+"""Export of cameras and poses as a COLMAP text model."""
 
 from __future__ import annotations
 
@@ -25,11 +25,11 @@ NAMES = {
 
 
 def save_colmap(folder: str | os.PathLike[str], pictures: Mapping[str, Camera], model: str = "opencv5") -> None:
-    """Writes cameras.txt, images.txt and an empty points3D.txt for pictures, given by name with their cameras.
+    """Writes cameras.txt, images.txt and an empty points3D.txt for a mapping of picture names to cameras.
 
-    folder: is made if it is missing. model: as fit_camera_model has it; each combination of lens, film and camera model
-    is fitted once. "opencv4" becomes COLMAP's OPENCV, "opencv5" and "opencv8" FULL_OPENCV. Poses are those of the
-    middle of the entrance pupil. Raises InputError, ImageFileError.
+    folder: created if missing. model: see fit_camera_model; each combination of lens, film and camera model is fitted
+    once. "opencv4" becomes COLMAP's OPENCV, "opencv5" and "opencv8" FULL_OPENCV. Poses have their origin at the centre
+    of the entrance pupil. Raises InputError, ImageFileError.
     """
     fits = _Fits(model)
     ids: dict[_Kind, int] = {}
@@ -44,10 +44,10 @@ def save_colmap(folder: str | os.PathLike[str], pictures: Mapping[str, Camera], 
 def save_colmap_of_rig(
     folder: str | os.PathLike[str], moments: Mapping[str, Mapping[str, Camera]], model: str = "opencv5"
 ) -> None:
-    """save_colmap for cameras that are fixed to one another, with the rigs.txt and frames.txt of COLMAP 3.12 and later.
+    """Writes the files of save_colmap for a rigid rig, plus rigs.txt and frames.txt (COLMAP 3.12 and later).
 
-    moments: by the name that the pictures of a moment have, each in the folder of its camera, the cameras then by their
-    names. The first camera is that to which COLMAP refers the others. Raises InputError, ImageFileError.
+    moments: for each moment's picture name, the rig's cameras by name; a picture's path is "camera/moment". The first
+    camera is COLMAP's reference sensor. Raises InputError, ImageFileError.
     """
     fits = _Fits(model)
     if not moments:
@@ -82,11 +82,11 @@ def _kind_of(camera: Camera) -> _Kind:
 
 
 class _Fits:
-    """What COLMAP is told of cameras, each kind of which is fitted once. Raises InputError."""
+    """Lines of cameras.txt, cached for each combination of lens, film and camera model. Raises InputError."""
 
     def __init__(self, model: str) -> None:
         if model not in NAMES:
-            model_named(model)  # raises for a name that is none
+            model_named(model)  # raises for an unknown name
             raise InputError(f"COLMAP has no camera model {model}; one of {', '.join(NAMES)} is wanted")
         self._model = model
         self.lines: dict[_Kind, str] = {}
@@ -101,7 +101,7 @@ class _Fits:
 def _image_line(number: int, pose: Pose, camera: int, name: str) -> str:
     if not name or any(c.isspace() for c in name):
         raise InputError(f"COLMAP's text files hold no names with spaces, as {name!r:.60}")
-    return f"{number} {_pose_text(pose)} {camera} {name}\n"  # and an empty line of its points
+    return f"{number} {_pose_text(pose)} {camera} {name}\n"  # followed by an empty line for POINTS2D
 
 
 def _pose_text(pose: Pose) -> str:

@@ -16,27 +16,28 @@ from .regularised import condition_of, nearest_coefficients
 
 Array = NDArray[np.float64]
 
-GRID = 49  # places across the longer side of the film, its edges included
+GRID = 49  # sample points along the longer side of the film, including its edges
 LEAST_LIGHT = (
-    0.1  # of that in the middle; where there is less, no pattern is recognised, and rims alone say what is seen
+    0.1  # of the light at the film centre; below it no pattern is recognised, and vignetting alone decides what is seen
 )
 
 
-# Between held-out points, by which a model has to be better than one of fewer terms: no calibration tells less.
+# Improvement of the held-out RMS that justifies more coefficients; no calibration resolves less.
 NOTABLE_PX = 0.01
-SIMPLER = ("pinhole", "opencv4", "opencv5")  # than opencv8
+SIMPLER = ("pinhole", "opencv4", "opencv5")  # models with fewer coefficients than opencv8
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class CameraModelFit:
-    """A camera model that stands for a camera.
+    """A camera model fitted to a camera.
 
-    model: its name. camera: to which it was fitted. camera_matrix: (3, 3), K for pixels as Camera.project counts them.
-    coefficients: k1, k2, ... of the model (realcam.vision.models). distance_m: of the points to which it was fitted,
-    from the middle of the entrance pupil. through: as Camera.project has it. pixels: (N, 2), places of the film;
-    residuals: (N, 2), by how much the model shows elsewhere what the lens shows there, in pixels. largest_angle_deg: to
-    the axis, up to which the model's radius grows, and the model can be inverted. condition: of the model's terms over
-    the film (realcam.vision.regularised): where it is large, other coefficients would show nearly the same.
+    model: name of the model. camera: the camera to which it was fitted. camera_matrix: (3, 3), K in the pixel
+    coordinates of Camera.project. coefficients: k1, k2, ... of the model (realcam.vision.models). distance_m: distance
+    of the fitted points from the centre of the entrance pupil. through: see Camera.project. pixels: (N, 2), film
+    points. residuals: (N, 2), projection of the model minus that of the lens, in pixels. largest_angle_deg: largest
+    angle to the axis up to which the model's radius increases, so that it can be inverted. condition: condition number
+    of the model's terms over the film (realcam.vision.regularised); if it is large, other coefficients fit nearly as
+    well.
     """
 
     model: str
@@ -72,32 +73,32 @@ class CameraModelFit:
 
     @property
     def rms_px(self) -> float:
-        """The root mean square of the residuals' lengths."""
+        """RMS length of the residuals, in pixels."""
         return float(np.sqrt(np.mean(np.sum(self.residuals**2, axis=1))))
 
     @property
     def max_px(self) -> float:
-        """The largest length of a residual."""
+        """Largest length of a residual, in pixels."""
         return float(np.linalg.norm(self.residuals, axis=1).max())
 
     @property
     def covers_film(self) -> bool:
-        """Whether the model can be inverted for all that the film sees."""
+        """True if the model can be inverted at every fitted film point."""
         return not np.isnan(self.unproject(self.pixels)).any()
 
     @property
     def largest_radius_px(self) -> float:
-        """Distance from the principal point that belongs to largest_angle_deg, in columns."""
+        """Distance from the principal point at largest_angle_deg, in pixel widths."""
         return float(self.camera_matrix[0, 0] * self._largest_radius())
 
     def project(self, points_m: ArrayLike) -> Array:
-        """(N, 3) points of the scene -> (N, 2) pixels as from Camera.project; NaN beyond largest_angle_deg."""
+        """Projects (N, 3) scene points to (N, 2) pixels, as Camera.project; NaN beyond largest_angle_deg."""
         rotation, translation = self.camera.world_to_camera
         seen = np.asarray(points_m, dtype=float) @ rotation.T + translation
         return projected(model_named(self.model), self.camera_matrix, self.coefficients, seen)
 
     def unproject(self, pixels: ArrayLike) -> Array:
-        """(N, 2) pixels -> (N, 3) unit directions in the scene, from Camera.entrance_pupil_position_m.
+        """Returns (N, 3) unit directions in the scene, from Camera.entrance_pupil_position_m, of (N, 2) pixels.
 
         NaN beyond largest_radius_px.
         """
@@ -105,7 +106,7 @@ class CameraModelFit:
         K = self.camera_matrix
         plane = (np.asarray(pixels, dtype=float) - K[:2, 2]) / np.diag(K)[:2]
         radius = np.hypot(plane[:, 0], plane[:, 1])
-        # Bisection: 60 halvings leave no more than a rounding error of an angle.
+        # Bisection: 60 halvings reach the rounding error of an angle.
         low, high = np.zeros_like(radius), np.full_like(radius, np.radians(self.largest_angle_deg))
         for _ in range(60):
             middle = 0.5 * (low + high)
@@ -118,14 +119,15 @@ class CameraModelFit:
         return directions
 
     def residuals_at(self, distance_m: float) -> Array:
-        """(N, 2): the residuals for points at another distance.
+        """Returns the (N, 2) residuals for points at another distance.
 
-        A real lens has no one centre of projection: its entrance pupil moves with the angle, which shows near the lens.
+        A real lens has no single centre of projection: its entrance pupil moves with the angle, which matters close to
+        the lens.
         """
         return self._residuals_of(*calibration_points(self.camera, distance_m, self.through))
 
     def held_out_rms_px(self) -> float:
-        """The root mean square of the residuals' lengths at places between those to which the model was fitted."""
+        """RMS length of the residuals at film points half-way between the fitted ones, in pixels."""
         residuals = self._residuals_of(*calibration_points(self.camera, self.distance_m, self.through, between=True))
         return float(np.sqrt(np.mean(np.sum(residuals**2, axis=1))))
 
@@ -133,9 +135,9 @@ class CameraModelFit:
         return projected(model_named(self.model), self.camera_matrix, self.coefficients, seen) - pixels
 
     def opencv(self) -> tuple[Array, Array]:
-        """(K, coefficients) as OpenCV takes them: pixels count from the middle of the first.
+        """Returns (K, coefficients) in OpenCV's convention, in which the centre of the first pixel is (0, 0).
 
-        Of the model fisheye for the functions of cv2.fisheye. Raises InputError for f_theta.
+        Those of the model fisheye are for the functions of cv2.fisheye. Raises InputError for f_theta.
         """
         coefficients = distortion_coefficients(model_named(self.model), self.coefficients)
         return conventions.opencv_matrix(self.camera_matrix), np.array(coefficients)
@@ -151,23 +153,21 @@ class CameraModelFit:
 def fit_camera_model(
     camera: Camera, model: str = "opencv5", *, distance_m: float | None = None, through: str = "light"
 ) -> CameraModelFit:
-    """Fits a camera model to the rays of the camera, by least squares of the distances on the film, in pixels.
+    """Fits a camera model to the rays of a camera by least squares of the reprojection error in pixels.
 
-    model: "pinhole", "opencv4", "opencv5", "opencv8" (OpenCV's with 2, 3 and 6 radial coefficients; the two of
-    tangential distortion are 0), "fisheye" (Kannala and Brandt, cv2.fisheye), "f_theta" (a polynomial of the angle).
-    Its centre of projection is the middle of the paraxial entrance pupil, and its axis that of the lens. Of a lens that
-    is not of revolution both focal lengths and the principal point are fitted too; what no function of the angle can
-    say stays in the residuals. distance_m: radius of the sphere about the centre of projection on which the matched
-    points lie, infinity allowed; None: that of the plane in focus on the axis. Points of a plane lie further away to
-    the side, which lenses whose pupil moves with the angle, as fisheyes, view differently (0.1 pixels at close
-    range). through: as Camera.project has it. Where the film gets less than a
-    tenth of the light in its middle does not count.
-    Of all coefficients of "opencv8" that fit the film to a hundredth of a pixel of the best, those are taken that come
-    nearest to "opencv5". Warns where a model of fewer terms predicts places between the fitted ones as well,
-    to a hundredth of a pixel.
+    model: "pinhole", "opencv4", "opencv5", "opencv8" (OpenCV's, with 2, 3 and 6 radial coefficients; both tangential
+    coefficients are 0), "fisheye" (Kannala and Brandt, cv2.fisheye), "f_theta" (a polynomial of the angle).
+    The centre of projection is the centre of the paraxial entrance pupil, and the axis is the lens's. For a lens
+    without rotational symmetry both focal lengths and the principal point are fitted as well; the residuals hold what
+    no function of the angle can express. distance_m: radius of the sphere about the centre of projection on which the
+    fitted points lie, inf allowed; None: the distance of the plane in focus on the axis. Off-axis points of a plane are
+    further away, and a lens whose pupil moves with the angle, such as a fisheye, projects them differently (0.1 pixels
+    at close range). through: see Camera.project. Film points that receive less than a tenth of the light at the film
+    centre are ignored.
+    Among all coefficients of "opencv8" within a hundredth of a pixel of the best fit, those closest to "opencv5" are
+    returned. Warns if a model with fewer coefficients predicts held-out points equally well, to a hundredth of a pixel.
 
-    Raises InputError; for models by the tangent of the angle also where the
-    film sees 90 degrees to the side.
+    Raises InputError, also if the film sees 90 degrees off the axis and the model is a function of the tangent.
     """
     fit = _fitted(camera, model_named(model), distance_m, through)
     if model_named(model).denominator:
@@ -204,7 +204,7 @@ def _fitted(camera: Camera, from_model: RadialModel, distance_m: float | None, t
     r = np.hypot(*((pixels - start[:2, 2]) / np.diag(start)[:2]).T)
 
     is_round = camera.lens.is_rotational
-    of_matrix = 1 if is_round else 4  # the first so many parameters
+    of_matrix = 1 if is_round else 4  # number of leading parameters that describe the camera matrix
 
     def matrix(parameters: Array) -> Array:
         scaled: Array = start.copy()
@@ -219,7 +219,7 @@ def _fitted(camera: Camera, from_model: RadialModel, distance_m: float | None, t
     def residuals(parameters: Array) -> Array:
         return _shown(from_model, matrix(parameters), parameters[of_matrix:], seen) - pixels
 
-    # To the last digit: the sum of squares is flat near its minimum, where coefficients trade for each other.
+    # Tight tolerances: the sum of squares is flat near its minimum, where coefficients compensate each other.
     tolerances = {"xtol": 1e-15, "ftol": 1e-15, "gtol": 1e-15}
     guesses = _first_guesses(from_model, s, r)
     if not is_round:
@@ -228,8 +228,8 @@ def _fitted(camera: Camera, from_model: RadialModel, distance_m: float | None, t
         optimize.least_squares(lambda p: residuals(p).ravel(), guess, method="lm", x_scale="jac", **tolerances).x
         for guess in guesses
     ]
-    # A numerator and a denominator may have a root each side by side within the picture, a pole between the points. The
-    # guess without a denominator has none.
+    # Numerator and denominator may have adjacent roots within the picture, that is, a pole between the fitted points.
+    # The guess without a denominator has no pole.
     candidates = [*found, *guesses]
     widest = _angles(seen).max()
     sound = [p for p in candidates if from_model.largest_angle(p[of_matrix:]) >= widest] or candidates
@@ -253,7 +253,8 @@ def _fitted(camera: Camera, from_model: RadialModel, distance_m: float | None, t
 
 
 def _first_guesses(model: RadialModel, s: Array, r: Array) -> list[Array]:
-    """(f, coefficients) that solve r (1 + ...) = f s (1 + ...), linear in its unknowns; and without a denominator."""
+    """Starting values (f, coefficients): the linear least-squares solution of r (1 + ...) = f s (1 + ...), with and
+    without its denominator."""
     above = 1 + len(model.numerator)
     columns = model.linear_terms(s, r)
     guesses = []
@@ -267,9 +268,9 @@ def _first_guesses(model: RadialModel, s: Array, r: Array) -> list[Array]:
 def calibration_points(
     camera: Camera, distance_m: float, through: str = "light", between: bool = False
 ) -> tuple[Array, Array]:
-    """(seen, pixels): places all over the film that have a tenth of the light in its middle or more, (N, 2), and what
-    they show at a distance from the middle of the entrance pupil, (N, 3) in the axes of world_to_camera; at infinity
-    unit directions. between: places in the middle of these. Raises InputError.
+    """Returns (seen, pixels): (N, 2) pixels of a grid over the film that receive at least a tenth of the light at the
+    film centre, and the (N, 3) points that they see at a distance from the centre of the entrance pupil, in the axes of
+    world_to_camera; unit directions at infinity. between: uses the centres of the grid's cells. Raises InputError.
     """
     if not distance_m > 0:
         raise InputError("distance_m must be a positive number of metres, or inf")
@@ -290,7 +291,7 @@ def calibration_points(
     directions = directions @ rotation.T
     if np.isinf(distance_m):
         return directions, pixels
-    # Where each line leaves the sphere about the middle of the pupil.
+    # Intersection of each ray with the sphere about the centre of the entrance pupil.
     apart = origins @ rotation.T + translation
     along = np.sum(apart * directions, axis=1)
     rest = along**2 - np.sum(apart**2, axis=1) + distance_m**2
@@ -300,7 +301,7 @@ def calibration_points(
 
 
 def projected(model: RadialModel, camera_matrix: Array, coefficients: Array, seen: Array) -> Array:
-    """(N, 3) points in the axes of the camera -> (N, 2) pixels; NaN where the model has none or turns back."""
+    """Projects (N, 3) points in camera axes to (N, 2) pixels; NaN where the model is undefined or not monotonic."""
     pixels = _shown(model, camera_matrix, coefficients, seen)
     pixels[_angles(seen) > model.largest_angle(coefficients)] = np.nan
     return pixels

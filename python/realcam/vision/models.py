@@ -1,9 +1,9 @@
-"""The camera models of computer vision, as functions of the angle to the axis.
+"""Camera models of computer vision, as functions of the angle to the axis.
 
-Lenses are round, so that a model says how far from the principal point a direction shows, r(s), in units of the
-focal length; s is the angle theta itself, or its tangent. Tangential terms are 0. Sources: OpenCV's documentation of
+A model is rotationally symmetric: it gives the distance r(s) from the principal point in units of the focal length,
+where s is the angle theta to the axis or its tangent. Tangential terms are 0. Sources: OpenCV's documentation of
 calib3d and fisheye (J. Kannala and S. Brandt, IEEE PAMI 28 (2006) 1335, with the odd powers up to the ninth); f_theta
-is the polynomial of simulators and data sets of automobiles, of all powers from the first to the fifth.
+is the polynomial of automotive simulators and data sets, with all powers from the first to the fifth.
 """
 
 from __future__ import annotations
@@ -33,30 +33,30 @@ class RadialModel:
         return len(self.numerator) + len(self.denominator)
 
     def argument(self, angle: Array) -> Array:
-        """s of angles in radians; NaN where the model has none."""
+        """Returns s of angles in radians; NaN at 90 degrees or more if s is the tangent."""
         if not self.by_tangent:
             return angle
         with np.errstate(invalid="ignore"):
             return np.where(angle < np.pi / 2, np.tan(angle), np.nan)
 
     def radius(self, s: Array, coefficients: Array) -> Array:
-        """r(s)."""
+        """Returns r(s)."""
         top, bottom = self._polynomials(coefficients)
         with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
             values: Array = s * top(s) / bottom(s)
         return values
 
     def linear_terms(self, s: Array, r: Array) -> Array:
-        """Columns whose multiples by f, f k_i and k_j add up to r: the model as a linear equation in these."""
+        """Columns of the linear system for r: r is their sum weighted by f, f k_i and k_j."""
         top = [s ** (power + 1) for power in (0, *self.numerator)]
         return np.stack([*top, *(-r * s**power for power in self.denominator)], axis=-1)
 
     def largest_angle(self, coefficients: Array) -> float:
-        """Up to where r grows with the angle, in radians."""
+        """Largest angle in radians up to which r increases with the angle."""
         top, bottom = self._polynomials(coefficients)
         identity = np.polynomial.Polynomial([0, 1])
         slope = (identity * top).deriv() * bottom - identity * top * bottom.deriv()
-        # Squares of rounding errors may leave a root of two a little beside the real axis.
+        # Rounding may move a double root slightly off the real axis.
         turns = [
             root.real
             for root in [*slope.roots(), *bottom.roots()]
@@ -89,14 +89,14 @@ MODELS = {
 
 
 def model_named(name: str) -> RadialModel:
-    """Raises InputError."""
+    """Returns the model of a name. Raises InputError if it is unknown."""
     if name not in MODELS:
         raise InputError(f'unknown camera model "{name}"; one of {", ".join(MODELS)} is wanted')
     return MODELS[name]
 
 
 def distortion_coefficients(model: RadialModel, coefficients: Array) -> list[float]:
-    """As the functions of OpenCV take them: k1, k2, p1, p2, k3, ..., k6; of cv2.fisheye k1 to k4.
+    """Returns the coefficients in OpenCV's order: k1, k2, p1, p2, k3, ..., k6; for cv2.fisheye k1 to k4.
 
     Raises InputError for f_theta, which OpenCV does not have.
     """

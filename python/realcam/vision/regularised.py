@@ -1,9 +1,9 @@
-"""Coefficients of a rational camera model that are no larger than the rays of a camera call for.
+"""Regularised coefficients of a rational camera model.
 
-A numerator and a denominator may have nearly the same factor, so that very different coefficients make nearly the same
-model. Among them are huge ones, which mean nothing and lose digits where a program computes in float. Here those are
-taken that are nearest to the polynomial without a denominator, among all that fit nearly as well as the best (A. N.
-Tikhonov's regularisation, its weight chosen by V. A. Morozov's discrepancy principle).
+Numerator and denominator may share nearly the same factor, so that very different coefficients describe nearly the same
+model. Some of them are huge, which is meaningless and loses digits in programs that compute in float. Among all
+coefficients that fit nearly as well as the best, this module chooses those closest to the polynomial without a
+denominator (A. N. Tikhonov's regularisation, its weight chosen by V. A. Morozov's discrepancy principle).
 """
 
 from __future__ import annotations
@@ -17,17 +17,17 @@ from .models import RadialModel
 
 Array = NDArray[np.float64]
 
-# By how much the fit may be worse than the best, RMS: calibrations with patterns come to some hundredths of a pixel.
+# Allowed increase of the RMS over the best fit: calibrations with patterns reach a few hundredths of a pixel.
 ALLOWED_PX, ALLOWED_SHARE = 0.01, 1.05
 
 
 def nearest_coefficients(
     model: RadialModel, residuals: Callable[[Array], Array], best: Array, start: Array, largest_s: float
 ) -> Array:
-    """Parameters that fit nearly as well as `best`, and whose denominator is as near to 1 as that allows.
+    """Returns parameters that fit nearly as well as `best` and are as close as possible to the polynomial model.
 
-    residuals: of parameters, (N, 2) pixels; the last parameters are the coefficients of the model. start: some without
-    a denominator. largest_s: of the film, in whose powers coefficients are measured.
+    residuals: maps parameters to (N, 2) pixels; the last parameters are the model's coefficients. start: parameters
+    with a denominator of 1. largest_s: largest s on the film, by whose powers coefficients are scaled.
     """
     from scipy import optimize  # slow to load
 
@@ -45,7 +45,7 @@ def nearest_coefficients(
     polynomial = np.append(solved(lambda p: residuals(np.append(p, none)).ravel(), start[:-below]), none)
     allowed = max(rms(best) + ALLOWED_PX, ALLOWED_SHARE * rms(best))
     found = polynomial
-    # From strong to weak, each from the last: such a path does not jump to where factors cancel.
+    # Continuation from a strong to a weak penalty does not jump to solutions in which factors cancel.
     for weight in np.geomspace(1, 1e-6, 19):
         if rms(found) <= allowed:
             return found
@@ -60,10 +60,10 @@ def nearest_coefficients(
 
 
 def condition_of(model: RadialModel, s: Array, r: Array) -> float:
-    """Of the model's terms over the film, each made a column of unit length: largest over smallest singular value.
+    """Condition number of the model's linear terms over the film, with columns normalised to unit length.
 
-    So many times larger than a relative error of what is shown may errors of coefficients be, that make up for one
-    another. 1 is the best.
+    Compensating errors of the coefficients may be larger than the relative error of the projection by this factor. The
+    best value is 1.
     """
     columns = model.linear_terms(s, r)
     return float(np.linalg.cond(columns / np.linalg.norm(columns, axis=0)))

@@ -1,4 +1,4 @@
-"""The way back: the scene as glTF, with the camera as realcam takes it, and a shot file with the lens's rings."""
+"""Export to realcam: the scene as glTF with realcam's camera pose, and a shot file with the lens settings."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class RealcamExportShot(bpy.types.Operator, ExportHelper):
 
 
 def write_shot(scene: bpy.types.Scene, path: Path) -> None:
-    """While glTF is written, which has no cameras of other kinds, the camera is a perspective one."""
+    """Makes the camera a perspective one while glTF, which has no custom cameras, is written."""
     camera = scene.camera.data
     camera.type = "PERSP"
     try:
@@ -49,7 +49,7 @@ def shot_text(scene: bpy.types.Scene, scene_file: str) -> str:
     rings = scene.camera.data.realcam
     figures = lenses()[rings.lens]
     width_mm, height_mm = film_mm(rings.lens, rings.film)
-    # Blender crops the film to the shape of the picture, along its longer side.
+    # Blender fits the longer side of the film to the longer side of the picture and crops the other.
     columns, rows = scene.render.resolution_x, scene.render.resolution_y
     longer_mm = max(width_mm, height_mm)
     film = [longer_mm * columns / max(columns, rows), longer_mm * rows / max(columns, rows)]
@@ -58,7 +58,8 @@ def shot_text(scene: bpy.types.Scene, scene_file: str) -> str:
     lines = [
         "format = 1",
         f"scene = {_toml_text(scene_file)}",
-        # The pose in place of glTF's camera, which realcam takes for the entrance pupil: here it is the film's.
+        # Written as a pose, not as glTF's camera: realcam puts the entrance pupil at a glTF camera, but this is the
+        # film.
         f"position_m = {_triple(place.translation)}",
         f"look_at_m = {_triple(place.translation - place.col[2].xyz)}",
         f"up = {_triple(place.col[1].xyz)}",
@@ -79,12 +80,12 @@ def shot_text(scene: bpy.types.Scene, scene_file: str) -> str:
 
 
 def _toml_text(text: str) -> str:
-    """A basic string of TOML: the escapes of JSON are among its own, and it also excludes the character DEL."""
+    """TOML basic string: JSON's escapes are valid in it, but it also forbids a literal DEL."""
     return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
 
 
 def _triple(vector: Vector) -> str:
-    """In the frame of glTF, whose y is up."""
+    """Converts to the glTF frame, in which y is up."""
     return f"[{vector.x:.9g}, {vector.z:.9g}, {-vector.y:.9g}]"
 
 
@@ -94,7 +95,7 @@ def _focus_m(scene: bpy.types.Scene) -> float:
         return math.inf
     distance = dof.focus_distance
     if dof.focus_object is not None:
-        # Along the axis of the camera, as Cycles takes it.
+        # Distance along the camera axis, as Cycles defines it.
         to_camera = scene.camera.matrix_world.normalized().inverted()
         distance = abs((to_camera @ dof.focus_object.matrix_world.translation).z)
     return distance * scene.unit_settings.scale_length

@@ -1,4 +1,4 @@
-"""The lenses that lie in this extension: figures in lenses.json, and a shader for each."""
+"""The lenses of this extension: their data in lenses.json, and a shader for each."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ FILMS_MM = {
 
 @cache
 def lenses() -> dict[str, dict[str, Any]]:
-    """By key, in the order of their titles."""
+    """Lens data by key, sorted by title."""
     return json.loads((FOLDER / "lenses.json").read_text(encoding="utf-8"))
 
 
@@ -35,7 +35,7 @@ def film_mm(key: str, film: str) -> tuple[float, float]:
 
 
 def f_numbers(key: str) -> list[float]:
-    """The clicks of the ring: wide open, then third stops."""
+    """f-numbers of the ring's click stops: wide open, then third stops."""
     widest = lenses()[key]["f_number"]
     clicks = (2 ** (third / 6) for third in range(67))
     return [widest, *(round(click, 2 if click < 2 else 1) for click in clicks if click > 1.06 * widest and click < 46)]

@@ -1,4 +1,4 @@
-"""The rings of the lens, kept with each camera, and what they change of it."""
+"""Lens settings stored with each camera, and their effect on the camera."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, Po
 
 from .lenses import FILMS_MM, film_mm, lenses, shader_of
 
-# Blender keeps no reference of its own to the texts of a menu.
+# Blender does not hold a reference to the strings of an enum's items, so they must be kept alive here.
 _MENU: list[tuple[str, str, str, str, int]] = []
 
 
 def lens_menu(_self: object, _context: object) -> list[tuple[str, str, str, str, int]]:
-    """A .blend file keeps the numbers, so that they have to be the same where the extension has other lenses."""
+    """Stable number of an enum item: .blend files store it, so it must not depend on the lenses of the extension."""
     if not _MENU:
         _MENU.append(("none", "None: Blender's own", "A perspective camera", "", 0))
         _MENU.extend(
@@ -25,7 +25,8 @@ def lens_menu(_self: object, _context: object) -> list[tuple[str, str, str, str,
 
 
 def set_lens(self: RealcamLens, _context: object) -> None:
-    """Gives the camera the shader of the lens, as a text inside of the file, which then needs no extension."""
+    """Assigns the lens shader to the camera as a text block of the .blend file, which then works without the
+    extension."""
     camera = self.id_data
     if self.lens not in lenses():
         camera.type = "PERSP"
@@ -36,7 +37,7 @@ def set_lens(self: RealcamLens, _context: object) -> None:
     camera.type = "CUSTOM"
     camera.custom_mode = "INTERNAL"
     _compile(camera, text)
-    # A perspective of the same angle is what the viewport shows without Cycles.
+    # Without Cycles the viewport shows a perspective camera; it gets the same field of view.
     camera.lens = lenses()[self.lens]["focal_length_mm"]
     if not camera.dof.use_dof:
         camera.dof.use_dof = True
@@ -51,7 +52,7 @@ def set_film(self: RealcamLens, _context: object) -> None:
     camera = self.id_data
     width_mm, height_mm = film_mm(self.lens, self.film)
     camera.sensor_width, camera.sensor_height = width_mm, height_mm
-    # A picture that is higher than wide holds the film upright.
+    # In a picture taller than wide, the film is in portrait orientation.
     camera.sensor_fit = "AUTO"
 
 
@@ -62,7 +63,7 @@ def set_rings(self: RealcamLens, _context: object) -> None:
 
 @persistent
 def follow(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
-    """Gives the shaders what the rings show in this frame: keys and units change without a call of `set_rings`."""
+    """Updates the shaders from the settings at this frame: keyframes and units change without a call of `set_rings`."""
     for camera in bpy.data.cameras:
         rings = camera.evaluated_get(depsgraph).realcam
         if rings.lens in lenses():
@@ -70,7 +71,8 @@ def follow(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
 
 
 def _compile(camera: bpy.types.Camera, text: bpy.types.Text) -> None:
-    """Blender has the scene's engine compile a text when it becomes the camera's. Only Cycles can."""
+    """Makes Cycles the engine while a text is assigned: Blender lets the scene's engine compile it, and only Cycles
+    can."""
     render = bpy.context.scene.render
     engine, render.engine = render.engine, "CYCLES"
     try:
