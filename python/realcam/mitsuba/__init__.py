@@ -6,7 +6,7 @@
     mi.set_variant("llvm_ad_rgb")
     sensor = mi.load_dict({"type": "realcam", "lens": "double-gauss-50mm", "focus_distance_m": 4.0, "f_number": 2.8})
 
-The docs say which properties there are (docs/mitsuba.md). Needs the package mitsuba.
+docs/mitsuba.md lists the properties. Requires the package mitsuba.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ except ImportError:
 
 
 def _register(variant: str | None) -> None:
-    """A class belongs to a variant, so the module of the sensor is loaded again for each, as Mitsuba's own are."""
+    """Registers the sensor. A class belongs to a variant, so the module is reloaded for each, as Mitsuba's own are."""
     if variant:
         name = f"{__name__}.sensor"
         sensor = importlib.reload(sys.modules[name]) if name in sys.modules else importlib.import_module(name)

@@ -1,4 +1,4 @@
-"""A lens as a list of surfaces in the order in which light from the film meets them, or light from the scene."""
+"""A lens as a list of surfaces in the order of the ray, towards the film or towards the scene."""
 
 from __future__ import annotations
 
@@ -9,20 +9,21 @@ import numpy as np
 
 from .._core import InputError, Lens, Surface, _iris_apothem_mm
 
-# All that Mitsuba's sensors sample, nm.
+# Wavelength range of Mitsuba's sensors, nm.
 WAVELENGTHS_NM = (360.0, 830.0)
-# Refractive indices are nearly polynomials of 1 / (wavelength - POLE_NM), which grows as they do in the ultraviolet.
+# Refractive indices are nearly polynomials of 1 / (wavelength - POLE_NM), which like them increases in the ultraviolet.
 POLE_NM = 200.0
-# Of these polynomials. The fit then leaves less than a float32 resolves, for all glasses that a formula describes.
+# Degree of these polynomials. The fit's error is then below float32's resolution for all glasses with a dispersion
+# formula.
 DEGREE = 6
 
 
 @dataclass(frozen=True)
 class Asphere:
-    """z = conic + u^2 p(u - 1/2), with u = r^2 / reach^2; beyond the reach the sag stays as it is there.
+    """z = conic + u^2 p(u - 1/2), with u = r^2 / reach^2; beyond the reach the sag is constant.
 
-    terms: of p, the constant first, mm. Powers of u - 1/2, because powers of u itself cancel towards the rim.
-    lowest_mm, highest_mm: bounds of the sag.
+    terms: coefficients of p in mm, the constant first. p is in powers of u - 1/2, because powers of u cancel towards
+    the rim. lowest_mm, highest_mm: bounds of the sag.
     """
 
     reach_mm: float
@@ -33,7 +34,7 @@ class Asphere:
 
 @dataclass(frozen=True)
 class Iris:
-    """Blades whose edges are arcs of one curvature; the middle of each lies apothem_mm from the axis."""
+    """Diaphragm blades whose edges are arcs of equal curvature; the midpoint of each lies apothem_mm from the axis."""
 
     apothem_mm: float
     curvature_per_mm: float
@@ -42,10 +43,10 @@ class Iris:
 
 @dataclass(frozen=True)
 class Crossing:
-    """One surface, in the frame of its vertex. Light goes in and out along z with the signs given.
+    """One surface, in the frame of its vertex. sign_in, sign_out: signs of the ray's z direction before and after it.
 
-    index_change: n'^2 / n^2 - 1 at the design wavelength. index_terms: the same as a polynomial of
-    `wavelength_variable`, the constant first; empty where neither medium disperses.
+    index_change: n'^2 / n^2 - 1 at the design wavelength. index_terms: n'^2 / n^2 - 1 as a polynomial of
+    `wavelength_variable`, the constant first; empty if it does not depend on the wavelength.
     """
 
     vertex_mm: float
@@ -62,13 +63,13 @@ class Crossing:
 
 
 def wavelength_variable(nm: Any) -> Any:
-    """From -1 at the longest wavelength to 1 at the shortest; of a number, an array or a value of Dr.Jit."""
+    """Maps wavelengths to -1 at the longest and 1 at the shortest. nm: a number, an array or a Dr.Jit value."""
     low, high = (1 / (end - POLE_NM) for end in reversed(WAVELENGTHS_NM))
     return (2 / (high - low)) / (nm - POLE_NM) - (high + low) / (high - low)
 
 
 def check_expressible(lens: Lens) -> None:
-    """Raises InputError, which names the surface, for a lens that the sensor cannot trace."""
+    """Raises InputError, which names the surface, if the sensor cannot trace the lens."""
     for number, surface in enumerate(lens.surfaces, 1):
         if surface.form != "conic":
             raise InputError(
@@ -84,7 +85,7 @@ def check_expressible(lens: Lens) -> None:
 
 
 def crossings_to_film(lens: Lens, dispersive: bool) -> list[Crossing]:
-    """In the order in which light from the scene meets them. Raises InputError as check_expressible."""
+    """Returns the surfaces in order from the scene to the film. Raises InputError as check_expressible."""
     check_expressible(lens)
     sign, found = 1, []
     for index, (surface, vertex) in enumerate(zip(lens.surfaces, lens.vertices_mm, strict=True)):
@@ -109,12 +110,12 @@ def crossings_to_film(lens: Lens, dispersive: bool) -> list[Crossing]:
 
 
 def crossings_to_scene(crossings: list[Crossing]) -> list[Crossing]:
-    """The same way back."""
+    """Returns the surfaces of crossings_to_film for the reverse direction."""
 
     def back(crossing: Crossing) -> Crossing:
         terms = crossing.index_terms
         if terms:
-            # 1 / (1 + change) - 1 of each direction is no polynomial, so that it has a fit of its own.
+            # The inverse 1 / (1 + change) - 1 is not a polynomial and needs its own fit.
             x = np.cos(np.pi * (np.arange(32) + 0.5) / 32)
             change = np.polynomial.polynomial.polyval(x, terms)
             terms = _fit(x, -change / (1 + change))
@@ -130,7 +131,7 @@ def crossings_to_scene(crossings: list[Crossing]) -> list[Crossing]:
 
 
 def index_behind(lens: Lens, index: int, nm: float) -> float:
-    """Of the medium behind a surface, by its place in the list; -1: of that before the first."""
+    """Refractive index behind the surface with this index; -1: before the first surface."""
     for surface in reversed(lens.surfaces[: index + 1]):
         if surface.type == "refracting":
             return surface.material.index(nm)
@@ -155,7 +156,7 @@ def _iris(lens: Lens) -> Iris | None:
 def _asphere(surface: Surface) -> Asphere | None:
     if not surface.aspheric_coefficients:
         return None
-    # A little further than the rim, so that a ray that just misses it is seen to miss it.
+    # Slightly beyond the rim, so that a ray that just misses the rim still intersects the surface there.
     reach = 1.02 * surface.clear_semi_diameter_mm
     if not np.isfinite(surface.sag_mm(reach)):
         reach = surface.clear_semi_diameter_mm

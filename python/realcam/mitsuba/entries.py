@@ -1,4 +1,4 @@
-"""Where light of a point of the scene has to enter the lens to reach the film: what connects paths with the sensor."""
+"""Entrance-pupil bounds of scene points: where light must enter the lens to reach the film, for connecting paths."""
 
 from __future__ import annotations
 
@@ -11,23 +11,25 @@ import numpy as np
 from .._core import Camera, Film, Lens
 from .tables import Table
 
-ANGLES = 64  # steps of the tangent of half the point's angle to the axis
-CLOSENESSES = 16  # steps of one over its distance
-NEAREST = 1.25  # distance of the nearest points for which there are entries, in radii of the front
+ANGLES = 64  # cells over the tangent of half the point's angle to the axis
+CLOSENESSES = 16  # cells over the point's inverse distance
+NEAREST = 1.25  # smallest distance in the table, in radii of the lens's front
 
 
 class Entries:
-    """Rectangles in the plane through the front vertex across the line to a point, with sides along and across the
-    meridional plane. They hold all that passes of rays that fill film and pupil, and a margin of a sixteenth.
+    """Table of rectangles that bound the entrance pupil of a scene point.
 
-    In another measure than the film's, the same light: a ray's etendue is the same on both sides of the lens.
+    A rectangle lies in the plane through the front vertex perpendicular to the line to the point, with sides along and
+    across the meridional plane. It holds all rays that pass, found with rays that fill film and pupil, with a margin of
+    a sixteenth. Etendue is the same on both sides of the lens, so that samples on this side measure the light on the
+    film.
     """
 
     def __init__(self, lens: Lens, film: Film, wavelengths_nm: tuple[float, float] | None) -> None:
         camera = Camera(lens, film=film.replace(resolution=(64, 64)))
         rays = camera.generate_rays(spp=64, wavelengths_nm=wavelengths_nm)
         passed = rays.weights > 0
-        o = 1000 * rays.origins_m[passed] + [0, 0, lens.film_position_mm]  # the camera's axes are the lens's
+        o = 1000 * rays.origins_m[passed] + [0, 0, lens.film_position_mm]  # camera axes and lens axes agree
         d = rays.directions[passed].astype(float)
         self.nearest_mm = NEAREST * float(np.linalg.norm(o, axis=1).max())
         closenesses = np.linspace(0, 1, 2 * CLOSENESSES + 1) / self.nearest_mm
@@ -37,8 +39,8 @@ class Entries:
         self.table = Table(np.concatenate(rows))
 
     def sample(self, x: Any, u: Any) -> tuple[Any, Any]:
-        """A point of the rectangle of x, a point of the scene in mm from the front vertex. And the solid angle that the
-        rectangle fills as seen from x, which is one over the density of such samples: 0 where no light passes."""
+        """Samples a point of the rectangle of x, a scene point in mm from the front vertex. Returns it and the solid
+        angle of the rectangle seen from x, the inverse of the sampling density; 0 if no light passes."""
         distance = dr.norm(x)
         t = x / distance
         radial = dr.sqrt(t.x * t.x + t.y * t.y)
@@ -53,7 +55,8 @@ class Entries:
         sin = dr.select(radial > 0, t.y / radial, 0.0)
         along = low + u.x * (high - low)
         across = half_width * (2 * u.y - 1)
-        # Away from the axis in the plane across t; -t.z is the cosine of the point's angle.
+        # Unit vector perpendicular to t in the meridional plane, away from the axis; -t.z is the cosine of the point's
+        # angle.
         outwards = mi.Vector3f(-t.z * cos, -t.z * sin, radial)
         point = mi.Point3f(along * outwards + across * mi.Vector3f(-sin, cos, 0))
         way = point - x
@@ -64,8 +67,9 @@ class Entries:
 
 
 def places(o: np.ndarray, d: np.ndarray, closeness_per_mm: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Of rays at a distance from the front vertex: the tangents of half the angles at which they are there, and where
-    they enter the planes of Entries, along and across the meridional plane, mm."""
+    """Coordinates of rays for the table at one inverse distance from the front vertex: tangents of half the angle to
+    the axis of the scene points on the rays, and their intersections with the planes of Entries, along and across the
+    meridional plane, mm."""
     if closeness_per_mm > 0:
         b = np.sum(o * d, axis=1)
         s = -b + np.sqrt(b**2 - np.sum(o**2, axis=1) + closeness_per_mm**-2)
@@ -82,8 +86,8 @@ def places(o: np.ndarray, d: np.ndarray, closeness_per_mm: float) -> tuple[np.nd
 
 
 def rectangles(seen: list[tuple[np.ndarray, np.ndarray, np.ndarray]], largest_half_tangent: float) -> np.ndarray:
-    """(ANGLES, 3): lowest and highest place along, and the largest across; zeros where nothing passes. The neighbours'
-    rectangles are held too, for what lies between the rays."""
+    """(ANGLES, 3): lowest and highest coordinate along and largest across the meridional plane; zeros if no light
+    passes. Includes the rectangles of neighbouring cells, to cover gaps between the rays."""
     low, high, half = np.full(ANGLES, np.inf), np.full(ANGLES, -np.inf), np.zeros(ANGLES)
     for half_tangent, along, across in seen:
         column = np.minimum((half_tangent * ANGLES / largest_half_tangent).astype(int), ANGLES - 1)

@@ -1,4 +1,4 @@
-"""Where rays are sent from a point of the film into the lens: realcam's table of the pupil, in Dr.Jit."""
+"""Sampling of ray directions from film points: realcam's exit-pupil table, in Dr.Jit."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from .trace import opaque
 
 
 class Pupil:
-    """Regions of optical direction cosines (l, m), in which the exposure integral has no factors: n^2 cos(theta) dw =
-    dl dm.
+    """Exit-pupil regions in optical direction cosines (l, m), the measure in which the exposure integral has no
+    factors: n^2 cos(theta) dw = dl dm.
 
-    For each ring of the film a fan of triangles from the middle of a box holds all that passes. All of them are chosen
-    alike, so that a sample's weight is their number times the area of its own.
+    For each ring of the film, a fan of triangles from the centre of a box holds all light that passes. A triangle is
+    chosen uniformly, so that a sample's weight is the number of triangles times the area of the chosen one.
     """
 
     def __init__(self, lens: Lens, film_radius_mm: float, wavelengths_nm: list[float]) -> None:
@@ -29,8 +29,8 @@ class Pupil:
         self.index_squared = index_behind(lens, len(lens.surfaces) - 1, lens.wavelength_nm) ** 2
 
     def sample(self, x: Any, y: Any, u: Any) -> tuple[Any, Any]:
-        """Optical direction towards the scene for a point of the film (mm), and its weight: the area of direction
-        cosines over the probability. 0 where there is no light."""
+        """Samples an optical direction towards the scene for a film point (mm). Returns it and its weight, the area of
+        direction cosines over the probability; 0 if no light arrives."""
         radius = dr.sqrt(x * x + y * y)
         is_off_axis = radius > 0
         cos = dr.select(is_off_axis, x / radius, 1.0)

@@ -1,4 +1,4 @@
-"""The sensor `realcam`, as a class of the Mitsuba variant that is set when this module is loaded."""
+"""The sensor `realcam`, a class of the Mitsuba variant that is active when this module is loaded."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ FARTHEST = float(np.finfo(np.float32).max)
 
 
 class RealcamSensor(mi.Sensor):  # type: ignore[misc]
-    """See docs/mitsuba.md. Frames: of the lens, in mm; of the camera, Mitsuba's, with x to the left and z forwards
-    from the middle of the film; and of the scene."""
+    """Sensor plugin; see docs/mitsuba.md. Frames: lens, in mm; camera, in Mitsuba's convention with x to the left and z
+    forwards from the film centre; scene."""
 
     def __init__(self, properties: Any) -> None:
         lens = lens_of(properties)
@@ -51,7 +51,7 @@ class RealcamSensor(mi.Sensor):  # type: ignore[misc]
         film = Film(number(self.film_width_mm), number(self.film_height_mm), (int(columns), int(rows)))
         design = lens.wavelength_nm
         wavelengths = [design, *WAVELENGTHS_NM] if self.is_dispersive else [design]
-        # The table first: it refuses lenses that are not of revolution in words of its own.
+        # The pupil table comes first: it rejects lenses without rotational symmetry with its own error message.
         self.pupil = Pupil(lens, float(np.hypot(film.width_mm, film.height_mm)) / 2, wavelengths)
         to_film = crossings_to_film(lens, self.is_dispersive)
         self.to_film = LensTrace(to_film)
@@ -87,7 +87,8 @@ class RealcamSensor(mi.Sensor):  # type: ignore[misc]
     def sample_ray_differential(
         self, time: Any, wavelength_sample: Any, position_sample: Any, aperture_sample: Any, active: Any = True
     ) -> tuple[Any, Any]:
-        """Of the same place in the pupil, one pixel to the right and one down. Rims stop none of these."""
+        """Samples a ray with differentials: rays of the same pupil sample one pixel to the right and one down, which
+        rims do not block."""
         ray = mi.RayDifferential3f()
         weight, passed, variable = self.set_ray(ray, time, wavelength_sample, position_sample, aperture_sample, active)
         columns, rows = self.film().crop_size()
@@ -101,11 +102,12 @@ class RealcamSensor(mi.Sensor):  # type: ignore[misc]
         return ray, weight
 
     def sample_direction(self, it: Any, sample: Any, active: Any = True) -> tuple[Any, Any]:
-        """A way from a point of the scene through the lens to the film: where it enters the lens, and the pixel.
+        """Connects a scene point to the film: samples where a ray enters the lens, and returns the pixel that it
+        reaches.
 
-        In spectral variants light goes one way for each wavelength; the first one's is taken, and counts for all.
-        Mitsuba asks for light that lamps send straight to the sensor before it draws a wavelength: that light takes
-        the design wavelength's way.
+        In spectral variants the path through the lens depends on the wavelength; that of the first wavelength is
+        traced, and the first wavelength counts for all. Mitsuba requests direct light from emitters before it samples a
+        wavelength; that light is traced at the design wavelength.
         """
         x = self.point_in_lens(it.p)
         vertex = mi.Vector3f(0, 0, self.lens.vertices_mm[0])
@@ -127,13 +129,13 @@ class RealcamSensor(mi.Sensor):  # type: ignore[misc]
         sample_of.time = it.time
         sample_of.pdf = dr.select(active, 1.0, 0.0)
         sample_of.delta = mi.Bool(False)
-        # The etendue of this way in the scene's units, over the area of the film that is seen.
+        # Etendue of the connection in scene units, over the area of the crop window on the film.
         weight = solid_angle * self.exposure_time_s * self.mm_per_unit**2 / self.crop_area_mm2()
         return sample_of, share * dr.select(active, weight, 0.0)
 
     def leave_lens(self, position_sample: Any, aperture_sample: Any, variable: Any) -> tuple[Any, Any, Any, Any, Any]:
-        """A ray from the film, in front of the lens: point (mm) and direction in the lens frame, irradiance on the
-        film for a radiance of 1, whether it passes, and whether it does without rims."""
+        """Traces a ray from the film to the front of the lens. Returns point (mm) and unit direction in the lens frame,
+        irradiance on the film under unit radiance, whether it passes, and whether it would pass without rims."""
         x, y = self.film_point(position_sample)
         p, weight = self.pupil.sample(x, y, aperture_sample)
         o, p, _, passed, exists = self.to_scene(mi.Point3f(x, y, self.film_distance_mm), p, variable)
@@ -143,8 +145,8 @@ class RealcamSensor(mi.Sensor):  # type: ignore[misc]
     def set_ray(
         self, ray: Any, time: Any, wavelength_sample: Any, position_sample: Any, aperture_sample: Any, active: Any
     ) -> tuple[Any, Any, Any]:
-        """Returns its weight, whether it passes, and the number that refraction goes by. A ray that the lens stops goes
-        nowhere: its numbers need not be any."""
+        """Fills in the ray. Returns its weight, whether it passes the lens, and its wavelength_variable. A ray that the
+        lens blocks gets a maximum length of 0."""
         ray.wavelengths, share, variable = self.drawn_wavelengths(wavelength_sample, active)
         o, d, weight, passed, _ = self.leave_lens(position_sample, aperture_sample, variable)
         ray.o = self.point_in_scene(dr.select(passed, o, mi.Point3f(0)))
@@ -154,15 +156,15 @@ class RealcamSensor(mi.Sensor):  # type: ignore[misc]
         return share * dr.select(passed & active, weight * self.exposure_time_s, 0.0), passed, variable
 
     def drawn_wavelengths(self, sample: Any, active: Any) -> tuple[Any, Any, Any]:
-        """Wavelengths of a ray, the weight of each, and the number that refraction goes by. A ray goes one way, so
-        that all of its wavelengths are the first that is drawn."""
+        """Samples the wavelengths of a ray. Returns them, the weight of each, and the ray's wavelength_variable. A ray
+        has a single path, so that all of its wavelengths equal the first one sampled."""
         if not self.is_dispersive:
             return type(mi.Ray3f().wavelengths)(), mi.Spectrum(1), None
         drawn, weights = self.sample_wavelengths(dr.zeros(mi.SurfaceInteraction3f), sample, active)
         return type(drawn)(drawn[0]), mi.Spectrum(weights[0]), wavelength_variable(drawn[0])
 
     def wavelength_of(self, it: Any) -> tuple[Any, Any]:
-        """The weight of each wavelength that light brings to the sensor, and the number that refraction goes by."""
+        """Returns the weight of each wavelength of light that arrives at the sensor, and its wavelength_variable."""
         if not self.is_dispersive:
             return mi.Spectrum(1), None
         first = it.wavelengths[0]
@@ -172,14 +174,16 @@ class RealcamSensor(mi.Sensor):  # type: ignore[misc]
         return share, wavelength_variable(dr.select(is_known, first, self.lens.wavelength_nm))
 
     def film_point(self, sample: Any) -> tuple[Any, Any]:
-        """mm, in the lens frame, of a place in the picture's crop window: the image is upside down."""
+        """Returns the film point in mm, lens frame, of a point of the crop window; the image on the film is upside
+        down."""
         size, crop, offset = self.film().size(), self.film().crop_size(), self.film().crop_offset()
         x = 0.5 - (offset[0] + sample.x * crop[0]) / size[0]
         y = (offset[1] + sample.y * crop[1]) / size[1] - 0.5
         return x * self.film_width_mm, y * self.film_height_mm
 
     def pixel_of(self, place: Any) -> tuple[Any, Any]:
-        """Pixels from the corner of the crop window, and whether they lie in it."""
+        """Returns the pixel coordinates of a film point from the corner of the crop window, and whether it lies
+        inside."""
         size, crop, offset = self.film().size(), self.film().crop_size(), self.film().crop_offset()
         u = (0.5 - place.x / self.film_width_mm) * size[0] - offset[0]
         v = (0.5 + place.y / self.film_height_mm) * size[1] - offset[1]
@@ -222,7 +226,7 @@ def lens_of(properties: Any) -> Lens:
 
 
 def set_shutter(properties: Any) -> None:
-    """exposure_time_s is Mitsuba's shutter in one number."""
+    """Sets Mitsuba's shutter_close from exposure_time_s (default 1/125 s). Raises InputError if both are specified."""
     if "exposure_time_s" in properties:
         if "shutter_close" in properties:
             raise InputError("the sensor realcam takes exposure_time_s or shutter_close, and was given both")
@@ -237,7 +241,8 @@ def set_shutter(properties: Any) -> None:
 
 
 def film_sides(lens: Lens, properties: Any, size: Any) -> tuple[float, float]:
-    """mm. One that is not given follows from the other by the picture's sides, and both from the lens's own format."""
+    """Returns width and height of the film in mm. A missing side follows from the other and the picture's aspect ratio;
+    if both are missing, they follow from the lens's own format."""
     width, height = (properties.get(f"film_{side}_mm", 0.0) for side in ("width", "height"))
     if width and height:
         return width, height

@@ -1,4 +1,4 @@
-"""Tables that rays look up, for every kind of Mitsuba variant."""
+"""Lookup tables for rays, for scalar and vectorised Mitsuba variants."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ import numpy as np
 
 
 class Table:
-    """Rows of numbers. (N, C) -> C values for a row."""
+    """Table of shape (N, C); calling it with a row index returns the C values of the row."""
 
     def __init__(self, rows: np.ndarray) -> None:
         columns = np.ascontiguousarray(rows.reshape(-1, rows.shape[-1]).T, dtype=np.float32)
-        # Scalar variants have no gather: there a row is one of a list.
+        # Scalar variants have no gather: they index lists.
         self.columns = [mi.Float(column) for column in columns] if dr.is_jit_v(mi.Float) else columns.tolist()
 
     def __call__(self, row: Any) -> list[Any]:

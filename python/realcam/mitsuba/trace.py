@@ -1,4 +1,4 @@
-"""Rays through the surfaces of a lens, in Dr.Jit: the formulas of realcam's own trace.
+"""Sequential ray tracing through a lens in Dr.Jit, with the formulas of realcam's own tracer.
 
 Rays carry optical directions, which are unit vectors times the refractive index, as in Hamilton's optics. Snell's law
 then changes a direction along the surface's normal alone: p' = p + (s' - s) N, with s = p.N and s'^2 = n'^2 - n^2 +
@@ -14,17 +14,17 @@ import mitsuba as mi
 
 from .crossings import Asphere, Crossing
 
-# Safeguarded Newton steps on an asphere: halved brackets alone reach float32's last digit in so many.
+# Maximum number of safeguarded Newton steps on an asphere: enough for bisection alone to reach float32's last digit.
 ASPHERE_STEPS = 24
 
 
 def opaque(value: float) -> Any:
-    """A number that changes between pictures: compiled code reads it instead of holding it, and serves the next too."""
+    """Makes a number a variable of the compiled kernel, not a constant, so that changing it needs no recompilation."""
     return dr.opaque(mi.Float, value) if dr.is_jit_v(mi.Float) else float(value)
 
 
 class LensTrace:
-    """Crossings in the order of the light, with rays relative to the vertex of the first one."""
+    """Traces rays through a list of surfaces; rays start relative to the vertex of the first one."""
 
     def __init__(self, crossings: list[Crossing]) -> None:
         self.crossings = crossings
@@ -33,8 +33,8 @@ class LensTrace:
         self.rims = [opaque(crossing.rim_mm) for crossing in crossings]
 
     def __call__(self, o: Any, p: Any, variable: Any) -> tuple[Any, Any, Any, Any, Any]:
-        """Point (mm, relative to the last vertex) and optical direction after the last surface; the point on the first
-        surface, relative to its vertex; whether the ray passes; and whether it does if rims are left out.
+        """Returns point (mm, relative to the last vertex) and optical direction after the last surface; the point on
+        the first surface, relative to its vertex; whether the ray passes; and whether it would pass without rims.
 
         o, p: point in mm and optical direction. variable: wavelength_variable of each ray, or None for the design
         wavelength.
@@ -72,7 +72,7 @@ def lets_through(crossing: Crossing, rim: Any, at: Any) -> Any:
     if crossing.hole_mm > 0:
         is_open = is_open & (squared >= crossing.hole_mm**2)
     if iris := crossing.iris:
-        # Within the circle of one blade is within those of all, if the blade is the one that the point lies nearest to.
+        # A point inside the circle of the blade nearest to it lies inside the circles of all blades.
         extent = mi.Float(-dr.inf)
         for azimuth in iris.azimuths_rad:
             extent = dr.maximum(extent, at.x * dr.cos(azimuth) + at.y * dr.sin(azimuth))
@@ -82,7 +82,7 @@ def lets_through(crossing: Crossing, rim: Any, at: Any) -> Any:
 
 
 def intersect(crossing: Crossing, o: Any, p: Any) -> tuple[Any, Any, Any]:
-    """Point, unit normal (z positive near the vertex), and whether the ray meets the surface."""
+    """Returns point, unit normal (z positive near the vertex), and whether the ray hits the surface."""
     if crossing.asphere:
         return intersect_asphere(crossing, crossing.asphere, o, p)
     if crossing.curvature_per_mm == 0:
@@ -93,12 +93,13 @@ def intersect(crossing: Crossing, o: Any, p: Any) -> tuple[Any, Any, Any]:
 
 
 def intersect_conic(crossing: Crossing, o: Any, p: Any) -> tuple[Any, Any, Any]:
-    """Parameter, unit normal, and whether the ray meets it. The roots of A t^2 - 2 G t + F = 0 are taken in the form in
-    which nothing cancels; the sign with which the ray has to cross picks the root, also past 90 degrees."""
+    """Returns ray parameter, unit normal, and whether the ray hits the conic. The root of A t^2 - 2 G t + F = 0 is
+    computed in the form without cancellation; it is selected by the required sign of the crossing, also beyond 90
+    degrees."""
     c, k = crossing.curvature_per_mm, crossing.conic
     po, pp, oo = dr.dot(o, p), dr.squared_norm(p), dr.squared_norm(o)
     if k != 0:
-        # From the vertex plane on, where a large k does not drown the sag in squares of the way.
+        # Start from the vertex plane: otherwise a large k loses the sag in squares of the distance travelled.
         approach = dr.select(p.z * p.z < 0.01 * pp, -po / pp, -o.z / p.z)
         o = dr.fma(p, approach, o)
         po = dr.dot(o, p) + k * o.z * p.z
@@ -116,13 +117,14 @@ def intersect_conic(crossing: Crossing, o: Any, p: Any) -> tuple[Any, Any, Any]:
 
 
 def intersect_asphere(crossing: Crossing, shape: Asphere, o: Any, p: Any) -> tuple[Any, Any, Any]:
-    """By Newton's method for f(t) = z(t) - sag, in a bracket that the planes of the sag's bounds begin."""
+    """Intersects by Newton's method for f(t) = z(t) - sag, in a bracket that starts at the planes of the sag's
+    bounds."""
     per_z = dr.rcp(dr.select(p.z == 0, 1.0, p.z))
     below, above = (shape.lowest_mm - o.z) * per_z, (shape.highest_mm - o.z) * per_z
     start, _, conic_met = intersect_conic(crossing, o, p) if crossing.curvature_per_mm else (-o.z * per_z, None, True)
     inside = (start - below) * (above - start) >= 0
     t = dr.select(conic_met & inside, start, 0.5 * (below + above))
-    # What rounding leaves of a height is some millionths of the lengths involved.
+    # Rounding errors of a height are a few millionths of the lengths involved.
     tolerance = 2e-6 * (shape.highest_mm - shape.lowest_mm + dr.abs(o.z))
 
     def is_open(step: Any, t: Any, below: Any, above: Any, residual: Any) -> Any:
@@ -136,11 +138,11 @@ def intersect_asphere(crossing: Crossing, shape: Asphere, o: Any, p: Any) -> tup
         newton = t - f / slope
         is_right = slope * crossing.sign_in > 0
         is_good = ((newton - below) * (above - newton) >= 0) & is_right
-        # One step more after the last residual: it costs nothing, and squares what is left.
+        # One more step after the last residual costs nothing and squares the remaining error.
         t = dr.select(is_good, newton, 0.5 * (below + above))
         return step + 1, t, below, above, dr.select(is_right, dr.abs(f), dr.inf)
 
-    # A loop, because code for all steps of all surfaces would take minutes to compile.
+    # A symbolic loop, because unrolled code for all steps of all surfaces would take minutes to compile.
     state = (mi.UInt32(0), mi.Float(t), mi.Float(below), mi.Float(above), mi.Float(dr.inf))
     _, t, _, _, residual = dr.while_loop(state, is_open, improve)
     at = dr.fma(p, t, o)
@@ -151,7 +153,7 @@ def intersect_asphere(crossing: Crossing, shape: Asphere, o: Any, p: Any) -> tup
 
 
 def sag_of(crossing: Crossing, shape: Asphere, at: Any) -> tuple[Any, Any]:
-    """Sag, mm, and its derivative by r^2."""
+    """Returns sag in mm and its derivative with respect to r^2."""
     c, inverse = crossing.curvature_per_mm, 1 / shape.reach_mm**2
     squared = at.x * at.x + at.y * at.y
     r2 = dr.minimum(squared, shape.reach_mm**2)

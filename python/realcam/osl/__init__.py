@@ -1,4 +1,4 @@
-"""Lenses as cameras of Blender: shaders in OSL, the Open Shading Language."""
+"""Lenses as Blender cameras: shaders in OSL, the Open Shading Language."""
 
 from .focus_range import focus_range
 from .shader import shader_text

@@ -1,4 +1,4 @@
-"""Aspheres for OSL: polynomials and Newton steps, as few as hold on the rays of the lens."""
+"""Aspheres for OSL: the cheapest polynomial and number of Newton steps that are accurate for the rays of the lens."""
 
 from __future__ import annotations
 
@@ -19,24 +19,25 @@ from .pupil_outlines import Doubles
 from .pupil_table import STOPS, PupilTable
 
 _HEIGHT_TOLERANCE = 3e-6
-"""Of the film's diagonal. The height itself bends no light, but where it is off, light meets another slope."""
+"""Relative to the film's diagonal. An error of the sag matters because the ray then meets a different slope."""
 _SLOPE_TOLERANCE = 3e-5
-"""At the worst place light then misses its own by less than so many focal lengths or diagonals: 0.04 of 1200 pixels."""
+"""Largest error of the image point, in focal lengths or film diagonals: 0.04 pixels of 1200."""
 _MOST_TERMS = 30
 _ROUGH_TERMS, _ROUGH_STEPS, _STEPS = (2, 3, 4), range(4), range(1, 9)
 _FARTHEST_STEP = 0.05
-"""Of the rim. A last step that is longer has not found the surface."""
+"""Relative to the rim. If the last Newton step is longer, the intersection has not converged."""
 _AZIMUTHS, _RINGS = 9, 8
 _NODES = np.cos(np.pi * (np.arange(2 * _MOST_TERMS) + 0.5) / (2 * _MOST_TERMS))
 
 
 @dataclass(frozen=True)
 class Asphere:
-    """The height over the vertex, mm, is a polynomial of t, which is -1 on the axis and 1 at the rim, and grows as the
-    square of the distance from the axis. Beyond the rim its slope in t stays.
+    """Sag in mm as a polynomial of t, which is linear in the squared distance from the axis: -1 on the axis, 1 at the
+    rim.
 
-    A ray is followed from the plane z = start_mm by Newton's method: by some steps with a polynomial of few terms, then
-    by some with the height's own. After the last one its second derivative corrects the slope.
+    Beyond the rim the sag is continued linearly in t. A ray is intersected by Newton's method from the plane z =
+    start_mm: first `rough_steps` with a polynomial of few terms, then `steps` with the sag itself. Finally the second
+    derivative corrects the slope.
     """
 
     height: Chebyshev
@@ -48,16 +49,16 @@ class Asphere:
 
     @property
     def scale(self) -> float:
-        """t = scale r^2 - 1."""
+        """Factor in t = scale r^2 - 1, per mm^2."""
         return 2 / self.rim_mm**2
 
     @property
     def operations(self) -> int:
-        """About so many are the sums and products of the steps; a division is worth eight."""
+        """Approximate number of additions and multiplications of all steps; a division counts as eight."""
         return self.rough_steps * (4 * self.rough.degree() + 14) + self.steps * (6 * self.height.degree() + 18)
 
     def function(self, number: int, mirror: bool) -> str:
-        """OSL for the surface of this number."""
+        """OSL functions of the surface with this number."""
         height, rough = (each.convert(kind=Polynomial) for each in (self.height, self.rough))
         powers, text = estrin(height.coef, "t")
         rough_step = ROUGH_STEP.format(height=horner(rough.coef, "next"), slope=horner(rough.deriv().coef, "next"))
@@ -76,7 +77,8 @@ class Asphere:
         )
 
     def met(self, at: Doubles, way: Doubles) -> tuple[Doubles, Doubles, Doubles, NDArray[np.bool_]]:
-        """Of rays (N, 3) z in mm, the slope in t and t, as the shader finds them, and whether it does."""
+        """Intersects rays (N, 3) as the shader does. Returns z in mm, slope in t, t, and whether an intersection is
+        found."""
         start = self.scale * (at[:, 0] ** 2 + at[:, 1] ** 2) - 1
         b = self.scale * (at[:, 0] * way[:, 0] + at[:, 1] * way[:, 1])
         a = self.scale * (way[:, 0] ** 2 + way[:, 1] ** 2)
@@ -91,7 +93,7 @@ class Asphere:
             path = path - step
             following = start + path * (2 * b + path * a)
         slope = slope + self.height.deriv(2)(near) * (following - t)
-        # A ray that leaves through the surface comes from its other side.
+        # Rejects intersections at which the ray crosses the surface from the wrong side.
         enters = (way[:, 2] - 2 * slope * (b + path * a)) * way[:, 2] > 0
         found = enters & (abs(step) < _FARTHEST_STEP * self.rim_mm) & (following < 1)
         return at[:, 2] + path * way[:, 2], slope, following, found
@@ -102,9 +104,10 @@ def is_asphere(surface: Surface) -> bool:
 
 
 def aspheres(focusing: FocusRange, table: PupilTable, wavelengths_nm: Sequence[float]) -> dict[int, Asphere]:
-    """By surface, with as few steps as are within the tolerances for all rays that the shader draws.
+    """Returns the aspheres by surface, each the cheapest that is within the tolerances for all rays that the shader
+    draws.
 
-    Raises InputError where no number of steps is enough, with the surface.
+    Raises InputError, which names the surface, if no number of steps is enough.
     """
     surfaces = [i for i, surface in enumerate(focusing.lens.surfaces) if is_asphere(surface)]
     if not surfaces:
@@ -123,8 +126,8 @@ def aspheres(focusing: FocusRange, table: PupilTable, wavelengths_nm: Sequence[f
 
 
 def _drawn(focusing: FocusRange, table: PupilTable) -> Iterator[tuple[Lens, Doubles, Doubles]]:
-    """At each focus of the table the lens, and origins and directions of its rays from the middle of each pupil to its
-    edge. The other half of a pupil is the same."""
+    """Yields, for each focus of the table, the lens with origins and directions of rays from the centre of each pupil
+    to its edge. Only one half of each pupil is sampled, as it is mirror-symmetric."""
     ring, azimuth = np.meshgrid(np.linspace(0, 1, _RINGS), np.linspace(0, np.pi, _AZIMUTHS))
     across, up = (ring * np.cos(azimuth)).ravel(), (ring * np.sin(azimuth)).ravel()
     widest = table.ellipses[:, STOPS.index(1.0)]
@@ -146,7 +149,7 @@ def _asphere(lens: Lens, index: int, at: Doubles, way: Doubles) -> Asphere:
     heights = np.array([surface.sag_mm(rim_mm * math.sqrt(0.5 * (1 + t))) for t in _NODES])
     diagonal_mm, focal_mm = math.hypot(*lens.film_mm), abs(lens.first_order().effective_focal_length_mm)
     steepness = _SLOPE_TOLERANCE * min(1, diagonal_mm / focal_mm)
-    # Rows: heights, and their derivatives over t. dz/dr = dz/dt 4 r / rim^2, at most dz/dt 4 / rim.
+    # Rows: sags, and their derivatives in t. dz/dr = dz/dt 4 r / rim^2, at most dz/dt 4 / rim.
     tolerance = np.array([[_HEIGHT_TOLERANCE * diagonal_mm], [steepness * rim_mm / 4]])
     places = np.linspace(-1, 1, 401)
 
@@ -162,7 +165,7 @@ def _asphere(lens: Lens, index: int, at: Doubles, way: Doubles) -> Asphere:
     height = next((fit for fit in heights_fit if (abs(shape(fit) - shape(finest)) < tolerance).all()), finest)
     start_mm = 0.5 * float(heights.min() + heights.max())
     _, _, t, exists = Asphere(height, height, start_mm, rim_mm, 0, 20).met(at, way)
-    # At the rim itself rounding decides.
+    # At the rim itself rounding decides whether a ray passes.
     inside = exists & (t < 0.999)
     tried = [
         Asphere(height, rough, start_mm, rim_mm, rough_steps, steps)

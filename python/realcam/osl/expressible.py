@@ -1,4 +1,4 @@
-"""Which lenses OSL can express."""
+"""Check whether a lens can be written as an OSL shader."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from .._core import InputError, Lens, Surface
 
 
 def check_expressible(lens: Lens) -> None:
-    """Raises InputError that names the surface for which there is no code, or what else is in the way."""
+    """Raises InputError, with the surface or other reason, if the lens cannot be written as OSL."""
     for number, surface in enumerate(lens.surfaces, 1):
         why = _why_not(surface)
         if why:

@@ -1,4 +1,4 @@
-"""Numbers and polynomials as OSL has them."""
+"""Numbers, arrays and polynomials as OSL source text."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def array_text(values: Sequence[float] | np.ndarray) -> str:
 
 
 def horner(coefficients: Sequence[float] | np.ndarray, variable: str) -> str:
-    """The polynomial of these coefficients, the constant first."""
+    """Polynomial in Horner's form. coefficients: the constant first."""
     text = float_text(coefficients[-1])
     for coefficient in reversed(coefficients[:-1]):
         text = f"{float_text(coefficient)} + {variable} * ({text})"
@@ -25,9 +25,9 @@ def horner(coefficients: Sequence[float] | np.ndarray, variable: str) -> str:
 
 
 def estrin(coefficients: Sequence[float] | np.ndarray, variable: str) -> tuple[list[str], str]:
-    """The same in pairs of terms, pairs of these, and so on: fewer operations wait for another one.
+    """Polynomial in Estrin's form, which has shorter chains of dependent operations than Horner's.
 
-    The declarations of the powers that it needs, and the polynomial.
+    Returns the declarations of the powers that it needs, and the polynomial.
     """
     parts, powers, name, power = [float_text(c) for c in coefficients], [], variable, 1
     while len(parts) > 1:

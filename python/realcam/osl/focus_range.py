@@ -1,4 +1,4 @@
-"""How a lens moves when it is focused: distances between its vertices as polynomials of the focus."""
+"""Focusing of a lens: variable distances between vertices as polynomials of the focus parameter."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from numpy.polynomial import Polynomial, chebyshev
 
 from .._core import InputError, Lens, RealcamError
 
-# Of the film's diagonal: at f/1, light misses its place by as much, a fiftieth of the pixels of a large picture. The
-# focus that real rays find is rough by half of it, because rims cut off one ray after the other.
+# Error of a distance relative to the film's diagonal. At f/1 it displaces light on the film by as much: a fiftieth of a
+# pixel in a large picture. The focus found with real rays is uneven by half of it, because rims cut off ray after ray.
 _TOLERANCE = 1e-5
 _MOST_TERMS = 9
 _SAMPLES = 24
@@ -20,18 +20,20 @@ _SMALLEST_MAGNIFICATION = 1 / 8
 
 @dataclass(frozen=True)
 class FocusRange:
-    """A lens between infinity and its nearest focus, wide open and with a round diaphragm.
+    """A lens with its range of focus, wide open and with a circular diaphragm.
 
-    Counted is the object's distance from the front focal point, of which the image's distance from the rear one is
-    nearly the inverse (Newton): focus = (nearest - start) / (distance - start), 0 at infinity and 1 at the nearest.
+    The focus parameter is proportional to the inverse of the object's distance from the front focal point, so that
+    image distances are nearly linear in it (Newton's equation): focus = (nearest - start) / (distance - start), 0 at
+    infinity and 1 at the nearest focus. Distances are measured from the film.
     """
 
     lens: Lens
     nearest_m: float
     start_m: float
-    """From the front focal point to the film, at infinity."""
+    """Distance from the front focal point to the film at infinity focus."""
     gaps_mm: dict[int, Polynomial]
-    """By surface, of those that move apart: from its vertex to the next one; of the last surface, to the film."""
+    """Variable distances by surface, as functions of focus: from its vertex to the next, or from the last to the
+    film."""
 
     def distance_m(self, focus: float) -> float:
         return self.start_m + (self.nearest_m - self.start_m) / focus if focus > 0 else math.inf
@@ -41,7 +43,7 @@ class FocusRange:
 
 
 def focus_range(lens: Lens) -> FocusRange:
-    """Raises InputError where the lens cannot be focused on distant things."""
+    """Returns the focus range of a lens. Raises InputError if it cannot be focused at infinity or at a near object."""
     wide = lens.wide_open().with_iris(0).focused(math.inf)
     start_m = 1e-3 * (wide.film_position_mm - wide.first_order().front_focal_distance_mm)
     nearest_m = lens.nearest_focus_m or _nearest_m(wide, start_m)
@@ -57,12 +59,12 @@ def focus_range(lens: Lens) -> FocusRange:
 
 
 def gaps_of(lens: Lens) -> list[float]:
-    """Distances in mm from each vertex to the next one, and from the last one to the film."""
+    """Distances in mm from each vertex to the next, and from the last to the film."""
     return [*(surface.thickness_mm for surface in lens.surfaces[:-1]), lens.film_distance_mm]
 
 
 def _nearest_m(lens: Lens, start_m: float) -> float:
-    """Of a lens whose file names no nearest focus: an eighth of life size, or what it can."""
+    """Nearest focus for a lens whose file has none: magnification 1/8, or the closest that the lens can reach."""
     reach_m = 1e-3 * abs(lens.first_order().effective_focal_length_mm) / _SMALLEST_MAGNIFICATION
     for _ in range(12):
         distance_m = float(f"{start_m + reach_m:.2g}")
@@ -76,7 +78,7 @@ def _nearest_m(lens: Lens, start_m: float) -> float:
 
 
 def _fitted(places: np.ndarray, values: np.ndarray, tolerance: float) -> Polynomial:
-    """Of the least degree that is within the tolerance."""
+    """Polynomial of the lowest degree that is within the tolerance."""
     for degree in range(1, _MOST_TERMS):
         fit: Polynomial = Polynomial.fit(places, values, degree, domain=[0, 1], window=[0, 1])
         if np.abs(fit(places) - values).max() < tolerance:

@@ -1,8 +1,8 @@
-"""The OSL functions that a shader of a lens is made of.
+"""Templates of the OSL functions that make up a lens shader.
 
-Rays go from the film to the scene, in mm. Directions are as long as the index of their medium, so that Snell's law
-changes them along the normal alone, and all formulas scale with that length. `forwards` is -1 for light that goes
-towards the scene and 1 between two mirrors.
+Rays are traced from the film to the scene, in mm. Directions have the length of the refractive index of their medium
+(optical directions), so that Snell's law changes them only along the normal; all formulas scale with that length.
+`forwards` is the sign of the ray's z direction: -1 towards the scene, 1 between two mirrors.
 """
 
 SPHERE = """\

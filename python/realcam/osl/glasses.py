@@ -1,4 +1,4 @@
-"""What surfaces do to light of each wavelength, as polynomials for OSL."""
+"""Dispersion: squared refractive indices as polynomials of wavelength, for OSL."""
 
 from __future__ import annotations
 
@@ -10,25 +10,25 @@ from numpy.typing import NDArray
 from .._core import Lens
 
 POLE_NM = 200.0
-"""Indices grow towards the resonances in the ultraviolet: in 1 / (wavelength - pole) they are nearly polynomials."""
+"""Indices increase towards resonances in the ultraviolet; in 1 / (wavelength - pole) they are nearly polynomials."""
 _TERMS = 4
 
 
 def colour_variable(lens: Lens, wavelength_nm: NDArray[np.float64]) -> NDArray[np.float64]:
-    """0 at the lens's own wavelength, and 1 at 400 nm."""
+    """Returns the colour variable: 0 at the lens's design wavelength, 1 at 400 nm."""
     scale, offset = colour_scale(lens)
     return scale / (np.asarray(wavelength_nm) - POLE_NM) - offset
 
 
 def colour_scale(lens: Lens) -> tuple[float, float]:
-    """The colour variable is the first number / (wavelength - pole), less the second number."""
+    """Returns (scale, offset), with colour variable = scale / (wavelength - pole) - offset."""
     own = 1 / (lens.wavelength_nm - POLE_NM)
     scale = 1 / (1 / (400 - POLE_NM) - own)
     return scale, scale * own
 
 
 def media_indices(lens: Lens, wavelength_nm: float) -> list[float]:
-    """The index before the lens, and behind each surface."""
+    """Refractive indices before the lens and behind each surface."""
     indices = [1.0]
     for surface in lens.surfaces:
         indices.append(surface.material.index(wavelength_nm) if surface.type == "refracting" else indices[-1])
@@ -36,9 +36,10 @@ def media_indices(lens: Lens, wavelength_nm: float) -> list[float]:
 
 
 def squared_indices(lens: Lens, wavelengths_nm: Sequence[float]) -> list[list[float]]:
-    """Of the medium before the lens and of that behind each surface n^2, as a polynomial of the colour variable.
+    """n^2 of the medium before the lens and behind each surface, as coefficients of a polynomial of the colour
+    variable.
 
-    The constant is exact. One that is the same for all wavelengths has that alone.
+    The constant comes first and is exact. A medium without dispersion has only the constant.
     """
 
     def at(wavelength_nm: float) -> NDArray[np.float64]:

@@ -1,4 +1,4 @@
-"""Where the light of a film point passes a lens: outlines in direction cosines, found with real rays."""
+"""Outlines of the exit pupil as seen from film points, in direction cosines, found by tracing real rays."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from .._core import Lens
 
 Doubles = NDArray[np.float64]
 Light = Sequence[tuple[float, Doubles]]
-"""Wavelengths in nm, and by how much (R,) the directions l of each are to be moved at R film points."""
+"""Wavelengths in nm, each with the shifts (R,) of its direction cosines l at R film points."""
 _COLUMNS, _ROWS = 33, 17
 _HALVINGS = 7
 _AZIMUTHS, _STEPS = 33, 16
@@ -20,18 +20,19 @@ _AZIMUTHS, _STEPS = 33, 16
 
 @dataclass(frozen=True)
 class Outlines:
-    """Of film points on the +x axis, at R radii. The light lies between m and -m, in all R points of the edge."""
+    """Pupil outlines of film points on the +x axis, at R radii. A pupil is symmetric in m; only its half m >= 0 is
+    held."""
 
     l: Doubles  # noqa: E741
-    """(R, P): direction cosines along x of points on the edge; NaN: the film point is dark."""
+    """(R, P): direction cosines along x of points on the edge; NaN: no edge point was found."""
     m: Doubles
-    """(R, P): those along y, which are not negative."""
+    """(R, P): direction cosines along y, not negative."""
     inner_l: Doubles
-    """(R, Q): directions about the middle of the box in which the first light passes, where the lens's middle is
-    blocked; NaN: not one."""
+    """(R, Q): direction cosines along x of the edge of a central obstruction, in directions about the centre of the
+    box; NaN: no light passes in that direction, or the lens has no obstruction."""
     inner_m: Doubles
     boxes: Doubles
-    """(R, 3): l from and to, m to: what holds the outline."""
+    """(R, 3): bounding boxes of the outlines: lowest l, highest l, highest m; NaN: no light reaches the film point."""
 
     @property
     def lit(self) -> NDArray[np.bool_]:
@@ -39,7 +40,7 @@ class Outlines:
 
 
 def rear_boxes(lens: Lens, radii_mm: Doubles) -> Doubles:
-    """(R, 3): directions from film points on the x axis to the lens's last surface, and some beside it."""
+    """(R, 3): boxes of the directions from film points on the x axis to the lens's last surface, with a margin."""
     last = lens.surfaces[-1]
     rim_mm = 1.1 * last.clear_semi_diameter_mm
     away_mm = max(0.5 * lens.film_distance_mm, lens.film_distance_mm - last.sag_mm(last.clear_semi_diameter_mm))
@@ -52,7 +53,7 @@ def rear_boxes(lens: Lens, radii_mm: Doubles) -> Doubles:
 
 
 def passes(lens: Lens, radii_mm: Doubles, l: Doubles, m: Doubles, light: Light) -> NDArray[np.bool_]:  # noqa: E741
-    """(R, K): whether light from film points (R,) in directions (R, K) passes, at any of the wavelengths."""
+    """(R, K): true if a ray from film point (R,) in direction (R, K) passes the lens at any of the wavelengths."""
     passed = np.zeros(l.shape, dtype=bool)
     origins = np.zeros((*l.shape, 3))
     origins[..., 0] = radii_mm[:, None]
@@ -68,7 +69,7 @@ def passes(lens: Lens, radii_mm: Doubles, l: Doubles, m: Doubles, light: Light) 
 
 
 def outlines(lens: Lens, radii_mm: Doubles, boxes: Doubles, light: Light, rounds: int) -> Outlines:
-    """The outlines inside of boxes (R, 3), which are narrowed down in so many rounds first."""
+    """Finds the outlines inside of boxes (R, 3), which are first tightened `rounds` times."""
     for _ in range(rounds):
         boxes = _narrowed(lens, radii_mm, boxes, light)
 
@@ -106,12 +107,13 @@ def outlines(lens: Lens, radii_mm: Doubles, boxes: Doubles, light: Light, rounds
 
 
 def _inner_edges(boxes: Doubles, at: Callable[[Doubles, Doubles], NDArray[np.bool_]]) -> tuple[Doubles, Doubles]:
-    """Outwards from the middle of each box, where the first light passes."""
+    """Edges of the central obstruction: first directions in which light passes, outwards from the centre of each
+    box."""
     angles = np.linspace(0, np.pi, _AZIMUTHS)
     middle, half, top = 0.5 * (boxes[:, 0] + boxes[:, 1]), 0.5 * (boxes[:, 1] - boxes[:, 0]), boxes[:, 2]
 
     def directions(share: Doubles) -> tuple[Doubles, Doubles]:
-        """Of shares (R, azimuths) of the way to the ellipse in the box."""
+        """Directions at fractions (R, azimuths) of the distance from the centre to the ellipse inscribed in the box."""
         return (
             middle[:, None] + half[:, None] * share * np.cos(angles),
             top[:, None] * share * np.sin(angles),
@@ -132,7 +134,7 @@ def _inner_edges(boxes: Doubles, at: Callable[[Doubles, Doubles], NDArray[np.boo
 
 
 def _grid(boxes: Doubles) -> tuple[Doubles, Doubles]:
-    """(R, rows, columns) directions over boxes, from the middle of the pupil upwards."""
+    """(R, rows, columns): grid of directions over the boxes, from m = 0 upwards."""
     across = np.linspace(0, 1, _COLUMNS)
     l = boxes[:, 0, None] + across * (boxes[:, 1] - boxes[:, 0])[:, None]  # noqa: E741
     m = boxes[:, 2, None] * np.linspace(0, 1, _ROWS)
@@ -141,7 +143,7 @@ def _grid(boxes: Doubles) -> tuple[Doubles, Doubles]:
 
 
 def _narrowed(lens: Lens, radii_mm: Doubles, boxes: Doubles, light: Light) -> Doubles:
-    """The boxes of what passes on a grid and a cell beside it; NaN where nothing does."""
+    """Tightens boxes to the grid points that pass light plus one cell; NaN if no light passes."""
     l, m = _grid(boxes)  # noqa: E741
     passed = passes(lens, radii_mm, l.reshape(len(boxes), -1), m.reshape(len(boxes), -1), light)
     passed = passed.reshape(l.shape)

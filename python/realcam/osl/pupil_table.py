@@ -1,7 +1,8 @@
-"""The pupil of a lens as a film point sees it, for every focus and f-number: a table of ellipses.
+"""Table of ellipses that bound the exit pupil as seen from film points, for every focus and f-number.
 
-Directions are drawn evenly in an ellipse of direction cosines, whose area is then the weight of each: the irradiance of
-a field of radiance 1 is the area of what passes. What the ellipse holds beside that is drawn in vain.
+Directions are sampled uniformly in an ellipse of direction cosines, whose area is the weight of each sample: the
+irradiance under unit radiance is the area of the directions that pass. Samples of the ellipse that are blocked are
+wasted.
 """
 
 from __future__ import annotations
@@ -18,37 +19,41 @@ from .pupil_outlines import Doubles, Light, Outlines, outlines, rear_boxes
 
 ROWS, FOCI = 25, 3
 STOPS = (1.0, 2**-0.5, 0.5, 0.25, 0.0625)
-"""Radii of the stop, over that of the stop that is wide open."""
+"""Stop radii of the table, relative to the fully open stop."""
 _QUARTERS = (0.25, 0.5, 0.75)
 _REACH = 1.2
-"""Film radii go on to so many half diagonals of the film, or to where the light ends."""
+"""Largest film radius of the table in half diagonals of the film, unless the image circle ends before."""
 _HOLE_MARGIN = 0.02
-"""Of a pupil's half axes. Between two stops the blocked part is smaller than their mean, by nearly as much."""
+"""Margin of the central obstruction, relative to the half axes. Between two stops of the table the obstruction is
+smaller than the interpolated one, by nearly as much."""
 _MARGIN = 1.002
-"""For what lies between the places at which the ellipses were tried."""
+"""Factor of the half axes that covers points between those at which the ellipses are tested."""
 _SMALL_DRIFT = 0.05
-"""Of the pupil's width, from one end of the spectrum to the other: an ellipse for all wavelengths is good enough."""
+"""Chromatic shift over the whole spectrum, relative to the pupil's width, below which one ellipse serves all
+wavelengths."""
 
 
 @dataclass(frozen=True)
 class PupilTable:
     reach_mm: float
-    """The last row's film radius. Row i of n is at reach (1 - (1 - i / (n - 1))^2): closer and closer to the edge."""
+    """Film radius of the last row. Row i of n is at reach (1 - (1 - i / (n - 1))^2), which is denser towards the
+    edge."""
     ellipses: Doubles
-    """(foci, stops, rows, 5), to be interpolated linearly, for film points on the +x axis: middle in l, half axes in l
-    and m; by which share both grow half-way to the next stop, as 4 t (1 - t) on the way there; and the part of the half
-    axes within which nothing passes, because the middle of the lens is blocked."""
+    """(foci, stops, rows, 5), interpolated linearly, for film points on the +x axis: centre in l; half axes in l and m;
+    relative growth of both half-way to the next stop, which follows 4 t (1 - t) in between; and central obstruction as
+    a fraction of the half axes, 0 if there is none."""
     drift: Doubles
-    """(foci, rows): how far the middle moves in l for each unit of the colour variable; 0 where that is little."""
+    """(foci, rows): shift of the centre in l per unit of the colour variable; 0 if it is small everywhere."""
 
 
 def pupil_table(focusing: FocusRange, colours: Mapping[float, float]) -> PupilTable:
-    """For light of any of these wavelengths in nm, of which the values are the colour variable."""
+    """Computes the table. colours: colour variable by wavelength in nm; the ellipses hold the light of all of them."""
     reach_mm = _reach_mm(focusing, colours)
     radii_mm = reach_mm * (1 - (1 - np.linspace(0, 1, 2 * ROWS - 1)) ** 2)
     drift = _drift(focusing, radii_mm[::2], colours)
     drifts = _between(_between(drift, 0), 1)
-    # At each stop, for the foci of the table and those half-way; for its foci, in each quarter between the stops.
+    # Outlines at each stop, for the foci of the table and those half-way; for the foci of the table also at each
+    # quarter between the stops.
     at_stops, between = [], []
     cells = range(len(STOPS) - 1)
     for step in range(2 * FOCI - 1):
@@ -60,7 +65,7 @@ def pupil_table(focusing: FocusRange, colours: Mapping[float, float]) -> PupilTa
         if step % 2 == 0:
             between.append([[looks[cell + part] for part in _QUARTERS] for cell in cells])
     nodes = _lit_everywhere(np.array([[_ellipses(look) for look in row] for row in at_stops[::2]])[:, :, ::2])
-    # By how much each ellipse has to grow to hold what passes at the radii and foci about it.
+    # Growth of each ellipse that is needed to hold all light at neighbouring radii and foci.
     outer = _norms_at(at_stops, nodes, lambda look: (look.l, look.m))
     growth = np.fmax(np.fmax.reduce(outer, axis=-1), 1)
     nodes[..., 1:] *= maximum_filter(growth, (3, 1, 3), mode="nearest")[::2, :, ::2, None] * _MARGIN
@@ -74,7 +79,7 @@ def pupil_table(focusing: FocusRange, colours: Mapping[float, float]) -> PupilTa
 
 
 def _drift(focusing: FocusRange, radii_mm: Doubles, colours: Mapping[float, float]) -> Doubles:
-    """(FOCI, R): of the pupil wide open, from the wavelengths at both ends."""
+    """(FOCI, R): chromatic shift of the fully open pupil, from the shortest and the longest wavelength."""
     ends = min(colours), max(colours)
     spread = colours[ends[0]] - colours[ends[1]]
     drift = np.zeros((FOCI, len(radii_mm)))
@@ -94,7 +99,8 @@ def _drift(focusing: FocusRange, radii_mm: Doubles, colours: Mapping[float, floa
 
 
 def _reach_mm(focusing: FocusRange, wavelengths_nm: Iterable[float]) -> float:
-    """Where the light ends, at the focus at which it ends last."""
+    """Radius of the image circle at the focus, infinity or nearest, at which it is larger; at most _REACH half
+    diagonals."""
     most = _REACH * 0.5 * float(np.hypot(*focusing.lens.film_mm))
     edge = 0.0
     for focus in (0.0, 1.0):
@@ -115,7 +121,8 @@ def _reach_mm(focusing: FocusRange, wavelengths_nm: Iterable[float]) -> float:
 def _looks(
     focusing: FocusRange, focus: float, places: Sequence[float], radii_mm: Doubles, light: Light
 ) -> dict[float, Outlines]:
-    """By places between the stops, the widest first: each outline lies within the one before."""
+    """Outlines by position in the list of stops (fractional between them), widest first: each lies within the
+    previous."""
     lens = focusing.lens_at(focus)
     boxes, rounds = rear_boxes(lens, radii_mm), 3
     looks = {}
@@ -128,13 +135,14 @@ def _looks(
 
 
 def _ellipses(look: Outlines) -> Doubles:
-    """(R, 3): the smallest ellipses with their middle on the l axis that hold the outlines; NaN: dark."""
+    """(R, 3): smallest ellipses centred on the l axis that enclose the outlines; NaN: no light."""
     low, high, top = (box[:, None] for box in look.boxes.T)
     half = 0.5 * (high - low)
     l = np.nan_to_num((look.l - 0.5 * (low + high)) / half)  # noqa: E741
     m = np.nan_to_num(look.m / top)
     middle, ratio, best = np.zeros(len(l)), np.zeros(len(l)), np.full(len(l), np.inf)
-    # The area is convex in the middle and in the logarithm of the ratio of the axes: finer and finer steps find it.
+    # The area is convex in the centre and in the logarithm of the axes' ratio, so a search with ever finer steps
+    # converges.
     for scale in 0.6 * 0.4 ** np.arange(6):
         about_middle, about_ratio = middle.copy(), ratio.copy()
         for step_middle, step_ratio in np.ndindex(9, 9):
@@ -149,7 +157,7 @@ def _ellipses(look: Outlines) -> Doubles:
 
 
 def _lit_everywhere(nodes: Doubles) -> Doubles:
-    """Where no light passes, there is the ellipse of a wider stop or of the film point before, to interpolate with."""
+    """Fills ellipses of film points without light with those of a wider stop or the previous row, for interpolation."""
     nodes = nodes.copy()
     for axis in (1, 2):
         moved = np.moveaxis(nodes, axis, 0)
@@ -160,7 +168,7 @@ def _lit_everywhere(nodes: Doubles) -> Doubles:
 
 
 def _between(nodes: Doubles, axis: int) -> Doubles:
-    """The nodes of an axis, and what linear interpolation makes of them half-way."""
+    """Nodes along an axis with linearly interpolated values inserted half-way."""
     moved = np.moveaxis(nodes, axis, 0)
     result = np.empty((2 * len(moved) - 1, *moved.shape[1:]))
     result[::2] = moved
@@ -169,14 +177,14 @@ def _between(nodes: Doubles, axis: int) -> Doubles:
 
 
 def _norms(l: Doubles, m: Doubles, ellipses: Doubles) -> Doubles:  # noqa: E741
-    """(R, P): 1 on the edge of the ellipses (R, 3)."""
+    """(R, P): elliptical norm of points, 1 on the edge of the ellipses (R, 3)."""
     return np.hypot((l - ellipses[:, :1]) / ellipses[:, 1:2], m / ellipses[:, 2:3])
 
 
 def _norms_at(
     looks: Sequence[Sequence[Outlines]], nodes: Doubles, points_of: Callable[[Outlines], tuple[Doubles, Doubles]]
 ) -> Doubles:
-    """(foci, stops, radii, P): the norms of points of each outline in the ellipse that is interpolated for it."""
+    """(foci, stops, radii, P): norms of the points of each outline in its interpolated ellipse."""
     tried = _between(_between(nodes, 0), 2)
     return np.array(
         [[_norms(*points_of(look), tried[i, j]) for j, look in enumerate(row)] for i, row in enumerate(looks)]
@@ -184,8 +192,9 @@ def _norms_at(
 
 
 def _bulge(looks: Sequence[Outlines], wide: Doubles, narrow: Doubles) -> Doubles:
-    """(rows,): what the ellipses between two stops lack in the middle. Where rims cut the light off, the pupil follows
-    the stop on its way in, and then no longer: it is larger between two stops than their mean."""
+    """(rows,): relative growth that the interpolated ellipses need half-way between two stops. With vignetting, the
+    pupil is limited by rims at the wide stop and by the stop at the narrow one, so that in between it is larger than
+    their interpolation."""
     lacking = []
     for part, look in zip(_QUARTERS, looks, strict=True):
         norms = np.fmax.reduce(_norms(look.l, look.m, wide + part * (narrow - wide)), axis=1)

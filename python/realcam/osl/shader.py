@@ -1,4 +1,4 @@
-"""A lens as an OSL camera shader, its surfaces one after the other."""
+"""Writes a lens as an OSL camera shader that traces its surfaces sequentially."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ from .glasses import POLE_NM, colour_scale, colour_variable, squared_indices
 from .pupil_table import STOPS, PupilTable, pupil_table
 
 _CELLS = 64
-"""Of the spectrum, which a pixel's samples visit in turn."""
+"""Number of strata of the spectrum."""
 _SEEN_NM = (420.0, 680.0)
-"""At these wavelengths and the lens's own, the pupil table holds all that passes."""
+"""Wavelengths whose light the pupil table holds completely, besides the design wavelength."""
 
 
 def shader_text(lens: Lens) -> str:
-    """The lens as a shader for custom cameras of Blender 5, in OSL.
+    """Returns the lens as an OSL shader for custom cameras of Blender 5.
 
-    Focus, f-number and blades are parameters, which begin as the lens stands. Raises InputError where OSL cannot
-    express the lens, with the surface.
+    Focus, f-number and blades are parameters, whose defaults are the lens's current settings. Raises InputError, which
+    names the surface, if OSL cannot express the lens.
     """
     check_expressible(lens)
     focusing = focus_range(lens)
@@ -134,7 +134,7 @@ def _heading(lens: Lens) -> str:
 
 
 def _comment_text(text: str) -> str:
-    """One line, which no backslash at its end joins with the next one."""
+    """Text for a one-line comment: without line breaks, and without backslashes, which could continue the line."""
     return "".join(c if c.isprintable() and c != "\\" else " " for c in text)
 
 
@@ -230,7 +230,8 @@ def _colour(lens: Lens, spectrum: np.ndarray, edges_nm: np.ndarray) -> str:
 
 
 def _media(squares: list[list[float]]) -> tuple[list[str], list[str]]:
-    """Declarations of the squared indices that change with the wavelength, and of each medium the name or number."""
+    """Returns declarations of the squared indices that depend on wavelength, and the name or number of each
+    medium's."""
     names: dict[tuple[float, ...], str] = {}
     declared = ["    // Squares of the indices of glasses."]
     for square in map(tuple, squares):
