@@ -19,8 +19,8 @@ from .usage_message import UsageError, usage_message
 app = typer.Typer(
     help="Photographs 3D scenes through real lenses.",
     pretty_exceptions_enable=False,
-    rich_markup_mode=None,  # defaults in the help stand in [brackets]
-    context_settings={"help_option_names": ["-h", "--help"]},  # of all commands below, too
+    rich_markup_mode=None,  # the help shows defaults in [brackets], which rich would take for markup
+    context_settings={"help_option_names": ["-h", "--help"]},  # inherited by all subcommands
 )
 add_command_in_cpp(app, "render")
 add_command_in_cpp(app, "plan")

@@ -69,16 +69,16 @@ def compare(
     if f_number is not None and name == "f_number":
         raise InputError("--f-number: the f-number is what --vary names")
     described = load_shot(shot, changes, device, **_goal(changes))
-    if f_number is not None:  # at the brightness of the shot
+    if f_number is not None:  # keeps the brightness of the shot
         described = variations(described, "f_number", [str(f_number)])[0].shot
     settings = described.settings.with_(layers=GUIDES) if denoise else described.settings
     pictures: list[tuple[str, Image]] = []
     kind = "F_NUMBER" if name == "f_number" else ""
     varied = variations(described, name, [plain_number(value, kind) for value in values.split(",")])
-    check_figure_target(output)  # again: now the files are known that the pictures are made from
+    check_figure_target(output)  # again: the input files, which must not be overwritten, are known only now
     with interrupt_noted() as is_interrupted:
         for variation in varied:
-            taken_away = ""  # of which the denoiser leaves little: how noisy the picture is
+            taken_away = ""  # noise warning to suppress, because the denoiser removes most of the noise
             taken = Shot(described.scene, sized(variation, size), settings, described.tone)
             with (
                 warnings.catch_warnings(record=True) as caught,

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 from .._core import devices, lens_names, sensor_names
 
-# By the words that stand for values in the help.
+# Completion candidates by metavar of the help.
 _NAMES: dict[str, Callable[[], list[str]]] = {
     "LENS": lens_names,
     "SENSOR": sensor_names,

@@ -13,7 +13,7 @@ from . import options
 from .grouped_options import grouped
 from .shot_options import load_shot, shot_options
 
-# Samples, effects and camera models are what is compared.
+# Without samples, effects and camera models, which the command itself varies.
 ShotOptions = shot_options(
     "ShotOptions",
     without=(

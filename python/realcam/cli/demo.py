@@ -42,17 +42,17 @@ def demo(
     samples = spp or (24 if denoises else 48)
     words = ["--denoise"] if denoises else []
     new_folders = [folder for folder in (output, *output.parents) if not folder.exists()]
-    signal.signal(signal.SIGTERM, lambda number, _: sys.exit(128 + number))  # by way of what cleans up
+    signal.signal(signal.SIGTERM, lambda number, _: sys.exit(128 + number))  # so that finally clauses run
     make_folder(output)
     try:
         _render(shot, samples, quiet, output / "demo.png", output / "demo.exr", *words)
         _render(shot, max(1, samples // 4), quiet, output / "demo-thin-lens.png", "--model", "thin", *words)
-        # As the demo's camera has it: wide open and focused near.
+        # The lens as in the demo shot: wide open and at close focus.
         save_cross_section(Lens.load("double-gauss-50mm").focused(1.05), output / "lens.png")
     finally:
         for folder in new_folders:
             with suppress(OSError):
-                folder.rmdir()  # where nothing was written
+                folder.rmdir()  # fails, and is ignored, if something was written
     for name, what in (
         ("demo.png", "the photograph, denoised" if denoises else "the photograph"),
         ("demo.exr", "its film exposure in lux seconds, and depth"),
@@ -68,7 +68,7 @@ def demo(
 def _render(shot: Path, spp: int, quiet: bool, *rest: Path | str) -> None:
     """`realcam render`. Whatever goes wrong it has said itself; Ctrl-C reaches it too."""
     words = [word if isinstance(word, str) else f"--output={word}" for word in rest]
-    # Of this package, and nothing of the same name that is in the current folder.
+    # Runs this package, not a module of the same name in the current folder.
     python = [sys.executable, *(["-P"] if sys.version_info >= (3, 11) else []), "-m", "realcam"]
     paths = os.pathsep.join([str(Path(__file__).resolve().parents[2]), os.environ.get("PYTHONPATH", "")])
     environment = {**os.environ, "PYTHONPATH": paths.rstrip(os.pathsep)}

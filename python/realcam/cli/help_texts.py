@@ -20,16 +20,16 @@ def finish(command: Any, words: tuple[str, ...] = ()) -> None:
     """Finishes a command as typer makes it, and all below it. `words`: those that call it, without the program's
     name."""
     for parameter in command.params:
-        # What an option or argument does not name is called as it is itself, and not by the name of a type.
+        # Without a metavar the help shows the parameter's own name instead of its type.
         if parameter.metavar is None and not getattr(parameter, "is_flag", False):
             parameter.metavar = str(parameter.name).upper()
-        # An argument's line would have its type behind its name, which says enough.
+        # Omits the type after an argument's name, as the metavar is sufficient.
         if isinstance(parameter, typer.core.TyperArgument):
             parameter.display_type_rich = lambda ctx: None  # type: ignore[method-assign]
     check_usage(command)
     examples = list(EXAMPLES.get(" ".join(words), ()))
     command.get_help = lambda context: _help_text(
-        # Some versions of typer put an argument that is required in braces: {SHOT}...
+        # Some versions of typer put required arguments in braces: {SHOT}...
         re.sub("[{}]", "", " ".join([context.command_path, *command.collect_usage_pieces(context)])),
         command.help,
         list(_sections(command, context)),
@@ -48,7 +48,7 @@ def _sections(command: Any, context: Any) -> Iterator[Section]:
             title = getattr(parameter, "rich_help_panel", None) or usual
             parts.setdefault(title, []).append((names, _as_in_cpp(text)))
     yield from parts.items()
-    # The first paragraph.
+    # Shows only the first paragraph of each command's help.
     commands = getattr(command, "commands", {})
     yield "Commands", [(name, below.help.partition("\n\n")[0]) for name, below in commands.items()]
 

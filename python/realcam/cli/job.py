@@ -33,7 +33,7 @@ Folder = Annotated[Path, typer.Argument(help="The job's folder, as `realcam job 
 Threads = Annotated[int, typer.Option(metavar="N", help="Of each process; 0: all cores", min=0, max=4096)]
 
 
-ShotOptions = shot_options("ShotOptions", without=("threads",))  # which each process has its own of
+ShotOptions = shot_options("ShotOptions", without=("threads",))  # the number of threads is set for each process
 
 
 @app.command()
@@ -148,7 +148,7 @@ def work(
     is_single = here or part is not None
     if is_single and (scheduler is not None or workers is not None):
         raise InputError("--here and --part are for one process; --scheduler and --workers exclude them")
-    logging.disable(logging.CRITICAL)  # what Dask writes of connections that end; the job says what matters
+    logging.disable(logging.CRITICAL)  # Dask logs every closed connection; the job reports the errors that matter
     if device is not None and not is_single:
         raise InputError("--device is for one process; --here is wanted with it")
     numbers, job = _part(part), Job.load(folder)

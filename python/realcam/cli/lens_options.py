@@ -158,7 +158,7 @@ class Look:
         }
 
 
-SUFFIXES = (".toml", ".zmx", ".seq", ".len", ".dat", ".json", ".roa")  # of lens files
+SUFFIXES = (".toml", ".zmx", ".seq", ".len", ".dat", ".json", ".roa")  # of supported lens files
 
 
 def add_to_lens_path(folders: Sequence[str] | None) -> None:

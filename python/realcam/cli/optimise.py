@@ -124,7 +124,7 @@ def optimise(
         operands=operands,
     )
     with progress_bar("optimising", is_shown=not quiet) as bar:
-        # Of the glasses nobody knows how many steps they take.
+        # The number of steps of a glass search is unknown in advance.
         expected = steps + global_looks if not glasses else 100 * steps
 
         def report(count: int, _: float) -> bool:

@@ -96,4 +96,4 @@ def title_of(lens: Lens) -> str:
     data = lens.first_order()
     focal_length, f_number = number_text(data.effective_focal_length_mm), number_text(lens.f_number, 3)
     text = f"{lens.title or lens.name}   f = {focal_length} mm, f/{f_number}"
-    return "".join(c for c in text if c.isprintable())  # titles come from files, and may hold any characters
+    return "".join(c for c in text if c.isprintable())  # titles come from files and may contain control characters

@@ -10,7 +10,7 @@ import typer
 from .._core import _did_you_mean
 from ..command_words import Grammar, spelled, understood
 
-# click's, which newer versions of typer bring along under a private name.
+# click's UsageError: newer versions of typer bundle click under a private name.
 UsageError: Any = typer.BadParameter.__bases__[0]
 
 
@@ -73,9 +73,9 @@ def _what_is_wrong(error: Any, commands: dict[str, Any] | None) -> str:
         return f"{option} {'wants a value' if 'requires' in said else 'takes no value'}"
     if parameter := getattr(error, "param", None):
         name = max(parameter.opts, key=len) if parameter.param_type_name == "option" else parameter.metavar
-        if not said:  # what is missing has no message
+        if not said:  # click gives no message for a missing parameter
             return f"{name} is required"
-        # The words of typer have changed with its versions.
+        # The wording depends on the version of typer.
         if "number" in said or "float" in said or "integer" in said:
             return f'{name}: "{error.word}" is not a {"whole " * ("integer" in said)}number'
         return f"{name}: {said}"

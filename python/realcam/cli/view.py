@@ -13,7 +13,7 @@ from . import options
 from .grouped_options import grouped
 from .shot_options import shot_options, words_of
 
-# A shot that the bench saves says all that is in its camera.
+# Only camera options, all of which a shot saved by the bench contains.
 ShotOptions = shot_options("ShotOptions", panels=("Camera",))
 
 
@@ -46,7 +46,7 @@ def view(
         raise InputError(f"--host {host}: other machines reach this address; --allow-network allows that")
     if quiet and not (is_local(host) or token):
         raise InputError("--quiet hides the token that is made for other machines: name one with --token")
-    check_port(host, port)  # before the scene is read, which may take its time
+    check_port(host, port)  # before reading the scene, which may take long
     path = scenes_folder() / "demo.toml" if shot is None else shot
     source, opened = ShotSource.opened(path, device, words_of(changes))
     folders = (Path.cwd(), *(folder or ()))

@@ -1,4 +1,4 @@
-"""Labelled pictures of random scenes through real lenses, in shards of tar files (docs/datasets.md)."""
+"""Data sets of labelled pictures of random scenes through real lenses, as tar shards (docs/datasets.md)."""
 
 from .making import make
 from .reading import samples

@@ -1,4 +1,4 @@
-"""Making a data set, on all cores or by any executor."""
+"""Generation of a data set, on all cores or with any executor."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from .shards import DatasetFolder
 
 ProgressCallback = Callable[[float], bool | None]
 
-_WINDOW = 1000  # pictures that an executor has at a time
+_WINDOW = 1000  # pictures submitted to an executor at a time
 
 
 def make(
@@ -30,15 +30,15 @@ def make(
     device: str = "auto",
     progress: ProgressCallback | None = None,
 ) -> Path:
-    """Makes what is missing of a data set, and returns the path of its index, dataset.json.
+    """Generates the missing pictures of a data set, and returns the path of its index, dataset.json.
 
-    executor: of whose processes each makes a picture at a time, on one core, on this machine or others that see the
-    same folder; None: processes of this machine, one for each core, or one alone for a GPU. device: as render has it.
-    progress: called with the share done, and stops where it returns False.
-    A picture and a shard appear in the folder as a whole or not at all, so that make() goes on after whatever has ended
-    it. Raises InputError, DeviceError, and ImageFileError where a disk is full, say; what is done stays.
+    executor: each of its processes renders one picture at a time, on one core, on this machine or others that can
+    access the same folder; None: processes of this machine, one per core, or a single one for a GPU. device: as in
+    render. progress: called with the fraction done; the work stops if it returns False.
+    Pictures and shards are written atomically, so that make() can continue after any interruption. Raises InputError,
+    DeviceError, and ImageFileError, if a disk is full, say; finished pictures remain.
     """
-    demosaicing.check_is_installed()  # not after the first picture
+    demosaicing.check_is_installed()  # before the first picture, not after it
     target = DatasetFolder.open(folder, recipe)
     remove_leftovers(target.path)
     missing = target.missing()
@@ -46,7 +46,7 @@ def make(
     with ExitStack() as stack:
         if missing and executor is None:
             workers = 1 if on_gpu else min(len(missing), len(os.sched_getaffinity(0)))
-            # Processes are started afresh: a fork would copy threads that hold locks.
+            # Spawned, not forked: a fork would copy locks held by other threads.
             executor = stack.enter_context(
                 concurrent.futures.ProcessPoolExecutor(workers, mp_context=get_context("spawn"))
             )
@@ -87,7 +87,7 @@ def _work_with(
 
 
 def _make_one(recipe: Recipe, folder: str, number: int, device: str, threads: int) -> Outcome:
-    """In a process of an executor."""
+    """Renders and writes one picture in a process of an executor. Returns an error message, empty on success."""
     try:
         DatasetFolder(Path(folder), recipe).write_sample(number, make_sample(recipe, number, device, threads))
     except RealcamError as error:

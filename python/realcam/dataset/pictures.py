@@ -1,4 +1,4 @@
-"""PNG files as bytes, by OpenImageIO."""
+"""PNG encoding and decoding with OpenImageIO."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ import OpenImageIO as oiio
 
 
 def png_bytes(codes: np.ndarray) -> bytes:
-    """(H, W) or (H, W, 3) uint8, whose three channels are sRGB."""
+    """Encodes (H, W) or (H, W, 3) uint8 as PNG; three channels are sRGB."""
     channels = np.ascontiguousarray(codes if codes.ndim == 3 else codes[..., None])
     height, width, count = channels.shape
     spec = oiio.ImageSpec(width, height, count, oiio.UINT8)
-    spec.attribute("png:compressionLevel", 3)  # faster than the usual 6, for somewhat larger files
+    spec.attribute("png:compressionLevel", 3)  # faster than the default 6, for slightly larger files
     if count == 3:
         spec.attribute("oiio:ColorSpace", "sRGB")
     with tempfile.TemporaryDirectory(prefix="realcam-") as folder:
@@ -26,7 +26,7 @@ def png_bytes(codes: np.ndarray) -> bytes:
 
 
 def codes_of(png: bytes) -> np.ndarray:
-    """(H, W) or (H, W, channels) uint8 of a PNG file. Raises ValueError."""
+    """Decodes a PNG file to (H, W) or (H, W, channels) uint8. Raises ValueError."""
     with tempfile.TemporaryDirectory(prefix="realcam-") as folder:
         path = Path(folder, "picture.png")
         path.write_bytes(png)

@@ -17,12 +17,12 @@ from .shards import read_samples
 
 
 def samples(folder: str | os.PathLike[str], shards: slice = slice(None)) -> Iterator[dict[str, Any]]:
-    """The pictures of a data set with their labels, shard by shard.
+    """Yields the pictures of a data set with their labels, shard by shard.
 
-    Each has "__key__", a text; "png", (H, W, 3) uint8; "json", a mapping; and as the recipe has them "mask.png",
-    (H, W) uint8, ids of objects; "depth.npy", (H, W) float32, metres; "motion.npy" and
-    "flow.npy", (H, W, 2) float32, pixels; "next.png", as "png"; "flow_visible.png", (H, W) uint8, 0 or 255.
-    shards: of those in the folder; slice(worker, None, workers) divides them among workers. Raises InputError.
+    Each has "__key__", a string; "png", (H, W, 3) uint8; "json", a mapping; and, depending on the recipe's labels,
+    "mask.png", (H, W) uint8, object ids; "depth.npy", (H, W) float32, metres; "motion.npy" and "flow.npy", (H, W, 2)
+    float32, pixels; "next.png", like "png"; "flow_visible.png", (H, W) uint8, 0 or 255.
+    shards: selects shards of the folder; slice(worker, None, workers) divides them among workers. Raises InputError.
     """
     paths = sorted(Path(folder).glob("shard-*.tar"))
     if not paths:

@@ -1,4 +1,4 @@
-"""What a data set is made of: a TOML file of few keys."""
+"""Recipe of a data set, read from a TOML file."""
 
 from __future__ import annotations
 
@@ -14,24 +14,25 @@ import numpy as np
 
 from .._core import InputError, Sensor, _did_you_mean, _read_toml
 
-MOVES_FOR_S = 1.0  # what moves in a scene; no exposure and no next picture comes later
+MOVES_FOR_S = 1.0  # duration of all motion in a scene; every exposure and every next picture lies within it
 LABELS = ("depth", "mask", "motion", "flow")
-# Numbers of pictures have six digits; beyond the other limits a picture takes hours.
+# File names have six digits for the picture's number; beyond the other limits a picture takes hours.
 _MOST = {"count": 10**6, "size": 32768, "objects": 1000, "board": 1000, "spp": 1 << 24, "shard_size": 10**6}
 
 
 @dataclass(frozen=True)
 class Recipe:
-    """Of which pictures a data set consists. Two numbers in a pair are the ends of a range, drawn from evenly.
+    """Parameters of a data set. A pair of numbers is a range that is sampled uniformly.
 
-    count: of pictures. size: columns and rows. seed: the same recipe and seed make the same pictures. lenses: names or
-    files. f_stops: factors of the lens's own f-number. objects: how many bodies a scene has. models: what these are,
-    categories and their files (.glb, .obj, ...), made one metre large; {}: boxes, balls and pyramids. speed_m_s: of the
-    bodies, along the floor. camera_speed_m_s, camera_turn_deg_s: of the camera, in any direction and about any axis.
-    next_after_s: from a picture to the next one, to which the flow leads. readout_time_s: of a rolling shutter. iso,
-    sensor: of the camera. board: columns and rows of the squares of a calibration board that stands in each scene; ():
-    none. square_m: side of its squares. labels: what is written besides, of depth, mask, motion and flow, with which
-    the next picture is written too. spp: samples of a pixel. shard_size: pictures in a tar file. Raises InputError.
+    count: number of pictures. size: columns and rows. seed: the same recipe and seed give the same pictures. lenses:
+    names or files. f_stops: factors of the lens's smallest f-number. objects: number of objects in a scene. models:
+    files of the objects (.glb, .obj, ...) by category, scaled to one metre; {}: boxes, balls and pyramids. speed_m_s:
+    speed of the objects along the floor. camera_speed_m_s, camera_turn_deg_s: speed and angular speed of the camera, in
+    any direction and about any axis. next_after_s: time from a picture to the next one, which is the target of the
+    flow. readout_time_s: of a rolling shutter. iso, sensor: of the camera. board: columns and rows of squares of a
+    calibration board in each scene; (): no board. square_m: side of its squares. labels: additional outputs out of
+    depth, mask, motion and flow; flow also writes the next picture. spp: samples per pixel. shard_size: pictures per
+    tar file. Raises InputError.
     """
 
     count: int = 200
@@ -82,7 +83,7 @@ class Recipe:
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> Recipe:
-        """Reads a recipe; files in it are relative to it. Raises InputError naming file, line and key."""
+        """Reads a recipe; paths in it are relative to its folder. Raises InputError naming file, line and key."""
         name = os.fspath(path)
         try:
             text = Path(path).read_text(encoding="utf-8")
@@ -114,7 +115,7 @@ class Recipe:
 
     @property
     def categories(self) -> tuple[str, ...]:
-        """Of the bodies, in the order of their numbers in COCO's format, from 1 on."""
+        """Categories of the objects, in the order of their COCO ids, from 1."""
         return tuple(self.models) or ("box", "ball", "pyramid")
 
 
@@ -124,7 +125,7 @@ _KINDS: dict[str, str] = {
 
 
 def _as(kind: str, name: str, value: Any) -> Any:
-    """The value as the field has it. Raises InputError."""
+    """Converts a value to the type of its field. Raises InputError."""
     if kind == "texts by name":
         if isinstance(value, Mapping) and all(isinstance(v, str) for pair in value.items() for v in pair):
             return dict(value)

@@ -20,12 +20,12 @@ from .recipe import Recipe
 from .scenes import RandomScene, random_camera, random_scene
 
 LAYERS = {"depth": "depth_middle", "mask": "object_id", "motion": "motion"}
-SEEDS_APART = 2**31  # of a picture and the next one, whose noise must differ
-WIDEST_PLANE_DEG = 120.0  # of cameras whose model is one by the tangent of the angle
+SEEDS_APART = 2**31  # difference of the seeds of a picture and the next one, whose noise must be independent
+WIDEST_PLANE_DEG = 120.0  # largest diagonal field of view that is fitted with a model of the angle's tangent
 
 
 def make_sample(recipe: Recipe, number: int, device: str, threads: int) -> dict[str, bytes]:
-    """The files of a picture, by what stands behind its key and a dot."""
+    """Renders a picture with its labels. Returns its files by their suffix, the part after the key and a dot."""
     rng = np.random.default_rng([recipe.seed, number])
     seen = random_scene(recipe, rng)
     camera = random_camera(recipe, seen, rng).metered(seen.scene, device=device)
@@ -56,11 +56,11 @@ def make_sample(recipe: Recipe, number: int, device: str, threads: int) -> dict[
 
 
 def _sensed(recipe: Recipe, image: Image, number: int) -> np.ndarray:
-    """What the sensor makes of the film, developed at the camera's ISO or the nearest that the sensor has."""
+    """Simulates the sensor at the camera's ISO, or the closest that it has, and develops its raw image."""
     film = image.camera.film
     pitch_um = 1000 * film.width_mm / film.resolution[0]
     sensor = Sensor.load(recipe.sensor)
-    if sensor.pixel_pitch_um is not None:  # pixels as large as the film's, with the noise of this sensor's
+    if sensor.pixel_pitch_um is not None:  # same noise model, but with the film's pixel pitch
         sensor = sensor.replace(pixel_pitch_um=pitch_um, resolution=film.resolution)
     lowest, highest = sensor.iso_range(pitch_um)
     iso = image.camera.iso if lowest == 0 else float(np.clip(image.camera.iso, 1.001 * lowest, 0.999 * highest))
@@ -95,7 +95,7 @@ def _labels(recipe: Recipe, seen: RandomScene, camera: Camera, image: Image) -> 
 
 
 def _shows(image: Image, pixel: np.ndarray, object_id: int) -> bool:
-    """Whether a place of the picture shows an object."""
+    """True if the object is visible at a pixel."""
     ids = image.layers["object_id"]
     if np.isnan(pixel).any() or not (0 <= pixel[0] < ids.shape[1] and 0 <= pixel[1] < ids.shape[0]):
         return False
@@ -103,8 +103,8 @@ def _shows(image: Image, pixel: np.ndarray, object_id: int) -> bool:
 
 
 def _objects(seen: RandomScene, camera: Camera, image: Image) -> Iterator[dict[str, Any]]:
-    """Of each body that is seen: its box [x, y, width, height] and area in pixels, where its middle projects to, and
-    its pixels as run lengths, column by column, that of what it is not first (COCO).
+    """Yields a label for each visible object: its box [x, y, width, height] and area in pixels, the projection of its
+    centre, and its mask as run lengths in column-major order, starting with the background (COCO).
     """
     ids = image.layers["object_id"]
     middles = camera.project(seen.middles_m)

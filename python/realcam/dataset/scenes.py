@@ -1,4 +1,4 @@
-"""Random scenes and cameras of a recipe."""
+"""Random scenes and cameras for a recipe."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class RandomScene:
-    """A scene with what is known of it. categories, middles_m: of the bodies, in the order of their ids from 2 on.
+    """A scene with its ground truth. categories, middles_m: of the objects, in the order of their ids, from 2.
 
-    board_m: (N, 3), inner corners of the calibration board, row by row; None: there is none.
+    board_m: (N, 3), inner corners of the calibration board, row by row; None: no board.
     """
 
     scene: Scene
@@ -29,7 +29,7 @@ class RandomScene:
 
 
 def _shape(category: str) -> tuple[Array, Array]:
-    """Vertices and triangles of a body that stands on y = 0 and is 1 m wide and high."""
+    """Vertices and triangles of an object that stands on y = 0 and is 1 m wide and high."""
     if category == "ball":
         across, down = 24, 12
         polar, turn = np.meshgrid(
@@ -50,7 +50,7 @@ def _shape(category: str) -> tuple[Array, Array]:
 
 @lru_cache(maxsize=64)
 def _model(path: str) -> tuple[Scene, Array]:
-    """A scene from a file, and the matrix that makes it stand on y = 0, one metre large."""
+    """Returns a scene from a file, and the matrix that places it on y = 0 and scales its largest extent to 1 m."""
     scene = Scene.load(path)
     low, high = np.array(scene.bounds_m)
     size = float((high - low).max())
@@ -62,7 +62,7 @@ def _model(path: str) -> tuple[Scene, Array]:
 
 
 def random_scene(recipe: Recipe, rng: np.random.Generator) -> RandomScene:
-    """A floor with bodies on it, under sun and sky."""
+    """Returns a scene of objects on a floor under sun and sky."""
     floor = np.array([[-9, 0, 9], [9, 0, 9], [9, 0, -9], [-9, 0, -9]])
     grey = Material(diffuse=tuple(rng.uniform(0.2, 0.6, 3)), name="floor")
     scene = Scene.from_arrays(floor, [[0, 1, 2], [0, 2, 3]], materials=[grey])
@@ -71,7 +71,7 @@ def random_scene(recipe: Recipe, rng: np.random.Generator) -> RandomScene:
     sizes = rng.uniform(0.15, 0.5, rng.integers(recipe.objects[0], recipe.objects[1] + 1))
     for i, size in enumerate(sizes):
         place = np.zeros(3)
-        for _ in range(100):  # tries to find room; then it stands in another
+        for _ in range(100):  # attempts to find free space; if all fail, objects overlap
             place[[0, 2]] = rng.uniform(-0.9, 0.9, 2)
             apart = np.array([np.hypot(*(place - middle)[[0, 2]]) for middle in middles])
             if (apart > 0.75 * (size + sizes[: len(apart)])).all():
@@ -114,7 +114,8 @@ def _standing(place: Array, size: float, turn: float) -> Array:
 
 
 def _board(columns: int, rows: int, square_m: float) -> tuple[Scene, Array]:
-    """A chessboard with a white margin, upright on y = 0, and its inner corners, row by row from the upper left."""
+    """Returns a chessboard with a white margin, upright on y = 0, and its inner corners, row by row from the upper
+    left."""
     material: list[int] = []
     vertices: list[tuple[float, float, float]] = []
     triangles: list[tuple[int, int, int]] = []
@@ -147,7 +148,7 @@ def _direction(rng: np.random.Generator) -> Array:
 
 
 def _view_from(distance: float, rng: np.random.Generator) -> tuple[Array, Array]:
-    """A place so far from the middle of the floor, and what a camera looks at from there."""
+    """Random camera position at a distance from a random target near the centre of the floor, and the target."""
     turn, rise = rng.uniform(0, 2 * np.pi), rng.uniform(0.15, 0.9)
     away = np.array([np.cos(rise) * np.sin(turn), np.sin(rise), np.cos(rise) * np.cos(turn)])
     target = rng.uniform([-0.2, 0.05, -0.2], [0.2, 0.3, 0.2])
@@ -155,15 +156,13 @@ def _view_from(distance: float, rng: np.random.Generator) -> tuple[Array, Array]
 
 
 def _is_in_a_body(seen: RandomScene, place: Array) -> bool:
-    """Whether it lies in a ball around a body, which holds a cube of its size, or just before one."""
-    sizes = 2 * seen.middles_m[:, 1]  # they stand on the floor
+    """True if a point lies within 0.05 m of an object's bounding sphere (that of a cube of the object's size)."""
+    sizes = 2 * seen.middles_m[:, 1]  # the objects stand on the floor
     return bool((np.linalg.norm(seen.middles_m - place, axis=1) < 0.87 * sizes + 0.05).any())
 
 
 def random_camera(recipe: Recipe, seen: RandomScene, rng: np.random.Generator) -> Camera:
-    """Any of the lenses, stopped down and focused somewhere, that looks at the middle of the floor from outside of all
-    bodies.
-    """
+    """Returns a camera with a random lens, f-number and focus, outside of all objects, looking near the floor's centre."""
     from scipy.spatial.transform import Rotation  # slow to load
 
     lens = _lens(recipe.lenses[rng.integers(len(recipe.lenses))])
@@ -171,7 +170,7 @@ def random_camera(recipe: Recipe, seen: RandomScene, rng: np.random.Generator) -
     film = Film.for_lens(lens, resolution=recipe.size)
     iso = float(np.exp(rng.uniform(*np.log(recipe.iso))))
     camera = Camera(lens, film=film, iso=iso, readout_time_s=recipe.readout_time_s)
-    # So far away that about two metres fill the picture's width; a fisheye stands nearer than that.
+    # At this distance about two metres fill the picture's width; a fisheye is closer.
     half_angle = np.radians(min(camera.field_of_view_deg.horizontal, 120) / 2)
     distance = max(0.6, rng.uniform(0.8, 1.3) / np.tan(half_angle))
     position, target = _view_from(distance, rng)

@@ -1,4 +1,4 @@
-"""The files of a data set: samples that are done, and shards, which hold many of them."""
+"""Files of a data set: finished samples, and shards of many samples."""
 
 from __future__ import annotations
 
@@ -21,16 +21,16 @@ _PICTURES = ("samples/*", "shard-*.tar")
 
 
 class DatasetFolder:
-    """Where samples and shards are kept. All functions raise InputError and ImageFileError."""
+    """Folder of samples and shards. All functions raise InputError and ImageFileError."""
 
     def __init__(self, path: Path, recipe: Recipe) -> None:
         self.path, self.recipe = path, recipe
 
     @classmethod
     def open(cls, path: str | os.PathLike[str], recipe: Recipe) -> DatasetFolder:
-        """Makes the folder, or goes on with one of the same recipe, whose count may be larger now.
+        """Creates the folder, or opens one of the same recipe; the count may be larger than before.
 
-        Raises InputError for a folder in which another program has files of the names of a data set.
+        Raises InputError if the folder holds files of another program under a data set's file names.
         """
         folder = cls(Path(path), recipe)
         about = {"realcam": __version__, **json.loads(json.dumps(dataclasses.asdict(recipe)))}
@@ -50,7 +50,7 @@ class DatasetFolder:
         if not isinstance(before, dict) or "realcam" not in before or type(before.get("count")) is not int:
             raise InputError(f"{file}: is not of a data set of realcam; another folder is wanted")
         changed = [key for key in about if key != "count" and before.get(key) != about[key]]
-        if changed and folder._first_file(*_PICTURES):  # a recipe that failed may be mended
+        if changed and folder._first_file(*_PICTURES):  # a recipe without pictures yet may be corrected
             raise InputError(f"{folder.path}: made by another recipe ({', '.join(changed)}); another folder is wanted")
         if before["count"] > recipe.count:
             raise InputError(
@@ -75,12 +75,13 @@ class DatasetFolder:
         return range((self.recipe.count + self.recipe.shard_size - 1) // self.recipe.shard_size)
 
     def missing(self) -> list[int]:
-        """Numbers of samples that are neither in a shard nor done."""
+        """Numbers of samples that are neither in a shard nor finished. Unpacks a shard that has become incomplete
+        because the count was increased."""
         wanted: list[int] = []
         for shard in self.shards:
             numbers = self.numbers_of(shard)
             held = self._held_by(shard)
-            if 0 < len(held) < len(numbers):  # more pictures are wanted than when it was made
+            if 0 < len(held) < len(numbers):  # the count was increased since the shard was written
                 for number, files in held.items():
                     self.write_sample(number, files)
                 self.shard_path(shard).unlink()
@@ -90,7 +91,7 @@ class DatasetFolder:
         return wanted
 
     def not_done(self, numbers: Iterable[int]) -> list[int]:
-        """Of numbers that are in no shard."""
+        """Those of the numbers without a finished sample. numbers: samples that are not in a shard."""
         done = {path.name for path in (self.path / "samples").iterdir()}
         return [number for number in numbers if self.sample_path(number).name not in done]
 
@@ -101,7 +102,7 @@ class DatasetFolder:
         write_whole(self.sample_path(number), content.getvalue())
 
     def write_shard(self, shard: int) -> None:
-        """Of samples that are done, whose own files are removed then. One that is there stays."""
+        """Writes a shard of finished samples and removes their own files. Does nothing if the shard exists."""
         if self.shard_path(shard).exists():
             return
         numbers = self.numbers_of(shard)
@@ -115,7 +116,7 @@ class DatasetFolder:
             self.sample_path(number).unlink(missing_ok=True)
 
     def write_index(self) -> None:
-        """dataset.json: images, annotations and categories as COCO has them."""
+        """Writes dataset.json: images, annotations and categories in COCO's format."""
         images: list[dict[str, Any]] = []
         annotations: list[dict[str, Any]] = []
         for shard in self.shards:
@@ -139,7 +140,7 @@ class DatasetFolder:
         return self._samples_of(path, self.numbers_of(shard)) if os.path.lexists(path) else {}
 
     def _samples_of(self, path: Path, numbers: Iterable[int]) -> dict[int, dict[str, bytes]]:
-        """Raises InputError where a file holds anything else than pictures of these numbers with their labels."""
+        """Reads a tar file. Raises InputError unless it holds only pictures of these numbers with their labels."""
         keys = {f"{number:06d}": number for number in numbers}
         samples: dict[int, dict[str, bytes]] = {}
         for key, files in read_samples(path):
@@ -152,7 +153,7 @@ class DatasetFolder:
 
 
 def _add(tar: tarfile.TarFile, number: int, files: Mapping[str, bytes]) -> None:
-    """Without times and owners, so that the same pictures are the same bytes."""
+    """Adds files without times and owners, so that the same pictures give the same bytes."""
     for name, content in files.items():
         entry = tarfile.TarInfo(f"{number:06d}.{name}")
         entry.size = len(content)
@@ -160,7 +161,7 @@ def _add(tar: tarfile.TarFile, number: int, files: Mapping[str, bytes]) -> None:
 
 
 def read_samples(path: Path) -> Iterator[tuple[str, dict[str, bytes]]]:
-    """The samples of a tar file: keys, and files by what stands behind the first dot. Raises InputError."""
+    """Yields the samples of a tar file: key, and files by their suffix after the first dot. Raises InputError."""
     key = ""
     files: dict[str, bytes] = {}
     try:

@@ -1,4 +1,4 @@
-"""Cross-sections of lenses: as arrays (cross_section), and as drawings (realcam.draw, which needs matplotlib)."""
+"""Cross-sections of lenses: as arrays (cross_section), and as drawings (realcam.draw, which requires matplotlib)."""
 
 from ..fields import Field
 from .marks import FocusGroup, Mark

@@ -1,4 +1,4 @@
-"""The plane in which a lens is cut for a drawing, and what stands where in it."""
+"""The plane of a cross-section, and the positions of surfaces and film in it."""
 
 from __future__ import annotations
 
@@ -10,13 +10,14 @@ from numpy.typing import ArrayLike, NDArray
 from .._core import InputError, Lens
 
 Points = NDArray[np.float64]
-PLANES = {"yz": 1, "xz": 0}  #: and the axis of heights, in points of the lens frame
+PLANES = {"yz": 1, "xz": 0}  #: index of the height axis in the lens frame, by plane
 
 
 class Cut:
     """A lens cut by the plane x = 0 ("yz") or y = 0 ("xz") of its frame. Points are (z, height) in mm, lens frame.
 
-    What is turned out of the plane is drawn by its own cut, projected on it. Raises InputError for another plane.
+    A surface that is tilted out of the plane is cut in its own frame, and the cut is projected onto the plane. Raises
+    InputError for another plane.
     """
 
     def __init__(self, lens: Lens, plane: str = "yz") -> None:
@@ -27,19 +28,19 @@ class Cut:
 
     @cached_property
     def is_in_place(self) -> bool:
-        """Whether all surfaces stand upright on one axis."""
+        """True if surfaces and film are neither tilted nor decentred."""
         return all(
             not any(surface.decentre_mm) and not any(surface.tilt_deg) for surface in self.lens.surfaces
         ) and bool(np.allclose(self.lens.film_frame[:3], np.eye(3), atol=1e-12))
 
     def sag(self, surface: int, heights: ArrayLike) -> Points:
-        """Of points of a face, beside its vertex."""
+        """Sags in mm of a surface at heights in the plane of the cut, relative to its vertex."""
         shape = self.lens.surfaces[surface]
         at = np.asarray(heights, float)
         return np.array([shape.sag_at_mm(0.0, v) if self.axis == 1 else shape.sag_at_mm(v, 0.0) for v in at])
 
     def placed(self, surface: int, sags: ArrayLike, heights: ArrayLike) -> Points:
-        """(N, 2): points of a surface's own frame."""
+        """(N, 2): points given in a surface's own frame, in the plane of the cut."""
         z, height = np.asarray(sags, float), np.asarray(heights, float)
         if self.is_in_place:
             return np.column_stack([self.lens.vertices_mm[surface] + z, height])
@@ -51,7 +52,7 @@ class Cut:
 
     @cached_property
     def film(self) -> Points:
-        """(N, 2): the film, by half its diagonal to either side."""
+        """(N, 2): outline of the film, half its diagonal to either side."""
         semi = 0.5 * float(np.hypot(*self.lens.film_mm))
         height = np.linspace(-semi, semi, 2 if np.isinf(self.lens.film_radius_of_curvature_mm) else 61)
         sag = film_sag(self.lens, height)
@@ -61,7 +62,7 @@ class Cut:
 
 
 def film_sag(lens: Lens, distance_mm: Points) -> Points:
-    """Of a film's points at a distance from its middle, beside the plane there."""
+    """Sag of the film at a distance from its centre, mm."""
     radius = lens.film_radius_of_curvature_mm
     root = np.sqrt(np.maximum(1 - (distance_mm / radius) ** 2, 0.0))
     sag: Points = distance_mm**2 / radius / (1 + root)
@@ -69,7 +70,7 @@ def film_sag(lens: Lens, distance_mm: Points) -> Points:
 
 
 def on_film(cut: Cut, points: Points, directions: Points) -> Points:
-    """(N, 3): where rays, as straight lines, meet the film; lens frame."""
+    """(N, 3): intersections of rays, as straight lines, with the film; lens frame."""
     lens = cut.lens
     is_flat = np.isinf(lens.film_radius_of_curvature_mm)
     if cut.is_in_place and is_flat:
@@ -78,7 +79,7 @@ def on_film(cut: Cut, points: Points, directions: Points) -> Points:
     frame = lens.film_frame
     local, way = (points - frame[3]) @ frame[:3].T, directions @ frame[:3].T
     at = local - (local[:, 2] / way[:, 2])[:, None] * way
-    if not is_flat:  # a sphere about a centre on its axis: the crossing that is nearer to the plane
+    if not is_flat:  # a sphere: the intersection closer to the vertex plane
         from_centre = at - [0, 0, lens.film_radius_of_curvature_mm]
         half = (from_centre * way).sum(axis=1)
         inside = half**2 - (from_centre**2).sum(axis=1) + lens.film_radius_of_curvature_mm**2

@@ -1,4 +1,4 @@
-"""A cross-section on matplotlib's axes."""
+"""Draws a cross-section on matplotlib axes."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from .themes import Theme
 
 @dataclass(frozen=True)
 class Extent:
-    """What a drawing has to show, mm."""
+    """Bounds of a drawing, mm."""
 
     z_low: float
     z_high: float
@@ -34,7 +34,7 @@ class Extent:
 
 
 def extent_of(section: CrossSection, style: Style) -> Extent:
-    """The bounds of a section, with some air around it."""
+    """Bounds of a section, with a margin."""
     points: list[Points] = [polygon for element in section.elements for polygon in element.polygons]
     points += [part for face in section.faces for part in face.parts]
     points += [line for blocker in section.blockers for line in blocker.lines]
@@ -51,16 +51,17 @@ def extent_of(section: CrossSection, style: Style) -> Extent:
         y_low = min([y_low, *(-mark.semi_diameter_mm for mark in near)])
     air = 0.04 * max(z_high - z_low, y_high - y_low)
     above = 3.2 * air if section.focus_group else air
-    below = 2.6 * air if style.marks else air  # for the principal planes' labels, and a line on what lies outside
+    below = 2.6 * air if style.marks else air  # room for labels of principal planes, and the line of marks outside
     return Extent(z_low - air, z_high + air, y_low - below, y_high + above)
 
 
 def draw_section(
     section: CrossSection, axes: Axes, style: Style, *, shift_mm: float = 0.0, ghost: CrossSection | None = None
 ) -> None:
-    """Draws a section on axes of one scale; `shift_mm` is added to z.
+    """Draws a section on axes with equal scales; `shift_mm` is added to z.
 
-    ghost: another state, as outlines where it differs. The films of both lie on each other, as in a camera.
+    ghost: another state of the lens, drawn as outlines where it differs. The films of both states coincide, as in a
+    camera.
     """
     theme = style.theme
     colours = {face.surface: _colour_of(face, style) for face in section.faces}
@@ -89,7 +90,7 @@ def draw_section(
 
 
 def prepare_axes(axes: Axes, extent: Extent, style: Style, plane: str = "yz", z_label: str = "z / mm") -> None:
-    """Limits, labels and colours."""
+    """Sets limits, labels and colours of axes."""
     theme = style.theme
     axes.set_xlim(extent.z_low, extent.z_high)
     axes.set_ylim(extent.y_low, extent.y_high)

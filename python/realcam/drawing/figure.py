@@ -1,4 +1,4 @@
-"""Figures of cross-sections: one lens, or several states in rows of one scale; with insets of the film."""
+"""Figures of cross-sections: one lens, or several states in rows at one scale; with insets of the spots."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from .style import Style, legend_of_wavelengths
 
 @dataclass(frozen=True)
 class Row:
-    """One lens in one state of its rings, with its title."""
+    """One lens at one zoom, focus and f-number, with its title."""
 
     title: str
     subtitle: str
@@ -30,10 +30,10 @@ class Row:
 def figure_of(
     rows: Sequence[Row], style: Style, *, width_px: int = 1600, insets: bool = True, align: str = "front"
 ) -> matplotlib.figure.Figure:
-    """All rows at one scale, one below the other.
+    """Returns a figure of all rows at one scale, one below the other.
 
-    width_px: of the picture as pixels; a narrow one has fewer inches, so that its text is not too small.
-    align: what lies below each other, the "front" vertices or the "film". Raises InputError.
+    width_px: width in pixels; a narrow figure has fewer inches, so that its text is not too small.
+    align: aligns the rows at the "front" vertex or the "film". Raises InputError.
     """
     if not 200 <= width_px <= 20000:
         raise InputError("the width of a drawing must be 200 to 20000 pixels")
@@ -60,7 +60,7 @@ def figure_of(
 
 
 class _Layout:
-    """Places in inches; all rows have one scale, and the same z stands above the same z."""
+    """Layout in inches; all rows have the same scale and the same z limits."""
 
     right, gap = 0.12, 0.22
     inset_title = 0.24
@@ -79,7 +79,7 @@ class _Layout:
             _shifted(extent_of(row.section, self.style), shift) for row, shift in zip(rows, self.shifts, strict=True)
         ]
         z_low, z_high = min(b.z_low for b in bounds), max(b.z_high for b in bounds)
-        # A tall lens gets less of the width, so that the figure stays no taller than it is wide.
+        # A tall lens is scaled down, so that the figure is not much taller than wide.
         tallest = max(0.95 * width / len(rows), 0.4 * width)
         self.scale = min(self.plot_width / (z_high - z_low), tallest / max(b.height for b in bounds))
         spare = 0.5 * (self.plot_width / self.scale - (z_high - z_low))
@@ -106,7 +106,7 @@ class _Layout:
         return left / self.width, bottom / self.height, width / self.width, height / self.height
 
     def inset_boxes(self, count: int, bottom: float, height: float) -> list[tuple[float, float, float, float]]:
-        """The boxes from that of the highest field down to that of the axis, as their points lie on the film."""
+        """Boxes of the insets from bottom to top, in the order of the fields' heights on the film."""
         if count == 0:
             return []
         cell = height / count
@@ -125,7 +125,7 @@ def _shifted(extent: Extent, shift: float) -> Extent:
 
 
 def _write_titles(figure: matplotlib.figure.Figure, layout: _Layout, index: int, top: float) -> None:
-    # Titles are text, and a dollar sign in one begins no formula.
+    # Titles are plain text, in which a dollar sign must not start a formula.
     row, style = layout.rows[index], layout.style
     x = 0.12 / layout.width
     y = top + layout.title_height(index) - 0.06

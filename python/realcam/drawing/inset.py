@@ -1,4 +1,4 @@
-"""The rays of one field where they meet the film, magnified."""
+"""Inset of a drawing: the rays of one field near the film, magnified."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _STEPS = (1, 2, 5)
 
 
 def shown_in_insets(section: CrossSection, most: int = 4) -> list[Field]:
-    """The fields that get a picture of their spot, by their height on the film: all, or `most` from end to end."""
+    """Fields with an inset, sorted by height on the film: all, or `most` evenly chosen ones."""
     lit = [f for f in section.fields if any(len(b.paths_mm) for b in section.bundles if b.field == f)]
     lit.sort(key=lambda field: field.film_height_mm)
     if len(lit) <= most:
@@ -28,7 +28,7 @@ def letter_of(section: CrossSection, field: Field) -> str:
 
 
 def draw_inset(axes: Axes, section: CrossSection, field: Field, style: Style, inches_per_mm: float) -> float:
-    """The rays of one field where they meet the film, magnified; returns the magnification against the drawing.
+    """Draws the rays of one field near the film; returns the magnification relative to the drawing.
 
     The magnification is the largest of 1, 2, 5, 10 ... at which the spot fills no more than two thirds of the height.
     """
@@ -45,7 +45,7 @@ def draw_inset(axes: Axes, section: CrossSection, field: Field, style: Style, in
         z_part, y_part = section.drawn(bundle.directions_at_film).T
         places = section.drawn(bundle.paths_mm)[:, -1, 1]
         for y, slope in zip(places - middle, y_part / z_part, strict=True):
-            # Cut at the frame here, because not every viewer of SVG clips.
+            # Clipped to the frame here, because not every SVG viewer clips.
             z = np.clip((np.array([-half_y, half_y]) - y) / slope, -half_z, half_z) if slope else [-half_z, half_z]
             axes.plot(z, y + slope * np.asarray(z), color=ray_colour(section, bundle, theme), linewidth=0.7)
     axes.axvline(0, color=theme.text, linewidth=1.5)
@@ -76,7 +76,7 @@ def draw_inset(axes: Axes, section: CrossSection, field: Field, style: Style, in
 
 
 def _rounded_down(value: float) -> float:
-    """To 1, 2 or 5 times a power of ten."""
+    """Rounds down to 1, 2 or 5 times a power of ten."""
     power = math.floor(math.log10(value))
     return float(max(step for step in _STEPS if step * 10.0**power <= value * (1 + 1e-12)) * 10.0**power)
 

@@ -1,4 +1,4 @@
-"""Where pupils, principal planes and focal points lie, and how the focusing group moves."""
+"""Pupils, principal planes and focal points, and the travel of the focus group."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ class Mark:
     """A paraxial plane or point on the axis."""
 
     kind: str  #: "pupil", "principal plane" or "focal point"
-    label: str  #: EP, XP (entrance and exit pupil); H, H', F, F' (on the object's side and on the film's)
+    label: str  #: EP, XP (entrance and exit pupil); H, H', F, F' (object and image side)
     z_mm: float  #: lens frame
-    semi_diameter_mm: float  #: of a pupil; 0 for the others
+    semi_diameter_mm: float  #: of a pupil; 0 for other kinds
 
 
 @dataclass(frozen=True)
@@ -24,12 +24,12 @@ class FocusGroup:
 
     first: int
     last: int
-    travel_mm: float | None  #: from infinity to the nearest focus, positive towards the film; None: not known
+    travel_mm: float | None  #: from infinity to the nearest focus, positive towards the film; None: unknown
     nearest_focus_m: float
 
 
 def marks_of(lens: Lens) -> tuple[Mark, ...]:
-    """At the design wavelength. What lies at infinity is left out."""
+    """Returns the marks of a lens at the design wavelength, without those at infinity."""
     data = lens.first_order()
     focal_length = data.effective_focal_length_mm
     rear = lens.vertices_mm[-1] + data.back_focal_distance_mm
@@ -46,7 +46,7 @@ def marks_of(lens: Lens) -> tuple[Mark, ...]:
 
 
 def focus_group_of(lens: Lens) -> FocusGroup | None:
-    """None where the whole lens moves."""
+    """Returns the focus group; None if the whole lens moves."""
     if lens.focus_group is None:
         return None
     first, last = lens.focus_group
@@ -58,7 +58,7 @@ def _travel(lens: Lens, first: int) -> float | None:
         return None
     try:
         far, near = lens.focused(math.inf), lens.focused(lens.nearest_focus_m)
-    except InputError:  # a lens that reaches one of the two only, or neither
+    except InputError:  # the lens cannot be focused at one of the two distances
         return None
     from_film = [state.vertices_mm[first] - state.film_position_mm for state in (far, near)]
     return from_film[1] - from_film[0]

@@ -1,4 +1,4 @@
-"""What is written into a section: pupils and planes, the group that focuses, faces that cross."""
+"""Annotations of a section: pupils and planes, focus group, overlapping faces."""
 
 from __future__ import annotations
 
@@ -39,9 +39,8 @@ def draw_marks(section: CrossSection, axes: Axes, style: Style, shift: float) ->
 
 
 def _sides(axes: Axes, style: Style, places: list[tuple[float, float, int]]) -> list[str]:
-    """How labels stand over their places: of two that would lie on each other, one to the left, the other to the
-    right."""
-    axes.apply_aspect()  # which moves the axes' limits
+    """Horizontal alignment of labels: of two that would overlap, one goes to the left and the other to the right."""
+    axes.apply_aspect()  # changes the axes' limits, on which the positions depend
     figure = axes.get_figure()
     assert figure is not None
     points = 72 / figure.dpi * axes.transData.transform(np.array([place[:2] for place in places]).reshape(-1, 2))
@@ -70,7 +69,7 @@ def draw_focus_group(section: CrossSection, axes: Axes, style: Style, shift: flo
         return
     points = np.concatenate(inside)
     z_low, z_high = points[:, 0].min() + shift, points[:, 0].max() + shift
-    # Above everything, so that no glass and no pupil stands behind the words.
+    # Above all faces and pupils, so that nothing lies behind the text.
     tops = [float(face.parts[-1][:, 1].max()) for face in section.faces]
     tallest = max(tops + [mark.semi_diameter_mm for mark in section.marks if style.marks])
     base = 1.04 * tallest + (0.12 * tallest if style.marks else 0)

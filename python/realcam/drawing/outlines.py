@@ -1,4 +1,4 @@
-"""The solid parts of a lens in its meridional plane: faces, elements, stops. Points are (z, y) in mm, lens frame."""
+"""Outlines of a lens in its meridional plane: faces, elements, stops. Points are (z, y) in mm, lens frame."""
 
 from __future__ import annotations
 
@@ -13,60 +13,60 @@ from .._core import Lens, Surface
 from ..short_text import ShortText
 from .cut import Cut, Points
 
-_HALF_PROFILE = 40  # points from the axis to the rim, denser towards it, where a steep face turns most
+_HALF_PROFILE = 40  # intervals from the axis to the rim, denser towards the rim, where a steep face curves most
 
 
 @dataclass(frozen=True, repr=False)
 class Face(ShortText):
-    """A refracting or reflecting face, from its lower rim to its upper one; with a hole, in two parts."""
+    """Refracting or reflecting face, from lower to upper rim; in two parts if it has a hole."""
 
     surface: int  #: index in Lens.surfaces
     is_mirror: bool
     is_asphere: bool
-    radius_sign: int  #: of the radius of curvature: 1 where its centre lies on the film's side, -1, 0 for a plane
+    radius_sign: int  #: of the radius of curvature: 1 if its centre lies on the film's side, else -1; 0 for a plane
     parts: tuple[Points, ...]
 
 
 @dataclass(frozen=True, repr=False)
 class Element(ShortText):
-    """One piece of glass between two faces; with a hole, in two parts. Cemented elements share the points of a face."""
+    """Glass between two faces; in two parts if it has a hole. Cemented elements share the points of a face."""
 
-    front: int  #: index of the surface that light meets first
+    front: int  #: index of the surface that light hits first
     back: int
-    polygons: tuple[Points, ...]  #: closed; the first point is not repeated
+    polygons: tuple[Points, ...]  #: closed polygons; the first point is not repeated
 
 
 @dataclass(frozen=True, repr=False)
 class Blocker(ShortText):
-    """What a stop or an aperture keeps from passing, as lines from `inner` to `outer` distances from the axis."""
+    """Opaque parts of a stop, an aperture or a face with a central obstruction, as line segments."""
 
     surface: int
     is_stop: bool
     z_mm: float
-    opening_mm: float  #: semi-diameter that is open
-    outer_mm: float  #: to where the line around the opening is drawn
-    obstruction_mm: float  #: semi-diameter that is blocked in the middle; 0: none
-    lines: tuple[Points, ...]  #: (2, 2) each: around the opening, and the obstruction
+    opening_mm: float  #: semi-diameter of the opening
+    outer_mm: float  #: distance from the axis at which the lines around the opening end
+    obstruction_mm: float  #: semi-diameter of the central obstruction; 0: no obstruction
+    lines: tuple[Points, ...]  #: (2, 2) each: two around the opening, if any, then the obstruction, if any
 
 
 @dataclass(frozen=True, repr=False)
 class Crossing(ShortText):
-    """Two faces that reach into each other: nobody can make such a lens."""
+    """Overlap of two faces, which makes the lens impossible to manufacture."""
 
     first: int
     second: int
     depth_mm: float
-    radius_mm: float  #: from the axis, where they are farthest into each other
-    zones: tuple[Points, ...]  #: polygons of the places that both claim, above and below the axis
+    radius_mm: float  #: distance from the axis of the deepest overlap
+    zones: tuple[Points, ...]  #: polygons of the overlap, above and below the axis
 
 
 def is_glass(lens: Lens, surface: int) -> bool:
-    """Whether anything but air lies behind a refracting surface."""
+    """True if the medium behind a refracting surface is not air."""
     return lens.surfaces[surface].material.index(lens.wavelength_nm) != 1
 
 
 def faces_of(cut: Cut) -> tuple[Face, ...]:
-    """All faces that bend light, in the order of the light."""
+    """Refracting and reflecting faces, in the order of the light."""
     holes = _holes(cut.lens)
     return tuple(
         Face(
@@ -82,14 +82,14 @@ def faces_of(cut: Cut) -> tuple[Face, ...]:
 
 
 def _curvature(cut: Cut, surface: int) -> float:
-    """At the vertex, in the plane of the drawing."""
+    """Curvature at the vertex, in the plane of the drawing."""
     shape = cut.lens.surfaces[surface]
     is_x = cut.axis == 0 and shape.form is not None
     return 1 / shape.radius_of_curvature_x_mm if is_x else shape.curvature_per_mm
 
 
 def elements_of(cut: Cut) -> tuple[Element, ...]:
-    """The pieces of glass. Glass that light passes twice, before and behind a mirror, is one piece."""
+    """Glass elements. Glass that light passes twice, before and after a mirror, is one element."""
     lens = cut.lens
     elements: dict[frozenset[tuple[float, float]], Element] = {}
     for i, j, direction in _glass(lens):
@@ -100,7 +100,7 @@ def elements_of(cut: Cut) -> tuple[Element, ...]:
 
 
 def blockers_of(cut: Cut) -> tuple[Blocker, ...]:
-    """Stop and apertures. Lines around an opening end a little beyond the rim of the surface."""
+    """Stop, apertures and central obstructions. Lines around an opening end slightly beyond the rim of the surface."""
     lens = cut.lens
     largest = max(surface.clear_semi_diameter_mm for surface in lens.surfaces)
     holes = _holes(lens)
@@ -125,7 +125,7 @@ def blockers_of(cut: Cut) -> tuple[Blocker, ...]:
 
 
 def crossings_of(lens: Lens) -> tuple[Crossing, ...]:
-    """Faces that cross inside their rims, which only a lens made with allow_crossing has."""
+    """Faces that overlap inside their rims, which is possible only with allow_crossing."""
     return tuple(
         Crossing(first, second, depth, radius, _zones(lens, first, second, radius))
         for first, second, depth, radius in lens.crossings()
@@ -137,7 +137,8 @@ def _bends(surface: Surface) -> bool:
 
 
 def _glass(lens: Lens) -> Iterator[tuple[int, int, int]]:
-    """Faces with glass between them, in the order of the light, and the direction of the light along z."""
+    """Yields pairs of faces with glass between them, in the order of the light, and the direction of the light along
+    z."""
     bending = [i for i, surface in enumerate(lens.surfaces) if _bends(surface)]
     in_glass, direction = False, 1
     for i, j in itertools.pairwise(bending):
@@ -150,13 +151,14 @@ def _glass(lens: Lens) -> Iterator[tuple[int, int, int]]:
 
 
 def _hole_between(front: Surface, back: Surface) -> float:
-    """Glass is bored where both its faces are: a face that alone is blocked in the middle has something on it."""
+    """Semi-diameter of the hole in an element, which needs an obstruction on both faces; on one face alone it is an
+    opaque spot, not a hole."""
     hole = min(front.inner_semi_diameter_mm, back.inner_semi_diameter_mm)
     return hole if hole < min(front.clear_semi_diameter_mm, back.clear_semi_diameter_mm) else 0.0
 
 
 def _holes(lens: Lens) -> list[float]:
-    """The semi-diameter of the hole in each face."""
+    """Semi-diameters of the holes in the faces; 0: no hole."""
     holes = [surface.inner_semi_diameter_mm if surface.type == "mirror" else 0.0 for surface in lens.surfaces]
     for i, j, _ in _glass(lens):
         hole = _hole_between(lens.surfaces[i], lens.surfaces[j])
@@ -165,7 +167,7 @@ def _holes(lens: Lens) -> list[float]:
 
 
 def _half(cut: Cut, surface: int, hole: float, side: int = 1) -> Points:
-    """The outline from the hole, or the axis, to the upper rim, or the lower one."""
+    """Outline from the hole, or the axis, to the rim on one side. side: 1: upper, -1: lower."""
     rim = cut.lens.surfaces[surface].clear_semi_diameter_mm
     angle = np.linspace(math.asin(min(hole / rim, 1)), 0.5 * math.pi, _HALF_PROFILE + 1)
     y = rim * np.sin(angle)
@@ -194,10 +196,11 @@ def _polygons(cut: Cut, front: int, back: int, direction: int, hole: float) -> t
 
 
 def _edge(cut: Cut, front: int, back: int, direction: int, side: int) -> Points:
-    """The corner between the two rims on one side, (0 or 1, 2): the smaller face is carried on flat to the larger rim.
+    """Corner of the edge between two rims on one side, (0 or 1, 2): the smaller face is extended flat to the larger
+    rim.
 
-    Where the larger face is in the way of that flat, because the smaller one is sunk into the glass, the edge goes
-    straight from rim to rim instead; so it does where the two do not stand upright on one axis.
+    There is no corner, and the edge is straight from rim to rim, if the flat would intersect the larger face, or if
+    surfaces are tilted or decentred.
     """
     rims = [cut.lens.surfaces[i].clear_semi_diameter_mm for i in (front, back)]
     if rims[0] == rims[1] or not cut.is_in_place:
@@ -219,7 +222,7 @@ def _zones(lens: Lens, first: int, second: int, radius: float) -> tuple[Points, 
     reach = max(rims) if radius > min(rims) else min(rims)
     direction = (-1) ** sum(surface.type == "mirror" for surface in lens.surfaces[: first + 1])
     y = np.union1d(np.linspace(0, reach, 401), [radius])
-    # Beyond its own rim a face is edged flat.
+    # Beyond its rim a face continues flat.
     z1, z2 = (
         lens.vertices_mm[i] + np.array([s.sag_mm(min(v, s.clear_semi_diameter_mm)) for v in y])
         for i, s in ((first, a), (second, b))

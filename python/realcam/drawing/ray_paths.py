@@ -1,4 +1,4 @@
-"""Rays through a lens, with all the points that a drawing joins."""
+"""Ray paths through a lens, with all points needed for a drawing."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ _FAN = np.linspace(-1, 1, 401)
 
 @dataclass(frozen=True, repr=False)
 class RayBundle(ShortText):
-    """Rays of one place in the field and one wavelength, in the meridional plane. Lens frame."""
+    """Rays of one field point and one wavelength, in the meridional plane. Lens frame."""
 
     field: Field
     wavelength_nm: float
-    paths_mm: Array  #: (rays, surfaces + 2, 3): before the lens, on each surface, on the film
+    paths_mm: Array  #: (rays, surfaces + 2, 3): points before the lens, on each surface, on the film
     directions_at_film: Array  #: (rays, 3), unit
 
 
@@ -37,10 +37,10 @@ def bundles_from_object(
     reach_mm: float,
     object_distance_m: float | None = None,
 ) -> tuple[RayBundle, ...]:
-    """Bundles of light from the object, `count` rays each, evenly over what the lens lets pass.
+    """Returns bundles from object points, `count` rays each, evenly spread over the rays that pass the lens.
 
-    Paths begin on one plane across the light of each bundle, `reach_mm` before its first surface, or at the object if
-    that is nearer. Raises InputError.
+    Paths begin on a plane perpendicular to the bundle, `reach_mm` before the first surface, or at the object if it is
+    closer. Raises InputError.
     """
     lens, bundles = cut.lens, []
     for wavelength in wavelengths_nm:
@@ -57,7 +57,7 @@ def bundles_from_object(
 def bundles_from_film(
     lens: Lens, fields: Sequence[Field], wavelengths_nm: Sequence[float], count: int, reach_mm: float
 ) -> tuple[RayBundle, ...]:
-    """The rays that points of the film send through the lens backwards, `count` each; paths begin before the lens."""
+    """Returns bundles of rays traced backwards from film points, `count` each; paths begin before the lens."""
     bundles = []
     for wavelength in wavelengths_nm:
         for field in fields:
@@ -72,7 +72,8 @@ def bundles_from_film(
 
 
 def _spread(passing: int, count: int) -> NDArray[np.intp]:
-    """Which `count` of those that pass are drawn: evenly from the first to the last; of one, the middle."""
+    """Indices of the `count` passing rays that are drawn: evenly from first to last; the middle one for a count of
+    1."""
     if passing == 0:
         return np.empty(0, np.intp)
     if count == 1:
@@ -96,7 +97,7 @@ def _aimed(
 
 
 def _points(lens: Lens, origins: Array, directions: Array, wavelength_nm: float, start: str) -> tuple[Array, Array]:
-    """Where rays that pass meet each surface, (rays, surfaces, 3), and their directions behind the last one."""
+    """Returns the points of rays on each surface, (rays, surfaces, 3), and their directions after the last one."""
     points, out = [], directions
     for surfaces in range(1, len(lens.surfaces) + 1):
         traced = lens.trace(origins, directions, start=start, surface_count=surfaces, wavelength_nm=wavelength_nm)
@@ -106,7 +107,7 @@ def _points(lens: Lens, origins: Array, directions: Array, wavelength_nm: float,
 
 
 def _start(lens: Lens, first: Array, directions: Array, reach_mm: float, object_distance_m: float | None) -> Array:
-    """Where the paths begin, on the straight lines before the first surface."""
+    """Start points of the paths, on the rays before the first surface."""
     if not len(first):
         return first
     middle = directions[len(directions) // 2]
@@ -131,12 +132,12 @@ def _film_rays(lens: Lens, height_mm: float, angle: Array) -> tuple[Array, Array
 
 
 def _passing_angles(lens: Lens, height_mm: float, wavelength_nm: float, count: int = 2001) -> Array:
-    """Angles in the meridional plane under which rays from a film point leave the lens."""
+    """Angles in the meridional plane at which rays from a film point pass the lens."""
     last = lens.surfaces[-1].clear_semi_diameter_mm
     ends = np.arctan2(np.array([-last, last]) * 1.05 - height_mm, lens.film_distance_mm)
     angle = np.linspace(ends[0], ends[1], count)
-    # A closed diaphragm may lie between two of these rays: the next ones go between the two beside its middle, until
-    # there are enough that pass.
+    # A small stop may fall between two of these rays: refines between the two that enclose its centre, until enough
+    # rays pass.
     for _ in range(4):
         out = lens.trace(*_film_rays(lens, height_mm, angle), start="film", wavelength_nm=wavelength_nm)
         passing: Array = angle[out.status == RayStatus.OK]
@@ -151,7 +152,7 @@ def _passing_angles(lens: Lens, height_mm: float, wavelength_nm: float, count: i
 
 
 def _beside_the_middle_of_the_stop(lens: Lens, height_mm: float, angle: Array, wavelength_nm: float) -> Array:
-    """If all rays miss the stop's opening, the two between which its middle lies. Empty where there are none."""
+    """Angles of the two neighbouring rays that enclose the stop's centre. Empty if no two do."""
     behind = len(lens.surfaces) - lens.stop_index
     origins, directions = _film_rays(lens, height_mm, angle)
     out = lens.trace(origins, directions, start="film", surface_count=behind, wavelength_nm=wavelength_nm)

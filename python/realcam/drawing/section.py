@@ -1,4 +1,4 @@
-"""The meridional section of a lens as arrays: what a drawing shows."""
+"""Meridional section of a lens as arrays."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ from .ray_paths import RayBundle, bundles_from_film, bundles_from_object
 
 @dataclass(frozen=True, repr=False)
 class CrossSection(ShortText):
-    """A lens cut along its axis. Outlines are (N, 2) arrays of (z, y), of plane "xz" of (z, x); paths (N, 3) of
-    (x, y, z); mm, lens frame."""
+    """A lens cut along its axis. Outlines are (N, 2) arrays of (z, y), or (z, x) for the plane "xz"; paths are (N, 3)
+    arrays of (x, y, z). All in mm, lens frame."""
 
     lens: Lens
     elements: tuple[Element, ...]
@@ -35,20 +35,21 @@ class CrossSection(ShortText):
     bundles: tuple[RayBundle, ...]  #: by wavelength, then by field
 
     def drawn_paths(self, bundle: RayBundle) -> Points:
-        """(rays, points, 2): the paths of a bundle as the drawing has them. Where surfaces are moved, without what only
-        blocks: such a plane may stand in a mirror, so that a path would come to it on its way back."""
+        """(rays, points, 2): paths of a bundle, projected onto the drawing's plane. For a lens with tilted or decentred
+        surfaces, stops and apertures are omitted: such a plane may lie at a mirror, where the path would turn back to
+        it."""
         if Cut(self.lens).is_in_place:
             return self.drawn(bundle.paths_mm)
         bending = [1 + i for i, surface in enumerate(self.lens.surfaces) if surface.type in ("refracting", "mirror")]
         return self.drawn(bundle.paths_mm[:, [0, *bending, -1]])
 
     def drawn(self, paths_mm: Points) -> Points:
-        """(..., 2): points of the lens frame, (..., 3), as the drawing has them."""
+        """(..., 2): points (..., 3) of the lens frame, projected onto the drawing's plane."""
         return paths_mm[..., [2, PLANES[self.plane]]]
 
     @property
     def wavelengths_nm(self) -> tuple[float, ...]:
-        """In the order in which they were asked for."""
+        """Wavelengths of the bundles, in the order of the request."""
         return tuple(dict.fromkeys(bundle.wavelength_nm for bundle in self.bundles))
 
 
@@ -63,18 +64,19 @@ def cross_section(
     wavelengths_nm: Sequence[float] | None = None,
     object_distance_m: float | None = None,
 ) -> CrossSection:
-    """The section of a lens in the plane x = 0, with its rays; or in the plane y = 0.
+    """Returns the section of a lens with its rays, in the plane x = 0 or y = 0.
 
-    plane: "yz", or "xz", in which lenses that are not of revolution are others.
-    rays: how many of each bundle; 0 for none.
-    rays_from: "object", bundles of an object point each, so that the lens's aberrations show at the film; or "film",
-      the rays that film points send through the lens, as the camera samples them.
-    fields: shares of the height of the film's corner, or, if the film is larger than the image, of the
-      largest height that at least a quarter as many rays reach as the axis.
-    fields_deg: field angles instead, as Lens.spot takes them; only from the object.
-    wavelengths_nm: None is the design wavelength alone.
-    object_distance_m: object plane to front vertex, inf allowed; None is the plane in focus.
-    Raises InputError where no light passes the lens, or what is asked makes no sense.
+    plane: "yz", or "xz", which differs only for lenses without rotational symmetry.
+    rays: number of rays per bundle; 0: no rays.
+    rays_from: "object": each bundle comes from an object point, so that aberrations show at the film; or "film": rays
+      traced backwards from film points, as the camera samples them.
+    fields: fractions of the height of the film's corner, or, if the film is larger than the image circle, of the
+    largest
+      height that receives at least a quarter as many rays as the axis.
+    fields_deg: field angles instead, as in Lens.spot; only with rays from the object.
+    wavelengths_nm: None: the design wavelength.
+    object_distance_m: from object plane to front vertex, inf allowed; None: the plane in focus.
+    Raises InputError if no light passes the lens, or the arguments are invalid or contradictory.
     """
     cut = Cut(lens, plane)
     if rays_from not in ("object", "film"):

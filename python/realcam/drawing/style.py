@@ -1,4 +1,4 @@
-"""How sections are drawn, and what their colours mean."""
+"""Style of drawings, and the meaning of their colours."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from .themes import LIGHT, Theme, colours_of_wavelengths
 
 @dataclass(frozen=True)
 class Style:
-    """How a section is drawn."""
+    """Options of a drawing."""
 
     theme: Theme = LIGHT
     radius_colours: bool = False  #: faces by the sign of their radius: positive blue, negative red
@@ -24,7 +24,7 @@ class Style:
 
 
 def ray_colour(section: CrossSection, bundle: RayBundle, theme: Theme) -> str:
-    """By wavelength where there are several, else by field."""
+    """Colour of a bundle: by wavelength if there are several, otherwise by field."""
     wavelengths = section.wavelengths_nm
     if len(wavelengths) > 1:
         return colours_of_wavelengths(wavelengths, theme)[wavelengths.index(bundle.wavelength_nm)]
@@ -32,7 +32,7 @@ def ray_colour(section: CrossSection, bundle: RayBundle, theme: Theme) -> str:
 
 
 def legend_of_wavelengths(section: CrossSection, theme: Theme) -> Sequence[tuple[str, str]]:
-    """Text and colour for each wavelength, where there are several."""
+    """Text and colour for each wavelength; empty for a single one."""
     wavelengths = section.wavelengths_nm
     if len(wavelengths) < 2:
         return ()
@@ -41,7 +41,7 @@ def legend_of_wavelengths(section: CrossSection, theme: Theme) -> Sequence[tuple
 
 
 def data_of(lens: Lens, section: CrossSection) -> str:
-    """Focal length, f-number and focus, as the line below the title of a drawing has them."""
+    """Subtitle of a drawing: focal length, f-number and focus."""
     data = lens.first_order()
     words = [f"f = {number_text(data.effective_focal_length_mm)} mm"]
     if math.isfinite(lens.f_number):

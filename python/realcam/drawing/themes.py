@@ -1,4 +1,4 @@
-"""Colours of drawings, on light and on dark pages."""
+"""Colour themes of drawings, for light and dark pages."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from .._core import InputError
 
 @dataclass(frozen=True)
 class Theme:
-    """Colours as matplotlib takes them. None of the rays' is one of those that tell the sign of a radius."""
+    """Colours in matplotlib's format. Ray colours differ from the colours of the sign of a radius."""
 
     page: str
     text: str
-    faint: str  #: lines that should not catch the eye
+    faint: str  #: inconspicuous lines
     grid: str
     glass: str
     edge: str
@@ -56,14 +56,14 @@ THEMES = {"light": LIGHT, "dark": DARK}
 
 
 def theme_named(name: str) -> Theme:
-    """Raises InputError."""
+    """Returns the theme of a name. Raises InputError if it is unknown."""
     if name not in THEMES:
         raise InputError(f'theme "{name:.40}" is unknown; {" or ".join(THEMES)} is wanted')
     return THEMES[name]
 
 
 def colours_of_wavelengths(wavelengths_nm: Sequence[float], theme: Theme) -> list[str]:
-    """Near to what the eye sees, violet to red, as long as that tells them apart; else one after another."""
+    """Ray colours for wavelengths: close to their visual colours if these are all distinct, otherwise in sequence."""
     bands = (440, 490, 570, 600)  # nm, between violet, cyan, green, orange and pink
     order = (2, 3, 1, 0, 5)
     seen = [theme.rays[order[bisect.bisect(bands, wavelength)]] for wavelength in wavelengths_nm]

@@ -1,4 +1,4 @@
-"""Figures of matplotlib within pages of HTML, which are light or dark as their readers want."""
+"""Matplotlib figures in HTML pages with light and dark themes."""
 
 from __future__ import annotations
 
@@ -12,8 +12,7 @@ from .themes import LIGHT, THEMES, Theme
 
 
 def inline_svg(figure: Figure, salt: str, crop: Bbox | None = None) -> str:
-    """An <svg> in which the colours of the light theme are variables of the page. salt, crop: as figure_bytes has
-    them."""
+    """Returns an <svg> element in which the light theme's colours are CSS variables. salt, crop: as in figure_bytes."""
     text = figure_bytes(figure, ".svg", dpi=130, salt=f"realcam-{salt}", crop=crop).decode()
     text = text[text.index("<svg") :]
     for name, colour in _colours(LIGHT).items():
@@ -22,7 +21,7 @@ def inline_svg(figure: Figure, salt: str, crop: Bbox | None = None) -> str:
 
 
 def page_top(title: str, style: str, theme: str | None) -> str:
-    """The beginning of a page, up to its heading. title: escaped. style: CSS, which may use the colours' variables."""
+    """Returns the start of a page, up to its heading. title: HTML-escaped. style: CSS, which may use the variables."""
     return f"""<!doctype html>
 <html lang="en">
 <meta charset="utf-8">
@@ -34,11 +33,11 @@ def page_top(title: str, style: str, theme: str | None) -> str:
 
 
 def colour_variables(theme: str | None) -> str:
-    """CSS that gives the variables their values, and paper the light ones. theme: None follows the browser."""
+    """Returns CSS that sets the colour variables; print uses the light theme. theme: None follows the browser."""
     light, dark = (_declared(name) for name in ("light", "dark"))
     screen = light if theme is None else _declared(theme)
     following = f"@media (prefers-color-scheme: dark) {{ {dark} }}\n" if theme is None else ""
-    # Text that stays in the background, but can still be read.
+    # Colour of secondary text.
     quiet = ":root { --quiet: color-mix(in srgb, var(--text) 70%, var(--page)); }"
     return f"{screen}\n{following}@media print {{ {light} }}\n{quiet}"
 
@@ -49,6 +48,6 @@ def _declared(theme: str) -> str:
 
 
 def _colours(theme: Theme) -> dict[str, str]:
-    """By the names of the page's variables."""
+    """Colours by the names of their CSS variables."""
     single = {field.name: getattr(theme, field.name) for field in fields(theme) if field.name != "rays"}
     return {**single, **{f"ray-{number}": colour for number, colour in enumerate(theme.rays)}}

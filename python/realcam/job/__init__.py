@@ -1,4 +1,4 @@
-"""Pictures on many machines: Job."""
+"""Rendering on many machines: Job."""
 
 from .job import Job as Job
 from .status import JobStatus as JobStatus

@@ -1,4 +1,4 @@
-"""Executors of Dask, whose scheduler runs on this machine or elsewhere."""
+"""Dask executors, with a scheduler on this machine or elsewhere."""
 
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ _ANSWERS_WITHIN_S = 20
 def dask_executor(*, workers: int, scheduler: str | None = None) -> Iterator[concurrent.futures.Executor]:
     """An executor whose processes each take one unit at a time.
 
-    scheduler: the address of a running one, "tcp://head:8786" or a scheduler file, .json, whose workers are used; None:
-    `workers` processes of this machine. Raises InputError if Dask is missing or no scheduler answers.
+    scheduler: address of a running scheduler, "tcp://head:8786" or a scheduler file (.json), whose workers are used;
+    None: `workers` processes of this machine. Raises InputError if Dask is missing or no scheduler answers.
     """
     distributed = imported("distributed", "cluster")
     with ExitStack() as stack:
@@ -29,7 +29,7 @@ def dask_executor(*, workers: int, scheduler: str | None = None) -> Iterator[con
         logging.getLogger("distributed").setLevel(logging.CRITICAL)
         try:
             if scheduler is not None and scheduler.endswith(".json"):
-                Path(scheduler).stat()  # for which Dask would wait
+                Path(scheduler).stat()  # fails at once if the file is missing; Dask would wait for it
                 source: Any = {"scheduler_file": scheduler}
             elif scheduler is not None:
                 source = {"address": scheduler}
@@ -38,7 +38,7 @@ def dask_executor(*, workers: int, scheduler: str | None = None) -> Iterator[con
                     n_workers=workers,
                     threads_per_worker=1,
                     processes=True,
-                    memory_limit=0,  # scenes are large, and a worker that is ended for it comes again and again
+                    memory_limit=0,  # scenes are large, and Dask would kill and restart workers over and over
                     dashboard_address=None,
                     silence_logs=logging.CRITICAL,
                 )

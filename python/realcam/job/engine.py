@@ -1,4 +1,4 @@
-"""What computes a job's samples: machines whose engines differ would not find the same bits."""
+"""Identity of the compute engine of a job: machines with different engines would not produce the same bits."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from dataclasses import dataclass
 from .._core import InputError, __version__
 from ..session import Session
 
-# The kernels of these sets do the same arithmetic, with fused multiply-add; those of v2 have none.
+# The kernels of these instruction sets do the same arithmetic, with fused multiply-add; those of v2 have none.
 _ALIKE = frozenset({"v3", "v4"})
 
 
 @dataclass(frozen=True)
 class Engine:
-    """The version of realcam, and what it computes with: "CPU" or the GPU's name, Embree, the instruction set."""
+    """Version of realcam and its hardware: "CPU" or the GPU's name, Embree version, instruction set."""
 
     realcam: str
     device: str
@@ -32,7 +32,7 @@ class Engine:
         if not found:
             # One GPU of several computes the samples of a part.
             return cls(__version__, name.removeprefix("GPU (").removesuffix(")").partition(" + ")[0])
-        # A machine without v4 can work for one that has it.
+        # A machine with only v3 computes the same bits as one with v4.
         instruction_set = "v3" if found[2] in _ALIKE else found[2]
         return cls(__version__, "CPU", found[1], instruction_set)
 
@@ -45,7 +45,7 @@ class Engine:
         return f"realcam {self.realcam} on {self.device}{cpu}"
 
     def check_version(self, folder: str) -> None:
-        """Raises InputError where this is another version of realcam."""
+        """Raises InputError if the running version of realcam differs."""
         if self.realcam != __version__:
             raise InputError(
                 f"{folder}: realcam {self.realcam} made this job, and this is realcam {__version__}; all machines of a "
@@ -54,9 +54,9 @@ class Engine:
 
     @contextmanager
     def pinned(self) -> Iterator[None]:
-        """A session that is made here computes with v2 where the job wants that.
+        """Context in which a new session computes with v2 if the job requires it.
 
-        Of no effect where this process has computed something already; `check` tells then.
+        Has no effect if this process has already computed something; `check` then reports the difference.
         """
         name = "REALCAM_INSTRUCTION_SET"
         if self.instruction_set != "v2" or name in os.environ:
@@ -69,14 +69,14 @@ class Engine:
             del os.environ[name]
 
     def check(self, session: Session, folder: str) -> None:
-        """Raises InputError where this process computes with another engine."""
+        """Raises InputError if this process computes with another engine."""
         here = Engine.of(session)
         if here != self:
             raise InputError(f"{folder}: the job wants {self}, and here is {here}; their samples would differ")
 
 
 def probe_of(session: Session) -> str:
-    """A hash of some samples of a session's picture. Other bits here are other bits in all of the picture."""
+    """Returns a hash of some samples of a session's picture, to detect machines that produce different bits."""
     width, height = session.camera.film.resolution
     columns, rows = min(16, width), min(16, height)
     digest = hashlib.sha256()

@@ -1,4 +1,4 @@
-"""Files for render farms that run command lines: arrays of Slurm and PBS, and a template of Open Job Description."""
+"""Files for render farms: job-array scripts for Slurm and PBS, and an Open Job Description template."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from pathlib import Path
 
 from .._core import InputError
 
-# Directives of an array's script; {name} and {tasks} are filled in.
+# Directives of the script with {name} and {tasks}, variable of the task's index, and variable of its number of cores.
 _ARRAYS = {
     "slurm": (
         "#SBATCH --job-name={name}\n#SBATCH --array=1-{tasks}\n#SBATCH --ntasks=1\n#SBATCH --requeue",
@@ -21,9 +21,9 @@ _ARRAYS = {
 
 
 def array_script(batch_system: str, folder: Path, tasks: int) -> str:
-    """A script for Slurm's `sbatch` or the `qsub` of PBS: an array of tasks, each with its part."""
+    """Returns a script for Slurm's `sbatch` or PBS's `qsub`: an array of tasks, each with its part of the job."""
     directives, task, threads = _ARRAYS[batch_system]
-    # A directive is a comment of bash, which ends with its line whatever is quoted in it.
+    # A directive is a bash comment, so it ends at the end of the line regardless of quotes.
     return f"""#!/bin/bash
 {directives.format(name=_job_name(folder), tasks=tasks)}
 # Cores, memory, GPUs and the queue are those of the command line, or the cluster's defaults.
@@ -32,9 +32,9 @@ exec realcam job work --quiet --part "{task}/{tasks}" --threads "{threads}" {shl
 
 
 def openjd_template(folder: Path, tasks: int) -> str:
-    """A job template of Open Job Description 2023-09 as JSON: work, then finish.
+    """Returns a job template of Open Job Description 2023-09 as JSON, with the steps work and finish.
 
-    Raises InputError for a path that the format cannot hold: it has no escape for the brackets of its expressions.
+    Raises InputError for a path that the format cannot express: it has no escape for the braces of its expressions.
     """
     path = str(folder.absolute())
     if "{{" in path or "}}" in path or not path.isprintable():
@@ -81,5 +81,5 @@ def openjd_template(folder: Path, tasks: int) -> str:
 
 
 def _job_name(folder: Path) -> str:
-    """A name without characters that shells, Slurm or Open Job Description give a meaning."""
+    """Job name without characters that are special to shells, Slurm or Open Job Description."""
     return "realcam-" + re.sub(r"[^A-Za-z0-9._-]+", "_", folder.name)[:80]

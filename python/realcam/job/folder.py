@@ -32,15 +32,15 @@ T = TypeVar("T")
 
 
 class DamagedFileError(InputError):
-    """A file that a job has written is damaged or missing. It is removed, and its samples are taken again."""
+    """A file written by the job is damaged or missing. The file is removed, and its samples are taken again."""
 
 
 @dataclass(frozen=True)
 class JobFolder:
     """The content of job.json, which is written last: a folder that has it is complete.
 
-    id: random, repeated in each file of samples. device: of all processes, "cpu" or "cuda". probes: for each scene's
-    digest, a hash of some samples.
+    id: random, repeated in each file of samples. device: device of all processes, "cpu" or "cuda". probes: for each
+    scene's digest, a hash of some samples.
     """
 
     path: Path
@@ -82,7 +82,7 @@ class JobFolder:
 
     @classmethod
     def new(cls, path: Path, *of: Any) -> JobFolder:
-        """The remaining fields follow the id. Raises ImageFileError."""
+        """Writes job.json. of: values of the fields after the id. Raises ImageFileError."""
         folder = cls(path, secrets.token_hex(32), *of)
         about = {"format": FORMAT, **{key: value for key, value in asdict(folder).items() if key != "path"}}
         write_whole(path / JOB_FILE, json.dumps(about, indent=1).encode() + b"\n", is_durable=True)
@@ -105,8 +105,8 @@ class JobFolder:
             return False
 
     def done(self, shot: int) -> tuple[dict[str, float], list[str]]:
-        """Units of a shot that are there, with the time at which they were written, and names of files that are cut
-        short or belong to another job. Bytes within a file are checked by `read`."""
+        """Returns the finished units of a shot with the times at which they were written, and the names of files that
+        are truncated or belong to another job. `read` checks the content of a file."""
         here, done, damaged = self.directory("units", f"{shot:05d}"), dict[str, float](), list[str]()
         if here.is_dir():
             with os.scandir(here) as entries:
@@ -145,7 +145,7 @@ class JobFolder:
         (self.directory("units", shot) / name).unlink(missing_ok=True)
 
     def rounds(self, shot: int) -> tuple[list[Round], bool]:
-        """The known rounds, and whether they are all."""
+        """Returns the known rounds of a shot, and true if there are no further ones."""
         spp = self.shots[shot].spp
         if spp is not None:
             return [Round(0, 0, spp)], True
@@ -154,7 +154,7 @@ class JobFolder:
             try:
                 round_ = self._read_round(path, shot, known)
             except InputError:
-                path.unlink()  # it is computed again
+                path.unlink()  # the round is computed again
                 break
             if round_ is None:
                 return known, True
@@ -162,7 +162,7 @@ class JobFolder:
         return known, False
 
     def write_round(self, shot: int, number: int, round_: Round | None) -> None:
-        """Writes a round, or, for None, that the shot has no further one. Raises ImageFileError."""
+        """Writes a round; None records that the shot has no further rounds. Raises ImageFileError."""
         about, arrays = (None, {}) if round_ is None else (dict(vars(round_)), {"counts": round_.counts})
         if about is not None:
             del about["counts"]
@@ -202,7 +202,7 @@ def check_names(names: list[str]) -> None:
 
 
 def _is_whole(part: FilmPart, unit: Unit, record: ShotRecord, round_: Round) -> bool:
-    """True if a part has the samples, the fields and the shapes of its unit, and only finite sums."""
+    """True if a part has the samples, fields and shapes of its unit, and all sums are finite."""
     width, height = record.resolution
     counts = round_.counts_of(unit)
     wants_layers = unit.kind == "layers" or (unit.kind == "pixels" and record.has_layers and record.spp is not None)

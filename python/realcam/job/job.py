@@ -1,4 +1,4 @@
-"""Pictures on many machines."""
+"""Rendering on many machines."""
 
 from __future__ import annotations
 
@@ -22,19 +22,19 @@ from .worker import Worker, run_unit
 
 ProgressCallback = Callable[[float], bool | None]
 
-_WINDOW = 1000  # units that an executor has at a time
+_WINDOW = 1000  # units submitted to an executor at a time
 
 
 class Job:
-    """Pictures that any number of processes and machines take together, in a folder that all of them see.
+    """Pictures that any number of processes and machines render together, in a folder that all of them can access.
 
     job = rc.Job.make("terrace.job", {"terrace": rc.Shot.load("terrace.toml")})
     job.work()  # here, and in as many other processes as there are
     job.image("terrace").save("terrace.exr")
 
-    Pictures have the same bits as those of rc.render on one machine with the same device. Each is divided into units,
-    tiles of the film times 256 samples. A unit is a file that is written as a whole or not at all, so that a process or
-    a machine that stops loses the unit that it has in hand and nothing else.
+    Pictures have the same bits as those of rc.render on one machine with the same device. Each is divided into units:
+    tiles of the film times 256 samples. The file of a unit is written atomically, so that a process or machine that
+    stops loses only its current unit.
     """
 
     def __init__(self, folder: JobFolder) -> None:
@@ -42,7 +42,7 @@ class Job:
 
     @classmethod
     def load(cls, folder: str | os.PathLike[str]) -> Job:
-        """Raises InputError for what is no job's folder, or that of another version of realcam."""
+        """Opens a job's folder. Raises InputError if it is not one, or belongs to another version of realcam."""
         system_name(folder)
         return cls(JobFolder.open(folder))
 
@@ -55,12 +55,12 @@ class Job:
         device: str = "auto",
         tile: tuple[int, int] | None = None,
     ) -> Job:
-        """Writes a folder with all that the pictures need, under the names of the shots.
+        """Writes a folder with everything that the pictures need, under the names of the shots.
 
-        Effects "auto" are planned here. device: that of all processes, "cpu" or "cuda". tile: width and height of units
-        in pixels, rounded up to multiples of 32; None: about a second's work of one core, or whole rows for a GPU. A
-        limit of seconds falls away, because machines differ: the noise alone decides, and max_spp.
-        Raises InputError, also where the folder is there already; ImageFileError, DeviceError.
+        Effects "auto" are planned here. device: device of all processes, "cpu" or "cuda". tile: width and height of
+        units in pixels, rounded up to multiples of 32; None: about a second of work for one core, or whole rows for a
+        GPU. A limit of seconds is dropped, because machines differ: only the noise goal and max_spp apply.
+        Raises InputError, also if the folder already exists; ImageFileError, DeviceError.
         """
         return cls(make_folder(folder, shots, device, tile))
 
@@ -70,14 +70,14 @@ class Job:
 
     @property
     def names(self) -> list[str]:
-        """Of the shots."""
+        """Names of the shots."""
         return [shot.name for shot in self._folder.shots]
 
     def __repr__(self) -> str:
         return f"<realcam.Job {os.fspath(self.path):.60}, {len(self.names)} shots>"
 
     def status(self) -> JobStatus:
-        """How far it is. Raises InputError."""
+        """Returns the job's progress. Raises InputError."""
         return status_of(self._folder)
 
     def work(
@@ -91,12 +91,12 @@ class Job:
     ) -> None:
         """Takes the samples that are missing.
 
-        executor: its processes take one unit at a time, on this machine or others that see the same folder; None: this
-        process takes them all. part: (3, 8) limits this process to the third eighth of the units, so that 8 processes
-        share the work; with a noise goal it also takes units of the others that the next round needs. threads: of each
-        process; 0: all cores. device: of this process, "cuda:1" say, if that of the job is "cuda". progress: called
-        with the share done, and stops the work if it returns False.
-        Raises InputError, DeviceError, and ImageFileError if a disk is full, say: what is done stays, and work()
+        executor: its processes take one unit at a time, on this machine or others that can access the same folder;
+        None: this process takes all units. part: (3, 8) limits this process to the third eighth of the units, so that 8
+        processes share the work; with a noise goal it also takes units of other parts that the next round needs.
+        threads: number for each process; 0: all cores. device: device of this process, "cuda:1" say, if that of the job
+        is "cuda". progress: called with the fraction done; the work stops if it returns False.
+        Raises InputError, DeviceError, and ImageFileError, if a disk is full, say: finished units remain, and work()
         continues from there.
         """
         if part is not None and not (1 <= part[0] <= part[1] <= 100000 and executor is None):
@@ -113,9 +113,9 @@ class Job:
         report(is_last=True)
 
     def image(self, name: str | None = None, *, device: str | None = None) -> Image:
-        """The picture of a shot; None: of the only one. device: for layers of single rays; None: that of the job.
+        """Returns the picture of a shot. name: None: the only shot. device: for layers of single rays; None: the job's.
 
-        Raises InputError where units are missing.
+        Raises InputError if units are missing.
         """
         shot = self._index_of(name)
         worker = Worker(self._folder, device=device)
@@ -153,7 +153,7 @@ class Job:
 
 
 class _Report:
-    """Reports the share that is done, about once a second."""
+    """Reports the fraction done, about once a second."""
 
     def __init__(self, job: Job, progress: ProgressCallback | None) -> None:
         self._job, self._progress, self._next, self._most = job, progress, 0.0, 0.0
@@ -162,9 +162,9 @@ class _Report:
         if self._progress is None or (time.monotonic() < self._next and not is_last):
             return
         begin = time.monotonic()
-        # The number of samples that a noise goal still needs is an estimate, so the share may shrink.
+        # The number of samples that a noise goal still needs is an estimate, so the fraction may decrease.
         self._most = max(self._most, self._job.status().share)
         if self._progress(self._most) is False:
             raise InputError(f"{self._job.path}: stopped; work() goes on from here")
-        # Looking at many units takes a while.
+        # Listing many units takes time; this keeps its cost below about 2 %.
         self._next = time.monotonic() + max(1.0, 50 * (time.monotonic() - begin))

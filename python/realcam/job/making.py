@@ -1,4 +1,4 @@
-"""Writing a job's folder."""
+"""Creation of a job's folder."""
 
 from __future__ import annotations
 
@@ -22,7 +22,8 @@ from .worker import pack_values
 def make_folder(
     folder: str | os.PathLike[str], shots: Mapping[str, Shot], device: str, tile: tuple[int, int] | None
 ) -> JobFolder:
-    """Raises InputError, ImageFileError and DeviceError; an incomplete folder is removed then."""
+    """Creates a job's folder. Raises InputError, ImageFileError and DeviceError; an incomplete folder is then
+    removed."""
     path = Path(folder)
     check_is_new(path)
     check_names(list(shots))
@@ -54,7 +55,7 @@ def _written(path: Path, shots: Mapping[str, Shot], device: str, tile: tuple[int
     for name in ("shots", "scenes"):
         (path / name).mkdir()
     for index, (name, shot) in enumerate(shots.items()):
-        # A limit of seconds would give each machine other samples.
+        # A limit of seconds would give each machine a different number of samples.
         settings = shot.settings.with_(seconds=None) if shot.settings.spp == "auto" else shot.settings
         camera, settings, plan = settled(shot.scene, shot.camera, settings, device, stacklevel=5)
         if session is None:
@@ -67,7 +68,7 @@ def _written(path: Path, shots: Mapping[str, Shot], device: str, tile: tuple[int
             scene = digest_of(content)
             write_archive(path / "scenes" / f"{scene[:16]}.npz", content)
             scenes.append((shot.scene, scene))
-            if scene not in probes:  # another object may have the same content
+            if scene not in probes:  # another Scene object may have the same content
                 probes[scene] = probe_of(session)
         content = pack_values(session.camera, session.settings, tone=shot.tone, plan=plan)
         write_archive(path / "shots" / f"{index:05d}.npz", content)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from .folder import JobFolder
 
-_LAST_UNITS = 200  # whose pace is the rate
+_LAST_UNITS = 200  # number of latest units from which the rate is estimated
 
 
 @dataclass(frozen=True)
@@ -15,9 +15,9 @@ class JobStatus:
     """The progress of a job.
 
     shots, shots_done: numbers of pictures. units_done, units_known: numbers of units; with a noise goal, units become
-    known round by round. is_adaptive: True if some shot has a noise goal. share: estimated share of all work, 0 to 1.
-    seconds_left: estimate at the pace of the last units; inf: not known. damaged: names of units whose files are cut
-    short or belong to another job; they do not count as done, and work() takes their samples again.
+    known round by round. is_adaptive: True if some shot has a noise goal. share: estimated fraction of the work done, 0
+    to 1. seconds_left: estimate from the rate of the last units; inf: unknown. damaged: names of units whose files are
+    truncated or belong to another job; they do not count as done, and work() takes their samples again.
     """
 
     shots: int
@@ -35,7 +35,7 @@ class JobStatus:
 
 
 def status_of(folder: JobFolder) -> JobStatus:
-    """Raises InputError."""
+    """Returns the progress of a job. Raises InputError."""
     known = done = shots_done = 0
     share = 0.0
     times: list[float] = []

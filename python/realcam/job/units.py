@@ -1,4 +1,4 @@
-"""How a job divides its pictures: rounds of samples, and units of a round."""
+"""Division of a job's pictures into rounds of samples, and of rounds into units."""
 
 from __future__ import annotations
 
@@ -17,17 +17,18 @@ if TYPE_CHECKING:
 Digest = str
 Size = tuple[int, int]
 
-MOST_UNITS = 1 << 20  # of a shot
-LONGEST_SIDE = 1 << 15  # of a film, pixels
+MOST_UNITS = 1 << 20  # per shot
+LONGEST_SIDE = 1 << 15  # of a film, in pixels
 _SAMPLES_PER_UNIT = 1 << 22  # takes one core about a second
-_MOST_SPLATS_PER_SUM = 8  # a film of light that is traced from lamps is as large as the picture
+_MOST_SPLATS_PER_SUM = 8  # each unit of light tracing writes a film as large as the picture
 
 
 @dataclass(frozen=True)
 class Unit:
-    """Samples that are exposed and written together.
+    """Samples that are rendered and written together.
 
-    shot, round: indices in the job, and in the shot. kind: "pixels", "layers", or "light" that is traced from lamps.
+    shot, round: index of the shot in the job, of the round in the shot. kind: "pixels", "layers", or "light" (light
+    tracing). region: column, row, width, height; None: the whole film. first: index of the first sample.
     """
 
     shot: int
@@ -48,23 +49,24 @@ class Unit:
 
 @dataclass(frozen=True)
 class Round:
-    """Samples whose number is known before they are taken: all of a shot, or those that its noise called for.
+    """Samples whose number is fixed in advance: all of a shot, or one pass of adaptive sampling.
 
-    samples: taken before. spp: the most that a pixel takes. counts: (H, W) uint32, samples of each pixel; None: spp.
-    traces_lights: whether light is traced from the lamps for spp samples. taken, left: estimates for all pixels.
+    number: index of the round. samples: number per pixel in earlier rounds. spp: largest number of samples of a pixel.
+    counts: (H, W) uint32, samples of each pixel; None: spp. traces_lights: True if the round includes spp samples of
+    light tracing. taken, left: samples of all pixels taken so far, and estimate of those still needed.
     """
 
     number: int
     samples: int
     spp: int
     counts: np.ndarray | None = None
-    is_of_layers: bool = False  # follows the last samples of a shot whose number of samples follows its noise
+    is_of_layers: bool = False  # the layers' round, which follows the last adaptive round of a shot
     traces_lights: bool = True
     taken: float = 0
     left: float = 0
 
     def counts_of(self, unit: Unit) -> np.ndarray | None:
-        """(height, width) uint32: how many of the unit's samples each of its pixels takes; None: all of them."""
+        """(height, width) uint32: number of the unit's samples that each of its pixels takes; None: all of them."""
         if self.counts is None or unit.region is None:
             return None
         column, row, width, height = unit.region
@@ -76,8 +78,8 @@ class Round:
 class ShotRecord:
     """A shot's entry in job.json.
 
-    digest, scene: SHA-256 of its file and of its scene's. tile: width and height of a unit in pixels, multiples of 32.
-    spp: None if the noise decides.
+    digest, scene: SHA-256 of the shot's file and of its scene's file. tile: width and height of a unit in pixels,
+    multiples of 32. spp: None if a noise goal decides.
     """
 
     name: str
@@ -90,7 +92,7 @@ class ShotRecord:
     has_traced_light: bool
 
     def units(self, shot: int, round_: Round) -> Iterator[Unit]:
-        """The units of a round, in the order in which their sums are added."""
+        """Yields the units of a round, in the order in which their sums are added."""
         kind = "layers" if round_.is_of_layers else "pixels"
         for first in range(round_.samples, round_.samples + round_.spp, _SAMPLES_PER_SUM):
             spp = min(_SAMPLES_PER_SUM, round_.samples + round_.spp - first)
@@ -117,14 +119,15 @@ class ShotRecord:
                 yield (column, row, min(across, width - column), min(down, height - row))
 
     def _ranges_of_light(self, first: int, spp: int) -> Iterator[tuple[int, int]]:
-        """Ranges of samples for light that is traced from lamps. Its sums are integers, so any division is exact."""
+        """Yields ranges of samples for light tracing. Its sums are integers, so that any division gives the same
+        result."""
         width, height = self.resolution
         count = min(_MOST_SPLATS_PER_SUM, spp, max(1, width * height * spp // (4 * _SAMPLES_PER_UNIT)))
         yield from pairwise(first + spp * i // count for i in range(count + 1))
 
 
 def tile_for(resolution: tuple[int, int], spp: int | None, is_cpu: bool) -> tuple[int, int]:
-    """The default size of a unit: about a second of one core, or complete rows for a GPU."""
+    """Default size of a unit: about a second of work for one core, or complete rows for a GPU."""
     samples = min(spp or _SAMPLES_PER_SUM, _SAMPLES_PER_SUM)
     width, height = resolution
     if not is_cpu:
@@ -134,7 +137,7 @@ def tile_for(resolution: tuple[int, int], spp: int | None, is_cpu: bool) -> tupl
 
 
 def checked_tile(tile: tuple[int, int]) -> tuple[int, int]:
-    """A size of units, rounded up to the tiles in which pixels share samples. Raises InputError."""
+    """Rounds a unit's size up to whole tiles in which pixels share samples. Raises InputError if it is out of range."""
     if not all(1 <= side <= LONGEST_SIDE for side in tile):
         raise InputError(f"a tile must have 1 to {LONGEST_SIDE} pixels along each side")
     width, height = (-(-side // _SHARING_TILE_SIDE) * _SHARING_TILE_SIDE for side in tile)

@@ -1,4 +1,4 @@
-"""One process's work on a job: exposing units, adding up rounds, and deciding the next ones."""
+"""Work of one process on a job: rendering units, accumulating rounds, and planning further rounds."""
 
 from __future__ import annotations
 
@@ -23,12 +23,12 @@ from .engine import probe_of
 from .folder import DamagedFileError, JobFolder
 from .units import Round, Unit
 
-_MOST_BYTES = 1 << 36  # of a scene
+_MOST_BYTES = 1 << 36  # of a scene's file
 
 
 @dataclass(frozen=True)
 class StoredShot:
-    """A shot's file without its scene."""
+    """Content of a shot's file, which excludes its scene."""
 
     camera: Camera
     settings: RenderSettings
@@ -37,14 +37,14 @@ class StoredShot:
 
 
 def pack_values(*values: Any, **more: str) -> bytes:
-    """An archive of descriptions of realcam's values, which `read_values` reads."""
+    """Returns an archive of realcam values, to be read by `read_values`."""
     buffers: list[np.ndarray] = []
     about = {type(value).__name__: described(value, buffers) for value in values}
     return packed(about | more, {"buffer": np.concatenate([*buffers, np.empty(0, np.uint8)])})
 
 
 def read_values(path: Path, digest: str) -> dict[str, Any]:
-    """The values by the names of their types. Raises InputError if the digest is not that of the file."""
+    """Returns the values by type name. Raises InputError if the file does not match the digest."""
     about, arrays = read_archive(path, limit_bytes=_MOST_BYTES, digest=digest)
     try:
         return {
@@ -56,7 +56,7 @@ def read_values(path: Path, digest: str) -> dict[str, Any]:
 
 
 class ShotFilm:
-    """The accumulated film of a shot, to which rounds are added in order."""
+    """Accumulated film of a shot, to which rounds are added in order."""
 
     def __init__(self, folder: JobFolder, shot: int, stored: StoredShot) -> None:
         self._folder, self._shot, self._stored = folder, shot, stored
@@ -67,9 +67,10 @@ class ShotFilm:
         self._mean_spp = 0
 
     def add(self, round_: Round) -> Round | None:
-        """Adds a round, and returns the one that follows if the shot's noise decides; None: there is none.
+        """Adds a round. Returns the following round of a shot with a noise goal, or None if there is no further one.
 
-        One session makes the same decisions from the same sums. Raises InputError if units are missing or damaged.
+        Decisions depend only on the sums, so that every process makes the same. Raises InputError if units are missing
+        or damaged.
         """
         for unit in self._record.units(self._shot, round_):
             self.film.add(self._folder.read(unit, round_))
@@ -103,7 +104,7 @@ class ShotFilm:
 
 
 class Worker:
-    """A job in one process, with the session and the scene that it used last.
+    """A job in one process, which caches the session and scene last used.
 
     All functions raise InputError (also for an OSError, with the file's name), DeviceError and ImageFileError.
     """
@@ -114,7 +115,7 @@ class Worker:
         self._session: Session | None = None
         self._scene: tuple[str, Scene] | None = None
         self._checked: set[str] = set()  # scenes whose probe agrees
-        self._at = -1  # the session's shot
+        self._at = -1  # index of the session's shot
         self._rounds: dict[int, list[Round]] = {}
         self._films: dict[int, ShotFilm] = {}
 
@@ -140,7 +141,7 @@ class Worker:
         return self._scene[1]
 
     def session(self, index: int) -> Session:
-        """The session, set to a shot. Raises InputError if this machine computes other samples than the job's."""
+        """Returns the session, set to a shot. Raises InputError if this machine's samples differ from the job's."""
         if self._session is None or self._at != index:
             scene = self.folder.shots[index].scene
             if scene not in self._checked:
@@ -161,7 +162,7 @@ class Worker:
     def _set(self, index: int) -> None:
         shot, scene = self.shot(index), self.scene(self.folder.shots[index].scene)
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore", UserWarning)  # the user who made the job has seen them
+            warnings.simplefilter("ignore", UserWarning)  # already shown when the job was made
             if self._session is not None:
                 self._session.set(scene=scene, camera=shot.camera, settings=shot.settings)
             else:
@@ -170,7 +171,7 @@ class Worker:
         self._at = index
 
     def run(self, unit: Unit) -> None:
-        """Exposes a unit and writes it, unless its file is there."""
+        """Renders a unit and writes it, unless its file exists."""
         try:
             path = self.folder.unit_path(unit)
             if path.exists():
@@ -201,9 +202,9 @@ class Worker:
         return session.expose(unit.region, unit.first, unit.spp, counts)
 
     def missing(self, shot: int) -> tuple[Round, list[Unit]] | None:
-        """The first incomplete round of a shot and the units that it misses; None: the shot is finished.
+        """Returns the first incomplete round of a shot and its missing units; None: the shot is finished.
 
-        If all known rounds are complete, the next one is computed.
+        If all known rounds are complete, computes and writes the next one.
         """
         while True:
             rounds, is_all = self.folder.rounds(shot)
@@ -216,7 +217,7 @@ class Worker:
                 following = self._following(shot, rounds)
             except DamagedFileError:
                 self._films.pop(shot, None)
-                continue  # its unit is missing now
+                continue  # the damaged unit was removed and is now missing
             self.folder.write_round(shot, len(rounds), following)
 
     def _following(self, shot: int, known: list[Round]) -> Round | None:
@@ -233,18 +234,19 @@ class Worker:
         return following
 
     def film(self, shot: int) -> ShotFilm:
-        """The complete film of a shot. Raises InputError if units are missing or damaged."""
+        """Returns the complete film of a shot. Raises InputError if units are missing or damaged."""
         film = ShotFilm(self.folder, shot, self.shot(shot))
         for round_ in self.folder.rounds(shot)[0]:
             film.add(round_)
         return film
 
     def work(self, part: tuple[int, int] | None) -> Iterator[None]:
-        """Does what is missing, and yields after each unit.
+        """Renders the missing units, and yields after each.
 
-        A part (k, n) is the k-th contiguous n-th of each round, counted over all shots. The units of the others follow
-        only where a noise goal needs them for the next round. Work never waits: what others have in hand may be done
-        twice, with the same bits. Each process takes others' units in a random order of its own, so this is rare.
+        A part (k, n) is the k-th contiguous n-th of each round, counted over all shots. Units of other parts follow
+        only if a noise goal needs them for the next round. A process never waits: units that others are working on may
+        be rendered twice, with the same bits. Each process takes units of other parts in its own random order, so that
+        this is rare.
         """
         records = self.folder.shots
         order = random.Random(None if part is None else part[0])
@@ -265,12 +267,12 @@ class Worker:
                 for unit in mine + others:
                     self.run(unit)
                     yield
-                if is_counted:  # the rest is of other parts
+                if is_counted:  # the remaining units belong to other parts
                     break
 
 
 class _Kept(threading.local):
-    """The worker that a thread of an executor used last."""
+    """The worker last used by a thread of an executor."""
 
     key: tuple[str, str, int] | None = None
     worker: Worker | None = None
@@ -288,7 +290,7 @@ _KEPT = _Kept()
 
 
 def run_unit(folder: str, job: str, unit: Unit, threads: int) -> Outcome:
-    """Exposes a unit in a process of an executor."""
+    """Renders a unit in a process of an executor. Returns an error message, empty on success."""
     try:
         _KEPT.worker_of(folder, job, threads).run(unit)
     except RealcamError as error:

@@ -269,8 +269,9 @@ def calibration_points(
     camera: Camera, distance_m: float, through: str = "light", between: bool = False
 ) -> tuple[Array, Array]:
     """Returns (seen, pixels): (N, 2) pixels of a grid over the film that receive at least a tenth of the light at the
-    film centre, and the (N, 3) points that they see at a distance from the centre of the entrance pupil, in the axes of
-    world_to_camera; unit directions at infinity. between: uses the centres of the grid's cells. Raises InputError.
+    film centre, and the (N, 3) points that project to them at a distance from the centre of the entrance pupil, in the
+    axes of world_to_camera; unit directions at infinity. between: uses the centres of the grid's cells. Raises
+    InputError.
     """
     if not distance_m > 0:
         raise InputError("distance_m must be a positive number of metres, or inf")
