@@ -13,7 +13,7 @@ from . import options
 from .grouped_options import grouped
 from .shot_options import shot_options, words_of
 
-# Only camera options, all of which a shot saved by the bench contains.
+# Only the camera's options, all of which a shot saved by the bench contains.
 ShotOptions = shot_options("ShotOptions", panels=("Camera",))
 
 

@@ -162,7 +162,8 @@ def _is_in_a_body(seen: RandomScene, place: Array) -> bool:
 
 
 def random_camera(recipe: Recipe, seen: RandomScene, rng: np.random.Generator) -> Camera:
-    """Returns a camera with a random lens, f-number and focus, outside of all objects, looking near the floor's centre."""
+    """Returns a camera with a random lens, f-number and focus, outside of all objects, looking near the floor's
+    centre."""
     from scipy.spatial.transform import Rotation  # slow to load
 
     lens = _lens(recipe.lenses[rng.integers(len(recipe.lenses))])

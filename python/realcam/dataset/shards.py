@@ -91,7 +91,7 @@ class DatasetFolder:
         return wanted
 
     def not_done(self, numbers: Iterable[int]) -> list[int]:
-        """Those of the numbers without a finished sample. numbers: samples that are not in a shard."""
+        """Filters numbers of samples outside of shards: returns those that are not finished."""
         done = {path.name for path in (self.path / "samples").iterdir()}
         return [number for number in numbers if self.sample_path(number).name not in done]
 

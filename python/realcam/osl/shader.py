@@ -19,7 +19,7 @@ from .pupil_table import STOPS, PupilTable, pupil_table
 _CELLS = 64
 """Number of strata of the spectrum."""
 _SEEN_NM = (420.0, 680.0)
-"""Wavelengths whose light the pupil table holds completely, besides the design wavelength."""
+"""Wavelengths whose light the pupil table holds completely, in addition to the design wavelength."""
 
 
 def shader_text(lens: Lens) -> str:

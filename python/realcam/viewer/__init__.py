@@ -1,1 +1,1 @@
-"""The lens bench: a camera in the browser, whose rings are turned and whose lens is edited (`realcam view`)."""
+"""The lens bench: a web app for adjusting a camera and editing its lens interactively (`realcam view`)."""

@@ -1,4 +1,4 @@
-"""Who may use the server, and which files they may reach."""
+"""Access control: clients of the server, and files that it may read and write."""
 
 from __future__ import annotations
 
@@ -20,16 +20,16 @@ from .._core import InputError
 _COOKIE = "realcam_token"
 _HEADERS = (
     (b"content-security-policy", b"frame-ancestors 'none'; base-uri 'self'; object-src 'none'"),
-    (b"x-frame-options", b"DENY"),  # the same for older browsers: nobody is to click on the page within another one
+    (b"x-frame-options", b"DENY"),  # frame-ancestors for older browsers: prevents clickjacking
     (b"x-content-type-options", b"nosniff"),
-    (b"referrer-policy", b"no-referrer"),  # the page's address has the token
+    (b"referrer-policy", b"no-referrer"),  # the page's address contains the token
     (b"cross-origin-opener-policy", b"same-origin"),
     (b"cross-origin-resource-policy", b"same-origin"),
 )
 
 
 def is_local(host: str) -> bool:
-    """Whether only programs of this machine reach an address."""
+    """True if only programs on this machine can reach the address."""
     if host == "localhost":
         return True
     try:
@@ -39,11 +39,11 @@ def is_local(host: str) -> bool:
 
 
 class Gate:
-    """ASGI middleware in front of all pages, files and sockets. Its answers forbid other sites to show them.
+    """ASGI middleware in front of all pages, files and sockets. Its response headers prevent embedding by other sites.
 
-    token: wanted as ?token= or as the cookie that this sets; None where every program of this machine may come. Then
-    the Host and Origin headers keep out pages of other sites that the user's browser shows. A site can point a name of
-    its own at 127.0.0.1, but it cannot change which name the browser sends.
+    token: required as ?token= or as the cookie that this class sets; None: every program on this machine is admitted.
+    In that case the Host and Origin headers exclude other sites shown in the user's browser: a site can point its own
+    name at 127.0.0.1 (DNS rebinding), but cannot change the name that the browser sends.
     """
 
     def __init__(self, app: ASGIApp, token: str | None = None) -> None:
@@ -69,7 +69,7 @@ class Gate:
         await app(scope, receive, send_with_headers)
 
     def _is_admitted(self, headers: Headers, by_query: str) -> bool:
-        # What another site's page asks for, but for a link to here that its reader follows.
+        # Rejects requests of other sites' pages, except for navigation by a link.
         is_link = headers.get("sec-fetch-mode") == "navigate" and headers.get("sec-fetch-dest") == "document"
         if headers.get("sec-fetch-site") in ("cross-site", "same-site") and not is_link:
             return False
@@ -78,7 +78,7 @@ class Gate:
             if origin and urlsplit(origin).netloc != host:
                 return False
             name = urlsplit(f"//{host}").hostname or ""
-        except ValueError:  # brackets that hold no address
+        except ValueError:  # brackets without a valid IPv6 address
             return False
         if self._token is None:
             return "@" not in host and is_local(name)
@@ -96,9 +96,9 @@ async def _refuse(scope: Scope, receive: Receive, send: Send) -> None:
 
 
 class BodyLimit:
-    """ASGI middleware that refuses requests of more than `most` bytes.
+    """ASGI middleware that rejects requests of more than `most` bytes.
 
-    The limit that the page has for uploads is kept by browsers, and by nothing else.
+    The page's own limit for uploads is enforced only by browsers.
     """
 
     def __init__(self, app: ASGIApp, most: int) -> None:
@@ -119,14 +119,14 @@ class BodyLimit:
             message = await receive()
             taken += len(message.get("body", b""))
             if taken > self._most:
-                raise HTTPException(413)  # in the place that reads the request, so that it is answered
+                raise HTTPException(413)  # raised in the code that reads the request, so that it is answered
             return message
 
         await self._app(scope, counted, send)
 
 
 class Folders:
-    """The folders that were named when the server was started; nothing else is read or written for a page."""
+    """Folders specified when the server was started; pages can read and write only these."""
 
     def __init__(self, folders: Sequence[Path]) -> None:
         self._folders = [folder.resolve() for folder in folders]
@@ -139,7 +139,7 @@ class Folders:
         return self._folders[0]
 
     def files(self, suffixes: Sequence[str]) -> list[Path]:
-        """The files of all the folders, without their subfolders."""
+        """Files of all folders, without subfolders."""
         return sorted(
             path
             for folder in self._folders
@@ -148,15 +148,15 @@ class Folders:
         )
 
     def inside(self, name: str) -> Path:
-        """A path in one of the folders; a relative one is in the first.
+        """Resolves a path in one of the folders; a relative path starts at the first.
 
-        Raises InputError for any other, as for a link that leads out of them.
+        Raises InputError for a path outside of them, also if it is reached by a link.
         """
         if not name or "\0" in name:
             raise InputError("a file name is wanted")
         try:
             path = (self.first / name).resolve()
-        except (OSError, RuntimeError, ValueError):  # a link to itself; a name that no file can have
+        except (OSError, RuntimeError, ValueError):  # a link to itself; an invalid file name
             raise InputError(f'"{name!a:.80}" cannot be the name of a file') from None
         if not self._holds(path):
             raise InputError(f'"{name[-80:]}" is outside the folders that the server was started with')

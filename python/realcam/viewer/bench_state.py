@@ -1,4 +1,4 @@
-"""What a page keeps of its bench, to bring it back when the server was started anew."""
+"""State of a bench that its page stores, to restore it after a restart of the server."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from .pose import Pose
 
 
 def state_of(controls: CameraControls, switches: dict[str, str]) -> dict[str, Any]:
-    """As JSON can say it. The lens is the text of its file."""
+    """Returns the state as JSON values. The lens is stored as the text of its file."""
     content, _ = controls.lens._file_content("lens.toml")
     return {
         "name": controls.lens.name or "lens",
@@ -34,7 +34,7 @@ def state_of(controls: CameraControls, switches: dict[str, str]) -> dict[str, An
 
 
 def restored(before: CameraControls, state: dict[str, Any]) -> CameraControls:
-    """Raises InputError for what no state_of has written."""
+    """Returns the controls with a stored state. Raises InputError if the state was not written by state_of."""
     name = "".join(c for c in _text(state, "name") if c.isalnum() or c in "-_. ")[:60] or "lens"
     lens, _ = lens_from(f"{name}.toml", _text(state, "lens").encode(errors="replace"))
     width_mm, height_mm, columns, rows = _numbers(state, "film", 4)

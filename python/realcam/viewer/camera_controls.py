@@ -1,4 +1,4 @@
-"""What the user has set on the camera, as one value of which the Camera is made."""
+"""The user's camera settings as one immutable value, from which the Camera is built."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from .._core import Camera, Film, InputError, Lens
 from .pose import Pose
 from .ring_scales import ISO, SHUTTER_S, Ring, aperture_ring, zoom_ring
 
-_ZOOM_KEY_STEPS = 10  # of the ring, for each press of its key
+_ZOOM_KEY_STEPS = 10  # steps of the zoom ring per key press
 
 
 class Mount(NamedTuple):
-    """A lens as edits have made it, the film behind it, and how its zoom ring stands (see CameraControls)."""
+    """An edited lens, the film behind it, and the setting of its zoom ring (see CameraControls)."""
 
     lens: Lens
     film: Film
@@ -23,17 +23,17 @@ class Mount(NamedTuple):
 
 
 def of_width(film: Film, width: int) -> Film:
-    """A film with so many pixels across; how many there are upwards follows from its size."""
+    """Returns the film with `width` pixels across; their number upwards follows from its size."""
     return film.replace(resolution=(width, max(1, round(width * film.height_mm / film.width_mm))))
 
 
 @dataclass(frozen=True)
 class CameraControls:
-    """A lens as it was made, and how its rings and the camera's dials stand.
+    """An unadjusted lens, and the settings of its rings and of the camera's dials.
 
-    lens: the body of the lens, focused as its file says and wide open; edits change it. zoom: one of its positions, or
-    a focal length in mm between them; None: it does not zoom. f_number: None for wide open; a smaller one than the lens
-    has means wide open, too, so that the ring stays where it is while lenses change.
+    lens: the lens at its file's focus and wide open; edits change it. zoom: one of its zoom positions, or a focal
+    length in mm between them; None: it does not zoom. f_number: None: wide open; a value below the lens's smallest also
+    means wide open, so that the setting is retained while lenses change.
     """
 
     lens: Lens
@@ -52,7 +52,7 @@ class CameraControls:
 
     @classmethod
     def of(cls, camera: Camera, *, is_automatic: bool = False) -> CameraControls:
-        """How a camera stands. One that moves is taken where it is when its shutter opens."""
+        """Returns the controls of a camera. An animated camera is taken at its pose at shutter open."""
         lens = camera.lens.focused(math.inf)
         data = lens.first_order()
         position = lens.zoom_position
@@ -79,26 +79,27 @@ class CameraControls:
 
     @cached_property
     def body(self) -> Lens:
-        """The lens as its zoom ring stands, at its design's focus, wide open. Raises InputError."""
+        """The lens at the current zoom, at its design focus, wide open. Raises InputError."""
         return self.lens if self.zoom is None else self.lens.zoomed(self.zoom)
 
     @cached_property
     def set_lens(self) -> Lens:
-        """With its rings set. Raises InputError where the lens cannot be focused so, or is none."""
+        """The lens at the current zoom, focus and f-number. Raises InputError if it is invalid or cannot be focused
+        there."""
         return self.body.with_rings(f_number=self.f_number, focus_m=self.focus_m, opens_as_far_as_it_can=True)
 
     @cached_property
     def lens_on_film(self) -> Lens:
-        """With its rings set, and the camera's film in place of its own: what is drawn and measured of both.
+        """`set_lens` with the camera's film in place of its own, for drawings and plots.
 
-        A film that is shifted is taken for the smallest one about the axis that holds it. Raises InputError.
+        A shifted film is replaced by the smallest centred one that contains it. Raises InputError.
         """
         right, up = self.film.shift_mm
         return self.set_lens.with_film(self.film.width_mm + 2 * abs(right), self.film.height_mm + 2 * abs(up))
 
     @cached_property
     def camera(self) -> Camera:
-        """Raises InputError."""
+        """The camera with these settings. Raises InputError."""
         return Camera(
             self.set_lens,
             film=self.film,
@@ -114,16 +115,17 @@ class CameraControls:
 
     @cached_property
     def zooms(self) -> Ring | None:
-        """The zoom ring of the lens, by focal lengths in mm; None: it has none between its positions."""
+        """The zoom ring of the lens, by focal lengths in mm; None: the lens has no continuous zoom."""
         return zoom_ring(self.lens)
 
     @property
     def focal_length_mm(self) -> float:
-        """Of the lens as its zoom ring stands, at its design's focus."""
+        """Focal length at the current zoom and the design focus."""
         return self.body.first_order().effective_focal_length_mm
 
     def zoomed(self, focal_length_mm: float) -> CameraControls:
-        """With the zoom ring at a focal length, which may be that of a position."""
+        """Returns the controls with the zoom at a focal length; at the focal length of a position, with that
+        position."""
         known = self.lens.zoom_focal_lengths_mm
         at_position = focal_length_mm in known
         return replace(
@@ -137,19 +139,19 @@ class CameraControls:
 
     @property
     def seen_height_m(self) -> float:
-        """What the picture's height shows at the distance of what is looked at."""
+        """Height of the field of view at the distance of the look-at point, in metres."""
         return self.pose.distance_m * self.film.height_mm / abs(self.body.first_order().effective_focal_length_mm)
 
     def focusing_shift_mm(self, surface: int) -> float:
-        """By how much the focus ring has lengthened what is behind a surface."""
+        """Change of the thickness behind a surface by focusing, mm."""
         surfaces = self.set_lens.surfaces, self.body.surfaces
         if not 0 <= surface < len(self.body.surfaces):
             return 0.0
         return surfaces[0][surface].thickness_mm - surfaces[1][surface].thickness_mm
 
     def turned(self, ring: str, steps: int) -> CameraControls:
-        """Turns "aperture" (closes), "shutter" (longer) or "iso" by thirds of a stop, or "zoom" (longer) by a thirtieth
-        of its ring. Raises InputError.
+        """Turns "aperture" (stops down), "shutter" (longer) or "iso" by thirds of a stop, or "zoom" (longer focal
+        length) by a thirtieth of its ring. Raises InputError.
         """
         if ring == "aperture":
             widest = self.apertures.values[0]
@@ -168,12 +170,13 @@ class CameraControls:
         return Mount(self.lens, self.film, self.zoom)
 
     def with_mount(self, mount: Mount) -> CameraControls:
-        """Another lens with its film, of as many pixels across as now."""
+        """Returns the controls with another lens and its film; the number of pixels across is retained."""
         film = of_width(mount.film, self.film.resolution[0])
         return replace(self, lens=mount.lens, zoom=mount.zoom, film=film)
 
     def with_lens(self, lens: Lens) -> CameraControls:
-        """Another lens or an edited one; its zoom ring stays where it has that position, or reaches as far."""
+        """Returns the controls with another or edited lens; the zoom is retained if the lens has that position, or
+        clamped to its range."""
         changed = replace(self, lens=lens, zoom=self.zoom if self.zoom in lens.zoom_positions else lens.zoom_position)
         if isinstance(self.zoom, float) and changed.zooms:
             ends = sorted(changed.zooms.values)
@@ -181,7 +184,8 @@ class CameraControls:
         return changed
 
     def focused_within_reach(self) -> CameraControls:
-        """At the nearest focus that the lens has, if the ring stands before it. Raises InputError where it has none."""
+        """Returns the controls, with the focus at the nearest focus of the lens if it is closer than that. Raises
+        InputError if the lens cannot be focused and has no nearest focus."""
         try:
             self.set_lens  # noqa: B018
         except InputError:

@@ -36,11 +36,11 @@ FILMS = {
     (127.0, 101.6): "127 × 101.6 mm (4 × 5 inches)",
 }
 _ASIDES = {4.0: " (draft)", 0.5: " (fine)"}
-_FOCUS_STEPS = 400  # of the slider, even in the inverse distance, as the travel of a focusing lens is
+_FOCUS_STEPS = 400  # steps of the slider, uniform in the inverse distance, like the travel of a focusing lens
 
 
 def grey_levels(codes: float) -> str:
-    """A noise in words."""
+    """A noise level as text."""
     return "half a grey level" if codes == 0.5 else f"{codes:g} grey level{'' if codes == 1 else 's'}"
 
 
@@ -49,9 +49,9 @@ def _noise_texts(noise: float) -> dict[Any, str]:
 
 
 class CameraPanel:
-    """Shows how the camera stands, and turns it: the rings, which stand below the picture, and the settings.
+    """Controls of the camera: the rings below the picture, and the settings panel.
 
-    update() brings both up to date after changes from elsewhere.
+    update() refreshes both after changes from elsewhere.
     """
 
     def __init__(self, window: Window, run: Callable[..., Awaitable[Any]]) -> None:
@@ -59,7 +59,7 @@ class CameraPanel:
         self._sharp = SharpRange(math.nan, math.nan)
 
     def add_rings(self) -> None:
-        """The rings and dials that a camera has outside."""
+        """Adds the rings and dials: focus, zoom, aperture, shutter, ISO, exposure."""
         with ui.element("section").classes("rc-controls rc-rings").props('aria-label="Rings"'):
             with ui.element("div").classes("rc-ring-group"):
                 self._focus_text = ui.label().props('data-testid="focus-text"')
@@ -89,7 +89,7 @@ class CameraPanel:
                 self._automatic = ui.switch("Automatic exposure").props('data-testid="automatic"')
                 self._automatic.on("update:model-value", lambda e: self._change(is_automatic=bool(_value(e))))
                 self._automatic.tooltip("The exposure time follows the mean brightness of the picture")
-                self._compensation_ev = 0.0  # as it was told last
+                self._compensation_ev = 0.0  # value last shown in the field
                 self._compensation = ui.number("Compensation (EV)", value=0, min=-5, max=5, step=1 / 3, format="%.2f")
                 self._compensation.on("update:model-value", self._set_compensation, throttle=0.1)
                 self._compensation.tooltip(
@@ -97,7 +97,7 @@ class CameraPanel:
                 ).classes("w-40")
 
     def add_settings(self) -> None:
-        """What is chosen once for many pictures."""
+        """Adds the settings that are rarely changed."""
         self._model = self._choice(
             "Camera model", MODELS, lambda value: self._change(model=value), "How much of the lens is simulated"
         )
@@ -164,7 +164,7 @@ class CameraPanel:
         self._focus_text.set_text(f"Focus {distance_text(now.focus_m)}")
         self._show_scale()
         self._automatic.set_value(now.is_automatic)
-        if now.compensation_ev != self._compensation_ev:  # else a number may be half typed
+        if now.compensation_ev != self._compensation_ev:  # otherwise the user may be typing a number
             self._compensation_ev = now.compensation_ev
             self._compensation.set_value(now.compensation_ev)
         self._model.set_value(now.model)
@@ -198,7 +198,7 @@ class CameraPanel:
 
     @property
     def _nearest_m(self) -> float:
-        """Where the focus ring ends: where the lens says so, else at ten focal lengths."""
+        """End of the focus ring: the nearest focus in the lens's file, or else ten focal lengths."""
         body = self._bench.controls.body
         if body.nearest_focus_m > 0:
             return body.nearest_focus_m
@@ -236,8 +236,8 @@ class CameraPanel:
             self.update()
 
     async def _set_compensation(self, event: GenericEventArguments) -> None:
-        with contextlib.suppress(ValueError):  # what is not typed to its end
-            value = float(str(_value(event)))  # a field of text, even where numbers are wanted
+        with contextlib.suppress(ValueError):  # incomplete input
+            value = float(str(_value(event)))  # the field sends text, although it is a number field
             if abs(value) <= 10:
                 await self._change(compensation_ev=value)
 
@@ -255,7 +255,7 @@ class CameraPanel:
         slider.set(ring.step_of(value), len(ring.values) - 1, text)
 
     def _number(self, label: str, test_id: str, act: Callable[[], Awaitable[Any]], help: str) -> ui.number:
-        """A field whose number is taken when it has been typed: at Enter, or when the field is left."""
+        """Number field whose value is applied at Enter, or when the field loses focus."""
         field = ui.number(label, format="%g").classes("grow").props(f'data-testid="{test_id}"')
         field.tooltip(help)
         field.on("change", act)
@@ -273,7 +273,7 @@ class CameraPanel:
 
 
 def _typed(field: ui.number) -> float | None:
-    """None where it holds no number."""
+    """Returns the field's number; None if it holds no finite number."""
     value = field.value
     return float(value) if isinstance(value, int | float) and math.isfinite(value) else None
 

@@ -1,4 +1,4 @@
-"""The plots of a window: the lens as it stands, for the point that was clicked."""
+"""Plots of the current lens, for the point that was clicked in the picture."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from ..analysis.fields import Bundles
 from ..drawing.themes import LIGHT
 from ..fields import angle_of_height
 
-# What a window offers, by the names of `realcam lens plot`, with a title and a sentence that explains the optics.
+# Available plots, by their names in `realcam lens plot`: title, and explanation for the user.
 PLOTS = {
     "spot": ("Spot diagram", "Where the rays of one object point meet the film; a perfect lens would make a dot."),
     "ray-fan": ("Ray fan", "How far each ray lands from the chief ray, by where it crosses the stop."),
@@ -23,7 +23,7 @@ PLOTS = {
     "relative-illumination": ("Relative illumination", "How dark the picture becomes towards its corner."),
     "pupil": ("Pupil shapes", "The outline of the light as the film sees it: cat's eyes towards the corner."),
 }
-# In place of them, for lenses that are not of revolution.
+# Plots for lenses without rotational symmetry.
 MAPS = {
     "spot-map": ("Spot sizes", "How far from each other the rays of one object point land, over the film."),
     "mtf-x-map": ("Contrast across", "The contrast that is left of upright stripes, over the film."),
@@ -36,7 +36,7 @@ _OF_ONE_FIELD = ("spot", "ray-fan", "mtf")
 
 @dataclass(frozen=True)
 class Look:
-    """What is plotted. height_mm: on the film, from the axis."""
+    """Arguments of a plot. height_mm: distance of the film point from the axis."""
 
     kind: str
     lens: Lens
@@ -44,12 +44,12 @@ class Look:
 
 
 def plots_of(lens: Lens) -> dict[str, tuple[str, str]]:
-    """What is offered for a lens: title and explanation by the name of the plot."""
+    """Plots that apply to a lens: title and explanation by name."""
     return PLOTS if lens.is_rotational else MAPS
 
 
 def plot_svg(look: Look) -> str:
-    """An SVG of the plot, whose text has the colour of the page's. Raises InputError where there is nothing to plot."""
+    """Returns the plot as SVG with CSS colours of the page. Raises InputError if there is nothing to plot."""
     fields = None
     if look.kind in _OF_ONE_FIELD:
         fields = np.array([angle_of_height(look.lens, look.height_mm)[0]])
@@ -59,5 +59,5 @@ def plot_svg(look: Look) -> str:
     content = io.StringIO()
     figure.savefig(content, format="svg", facecolor="none", transparent=True)
     svg = content.getvalue()
-    # The page may be light or dark, and change while the plot is shown.
+    # CSS colours, because the page's theme may change while the plot is shown.
     return svg[svg.index("<svg") :].replace(LIGHT.text, "currentColor").replace(LIGHT.grid, "var(--rc-grid)")

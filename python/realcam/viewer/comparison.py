@@ -1,4 +1,4 @@
-"""What the picture is compared with behind the wipe: a second camera that stands where the first one does."""
+"""The second camera for comparison behind the wipe, at the same pose as the first."""
 
 from __future__ import annotations
 
@@ -13,7 +13,8 @@ COMPARISONS = (NOTHING, "thin lens", "these settings", "another lens")
 
 @dataclass(frozen=True)
 class Comparison:
-    """kind: one of COMPARISONS. kept: the controls of "these settings". lens: of "another lens"."""
+    """Choice of the second camera. kind: one of COMPARISONS. kept: controls for "these settings". lens: lens for
+    "another lens"."""
 
     kind: str = NOTHING
     kept: CameraControls | None = None
@@ -21,13 +22,15 @@ class Comparison:
 
     @classmethod
     def of(cls, kind: str, now: CameraControls, lens: Lens | None = None) -> Comparison:
-        """With the controls as they are at this moment. Raises InputError where there is nothing of that kind."""
+        """Returns a comparison with the current controls. Raises InputError if the kind is unknown or its lens is
+        missing."""
         if kind not in COMPARISONS or (kind == "another lens") != (lens is not None):
             raise InputError(f'there is nothing like "{kind:.40}" to compare with')
         return cls(kind, now if kind == "these settings" else None, lens)
 
     def beside(self, now: CameraControls) -> CameraControls | None:
-        """The second camera; None: there is none. Raises InputError where its lens cannot be focused."""
+        """Returns the second camera's controls; None: no comparison. Raises InputError if its lens cannot be
+        focused."""
         if self.kept is not None:
             return replace(self.kept, pose=now.pose)
         if self.lens is not None:

@@ -1,4 +1,4 @@
-"""Which effects a window simulates: those that are switched on, and those that the planner keeps."""
+"""Selection of the simulated effects: those switched on by the user, and those kept by the planner."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ _WITHOUT_SURFACES = {effect.name for effect in effects() if not effect.needs_ful
 
 @dataclass
 class Switches:
-    """How effects are chosen: each "auto", "on" or "off"."""
+    """Switches of the effects: each "auto", "on" or "off"."""
 
     of: dict[str, str] = field(default_factory=lambda: dict.fromkeys(EFFECTS, "auto"))
-    words: dict[str, str] = field(default_factory=dict)  #: of those that the shot gives a number, "ghosts=1e-8"
-    others: tuple[str, ...] = ()  #: what the shot says of effects without a switch, "-motion_blur"
+    words: dict[str, str] = field(default_factory=dict)  #: words of effects with a number in the shot, "ghosts=1e-8"
+    others: tuple[str, ...] = ()  #: the shot's words of effects without a switch, "-motion_blur"
 
     @classmethod
     def of_shot(cls, words: Iterable[str]) -> Switches:
-        """As a shot file names effects: without "auto" all that it does not name are off."""
+        """Parses the effects of a shot file: without "auto", effects that it does not name are off."""
         words = tuple(words)
         switches = cls(dict.fromkeys(EFFECTS, "auto" if "auto" in words else "off"))
         others = []
@@ -37,7 +37,8 @@ class Switches:
         return switches
 
     def named(self, plan: Plan | None) -> tuple[str, ...]:
-        """What is simulated: what is on, what the plan keeps of the others, and what the shot says besides."""
+        """Effects to simulate: those that are on, those on "auto" that the plan keeps, and those of the shot without a
+        switch."""
         kept = {effect.partition("=")[0]: effect for effect in plan.effects} if plan else {}
         chosen = {name: self.words.get(name, name) for name, state in self.of.items() if state == "on"}
         switched = [
@@ -48,13 +49,13 @@ class Switches:
         return (*switched, *self.others)
 
     def of_model(self, model: str) -> Switches:
-        """With all effects off that the surfaces of a lens bring, where the camera's model has none."""
+        """Returns the switches for a camera model: without lens surfaces, effects that need them are off."""
         if model == "full":
             return self
         return replace(self, of={name: self.of[name] if name in _WITHOUT_SURFACES else "off" for name in self.of})
 
     def as_words(self) -> list[str]:
-        """As shot files name them."""
+        """Returns the effects in the notation of shot files."""
         automatic = ["auto"] if "auto" in self.of.values() else []
         on = [self.words.get(name, name) for name, state in self.of.items() if state == "on"]
         off = [f"-{name}" for name, state in self.of.items() if state == "off" and automatic]

@@ -1,4 +1,4 @@
-"""The parts of the page that are our own components."""
+"""Custom Vue components of the page."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from .lens_cards import lens_cards
 
 
 class PictureCanvas(Element, component="static/picture_canvas.js"):
-    """The streamed picture. Emits "picked" with u and v where the user has clicked."""
+    """The streamed picture. Emits "picked" with the u and v that the user clicked."""
 
     def __init__(self, path: str) -> None:
         super().__init__()
@@ -24,7 +24,7 @@ class PictureCanvas(Element, component="static/picture_canvas.js"):
 
 
 class LensDrawing(Element, component="static/lens_drawing.js"):
-    """The section of the lens and the table of its surfaces."""
+    """Section of the lens, and table of its surfaces."""
 
     def __init__(self, path: str) -> None:
         super().__init__()
@@ -33,7 +33,7 @@ class LensDrawing(Element, component="static/lens_drawing.js"):
 
 
 class LensGallery(Element, component="static/lens_gallery.js"):
-    """A button, and the bundled lenses in a dialog that it opens. Emits "chosen" with the name of one."""
+    """Button that opens a dialog of the bundled lenses. Emits "chosen" with the name of a lens."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -41,10 +41,10 @@ class LensGallery(Element, component="static/lens_gallery.js"):
 
 
 class TabbedPanels(Element, component="static/tabbed_panels.js"):
-    """A row of tabs. panel(name) is the context of a panel's content; what is in none of them stands below the tabs."""
+    """Row of tabs. panel(name) is the context of a panel's content; other content is placed below the tabs."""
 
     def __init__(self, *names: str) -> None:
-        """The first panel is shown at first."""
+        """names: of the panels; the first one is shown initially."""
         super().__init__()
         self._props["names"] = list(names)
         self.shown = names[0]
@@ -58,17 +58,17 @@ class TabbedPanels(Element, component="static/tabbed_panels.js"):
 
 
 class HelpDialog(Element, component="static/help_dialog.js"):
-    """A button, and what mouse and keys do in a dialog that it opens."""
+    """Button that opens a dialog of mouse and keyboard controls."""
 
 
 class RingSlider(Element, component="static/ring.js"):
-    """A slider of whole steps. What it shows while it is turned is where the hand is; else what set() has said.
+    """Slider of integer steps. While it is dragged it shows the user's position, otherwise the one set by set().
 
-    gesture: counts drags and key presses; that of the last turn.
+    gesture: id of the drag or key press of the last change.
     """
 
     def __init__(self, label: str, help: str, turned: Callable[[int], Awaitable[None]]) -> None:
-        """turned: does what a turn to that step means, after which set() has said how the ring stands."""
+        """turned: called with the new step; must have called set() with the resulting position when it returns."""
         super().__init__()
         self._props |= {"label": label, "help": help, "last": 0, "step": 0, "text": "", "answered": 0}
         self.gesture: object = None
@@ -84,7 +84,7 @@ class RingSlider(Element, component="static/ring.js"):
         self.on("turned", take, throttle=0.09)
 
     def set(self, step: int, last: int, text: str) -> None:
-        """text: what is engraved there."""
+        """Sets the position. last: the last step. text: label of the position."""
         state = {"step": step, "last": last, "text": text}
         if any(self._props[key] != value for key, value in state.items()):
             self._props |= state
@@ -92,7 +92,7 @@ class RingSlider(Element, component="static/ring.js"):
 
 
 def show_choice(choice: ui.select, options: dict[Any, str] | list[str], value: Any) -> None:
-    """Nothing is sent where all is as it was: a list that is set anew is drawn anew."""
+    """Updates a selection. Sends nothing if it is unchanged, because setting a list redraws it."""
     if choice.options != options:
         choice.set_options(options, value=value)
     else:
@@ -100,7 +100,7 @@ def show_choice(choice: ui.select, options: dict[Any, str] | list[str], value: A
 
 
 class CostPanel(Element, component="static/cost_panel.js"):
-    """Effects with their switches, and where the time goes."""
+    """Effects with their switches, and the costs of the picture."""
 
     def __init__(self, path: str) -> None:
         super().__init__()

@@ -1,4 +1,4 @@
-"""The distance scale of a lens barrel, with the marks between which the picture is sharp."""
+"""Distance scale of a lens barrel, with the depth of field."""
 
 from __future__ import annotations
 
@@ -7,13 +7,13 @@ import math
 _WIDTH, _HEIGHT = 320, 46
 _MARGIN = 14
 _ENGRAVED = (0.1, 0.15, 0.2, 0.25, 0.3, 0.4, 0.5, 0.7, 1, 1.5, 2, 3, 5, 10, 20, 50, 100, 300, 1000, math.inf)
-_CLEARANCE = 26  # between two figures
+_CLEARANCE = 26  # minimum spacing of two labels
 
 
 def focus_scale_svg(focus_m: float, near_m: float, far_m: float, nearest_m: float) -> str:
-    """Distances in metres; near and far are nan where nothing is sharp.
+    """Returns the scale as SVG. Distances are in metres; near and far are nan if nothing is sharp.
 
-    Even in the inverse distance, as on a barrel.
+    The scale is uniform in the inverse distance, as on a barrel.
     """
 
     def x(distance_m: float) -> float:
@@ -51,7 +51,7 @@ def focus_scale_svg(focus_m: float, near_m: float, far_m: float, nearest_m: floa
 
 
 def distance_texts(near_m: float, far_m: float) -> tuple[str, str]:
-    """Both in words, with as many digits as tell them apart."""
+    """Both distances as text, with enough digits to distinguish them."""
     for digits in range(3, 7):
         texts = distance_text(near_m, digits), distance_text(far_m, digits)
         if texts[0] != texts[1]:

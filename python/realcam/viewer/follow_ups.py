@@ -1,4 +1,4 @@
-"""What is told of a camera besides its picture, each on a thread of its own and after the picture's first frame."""
+"""Secondary results of a camera (drawing, rays, plan, depth of field), each computed on its own thread."""
 
 from __future__ import annotations
 
@@ -18,20 +18,20 @@ from .newest_task import NewestTask
 
 
 class FollowUps:
-    """Draws, measures and plans for a bench; of what is asked for several times the newest is told to the listeners."""
+    """Draws, measures and plans for a bench. Of several pending requests of a kind only the newest is done."""
 
     def __init__(self, shot: Shot, device: str, listeners: Listeners) -> None:
         self._shot, self._device, self._listeners = shot, device, listeners
         self._drawing = NewestTask("realcam-drawing", delay_s=0.02, share=0.2)
         self._tracing = NewestTask("realcam-rays", delay_s=0.02, share=0.2)
-        # These take as long as some frames of the picture, and wait for the end of a movement.
+        # These take as long as several frames of the picture and therefore wait for the end of a movement.
         self._planning = NewestTask("realcam-planning", quiet_s=0.4)
         self._measuring_levels = NewestTask("realcam-levels")
         self._measuring_depth = NewestTask("realcam-depth-of-field", quiet_s=0.3)
         self._keeping = NewestTask("realcam-state", quiet_s=0.5)
 
     def close(self) -> None:
-        """Ends all threads after what they are doing, which is not waited for."""
+        """Ends all threads after their current tasks, without waiting for them."""
         quick = self._drawing, self._tracing, self._keeping
         for task in (*quick, self._planning, self._measuring_levels, self._measuring_depth):
             task.close()
@@ -40,11 +40,11 @@ class FollowUps:
         self._drawing.submit(lambda: self._listeners.lens(lens_view(lens, plane)))
 
     def trace(self, lens: Lens, heights_mm: Sequence[float], plane: str) -> None:
-        """The rays that end at heights on the film."""
+        """Draws the rays that end at these heights on the film."""
         self._tracing.submit(lambda: self._listeners.rays(ray_view(lens, heights_mm, plane)))
 
     def measure_depth_of_field(self, lens: Lens, film: Film) -> None:
-        """By the diagonal of the film that is behind the lens."""
+        """Measures the depth of field; the circle of confusion is 1/1500 of the film's diagonal."""
         circle_mm = math.hypot(film.width_mm, film.height_mm) / 1500
 
         def measure() -> None:
@@ -57,7 +57,7 @@ class FollowUps:
         self._measuring_depth.submit(measure)
 
     def measure_levels(self, camera: Camera) -> None:
-        """Takes the shot at all levels of simulation, in few pixels, and tells what each costs (docs/accuracy.md)."""
+        """Renders the shot at all levels of simulation with few pixels, and reports their costs (docs/accuracy.md)."""
 
         def measure() -> None:
             self._listeners.rungs([], "measuring ...")
@@ -66,11 +66,11 @@ class FollowUps:
         self._measuring_levels.submit(measure)
 
     def keep(self, controls: CameraControls, switches: dict[str, str]) -> None:
-        """For a page that is loaded again."""
+        """Sends the state to the page, which stores it for a reload."""
         self._keeping.submit(lambda: self._listeners.state(state_of(controls, switches)))
 
     def plan(self, camera: Camera, effects: list[str], take: Callable[[Plan | None, str], None]) -> None:
-        """Decides on effects, as shot files name them. `take` gets the plan, or None and why there is none."""
+        """Plans effects, given in the notation of shot files. `take` receives the plan, or None and the reason."""
 
         def plan() -> None:
             try:
@@ -89,5 +89,5 @@ class FollowUps:
         self._planning.submit(plan)
 
     def plan_nothing(self, take: Callable[[Plan | None, str], None]) -> None:
-        """In place of a plan that is not wanted any more."""
+        """Replaces a pending plan: `take` receives None."""
         self._planning.submit(lambda: take(None, ""))

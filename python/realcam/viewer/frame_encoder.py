@@ -1,4 +1,4 @@
-"""Frames as JPEG, encoded while the next one is taken."""
+"""JPEG encoding of frames, concurrent with rendering of the next frame."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from .picture_request import Frame
 
 
 class FrameEncoder:
-    """Encodes on a thread of its own, one frame at a time, so that they stay in their order."""
+    """Encodes on its own thread, one frame at a time, so that frames stay in order."""
 
     def __init__(self, on_frame: Callable[[Frame], None]) -> None:
         self._on_frame = on_frame
@@ -22,9 +22,10 @@ class FrameEncoder:
         self.quality = 85
 
     def submit(self, codes: NDArray[np.uint8], frame_of: Callable[..., Frame]) -> None:
-        """Waits for the frame before. frame_of: makes the Frame of its fields jpeg and jpeg_quality.
+        """Encodes a frame after waiting for the previous one. frame_of: returns the Frame for its jpeg and
+        jpeg_quality.
 
-        Raises RuntimeError where the program is ending.
+        Raises RuntimeError if the program is ending.
         """
         before, self._encoding = self._encoding, None
         if before:

@@ -9,7 +9,7 @@ _MOST_STEPS = 200
 
 
 class History(Generic[T]):
-    """What edits have made of a thing, of which one state is shown."""
+    """Undo history: a sequence of states, one of which is current."""
 
     def __init__(self, first: T) -> None:
         self._states, self._at = [first], 0
@@ -28,7 +28,7 @@ class History(Generic[T]):
         return self._at + 1 < len(self._states)
 
     def push(self, state: T, gesture: object = None) -> None:
-        """What comes of one drag has one `gesture`, and is undone in one step."""
+        """Adds a state. States of one `gesture`, such as a drag, replace each other and are undone in one step."""
         if gesture is not None and gesture == self._gesture:
             self._states[self._at] = state
             return

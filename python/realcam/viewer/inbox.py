@@ -1,4 +1,4 @@
-"""What a page asks for and what is not done yet."""
+"""Queue of a page's pending messages."""
 
 from __future__ import annotations
 
@@ -7,14 +7,14 @@ from collections import deque
 
 from .messages import BadMessage, Message, merged
 
-_MOST_CHARACTERS = 1 << 20  # of all messages that wait; a thousand edits have a tenth of it
+_MOST_CHARACTERS = 1 << 20  # of all pending messages; a thousand edits take a tenth of it
 
 
 class Inbox:
-    """Messages in their order, of which those that need not be done one by one are merged.
+    """First-in, first-out queue that merges consecutive messages where possible.
 
-    It never makes the page wait: while nothing is read from a connection, the answers to the server's pings are not
-    read either, and a connection that does not answer is taken for lost.
+    It never blocks the connection's reader: otherwise the replies to the server's pings would not be read either, and
+    the connection would be considered lost.
     """
 
     def __init__(self) -> None:
@@ -23,7 +23,8 @@ class Inbox:
         self._mail = asyncio.Event()
 
     def put(self, message: Message, characters: int) -> None:
-        """characters: of its text. Raises BadMessage where more waits than a page of ours asks for."""
+        """Adds a message. characters: length of its text. Raises BadMessage if more is pending than our page ever
+        sends."""
         if self._waiting:
             last, length = self._waiting[-1]
             one = merged(last, message)
@@ -38,7 +39,7 @@ class Inbox:
         self._mail.set()
 
     async def next(self) -> Message:
-        """The oldest one; waits for it."""
+        """Removes and returns the oldest message; waits for one if the queue is empty."""
         while not self._waiting:
             self._mail.clear()
             await self._mail.wait()
@@ -47,7 +48,7 @@ class Inbox:
         return message
 
     def __len__(self) -> int:
-        """How many wait."""
+        """Number of pending messages."""
         return len(self._waiting)
 
     def clear(self) -> None:

@@ -1,4 +1,4 @@
-"""Requests that a page makes and does not wait for, because it is closed or loaded again meanwhile."""
+"""Requests abandoned by their client, because the page was closed or reloaded."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ _log = logging.getLogger(__name__)
 
 
 class LeftRequests:
-    """ASGI middleware around all others, by which a request whose client has gone may fail.
+    """Outermost ASGI middleware, which tolerates failures of requests whose client has disconnected.
 
-    NiceGUI's middleware and Socket.IO find no answer then, or no request, and what they raise would stand in the log as
-    an error of the server.
+    NiceGUI's middleware and Socket.IO then raise exceptions, because a response or request is missing, which would be
+    logged as errors of the server.
     """
 
     def __init__(self, app: ASGIApp) -> None:

@@ -1,4 +1,4 @@
-"""One window's camera: what the user has set, and the picture and the lens that follow."""
+"""The bench of one window: the user's settings, and the picture and lens views that follow from them."""
 
 from __future__ import annotations
 
@@ -29,13 +29,13 @@ from .picture_request import MOST_SPP, Frame, PictureRequest
 from .preview_denoiser import why_missing
 from .ring_scales import Ring
 
-_BOUNCES_UNPLANNED = 8  # with which glass is no black, until the plan says how many
+_BOUNCES_UNPLANNED = 8  # until there is a plan; enough for objects of glass not to be black
 
 
 class LensBench:
-    """Holds a shot's scene before a camera that a user changes. Functions may be called from one thread at a time.
+    """A shot's scene and a camera that the user changes. Functions may be called from one thread at a time.
 
-    A change that makes no camera leaves everything as it is, and is told as a Problem; the next that makes one ends it.
+    A change without a valid camera has no effect and is reported as a Problem, which ends with the next valid change.
     """
 
     def __init__(self, shot: Shot, *, device: str = "auto", noise_codes: float = 1.0) -> None:
@@ -51,9 +51,9 @@ class LensBench:
         self.denoises = not self.why_no_denoiser
         self.hovered: tuple[float, float] | None = None
         self._plane = "yz"
-        self._copies: list[tuple[Lens, Lens]] = []  # with the lens that each is a copy of
+        self._copies: list[tuple[Lens, Lens]] = []  # pairs of a toleranced copy and its nominal lens
         self.comparison = Comparison()
-        self._lock = threading.Lock()  # of controls, which the picture's thread changes, too
+        self._lock = threading.Lock()  # guards controls, which the picture's thread also changes
         self._frame: Frame | None = None
         self._loops = {"a": self._new_loop("a")}
         self._follow_ups = FollowUps(shot, device, self.listeners)
@@ -68,7 +68,7 @@ class LensBench:
     # The camera.
 
     def show(self) -> None:
-        """Photographs and draws everything as it stands, for a page that has just been opened."""
+        """Renders and draws the current state, for a page that has just been opened."""
         self._photograph()
         self._draw()
         self._ask_for_plan()
@@ -76,7 +76,7 @@ class LensBench:
         self.listeners.problem(self.problem)
 
     def change(self, **changes: Any) -> bool:
-        """Sets fields of CameraControls. Whether a camera came of it."""
+        """Sets fields of CameraControls. Returns true if the camera is valid."""
         return self._take(lambda: replace(self.controls, **changes), of="picture")
 
     @property
@@ -91,32 +91,32 @@ class LensBench:
         return self._take(lambda: turned, of="picture")
 
     def set_zoom(self, zoom: str | float | None, gesture: object = None) -> bool:
-        """The zoom ring (see CameraControls), which undo takes back. gesture: the same for all steps of one drag."""
+        """Sets the zoom (see CameraControls); can be undone. gesture: equal for all steps of one drag."""
         if not self._take(lambda: replace(self.controls, zoom=zoom).focused_within_reach(), of="picture"):
             return False
         self._push(gesture)
         return True
 
     def orbit(self, right: float, up: float) -> bool:
-        """By shares of the picture's height: that much of it is about a radian."""
+        """Orbits about the look-at point. right, up: mouse movement over the picture's height; 0.4 is a radian."""
         return self.change(pose=self.controls.pose.orbited(-2.5 * right, -2.5 * up))
 
     def pan(self, right: float, up: float) -> bool:
-        """By shares of the picture's height, so that what is looked at follows the mouse."""
+        """Pans so that the look-at point follows the mouse. right, up: mouse movement over the picture's height."""
         height = self.controls.seen_height_m
         return self.change(pose=self.controls.pose.panned(-right * height, -up * height))
 
     def dolly(self, steps: float) -> bool:
-        """Nearer by a tenth of the distance for each step."""
+        """Moves towards the look-at point by a tenth of the distance per step."""
         return self.change(pose=self.controls.pose.dollied(0.9**steps))
 
     def focus_at(self, u: float, v: float) -> bool:
-        """Focuses at what is at u, v of the picture."""
+        """Focuses on the object at u, v of the picture."""
         distance = self._loops["a"].point(u, v).result().distance_m
         return self._take(lambda: replace(self.controls, focus_m=distance).focused_within_reach(), of="picture")
 
     def meter_at(self, u: float, v: float) -> bool:
-        """Exposes so that what is around u, v becomes middle grey."""
+        """Sets the exposure time so that the spot around u, v becomes middle grey."""
         illuminance = self._loops["a"].point(u, v).result().illuminance_lx
         if not illuminance > 0:
             self.report(Problem("there is no light where the meter looks", of="picture"))
@@ -126,11 +126,11 @@ class LensBench:
         return self.change(exposure_time_s=wanted / illuminance, is_automatic=False)
 
     def set_resolution(self, width: int) -> bool:
-        """Pixels across; the height follows from the film."""
+        """Sets the number of pixels across; their number upwards follows from the film."""
         return self._take(lambda: replace(self.controls, film=of_width(self.controls.film, width)), of="picture")
 
     def set_film_mm(self, width_mm: float, height_mm: float) -> bool:
-        """Another size of the film, with as many pixels across, which undo takes back as it does another lens."""
+        """Sets the film's size, with the same number of pixels across; can be undone."""
 
         def changed() -> CameraControls:
             film = self.controls.film.replace(width_mm=width_mm, height_mm=height_mm)
@@ -142,7 +142,7 @@ class LensBench:
         return True
 
     def restore(self, state: dict[str, Any]) -> bool:
-        """What a page has kept of the bench that it had before; see bench_state."""
+        """Restores the state of an earlier bench, stored by the page; see bench_state."""
         switches = state.get("switches")
         if not self._take(lambda: restored(self.controls, state)):
             return False
@@ -155,7 +155,7 @@ class LensBench:
     # The lens.
 
     def set_lens(self, lens: Lens) -> bool:
-        """Another lens on the camera, with its own film."""
+        """Mounts another lens with its own film."""
         mount = Mount(lens, Film.for_lens(lens), self.controls.with_lens(lens).zoom)
         if not self._take(lambda: self._fitted(mount)):
             return False
@@ -163,14 +163,15 @@ class LensBench:
         return True
 
     def edit(self, edited: Callable[[Lens], Lens], gesture: object = None) -> bool:
-        """Changes the lens; see lens_edits. gesture: the same for all steps of one drag."""
+        """Changes the lens; see lens_edits. gesture: equal for all steps of one drag."""
         if not self._take(lambda: self.controls.with_lens(edited(self.controls.lens)).focused_within_reach()):
             return False
         self._push(gesture)
         return True
 
     def edit_value(self, surface: int, field: str, value: Any, gesture: object = None) -> bool:
-        """Changes a number or glass of the table (see lens_edits.with_value), which shows the lens as it is focused."""
+        """Changes a number or glass of the table (see lens_edits.with_value). The table shows the focused lens, so that
+        a thickness is converted to the unfocused one."""
 
         def edited(lens: Lens) -> Lens:
             wanted = value
@@ -181,7 +182,8 @@ class LensBench:
         return self.edit(edited, gesture)
 
     def another_copy(self, grade: str) -> bool:
-        """The lens with random errors of a grade; a copy is replaced by another one of the same lens."""
+        """Replaces the lens by a random copy with the tolerances of a grade; a copy by a new copy of its nominal
+        lens."""
         lens = self.controls.lens
         drawn = next((drawn for copy, drawn in self._copies if copy == lens), lens)
         if not self.edit(lambda _: random_copy(drawn, grade)):
@@ -207,26 +209,26 @@ class LensBench:
         self.listeners.controls()
 
     def _fitted(self, mount: Mount) -> CameraControls:
-        """The camera with a lens and the film that belongs to it, of as many pixels across as now."""
+        """The controls with a lens and its film, and the same number of pixels across."""
         controls = self.controls.with_mount(mount)
         try:
             return controls.focused_within_reach()
-        except InputError:  # too near for it, and its file does not say what its nearest focus is
+        except InputError:  # the focus is too close for the lens, and its file has no nearest focus
             return replace(controls, focus_m=math.inf)
 
     def hover(self, u: float, v: float) -> None:
-        """Draws the rays of what is at u, v of the picture."""
+        """Draws the rays to the film point at u, v of the picture."""
         self.hovered = u, v
         self._trace()
 
     def cut(self, plane: str) -> None:
-        """Draws the lens in the plane "yz" or "xz". Raises InputError for another."""
+        """Draws the section of the lens in the plane "yz" or "xz". Raises InputError for another plane."""
         if plane not in PLANES:
             raise InputError(f'there is no plane "{plane:.10}"')
         self._plane = plane
         self._draw()
 
-    # Effects, and what the picture is compared with.
+    # Effects and comparison.
 
     def switch(self, effect: str, state: str) -> None:
         """effect: one of EFFECTS. state: "auto", "on" or "off". Raises InputError."""
@@ -238,19 +240,19 @@ class LensBench:
         self._ask_for_plan()
 
     def set_noise(self, codes: float) -> None:
-        """Refines the picture until its noise is as small."""
+        """Sets the noise to which the picture is refined, in 8-bit codes."""
         self.noise_codes = codes
         self._photograph()
 
     def set_denoising(self, is_on: bool) -> None:
-        """Shows pictures without their noise for as long as they are refined. Raises InputError without a denoiser."""
+        """Switches denoising of pictures that are still being refined. Raises InputError without a denoiser."""
         if is_on and self.why_no_denoiser:
             raise InputError(self.why_no_denoiser)
         self.denoises = is_on
         self._photograph()
 
     def compare(self, with_what: str, lens: Lens | None = None) -> None:
-        """Shows a second picture; see Comparison. Raises InputError where its camera makes none."""
+        """Shows a second picture; see Comparison. Raises InputError if its camera is invalid."""
         comparison = Comparison.of(with_what, self.controls, lens)
         other = comparison.beside(self.controls)
         if other is not None:
@@ -266,29 +268,29 @@ class LensBench:
         self.listeners.controls()
 
     def measure_rungs(self) -> None:
-        """Takes the shot at all levels of simulation, in few pixels, and tells what each costs (docs/accuracy.md)."""
+        """Renders the shot at all levels of simulation with few pixels, and reports their costs (docs/accuracy.md)."""
         self._follow_ups.measure_levels(self.controls.camera)
 
-    # What comes of it.
+    # Results.
 
     def image(self, slot: str = "a") -> Image:
-        """The picture as it is shown, denoised or not, with all its pixels; waits for the first samples of them."""
+        """Returns the picture as shown, denoised or not, at full resolution; waits for its first samples."""
         return self._loops[slot].image().result()
 
     @property
     def asked(self) -> dict[str, int]:
-        """The serials of the pictures that were asked for last, by their slots. On the thread of the user's actions."""
+        """Serials of the pictures last requested, by slot. On the thread of the user's actions."""
         return {slot: loop.serial for slot, loop in self._loops.items()}
 
     @property
     def is_refined(self) -> bool:
-        """Whether the picture has the noise that is asked for, or as many samples as a picture may have."""
+        """True if the picture has the requested noise, or the maximum number of samples."""
         frame = self._frame
         return frame is not None and frame.is_final and frame.serial >= self._loops["a"].serial
 
     @property
     def progress(self) -> str:
-        """How far the picture is on its way there, in words."""
+        """Progress of the refinement, as text."""
         frame = self._frame
         if frame is None or frame.serial < self._loops["a"].serial:
             return "it has just begun"
@@ -299,7 +301,7 @@ class LensBench:
 
     @property
     def time_left(self) -> str:
-        """How long the picture takes to be refined, in words."""
+        """Remaining time of the refinement, as text."""
         frame = self._frame
         if self.is_refined:
             return "none"
@@ -307,12 +309,12 @@ class LensBench:
             return "not known yet"
         text = f"about {duration_text(frame.left_s)}"
         final = frame.final_noise_codes
-        if final is None or final < 1.1 * self.noise_codes:  # the forecast's own error
+        if final is None or final < 1.1 * self.noise_codes:  # within the error of the forecast
             return text
         return f"{text}, to about {final:.2g} grey levels: {counted(MOST_SPP, 'sample')} per pixel are the most here"
 
     def show_again(self) -> None:
-        """Sends the picture as it is once more."""
+        """Sends the current picture again."""
         self._photograph()
 
     def set_jpeg_quality(self, quality: int) -> None:
@@ -336,14 +338,15 @@ class LensBench:
             with self._lock:
                 before = self.controls
                 if before.is_automatic:
-                    # Not a change by the user: it stays so when the exposure is no longer automatic.
+                    # Stored as the setting, so that the exposure time is retained when automatic exposure is switched
+                    # off.
                     self.controls = replace(before, exposure_time_s=frame.exposure_time_s)
             if before.is_automatic and abs(math.log2(frame.exposure_time_s / before.exposure_time_s)) > 0.01:
                 self.listeners.controls()
         self.listeners.frame(slot, frame)
 
     def _take(self, changed: Callable[[], CameraControls], *, of: str = "lens") -> bool:
-        """Tries a change; where no camera comes of it, everything stays as it is. of: see Problem."""
+        """Applies a change; without a valid camera it has no effect, and false is returned. of: see Problem."""
         before = self.controls
         try:
             controls = changed()
@@ -368,13 +371,13 @@ class LensBench:
         return True
 
     def report(self, problem: Problem | None) -> None:
-        """Tells a problem, which ends with the next change that can be made; None: there is none any more."""
+        """Reports a problem, which ends with the next valid change; None: ends it."""
         if problem != self.problem:
             self.problem = problem
             self.listeners.problem(problem)
 
     def _settings(self, switches: Switches) -> RenderSettings:
-        """Those of a picture: what is left to the plan as it says, or as pictures are taken until there is one."""
+        """Render settings of a picture: values on "auto" follow the plan, or defaults until there is a plan."""
         settings = self.shot.settings.with_(effects=switches.named(self.plan))
         if settings.max_bounces == "auto":
             settings = settings.with_(max_bounces=self.plan.max_bounces if self.plan else _BOUNCES_UNPLANNED)
@@ -412,7 +415,7 @@ class LensBench:
 
     @property
     def _drawn_plane(self) -> str:
-        """All planes of a lens of revolution are alike."""
+        """Plane of the drawing; always "yz" for a rotationally symmetric lens, whose meridional planes are equal."""
         return "yz" if self.controls.lens_on_film.is_rotational else self._plane
 
     def _keep(self) -> None:
@@ -423,7 +426,7 @@ class LensBench:
             self._follow_ups.plan(self.controls.camera, self.switches.as_words(), self._take_plan)
         else:
             self.plan = None
-            self._follow_ups.plan_nothing(self._take_plan)  # how the switches stand is told all the same
+            self._follow_ups.plan_nothing(self._take_plan)  # sends the state of the switches without a plan
 
     def _take_plan(self, plan: Plan | None, note: str) -> None:
         before = self._settings(self.switches)
@@ -434,7 +437,7 @@ class LensBench:
 
 
 def _drawn(controls: CameraControls) -> tuple[Any, ...]:
-    """What the drawing of a lens shows."""
+    """Settings on which the drawing of the lens depends."""
     film = controls.film
     size = film.width_mm, film.height_mm, film.shift_mm
     return controls.lens, controls.zoom, controls.focus_m, controls.f_number, size

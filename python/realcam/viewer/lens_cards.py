@@ -1,4 +1,4 @@
-"""What the gallery says of each bundled lens, and chooses them by."""
+"""Data of the bundled lenses for the gallery and its filters."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from ..lens_kinds import kind_of, year_of
 
 @cache
 def lens_cards() -> list[dict[str, Any]]:
-    """By name."""
+    """Returns the cards in the order of the lenses' names."""
     return [_card(name) for name in lens_names()]
 
 

@@ -1,4 +1,4 @@
-"""Changes of a lens as a user makes them in its table and drawing."""
+"""Edits of a lens in its table and drawing."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from typing import Any
 from .._core import Glass, InputError, Lens, Surface
 
 _PLATE_GLASS = "schott:N-BK7"
-_BETWEEN_NUMBERS = str.maketrans(",/()", "    ")  # as labels of glasses have them: "1.67 / 47.1" and "(1.67, 47.1)"
+_BETWEEN_NUMBERS = str.maketrans(",/()", "    ")  # separators in labels of glasses: "1.67 / 47.1", "(1.67, 47.1)"
 _DECIMAL_COMMA = re.compile(r"(?<=\d),(?=\d)")
 
 
 def with_value(lens: Lens, index: int, field: str, value: Any) -> Lens:
-    """A lens with one number or glass of a surface changed. field: a column of the table. Raises InputError.
+    """Returns the lens with one number or glass of a surface changed. field: a column of the table. Raises InputError.
 
-    A radius of 0 or of no number is a plane.
+    A radius of 0 or an empty one is a plane.
     """
     surface = _surface(lens, index)
     if field in ("radius_mm", "radius_x_mm"):
@@ -48,10 +48,10 @@ def with_value(lens: Lens, index: int, field: str, value: Any) -> Lens:
 
 
 def with_plate(lens: Lens, index: int) -> Lens:
-    """With a thin plate of glass before surface `index` (or behind the last one), in the middle of the air there.
+    """Inserts a thin glass plate before surface `index` (or behind the last one), in the middle of the air gap.
 
-    What lies behind it stays in its place. Where curved faces leave no room for flat ones, those of the plate are bent
-    as the surface before it. In glass it is one surface, which has no effect until it is edited. Raises InputError.
+    Surfaces behind it do not move. If curved faces leave no room for flat ones, the plate's faces have the shape of the
+    surface before it. Inside glass, a single surface without effect is inserted, to be edited. Raises InputError.
     """
     surfaces = lens.surfaces
     if not 0 <= index <= len(surfaces):
@@ -74,15 +74,15 @@ def with_plate(lens: Lens, index: int) -> Lens:
 
 @dataclass(frozen=True)
 class _Gap:
-    """What lies between two surfaces. Places in it are shares of its length on the axis."""
+    """Space between two surfaces. Positions in it are fractions of its length on the axis."""
 
     front: Surface
     back: Surface
-    length_mm: float  #: negative where a mirror sends the light back
+    length_mm: float  #: negative if a mirror has reversed the light
 
     @classmethod
     def before(cls, lens: Lens, index: int) -> _Gap:
-        """Before a surface, or before the film."""
+        """Returns the gap before a surface, or before the film."""
         front = lens.surfaces[index - 1]
         if index < len(lens.surfaces):
             return cls(front, lens.surfaces[index], front.thickness_mm)
@@ -94,7 +94,7 @@ class _Gap:
 
     @cached_property
     def _ends(self) -> list[tuple[float, float]]:
-        """The ends of the gap, at distances from the axis."""
+        """Start and end of the gap at 17 distances from the axis, up to the rim."""
         if self.length_mm == 0:
             return [(0.0, 0.0)]
         heights = (self.rim_mm * k / 16 for k in range(17))
@@ -105,7 +105,7 @@ class _Gap:
         return min(end - start for start, end in self._ends)
 
     def bent(self, place: float, end: float, material: Glass | None) -> Surface:
-        """A face of the front's shape, which reaches neither the front nor what is `narrowest` behind it."""
+        """Returns a face with the shape of the front surface, which fits anywhere within `narrowest` behind it."""
         return self.flat(place, end, material).replace(
             radius_of_curvature_mm=self.front.radius_of_curvature_mm,
             conic=self.front.conic,
@@ -118,7 +118,7 @@ class _Gap:
         )
 
     def flat_plate(self) -> tuple[float, float, Callable[[float, float, Glass | None], Surface]] | None:
-        """The range in which flat faces have room for a plate."""
+        """Positions of the faces of a flat plate, and `flat`; None if the gap has no room for one."""
         start, end = max(start for start, _ in self._ends), min(end for _, end in self._ends)
         rim = self.rim_mm / abs(self.length_mm)
         thickness = min(0.2 * rim, 0.5 * (end - start))
@@ -127,20 +127,21 @@ class _Gap:
 
 
 def without(lens: Lens, index: int) -> Lens:
-    """Raises InputError, for the stop as for the last glass."""
+    """Returns the lens without a surface. Raises InputError if it cannot be removed, such as the stop or the last
+    glass."""
     _surface(lens, index)
     return lens.removed(index)
 
 
 def swapped(lens: Lens, index: int, other: int) -> Lens:
-    """Two surfaces in each other's places. Raises InputError."""
+    """Returns the lens with two surfaces exchanged. Raises InputError."""
     return lens.with_surfaces({index: _surface(lens, other), other: _surface(lens, index)})
 
 
 def glass_of(text: Any) -> float | tuple[float, float] | Glass | None:
-    """A glass as the table has it: air, 1.5168, "1.5168 / 64.2" or "schott:N-BK7". Raises InputError.
+    """Parses a glass of the table: air, 1.5168, "1.5168 / 64.2" or "schott:N-BK7". Raises InputError.
 
-    "1,5168" is a number with a decimal comma, where no point says that commas stand between numbers.
+    Without any point in the text a comma is a decimal comma, as in "1,5168"; otherwise commas separate numbers.
     """
     typed = str("" if text is None else text)
     if "." not in typed:

@@ -1,4 +1,4 @@
-"""The lens on the camera, and what the picture is compared with."""
+"""Panels that choose the lens, and the comparison."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _WANTED = f"a lens file ({' '.join(LENS_SUFFIXES)}) of at most {MOST_UPLOADED >>
 
 @cache
 def lens_preview(name: str) -> str:
-    """A small section of a bundled lens, as SVG. Raises LensFileError for any other name."""
+    """Returns a small section of a bundled lens, as SVG. Raises LensFileError for an unknown name."""
     if name not in lens_names():
         raise LensFileError(f'there is no bundled lens "{name:.40}"')
     with tempfile.TemporaryDirectory() as folder:
@@ -35,9 +35,9 @@ def lens_preview(name: str) -> str:
 
 
 class LensPanel:
-    """Puts another lens on the camera: a bundled one, or that of a file of the browser's machine.
+    """Mounts another lens: a bundled one, or one from a file uploaded by the browser.
 
-    say: shows a text; its second argument is true if it tells of a problem.
+    say: shows a message; its second argument is true for a problem.
     """
 
     def __init__(
@@ -49,7 +49,7 @@ class LensPanel:
             self._lens.props('data-testid="lens"').on("update:model-value", self._choose)
             self._lens.tooltip("One of the bundled lenses")
             LensGallery().on("chosen", self._choose_card)
-            # Quasar's own face of an upload has buttons without names, one within another.
+            # Quasar's upload widget is hidden: its buttons have no accessible names and are nested.
             self._files = ui.upload(
                 max_file_size=MOST_UPLOADED,
                 auto_upload=True,
@@ -58,7 +58,7 @@ class LensPanel:
             )
             self._files.classes("hidden").props(f'accept="{",".join(LENS_SUFFIXES)}" data-testid="upload"')
             opens = ui.button("Open a lens file", color=None).props("no-caps outline").classes("rc-flat")
-            # Quasar refuses a file that is in its list, and a browser tells of no choice of the file that was chosen.
+            # Quasar rejects a file that is in its list, and browsers send no event if the same file is chosen again.
             opens.on(
                 "click",
                 js_handler=f"""() => {{
@@ -94,9 +94,9 @@ class LensPanel:
             return
         name, content = event.file.name, await event.file.read()
         try:
-            # Not on the window's own thread: what the user does meanwhile need not wait for the file.
+            # Not on the window's own thread, so that the user's actions need not wait for the file.
             read = await run.io_bound(lens_from, name, content)
-            if read is None:  # the server is going down
+            if read is None:  # the server is shutting down
                 return
             lens, notes = read
             if not await self._window.do(self._bench.set_lens, lens):

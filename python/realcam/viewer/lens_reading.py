@@ -1,4 +1,4 @@
-"""Lens files that a page brings, read where a file that crashes or delays its reader does no harm."""
+"""Reading of uploaded lens files in a separate process, so that a malicious file cannot crash or block the server."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ reader = WorkerProcess()
 
 
 def lens_from(name: str, content: bytes) -> tuple[Lens, list[str]]:
-    """The lens of a file, and what was left out of it. `name` is what the user calls it. Raises InputError.
+    """Returns the lens of a file, and notes on unsupported parts of it. name: the user's file name. Raises InputError.
 
-    Not to be called from the server's loop, because it waits.
+    Blocks, and must not be called on the server's loop.
     """
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / f"{Path(name).stem[:60]}{Path(name).suffix.lower()}"

@@ -1,4 +1,4 @@
-"""What the browser draws of a lens as JSON: its section, its table and its first-order data; and its rays."""
+"""A lens as JSON for the browser's drawing: section, table, first-order data, and rays."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ _RAYS = 9
 
 
 def lens_view(lens: Lens, plane: str = "yz") -> dict[str, Any]:
-    """The section in a plane, "yz" or "xz", of points (z, height); lengths in mm, lens frame.
+    """Returns the section in a plane, "yz" or "xz", with points (z, height); lengths in mm, lens frame.
 
-    `is_rotational` tells that both planes are alike, `is_in_place` that all surfaces stand upright on one axis.
+    is_rotational: true if both planes are equal. is_in_place: true if no surface is tilted or decentred.
     """
     section = cross_section(lens, plane=plane, rays=0)
     return {
@@ -36,20 +36,20 @@ def lens_view(lens: Lens, plane: str = "yz") -> dict[str, Any]:
 
 
 def place_of(u: float, v: float, film: Film) -> tuple[float, float]:
-    """(x, y) on the film, mm from the lens's axis, of a place in the picture, which a lens turns upside down."""
+    """Film point (x, y) in mm from the lens's axis of a point u, v of the picture; the image is upside down."""
     right, up = film.shift_mm
     return (0.5 - u) * film.width_mm - right, (v - 0.5) * film.height_mm - up
 
 
 def height_of(u: float, v: float, film: Film) -> float:
-    """Distance from the lens's axis, mm."""
+    """Distance of the film point from the lens's axis, mm."""
     return math.hypot(*place_of(u, v, film))
 
 
 def drawn_heights_mm(film: Film, place: tuple[float, float] | None, axis: int | None = None) -> tuple[float, ...]:
-    """Heights above the lens's axis: that of the axis, and that of a place of the picture (u and v, 0 to 1).
+    """Film heights for which rays are drawn, mm: 0, and that of a point of the picture (u and v, 0 to 1).
 
-    axis: None is the distance in any direction; 0 and 1 take the height along x or y alone.
+    axis: None: distance from the axis; 0 or 1: the x or y coordinate.
     """
     at = place_of(*(place or (0.5 - 0.35, 0.5 + 0.35)), film)
     height = math.hypot(*at) if axis is None else at[axis]
@@ -57,8 +57,8 @@ def drawn_heights_mm(film: Film, place: tuple[float, float] | None, axis: int | 
 
 
 def ray_view(lens: Lens, heights_mm: Sequence[float], plane: str = "yz") -> dict[str, Any]:
-    """Bundles of rays to heights on the film as paths of (z, height). Beyond the last height that gets light it is
-    drawn instead. Where no light passes there are none, and `note` says why.
+    """Returns ray bundles to heights on the film as paths of (z, height). Heights beyond the image circle are clamped
+    to it. If no light passes, there are no bundles, and `note` has the reason.
     """
     try:
         if lens.is_rotational:
@@ -133,11 +133,11 @@ def _figures(lens: Lens) -> dict[str, float | None]:
 
 
 def _points(points: Points) -> list[list[float]]:
-    # A thousandth of the thickness of a line, wherever a lens is as large as the window.
+    # Rounds to a thousandth of a line's width, if the lens fills the window.
     size = float(np.max(np.abs(points), initial=1e-9))
     return np.round(points, max(0, 5 - math.floor(math.log10(size)))).tolist()  # type: ignore[no-any-return]
 
 
 def _finite(value: float) -> float | None:
-    """JSON has no infinity."""
+    """Replaces infinity, which JSON cannot express, by None."""
     return value if math.isfinite(value) else None

@@ -1,4 +1,4 @@
-"""What the levels of simulation cost for the camera as it stands; see docs/accuracy.md."""
+"""Costs of the levels of simulation for the current camera; see docs/accuracy.md."""
 
 from __future__ import annotations
 
@@ -12,7 +12,8 @@ _FEW: dict[str, Any] = {"size": 120, "max_spp": 16, "reference_spp": 256}  # som
 
 
 def measured_levels(scene: Scene, camera: Camera, device: str) -> tuple[list[dict[str, Any]], str]:
-    """Each level's name and points of seconds and error, as long as a picture of all pixels takes; and a note."""
+    """Returns each level's name and points (seconds, error), with times extrapolated to the full resolution; and a
+    note."""
     try:
         cost = accuracy_cost(scene, camera, **_FEW, device=device, samplings=False)
     except RealcamError as error:

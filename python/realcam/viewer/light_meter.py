@@ -1,4 +1,4 @@
-"""What a camera's meter and its rangefinder read in a picture."""
+"""Exposure meter and rangefinder, evaluated on a picture."""
 
 from __future__ import annotations
 
@@ -10,17 +10,17 @@ from numpy.typing import NDArray
 from .. import _core
 from .picture_request import Point
 
-_METERED_PIXELS = 96  # width of the picture that the light is metered on, as Camera.metered does
+_METERED_PIXELS = 96  # width of the subsampled picture for metering, as in Camera.metered
 _LUMINANCE = np.array([0.2126, 0.7152, 0.0722], np.float32)  # of linear Rec. 709
 
 
 def middle_grey_lx_s(iso: float, compensation_ev: float) -> float:
-    """The exposure that is developed to middle grey (see realcam.develop), or brighter or darker by so many stops."""
+    """Film exposure that develops to middle grey (see realcam.develop), shifted by compensation_ev stops."""
     return 10 * 2**compensation_ev / iso
 
 
 def metered_exposure_lx_s(exposure_lx_s: NDArray[np.float32]) -> float:
-    """The exposure of a picture (height, width, 3); not above 0, or not finite, where there is nothing to meter."""
+    """Metered exposure of a picture (height, width, 3); not positive or not finite if there is nothing to meter."""
     step = max(1, exposure_lx_s.shape[1] // _METERED_PIXELS)
     return float(_core._metered_exposure(exposure_lx_s[::step, ::step]))
 
@@ -33,7 +33,8 @@ def point_at(
     exposure_time_s: float,
     spot: float = 0.03,
 ) -> Point:
-    """What is at u, v (0 to 1, from the upper left corner). spot: width of what is metered, of the picture's."""
+    """Distance and illuminance at u, v (0 to 1, from the upper left corner). spot: width of the metering spot, relative
+    to the picture's."""
     height, width = depth_m.shape
     row, column = min(int(v * height), height - 1), min(int(u * width), width - 1)
     reach = max(1, round(0.5 * spot * width))

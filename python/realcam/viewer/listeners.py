@@ -1,4 +1,4 @@
-"""What a bench tells its window."""
+"""Callbacks from a bench to its window."""
 
 from __future__ import annotations
 
@@ -13,9 +13,10 @@ from .picture_request import Frame
 
 @dataclass(frozen=True)
 class Problem:
-    """Why what was asked for last is not shown.
+    """Reason why the last request had no effect.
 
-    surface: index of the lens's surface that is to blame, if one is. of: what it is told beside, "lens" or "picture".
+    surface: index of the lens surface that is the cause; None: no single surface. of: view beside which the message is
+    shown, "lens" or "picture".
     """
 
     message: str
@@ -25,7 +26,7 @@ class Problem:
 
 @dataclass
 class Listeners:
-    """What a window is told, on any thread. Each replaces what was told before of the same."""
+    """Callbacks, called on any thread. Each call replaces the values of the previous call of the same kind."""
 
     frame: Callable[[str, Frame], None] = lambda slot, frame: None
     controls: Callable[[], None] = lambda: None
@@ -38,5 +39,5 @@ class Listeners:
     sharp_range: Callable[[SharpRange], None] = lambda sharp: None
 
     def leave(self) -> None:
-        """Nobody is told anything any more."""
+        """Replaces all callbacks by functions that do nothing."""
         self.__dict__.update(vars(Listeners()))

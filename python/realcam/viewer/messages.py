@@ -1,4 +1,4 @@
-"""What goes over the stream as JSON. What a browser asks for is looked at before anything is done."""
+"""JSON messages of the stream. Messages from a browser are validated before they are performed."""
 
 from __future__ import annotations
 
@@ -15,15 +15,15 @@ from . import lens_edits
 from .lens_bench import LensBench
 
 MOST_BYTES = 64 * 1024
-_SUMMED = {"orbit": ("x", "y"), "pan": ("x", "y"), "dolly": ("steps",)}  # of several that wait, the sum is done
-_REPLACED = ("hover",)  # of several that wait, the last one is done
+_SUMMED = {"orbit": ("x", "y"), "pan": ("x", "y"), "dolly": ("steps",)}  # pending messages are summed
+_REPLACED = ("hover",)  # only the last pending message counts
 _OF_THE_PICTURE = ("orbit", "pan", "dolly", "focus", "meter", "turn", "switch", "rungs")
 
 Message = dict[str, Any]
 
 
 def json_text(content: dict[str, Any]) -> str:
-    """For the browser, whose JSON has no infinity: numbers that are infinite or undefined become null."""
+    """Returns strict JSON for the browser: infinite and undefined numbers become null."""
     try:
         return json.dumps(content, allow_nan=False)
     except ValueError:
@@ -31,11 +31,11 @@ def json_text(content: dict[str, Any]) -> str:
 
 
 class BadMessage(Exception):  # noqa: N818
-    """What no page of ours sends."""
+    """A message that our page never sends."""
 
 
 def parsed(text: str) -> Message:
-    """Raises BadMessage."""
+    """Parses a message. Raises BadMessage if it is malformed or of an unknown type."""
     if len(text) > MOST_BYTES:
         raise BadMessage("the message is too long")
     try:
@@ -48,7 +48,7 @@ def parsed(text: str) -> Message:
 
 
 def merged(waiting: Message, newer: Message) -> Message | None:
-    """One message for two, where the older one need not be done by itself."""
+    """Returns one message that replaces two consecutive ones, or None if both must be performed."""
     kind = newer["type"]
     if waiting["type"] != kind:
         return None
@@ -63,12 +63,12 @@ def merged(waiting: Message, newer: Message) -> Message | None:
 
 
 def subject(message: Message) -> str:
-    """What a message is about, "lens" or "picture"; see Problem."""
+    """View that a message concerns, "lens" or "picture"; see Problem."""
     return "picture" if message["type"] in _OF_THE_PICTURE else "lens"
 
 
 def perform(message: Message, bench: LensBench) -> None:
-    """Raises BadMessage, and InputError for what the user cannot have."""
+    """Performs a message. Raises BadMessage if it is malformed, and InputError if the request is invalid."""
     _ACTIONS[message["type"]](message, bench)
 
 
@@ -136,7 +136,7 @@ def _another_copy(message: Message, bench: LensBench) -> None:
 
 
 def _known(action: Callable[[Message, LensBench], Any]) -> Callable[[Message, LensBench], Any]:
-    """An action whose InputErrors report requests that none of our pages sends."""
+    """Wraps an action whose InputErrors can only be caused by messages that our page never sends."""
 
     @wraps(action)
     def checked(message: Message, bench: LensBench) -> Any:

@@ -1,4 +1,4 @@
-"""A thread that does the newest of the tasks that it is given."""
+"""Thread that runs the newest submitted task."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ _log = logging.getLogger(__name__)
 
 
 class NewestTask:
-    """For work that each change makes out of date: of those that wait, only the newest is done.
+    """Thread for work that becomes obsolete with each change: of several pending tasks, only the newest is run.
 
-    Tasks report what they find by themselves. An exception is logged, and the next task is done as ever.
-    quiet_s: a task is begun when none has come for so long, so that what is costly waits for the end of a movement.
-    delay_s: a task is begun so much later, so that what is more urgent is done first.
-    share: of the time, at most, that tasks take, so that the rest is left to what is more urgent.
+    Tasks deliver their results themselves. An exception is logged, and does not affect later tasks.
+    quiet_s: a task starts when no other has been submitted for this time, so that expensive work waits for the end of a
+    movement. delay_s: delay before a task starts, which lets more urgent work go first. share: largest fraction of time
+    spent in tasks, which leaves time for more urgent work.
     """
 
     def __init__(self, name: str, *, quiet_s: float = 0.0, delay_s: float = 0.0, share: float = 1.0) -> None:
@@ -35,7 +35,7 @@ class NewestTask:
             self._wake.notify()
 
     def close(self) -> None:
-        """Ends the thread after the task that it is doing, which is not waited for."""
+        """Ends the thread after its current task, without waiting for it."""
         with self._wake:
             self._is_closed = True
             self._wake.notify()
@@ -57,7 +57,7 @@ class NewestTask:
             try:
                 task()
             except Cancelled:
-                pass  # Python ends, and stops all work
+                pass  # the interpreter is ending
             except Exception:
                 _log.exception("a task of thread %s failed", self._name)
             if self._rest:

@@ -1,4 +1,4 @@
-"""How noisy a picture still is, from its own samples."""
+"""Noise estimate of a picture from its own samples."""
 
 from __future__ import annotations
 
@@ -11,44 +11,45 @@ from numpy.typing import NDArray
 from .._core import develop
 
 _TILES = 16
-_ROUNDING = 1 / 6  # variance of the difference of two 8-bit codes that are rounded
+_ROUNDING = 1 / 6  # variance of the difference of two rounded 8-bit codes
 
 
 class NoiseMeasurement:
-    """Compares the newest picture with an earlier one, which has at most about half of its samples."""
+    """Compares the newest picture with an earlier one that has at most about half of its samples."""
 
     def __init__(self) -> None:
-        # Samples and illuminance (lx): what the exposure is has no say in it.
+        # Samples and illuminance (lx), which does not depend on the exposure time.
         self._doublings: deque[tuple[int, NDArray[np.float32]]] = deque(maxlen=2)
         self._newest: tuple[int, NDArray[np.float32]] | None = None
 
     @property
     def samples(self) -> int:
-        """Of the newest picture."""
+        """Number of samples of the newest picture."""
         return self._newest[0] if self._newest else 0
 
     def is_doubled(self, samples: int) -> bool:
-        """Whether there are twice as many as at the last doubling."""
+        """True if the number of samples has doubled since the last stored picture."""
         return not self._doublings or samples >= 2 * self._doublings[-1][0]
 
     def add(self, samples: int, illuminance_lx: NDArray[np.float32]) -> None:
-        """illuminance_lx: (height, width, 3), the mean of all samples."""
+        """Adds a picture. illuminance_lx: (height, width, 3), mean of all samples."""
         self._newest = samples, illuminance_lx
         if self.is_doubled(samples):
             self._doublings.append(self._newest)
 
     def codes(self, exposure_time_s: float, iso: float, tone: str) -> float | None:
-        """Root mean square in 8-bit codes of the picture as it is developed; None where too few samples are there.
+        """RMS noise of the developed picture in 8-bit codes; None if there are too few samples.
 
-        The variance of the mean of n samples is s^2 / n, and that of the difference between the means of the first m
-        and of all n of them s^2 (1/m - 1/n). So it is n/m - 1 times the variance of the later mean. A longer exposure
-        shows more noise.
+        The mean of n samples has the variance s^2 / n. The difference between the means of the first m and of all n
+        samples has s^2 (1/m - 1/n), which is n/m - 1 times the variance of the mean of n. The noise in codes grows with
+        the exposure time.
         """
         squares = self._squares(exposure_time_s, iso, tone)
         return None if squares is None else math.sqrt(max(0.0, float(np.mean(squares))))
 
     def tiles(self, exposure_time_s: float, iso: float, tone: str) -> list[list[float]] | None:
-        """The same of each of _TILES x _TILES parts of the picture, or of its pixels where there are fewer."""
+        """RMS noise as from `codes` of each of _TILES x _TILES tiles of the picture, or of each pixel if it has
+        fewer."""
         squares = self._squares(exposure_time_s, iso, tone)
         if squares is None:
             return None
@@ -61,7 +62,7 @@ class NoiseMeasurement:
         return rows
 
     def _squares(self, exposure_time_s: float, iso: float, tone: str) -> NDArray[np.float32] | None:
-        """Estimates of the variance, (height, width, 3), some of which are below 0."""
+        """Estimates of the variance, (height, width, 3); some are negative."""
         if self._newest is None or len(self._doublings) < 2:
             return None
         (samples, before), (all_samples, after) = self._doublings[0], self._newest

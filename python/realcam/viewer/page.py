@@ -1,4 +1,4 @@
-"""The page of a window."""
+"""Layout of the bench's page."""
 
 from __future__ import annotations
 
@@ -25,11 +25,11 @@ from .window import Window
 
 
 def build_page(client: Client, window: Window, folders: Folders, source: ShotSource) -> None:
-    """Lays out the page and keeps it up to date. Call within the page's function."""
+    """Builds the page and keeps it up to date. Must be called in the page function."""
     loop, bench = asyncio.get_running_loop(), window.bench
     ui.add_head_html('<link rel="stylesheet" href="/realcam/page.css">')
     dark = ui.dark_mode(None)
-    ui.colors(primary="#0b5cad")  # with white letters on it, and as letters on the light page, a contrast of 6 and more
+    ui.colors(primary="#0b5cad")  # contrast of at least 6 under white text, and as text on the light page
 
     async def run(action: Callable[..., Any], *arguments: Any, **named: Any) -> None:
         try:
@@ -80,13 +80,13 @@ def build_page(client: Client, window: Window, folders: Folders, source: ShotSou
     told: dict[str, tuple[bool, ...]] = {"setHistory": (False, False), "setComparison": (False,)}
 
     def tell(element: Element, method: str, *values: bool) -> None:
-        """Calls a method of a component if its values have changed: each call draws the component again."""
+        """Calls a method of a component if its arguments have changed, because each call redraws the component."""
         if told[method] != values:
             told[method] = values
             element.run_method(method, *values)
 
     def update_soon() -> None:
-        """Once for all changes of the same moment."""
+        """Schedules one update for all changes within 0.05 s."""
         nonlocal waiting
         if not waiting:
             waiting = True

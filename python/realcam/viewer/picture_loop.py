@@ -1,4 +1,4 @@
-"""A thread that photographs the newest request, first quickly and coarsely, then ever better, and then sleeps."""
+"""Thread that renders the newest request progressively: a coarse preview first, then refinement until done."""
 
 from __future__ import annotations
 
@@ -27,8 +27,8 @@ from .picture_taker import PictureTaker
 T = TypeVar("T")
 _log = logging.getLogger(__name__)
 
-# After the first frame of a change, before it is refined: what is begun would be given up for the next change, of a
-# movement above all.
+# Pauses between the first frame of a change and its refinement, which the next change would cancel, above all during
+# a movement.
 _RESTING_S, _MOVING_S = 0.025, 0.15
 
 
@@ -43,15 +43,15 @@ class _Pending:
 class _Question:
     ask: Callable[[], Any]
     answer: Future[Any]
-    needs_samples: bool  #: and has to wait for the frame that is under way
+    needs_samples: bool  #: the question must wait for the frame in progress
 
 
 class PictureLoop:
-    """Photographs a scene for one window.
+    """Renders a scene for one window.
 
     on_frame and on_error (with the request's serial and a message) are called on threads of the loop. submit() may be
-    called as often as a mouse moves. Every request that is begun gets its first frame; of those that come meanwhile the
-    newest is next. No frame has fewer pixels than the one before it of the same view.
+    called at every mouse move: a request in progress always gets its first frame; of those submitted meanwhile only the
+    newest is rendered. The resolution of a view never decreases from frame to frame.
     """
 
     def __init__(
@@ -68,17 +68,17 @@ class PictureLoop:
         self._wake = threading.Condition()
         self._pending: _Pending | None = None
         self._questions: deque[_Question] = deque()
-        self._refines = False  # a frame is under way that a change may give up
+        self._refines = False  # a refining frame is in progress, which a change may cancel
         self._is_closed = False
         self._serial = 0
         self._picture: GrowingPicture | None = None
-        self._begun = 0.0  # time.perf_counter() of the last request that began a picture
+        self._begun = 0.0  # time.perf_counter() of the last request that started a new picture
         self._encoder = FrameEncoder(on_frame)
         self._thread = threading.Thread(target=self._run, name="realcam-picture", daemon=True)
         self._thread.start()
 
     def submit(self, request: PictureRequest) -> int:
-        """Photographs it as soon as possible. Returns the serial that its frames will have."""
+        """Renders a request as soon as possible. Returns the serial of its frames."""
         with self._wake:
             self._serial += 1
             serial = self._serial
@@ -87,12 +87,12 @@ class PictureLoop:
             self._wake.notify()
             if self._refines and picture and not picture.request.is_same_view(request):
                 picture.is_given_up = True
-                self._live.cancel()  # while the lock holds the other thread in the frame that is meant
+                self._live.cancel()  # under the lock, so that the other thread is still in the frame to be cancelled
         return serial
 
     @property
     def serial(self) -> int:
-        """Of the newest request."""
+        """Serial of the newest request."""
         return self._serial
 
     @property
@@ -104,15 +104,15 @@ class PictureLoop:
         self._encoder.quality = quality
 
     def image(self) -> Future[Image]:
-        """The picture as it is shown, denoised or not, with all its pixels."""
+        """The picture as shown, denoised or not, at full resolution."""
         return self._ask(self._image, True)
 
     def point(self, u: float, v: float) -> Future[Point]:
-        """What is at u, v (0 to 1, from the upper left corner)."""
+        """Distance and illuminance at u, v (0 to 1, from the upper left corner)."""
         return self._ask(lambda: self._point(u, v), False)
 
     def close(self) -> None:
-        """Ends the thread, from any other."""
+        """Ends the thread. May be called from any other thread."""
         with self._wake:
             self._is_closed = True
             self._wake.notify()
@@ -130,7 +130,7 @@ class PictureLoop:
                 self._wake.notify()
         return answer
 
-    # What follows runs on the loop's thread.
+    # The following functions run on the loop's thread.
 
     def _is_wanted(self) -> bool:
         return not self._pending and not self._is_closed
@@ -147,13 +147,14 @@ class PictureLoop:
                 elif self._picture and not self._picture.is_final:
                     self._refine(self._picture)
             except Cancelled:
-                # A newer request has given this frame up; where it came too late for that, it is taken once more.
+                # A newer request cancelled this frame. If the cancellation hit a later frame, its request is rendered
+                # again.
                 with self._wake:
                     self._pending = self._pending or pending
             except RealcamError as error:
                 with self._wake:
                     is_given_up = pending is None and self._pending is not None
-                if not is_given_up:  # a frame that was done when it was given up has lost its samples
+                if not is_given_up:  # a frame that was complete when it was cancelled has lost its samples
                     self._fail(pending, str(error))
             except Exception:
                 _log.exception("the picture could not be taken")
@@ -176,7 +177,8 @@ class PictureLoop:
         return False
 
     def _answerable(self) -> list[_Question]:
-        """Takes the questions that can be answered now. Who asks means the picture that was wanted last."""
+        """Removes and returns the questions that can be answered now: none while a newer request is pending, because
+        questions refer to the newest picture."""
         with self._wake:
             now = [] if self._pending else list(self._questions)
             for question in now:
@@ -190,7 +192,7 @@ class PictureLoop:
             question.answer.set_result(question.ask())
         except RealcamError as error:
             with self._wake:
-                # The samples were given up for another picture, of which the question is asked again.
+                # The samples were cancelled for another picture; the question is asked again for that one.
                 if self._pending and not self._is_closed:
                     self._questions.append(question)
                     return
@@ -202,7 +204,7 @@ class PictureLoop:
         serial = pending.serial if pending else self._picture.serial if self._picture else 0
         self._picture = None
         if self._is_closed:
-            return  # which has given up the samples that somebody wanted to look at
+            return  # closing has cancelled the samples, which is not an error
         self._on_error(serial, message)
 
     def _begin(self, pending: _Pending) -> None:
@@ -225,7 +227,7 @@ class PictureLoop:
         self._show(picture, codes, is_hurried=True)
 
     def _refine(self, picture: GrowingPicture) -> None:
-        """Takes once more of its samples, after as few steps as the whole resolution takes."""
+        """Renders the next refining frame: at the next resolution, or with further samples."""
         start = time.perf_counter()
         request, pace = picture.request, self._taker.pace
         is_new_size = picture.size != picture.whole
@@ -259,7 +261,8 @@ class PictureLoop:
         picture.steps.append((picture.samples - samples, time.perf_counter() - start))
 
     def _wait_for(self, frame: LiveFrame, picture: GrowingPicture) -> None:
-        """Meanwhile what asks for no new samples is done with those of the frame before."""
+        """Waits for a frame, and meanwhile serves requests and questions that need no new samples from the previous
+        frame."""
         while not frame.ready:
             with self._wake:
                 self._wake.wait(0.005)
@@ -275,7 +278,7 @@ class PictureLoop:
                 self._develop_for(picture, pending, is_free=False)
 
     def _develop_for(self, picture: GrowingPicture, pending: _Pending, *, is_free: bool = True) -> None:
-        """Shows for a new request the samples that are there. is_free: no frame is under way."""
+        """Develops the existing samples for a new request. is_free: true if no frame is in progress."""
         request = pending.request
         is_as_before = request == picture.request
         picture.request, picture.serial, picture.begun = request, pending.serial, pending.begun
@@ -284,7 +287,7 @@ class PictureLoop:
         if is_as_before:
             self._show(picture, self._taker.developed(picture))
             return
-        # The picture first: its noise takes two pictures more to be developed.
+        # Shows the picture first, because measuring its noise develops two more pictures.
         picture.noise_codes = picture.noise_tiles = None
         picture.is_final = picture.is_good_enough()
         self._show(picture, self._taker.developed(picture), is_free=is_free)
@@ -305,14 +308,14 @@ class PictureLoop:
 
     def _point(self, u: float, v: float) -> Point:
         picture = self._picture
-        # While the first frame of more pixels is taken, it has no samples, and the frame before is kept.
+        # During the first frame at a higher resolution there are no samples, and the previous frame is kept.
         if picture is None or not (picture.samples or picture.kept):
             raise InputError("there is no picture yet")
         return point_at(u, v, *self._taker.arrays(picture), picture.exposure_time_s)
 
     @staticmethod
     def _is_denoised(picture: GrowingPicture) -> bool:
-        """True if the picture is shown and saved without its noise."""
+        """True if the picture is shown and saved denoised."""
         return picture.request.denoises and not picture.is_final
 
     def _show(
@@ -330,9 +333,9 @@ class PictureLoop:
             if without_noise is not None:
                 codes = without_noise
             elif is_denoised:
-                return  # the frame before stands
+                return  # the previous frame remains
         frame_of = picture.frame_of(codes, self._taker.camera(picture).exposure_time_s, is_denoised)
         try:
             self._encoder.submit(codes, frame_of)
-        except RuntimeError:  # the program is ending, and takes no more work
+        except RuntimeError:  # the program is ending
             self._is_closed = True

@@ -1,4 +1,4 @@
-"""What is to be photographed for a window, and what comes of it."""
+"""Requests and results of a picture loop."""
 
 from __future__ import annotations
 
@@ -6,21 +6,21 @@ from dataclasses import dataclass, field
 
 from .._core import Camera, RenderSettings, RenderStats
 
-MOST_SPP = 4096  # with which a picture is done, however noisy it still is
+MOST_SPP = 4096  # samples per pixel at which refinement ends regardless of the noise
 
 
 @dataclass(frozen=True)
 class PictureRequest:
-    """camera: of the whole resolution. The others are as the user has set them."""
+    """A picture to render. camera: at full resolution. Other fields: the user's settings."""
 
     camera: Camera
     settings: RenderSettings = field(default_factory=lambda: RenderSettings(effects=(), max_bounces=1))
     tone: str = "film"
     is_automatic: bool = False  #: the exposure time follows the light
     compensation_ev: float = 0.0
-    noise_codes: float = 1.0  #: the picture is refined until its noise is as small
+    noise_codes: float = 1.0  #: RMS noise in 8-bit codes to which the picture is refined
     max_spp: int = MOST_SPP
-    denoises: bool = False  #: frames are shown without their noise, but for the last one
+    denoises: bool = False  #: frames are denoised, except for the final one
 
     def is_same_view(self, other: PictureRequest) -> bool:
         """True if both have the same camera, apart from its exposure."""
@@ -34,18 +34,18 @@ class PictureRequest:
 
 @dataclass(frozen=True)
 class Costs:
-    """Where the time of a picture goes, and its rays."""
+    """Time and rays of a picture, by stage."""
 
     lens_share: float
     scene_share: float
     other_share: float
     samples_per_s: float
     rays_per_s: float
-    passing_share: float  #: of the rays that are sent into the lens
+    passing_share: float  #: fraction of the rays sent into the lens that pass it
 
     @classmethod
     def of(cls, stats: RenderStats, seconds: float) -> Costs:
-        """The costs of samples that were taken in so many seconds."""
+        """Costs of samples rendered in `seconds`."""
         stages = stats.lens_seconds, stats.scene_seconds, stats.other_seconds
         all_stages = sum(stages) or 1.0
         return cls(
@@ -60,31 +60,31 @@ class Costs:
 
 @dataclass(frozen=True)
 class Frame:
-    """A developed picture on its way to the browser."""
+    """A developed picture for the browser."""
 
-    serial: int  #: of the request that it shows
+    serial: int  #: of its request
     jpeg: bytes
     jpeg_quality: int
     width: int
     height: int
-    whole_width: int  #: of the picture that was asked for
+    whole_width: int  #: of the full resolution
     whole_height: int
     samples: int  #: per pixel
-    is_preview: bool  #: of fewer pixels than were asked for
-    is_final: bool  #: nothing will be added
-    noise_codes: float | None  #: root mean square, 8-bit codes; None where it is not known yet
+    is_preview: bool  #: below the full resolution
+    is_final: bool  #: refinement is complete
+    noise_codes: float | None  #: RMS noise in 8-bit codes; None: not known yet
     seconds: float  #: from the request to this frame
     exposure_time_s: float
     costs: Costs | None
-    noise_tiles: list[list[float]] | None = None  #: the noise of parts of the picture, rows from above
+    noise_tiles: list[list[float]] | None = None  #: RMS noise of tiles of the picture, rows from the top
     is_denoised: bool = False
-    left_s: float | None = None  #: until nothing will be added; None if it is not known yet
-    final_noise_codes: float | None = None  #: by then, as far as it is known
+    left_s: float | None = None  #: forecast of the time until refinement is complete; None: not known yet
+    final_noise_codes: float | None = None  #: forecast of the final noise; None: not known yet
 
 
 @dataclass(frozen=True)
 class Point:
-    """What a pixel shows."""
+    """Distance and light at a pixel."""
 
-    distance_m: float  #: along the camera's axis from the film; inf where nothing is met
-    illuminance_lx: float  #: on the film, mean of the spot around it
+    distance_m: float  #: along the camera's axis from the film; inf if nothing is hit
+    illuminance_lx: float  #: on the film, mean of the surrounding spot

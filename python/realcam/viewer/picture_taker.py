@@ -1,4 +1,4 @@
-"""Takes and develops the samples of a picture that grows."""
+"""Renders, meters, denoises and develops a progressively refined picture."""
 
 from __future__ import annotations
 
@@ -21,15 +21,15 @@ from .pace import Pace
 from .picture_request import Costs, PictureRequest
 from .preview_denoiser import PreviewDenoiser
 
-_FIRST_FRAME_S = 0.1  # which the first frame of a change may take, denoised, so that 10 of them fit into a second
-_FEW_PIXELS = 50_000  # are developed here sooner than one more sample of them is taken
+_FIRST_FRAME_S = 0.1  # limit for the first frame of a change with denoising: 10 frames per second
+_FEW_PIXELS = 50_000  # up to this number, developing here is faster than one more sample on the device
 
 
 class PictureTaker:
-    """Works on one thread; what it has metered stays from picture to picture.
+    """Works on one thread; the metered exposure time is retained from picture to picture.
 
-    wait_for: called with a frame that is under way while the one before is kept, and returns when it is ready.
-    is_wanted: whether the picture is still wanted whose noise is taken away.
+    wait_for: called with a slow frame in progress, while the previous one is kept; returns when the frame is ready.
+    is_wanted: returns false to cancel denoising, because the picture is obsolete.
     """
 
     def __init__(
@@ -47,13 +47,13 @@ class PictureTaker:
         self.pace = Pace()
 
     def new_picture(self, request: PictureRequest, serial: int, begun: float) -> GrowingPicture:
-        """Without samples yet."""
+        """Returns a picture without samples, at the resolution of a preview."""
         self._metered_s = self._metered_s or request.camera.exposure_time_s
         return GrowingPicture(request, serial, begun, self.pace.preview_size(request.camera.film.resolution))
 
     def with_other_settings(self, picture: GrowingPicture, request: PictureRequest, serial: int) -> GrowingPicture:
-        """The same view with other settings, as fine as the picture that is shown, whose samples it has until its own
-        first ones come."""
+        """Returns a picture of the same view with other settings, at the resolution of the one shown, whose samples it
+        uses until its own first ones are rendered."""
         new = replace(self.new_picture(request, serial, time.perf_counter()), size=picture.size)
         new.kept, new.exposure_time_s = self.arrays(picture), picture.exposure_time_s
         new.denoised_lx = picture.denoised_lx
@@ -63,7 +63,7 @@ class PictureTaker:
         return picture.camera(self._metered_s)
 
     def shoot(self, picture: GrowingPicture, spp: int) -> NDArray[np.uint8]:
-        """Takes samples; all that are there, as they are wanted now."""
+        """Adds samples, and returns all samples developed with the current exposure."""
         request, camera = picture.request, self.camera(picture)
         start = time.perf_counter()
         frame = self._live.shoot(camera, picture.settings(), spp=spp, tone=request.tone)
@@ -75,15 +75,15 @@ class PictureTaker:
         picture.spent_s += seconds
         picture.samples, picture.exposure_time_s = frame.samples, camera.exposure_time_s
         picture.kept = self._live_arrays() if self.pace.was_slow(seconds) else None
-        is_as_wanted = picture.request is request  # another exposure may have been set while this frame was taken
+        is_as_wanted = picture.request is request  # the exposure may have been changed during this frame
         return codes if is_as_wanted else self._developed_here(picture)
 
     def keep(self, picture: GrowingPicture) -> None:
-        """Keeps the last frame, where the next one is slow."""
+        """Stores the last frame, for use during a slow one."""
         picture.kept = self._live_arrays()
 
     def meter(self, picture: GrowingPicture) -> bool:
-        """Sets the exposure time by the light of the picture. Whether it has changed so that it is seen."""
+        """Meters the picture and sets the exposure time. Returns true if the change is visible."""
         exposure, _ = self.arrays(picture)
         mean = metered_exposure_lx_s(exposure)
         if not (mean > 0 and math.isfinite(mean)):
@@ -94,7 +94,7 @@ class PictureTaker:
         return abs(math.log2(self._metered_s / before)) > 0.02
 
     def developed(self, picture: GrowingPicture) -> NDArray[np.uint8]:
-        """The samples that are there with another exposure."""
+        """Returns the existing samples developed with the current exposure."""
         if not picture.kept and math.prod(picture.size) > _FEW_PIXELS:
             return self.shoot(picture, 1)  # the device takes a sample and develops in less time
         return self._developed_here(picture)
@@ -102,16 +102,15 @@ class PictureTaker:
     def without_noise(
         self, picture: GrowingPicture, *, is_free: bool, is_hurried: bool = False
     ) -> NDArray[np.uint8] | None:
-        """The samples that are there, denoised. is_free: no frame is under way, whose end this would have to wait for.
-        is_hurried: only if it is quick, as for the first frame of a change.
+        """Denoises and develops the existing samples. is_free: true if no frame is in progress, for which denoising
+        would have to wait. is_hurried: denoise only if it is fast enough for the first frame of a change.
 
-        Returns None if there is nothing that a frame has not shown, or no time for it. Raises Cancelled if another
-        picture is wanted.
+        Returns None if there is nothing new to show or no time for it. Raises Cancelled if the picture is obsolete.
         """
         is_new = picture.denoised_of != picture.size
         is_quick = not is_hurried or self._denoiser.foreseen_s(picture.size) < _FIRST_FRAME_S - picture.spent_s
         if is_free and is_quick and (is_new or self._denoiser.is_due):
-            # The first frame of a change is shown, whatever is wanted by then.
+            # The first frame of a change is always shown, even if it is already obsolete.
             self._denoise(picture, (lambda: True) if is_hurried else self._is_wanted)
         elif picture.denoised_lx is None or picture.denoised_serial == picture.serial:
             return None
@@ -130,7 +129,7 @@ class PictureTaker:
         return PreviewDenoiser(self._device)
 
     def measure_noise(self, picture: GrowingPicture) -> None:
-        """Where it is due; and whether the picture is good enough with it."""
+        """Measures the noise if it is due, and sets is_final if the picture is good enough."""
         if picture.wants_measurement():
             exposure, _ = self.arrays(picture)
             picture.noise.add(picture.samples, exposure / np.float32(picture.exposure_time_s))
@@ -140,8 +139,8 @@ class PictureTaker:
         picture.is_final = picture.is_good_enough()
 
     def image(self, picture: GrowingPicture, *, is_denoised: bool) -> Image:
-        """All pixels, with the exposure time that is wanted now. is_denoised: as denoised last. Raises Cancelled if
-        another picture is wanted."""
+        """Returns the picture at its current resolution with the current exposure time. is_denoised: uses the last
+        denoised picture. Raises Cancelled if the picture is obsolete."""
         image, camera = self._live.image(), self.camera(picture)
         if is_denoised:
             if picture.denoised_of != picture.size:

@@ -1,4 +1,4 @@
-"""A closer look at the lens: plots for the point that was clicked."""
+"""Panel of lens plots for the point that was clicked."""
 
 from __future__ import annotations
 
@@ -15,18 +15,18 @@ from .server_loop import call_on_loop
 from .window import Window
 from .worker_process import WorkerProcess, WorkError
 
-_LONGEST_S = 120.0  # on a machine that is busy with pictures
-#: Draws for all windows, where it does not keep the threads of the pictures from running.
+_LONGEST_S = 120.0  # long enough for a machine that is busy rendering
+#: Process that draws for all windows, so that plots do not block the rendering threads of this one.
 plotter = WorkerProcess()
 
 
 class PlotsPanel:
-    """One plot at a time, while the panel is shown, of the lens when it has come to rest; none until it is drawn."""
+    """Shows one plot of the lens, drawn once changes have stopped, and only while the panel is shown."""
 
     def __init__(self, window: Window) -> None:
         self._bench = window.bench
         self._loop = asyncio.get_running_loop()
-        self._task = NewestTask("realcam-plots", quiet_s=0.3)  # a movement's pictures need the processor
+        self._task = NewestTask("realcam-plots", quiet_s=0.3)  # during a movement the pictures need the processor
         self._at = (0.5, 0.5)
         self._look: Look | None = None
         self._is_shown = False
@@ -43,7 +43,7 @@ class PlotsPanel:
                     ui.label("Drawing the plot ...")
 
     def show(self, is_shown: bool) -> None:
-        """Says whether the panel is shown. On the server's loop."""
+        """Notifies that the panel is shown or hidden. On the server's loop."""
         self._is_shown = is_shown
         self.update()
 
@@ -51,7 +51,7 @@ class PlotsPanel:
         self._task.close()
 
     def pick(self, u: float, v: float) -> None:
-        """Plots what is of one point for this place in the picture."""
+        """Selects the picture point for plots of a single field."""
         self._at = u, v
         self.update()
 
@@ -82,7 +82,7 @@ class PlotsPanel:
         try:
             try:
                 content = plotter.call(plot_svg, look, seconds=_LONGEST_S)
-            except WorkError:  # by no fault of this plot, perhaps
+            except WorkError:  # retries once, as the failure may be unrelated to this plot
                 content = plotter.call(plot_svg, look, seconds=_LONGEST_S)
         except WorkError as error:
             content = f'<p class="rc-problem">There is no plot: drawing it {error}</p>'

@@ -1,4 +1,4 @@
-"""Where the camera stands, and how a mouse moves it."""
+"""Camera pose, and its changes by mouse."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from scipy.spatial.transform import Rotation
 
 Vector = NDArray[np.float64]
 
-_STEEPEST = 0.995  # cosine between view and up: nearer to the pole the picture would turn around itself
+_STEEPEST = 0.995  # largest cosine between view and up: closer to the pole the picture would spin
 
 
 @dataclass(frozen=True)
 class Pose:
-    """Metres, of the scene. look_at is the point that the camera moves around."""
+    """Camera pose in scene coordinates, metres. look_at_m: centre of orbits."""
 
     position_m: tuple[float, float, float]
     look_at_m: tuple[float, float, float]
@@ -26,7 +26,7 @@ class Pose:
         return float(np.linalg.norm(np.subtract(self.look_at_m, self.position_m)))
 
     def orbited(self, right_rad: float, up_rad: float) -> Pose:
-        """Around look_at, to the right and up as the camera sees it."""
+        """Orbits around the look-at point, to the right and up in the camera's frame."""
         back = np.subtract(self.position_m, self.look_at_m)
         up = _unit(np.array(self.up))
         back = Rotation.from_rotvec(right_rad * up).apply(back)
@@ -37,7 +37,7 @@ class Pose:
         return replace(self, position_m=_triple(np.add(self.look_at_m, back)))
 
     def panned(self, right_m: float, up_m: float) -> Pose:
-        """Sideways, with the point that is looked at."""
+        """Moves camera and look-at point sideways."""
         view = _unit(np.subtract(self.look_at_m, self.position_m))
         right = _unit(np.cross(view, self.up))
         move = right_m * right + up_m * np.cross(right, view)
@@ -48,7 +48,7 @@ class Pose:
         )
 
     def dollied(self, factor: float) -> Pose:
-        """To factor times the distance from look_at."""
+        """Scales the distance from the look-at point."""
         back = np.subtract(self.position_m, self.look_at_m)
         return replace(self, position_m=_triple(np.add(self.look_at_m, factor * back)))
 

@@ -1,4 +1,4 @@
-"""Frames without noise."""
+"""Denoising of preview frames."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from ..denoiser import GUIDES, opened, without_noise
 from ..image import Image
 from .pace import Size
 
-_SHARE = 0.25  # of the time, at most: the rest is for samples
+_SHARE = 0.25  # largest fraction of time spent on denoising
 
 
 @cache
 def why_missing(device: str) -> str:
-    """Why there is no denoiser, and what to install; empty: there is one."""
+    """Reason why the denoiser is unavailable, and what to install; empty if it is available."""
     try:
         opened(device)
     except RealcamError as error:
@@ -29,31 +29,31 @@ def why_missing(device: str) -> str:
 
 
 class PreviewDenoiser:
-    """For one thread. device: as Image.denoised has it."""
+    """Denoiser for use on one thread. device: as in Image.denoised."""
 
     def __init__(self, device: str) -> None:
         self._core = opened(device)
-        self._rates: deque[float] = deque([1.5e6], maxlen=5)  # pixels a second
+        self._rates: deque[float] = deque([1.5e6], maxlen=5)  # pixels per second
         self._began = self._ended = 0.0
 
     @property
     def name(self) -> str:
-        """With its version, as Image.denoiser has it."""
+        """Name with version, as in Image.denoiser."""
         return self._core.name
 
     @property
     def is_due(self) -> bool:
-        """True if so much time has gone by since the last picture that denoising stays a small share of it."""
+        """True if enough time has passed since the last picture for denoising to stay below _SHARE of it."""
         now = time.perf_counter()
         return (self._ended - self._began) / max(now - self._began, 1e-9) <= _SHARE
 
     def foreseen_s(self, size: Size) -> float:
-        """The time that a picture of so many pixels takes, its guides included."""
+        """Expected time for a picture of this size, including its guide layers, in seconds."""
         return math.prod(size) / statistics.median(self._rates)
 
     def denoised(self, take: Callable[[], Image], is_wanted: Callable[[], bool] = lambda: True) -> Image:
-        """The image that take returns, with GUIDES, without its noise. Raises Cancelled if is_wanted, which is called
-        meanwhile, returns False."""
+        """Returns the denoised image. take: returns an image with the layers GUIDES. is_wanted: polled during the work.
+        Raises Cancelled if it returns False."""
         if not is_wanted():
             raise Cancelled("another picture is wanted")
         self._began = time.perf_counter()

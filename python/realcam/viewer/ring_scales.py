@@ -1,6 +1,6 @@
-"""The rings and dials of cameras: what is engraved on them, but for a zoom ring in steps of a third of a stop.
+"""Scales of a camera's rings and dials: steps of a third of a stop, except for the zoom ring.
 
-Engraved figures are rounded. What a ring sets is the exact power of two: f/5.6 is f/5.657, 1/60 s is 1/64 s.
+Engraved numbers are nominal. A ring sets the exact power of two: f/5.6 is f/5.657, 1/60 s is 1/64 s.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from .._core import Lens
 
 _ZOOM_STEPS = 300
 
-# As texts, because 1.0 and 1/60 are not what a ring says.
+# Engravings as text, because numbers would be shown as 1.0 or 0.0167.
 _APERTURES = (
     *("1", "1.1", "1.2", "1.4", "1.6", "1.8", "2", "2.2", "2.5", "2.8", "3.2", "3.5"),
     *("4", "4.5", "5", "5.6", "6.3", "7.1", "8", "9", "10", "11", "13", "14"),
@@ -33,22 +33,22 @@ _ISO = (
 
 @dataclass(frozen=True)
 class Ring:
-    """values: what the steps set. engraved: what stands beside them."""
+    """A scale of steps. values: exact value of each step. engraved: its label."""
 
     values: tuple[float, ...]
     engraved: tuple[str, ...]
 
     def step_of(self, value: float) -> int:
-        """The nearest step, by ratio."""
+        """Nearest step, by ratio."""
         return min(range(len(self.values)), key=lambda step: abs(math.log(self.values[step] / value)))
 
     def turned(self, value: float, steps: int) -> float:
-        """The value so many steps after the nearest one, or the last there is."""
+        """Value `steps` after the step nearest to `value`, clamped to the scale."""
         step = min(max(self.step_of(value) + steps, 0), len(self.values) - 1)
         return self.values[step]
 
     def text_of(self, value: float) -> str:
-        """What is engraved, where the ring stands on a step; the value to three digits between two."""
+        """Label of a value: the engraving if it lies on a step, otherwise three digits."""
         step = self.step_of(value)
         return self.engraved[step] if abs(math.log2(self.values[step] / value)) < 0.02 else f"{value:.3g}"
 
@@ -63,7 +63,7 @@ ISO = _ring(_ISO, 50.0, 3)
 
 
 def aperture_ring(widest: float) -> Ring:
-    """f-numbers from the lens's widest, which lies between two thirds as a rule, to f/64."""
+    """f-numbers from the lens's smallest, which usually lies between two steps, to f/64."""
     if not math.isfinite(widest):
         return Ring((1.0,), ("-",))
     steps = [step for step, value in enumerate(_ALL_APERTURES.values) if value > widest * 1.02]
@@ -74,9 +74,9 @@ def aperture_ring(widest: float) -> Ring:
 
 
 def zoom_ring(lens: Lens) -> Ring | None:
-    """Focal lengths in even ratios from one end to the other, and exactly those of the lens's positions.
+    """Geometrically spaced focal lengths over the zoom range, with exact values at the lens's positions.
 
-    None: the lens has no focal lengths between positions (see Lens.zoomed).
+    None: the lens has no continuous zoom (see Lens.zoomed).
     """
     known = lens.zoom_focal_lengths_mm
     if len(known) < 2 or known not in (sorted(known), sorted(known, reverse=True)):

@@ -1,6 +1,6 @@
-"""Saves pictures, shots and lenses: into the server's folders, or as downloads of the browser.
+"""Panel that saves pictures, shots and lenses: into the server's folders, or as browser downloads.
 
-A picture is always saved as the bench shows it at that moment, denoised or not, with all its pixels.
+A picture is saved as currently shown, denoised or not, at full resolution.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ _PROPOSED = {"picture": "picture.png", "shot": "shot.toml", "lens": "lens.toml"}
 
 
 class SavePanel:
-    """say: shows a text; its second argument is true if it tells of a problem."""
+    """Save panel. say: shows a message; its second argument is true for a problem."""
 
     def __init__(self, window: Window, folders: Folders, source: ShotSource, say: Callable[[str, bool], None]) -> None:
         self._window, self._bench, self._folders, self._source, self._say = window, window.bench, folders, source, say
@@ -75,7 +75,7 @@ class SavePanel:
     async def _save(self, what: str, name: str, *, is_refined: bool = False) -> None:
         path = self._folders.inside(name)
         contents, left_out = (None, []) if what == "picture" else await self._window.do(self._contents, what, path)
-        # A file beside the one that was named is looked at as that one is: it could be a link that leads elsewhere.
+        # Additional files are checked like the one that was named: they could be links that lead out of the folders.
         targets = {self._folders.inside(str(file)): file for file in contents or [path]}
         for target in targets:
             check_target(target)
@@ -91,7 +91,7 @@ class SavePanel:
             self._say("; ".join([f"Wrote {names}", *(f"not in it: {part}" for part in left_out)]), False)
 
     async def _agree(self, targets: Any, agreed: set[Path]) -> bool:
-        """Asks for those that are there already and were not asked for yet. Raises OSError."""
+        """Asks whether existing files not yet agreed to may be replaced. Returns false if not. Raises OSError."""
         there = [target for target in targets if target not in agreed and target.exists()]
         if there and not await _answer(" ".join(f"{target.name} is there already." for target in there)):
             return False
@@ -99,7 +99,8 @@ class SavePanel:
         return True
 
     async def _write(self, contents: dict[Path, bytes], agreed: set[Path]) -> bool:
-        """All of them or none that is new. Whether they were written. Raises ImageFileError."""
+        """Writes all files; on failure removes those that are new. Returns true if all were written. Raises
+        ImageFileError."""
         new: set[Path] = set()
         try:
             while True:
@@ -109,7 +110,7 @@ class SavePanel:
                 for target in waiting:
                     replaces = target in agreed
                     if not await self._window.do(write_whole, target, contents[target], replaces=replaces):
-                        break  # another window was quicker; its file is asked for
+                        break  # another window has just created the file; asks whether to replace it
                     if not replaces:
                         new.add(target)
                 else:
@@ -132,7 +133,7 @@ class SavePanel:
         self._say("; ".join([f"Downloaded {path.name}", *(f"not in it: {part}" for part in left_out)]), False)
 
     def _contents(self, what: str, path: Path) -> tuple[dict[Path, bytes], list[str]]:
-        """The contents of a shot or a lens, and what such files cannot say."""
+        """Returns file contents of a shot or a lens, and the properties that the format cannot express."""
         bench = self._bench
         if what == "lens":
             content, left_out = lens_content(bench.controls.set_lens, path.name)
@@ -141,13 +142,13 @@ class SavePanel:
         return shot_contents(self._source, bench.controls, effects, path), []
 
     async def _picture(self, name: str) -> bytes:
-        """As it is shown now. Raises Cancelled."""
+        """Returns the file content of the picture as shown. Raises Cancelled."""
         bench = self._bench
         return await self._window.do(lambda: picture_content(bench.image(), name, bench.shot.tone))
 
     async def _refined(self) -> None:
-        """Returns when the picture has the noise that is asked for, or the user wants it as it is. Raises InputError if
-        the user wants no picture."""
+        """Waits until the picture has the requested noise, or the user chooses to save it at once. Raises InputError if
+        the user cancels."""
         bench = self._bench
         if bench.is_refined:
             return
@@ -175,7 +176,7 @@ class SavePanel:
 
 
 async def _answer(question: str) -> bool:
-    """Asks whether files may be replaced."""
+    """Asks the user whether files may be replaced."""
     with ui.dialog() as dialog, ui.card():
         ui.label(question)
         with ui.row():

@@ -1,4 +1,4 @@
-"""What a window saves: pictures, shot files and lens files, as the content of files."""
+"""File contents of saved pictures, shots and lenses."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ from .shot_source import ShotSource
 
 PICTURE_SUFFIXES = (".png", ".jpg", ".jpeg", ".exr", ".dng")
 SUFFIXES = {"picture": PICTURE_SUFFIXES, "shot": (".toml",), "lens": (".toml", ".zmx", ".seq", ".json", ".roa")}
-_FILES_OF_A_SHOT = ("scene", "environment", "texture")  # keys that name files beside it
+_FILES_OF_A_SHOT = ("scene", "environment", "texture")  # keys with paths relative to the shot file
 _JPEG_QUALITY = 95
 
 
 def check_suffix(what: str, name: str) -> None:
-    """what: a key of SUFFIXES. Raises InputError where such a file cannot have that name."""
+    """Checks a file name's suffix. what: a key of SUFFIXES. Raises InputError if the suffix is not valid for it."""
     if Path(name).suffix.lower() not in SUFFIXES[what]:
         *others, last = SUFFIXES[what]
         wanted = f"{', '.join(others)} or {last}" if others else last
@@ -31,7 +31,7 @@ def check_suffix(what: str, name: str) -> None:
 
 
 def picture_content(image: Image, name: str, tone: str) -> bytes:
-    """The content of a .png, .jpg, .exr, or a .dng as an ideal sensor records it. Raises InputError and
+    """Returns the content of a .png, .jpg, .exr, or of a .dng as recorded by an ideal sensor. Raises InputError and
     ImageFileError."""
     check_suffix("picture", name)
     suffix = Path(name).suffix.lower()
@@ -49,22 +49,23 @@ def picture_content(image: Image, name: str, tone: str) -> bytes:
 
 
 def _with_comment(jpeg: bytes, text: str) -> bytes:
-    """With a segment COM (ITU-T T.81) after that of JFIF, which is always the first."""
+    """Inserts a COM segment (ITU-T T.81) after the JFIF segment, which always comes first."""
     begin = 4 + int.from_bytes(jpeg[4:6], "big")
     comment = text.encode()
     return jpeg[:begin] + b"\xff\xfe" + (len(comment) + 2).to_bytes(2, "big") + comment + jpeg[begin:]
 
 
 def lens_content(lens: Lens, name: str) -> tuple[bytes, list[str]]:
-    """The content of a lens file, by its suffix, and what such a file cannot say. Raises InputError."""
+    """Returns the content of a lens file, by its suffix, and the properties that the format cannot express. Raises
+    InputError."""
     check_suffix("lens", name)
     return lens._file_content(name)
 
 
 def shot_contents(source: ShotSource, controls: CameraControls, effects: list[str], path: Path) -> dict[Path, bytes]:
-    """Contents by the files to be written: the shot as it stands, and its lens where that is not a bundled one.
+    """Returns the contents of the files to write: the current shot, and its lens unless it is a bundled one.
 
-    What the bench does not change stays as the source has it. Raises InputError.
+    Keys that the bench does not change are copied from the source. Raises InputError.
     """
     check_suffix("shot", path.name)
     shot: Any = tomlkit.parse(source.text)
@@ -80,9 +81,9 @@ def shot_contents(source: ShotSource, controls: CameraControls, effects: list[st
         contents[beside], _ = lens_content(lens, beside.name)
         shot["lens"] = f"./{beside.name}"
     for key in ("blades", "blade_rounding", "blade_rotation_deg", "zoom", "focal_length_mm", "f_number"):
-        shot.pop(key, None)  # the lens has them
+        shot.pop(key, None)  # described by the lens, or set below
     for key in ("key", "iso_follows_s", "pose", "camera"):
-        shot.pop(key, None)  # which go before what is said below
+        shot.pop(key, None)  # would override the keys set below
     if controls.zoom is not None:
         shot["zoom" if isinstance(controls.zoom, str) else "focal_length_mm"] = controls.zoom
     widest = controls.body.f_number
@@ -99,20 +100,20 @@ def shot_contents(source: ShotSource, controls: CameraControls, effects: list[st
     shot["iso"] = controls.iso
     shot["effects"] = effects
     if RenderSettings(illuminant="D65").with_(effects=effects).illuminant is None:
-        shot.pop("illuminant", None)  # which belongs to effects that were switched off
+        shot.pop("illuminant", None)  # applies only to effects that are off now
     contents[path] = tomlkit.dumps(shot).encode()
     return contents
 
 
 def _is_bundled(lens: Lens) -> bool:
-    """Not one that was edited under its old name; nor one with another diaphragm, which the shot file had."""
+    """True if the lens equals the bundled lens of its name: neither edited, nor with another diaphragm from a shot."""
     bundled = Lens.load(lens.name).wide_open()
     if lens.zoom_position in bundled.zoom_positions:
         bundled = bundled.zoomed(lens.zoom_position)
     if bundled == lens:
         return True
-    # One that a shot has focused has come back to infinity: there to the last digits, and its file may say a place
-    # beside that.
+    # A lens focused by a shot was refocused to infinity, which is exact only up to rounding; and the focus in the lens
+    # file may differ from infinity. Compares both at infinity.
     bundled, lens = bundled.focused(math.inf), lens.focused(math.inf)
     if len(lens.surfaces) != len(bundled.surfaces):
         return False

@@ -32,18 +32,18 @@ from .strange_requests import tell_in_one_line
 from .windows import Windows
 
 _STATIC = Path(__file__).with_name("static")
-_MOST_MESSAGE = 1 << 20  # bytes, of the page's own socket, too
+_MOST_MESSAGE = 1 << 20  # bytes; applies to NiceGUI's socket as well
 _UNKNOWN_WINDOW = 4404  # see stream.js
-_GOODBYE_S = 1  # for so long the server waits at its end for browsers to close their connections
+_GOODBYE_S = 1  # time that the server waits at shutdown for browsers to close their connections
 
 
 @dataclass(frozen=True)
 class ServerSettings:
-    """folders: the only ones that are read and written. token: "" makes one where it is wanted.
+    """folders: the only ones that are read and written. token: "": generated if the server needs one.
 
-    noise_codes: to which a new window refines its pictures, of 255 grey levels.
-    most_windows: of which each has threads, a scene on the device and a picture.
-    reconnect_s: for so long a window whose connection is lost keeps what it has.
+    noise_codes: noise to which a new window refines its pictures, in 8-bit codes.
+    most_windows: limit, as each window has threads, a scene on the device and a picture.
+    reconnect_s: time that a window is retained after its connection is lost.
     """
 
     folders: tuple[Path, ...]
@@ -59,19 +59,19 @@ class ServerSettings:
 
 
 def serve(shot: Shot, source: ShotSource, settings: ServerSettings) -> None:
-    """Serves until Ctrl-C, which ends the program. Raises InputError for folders that are none."""
+    """Serves until Ctrl-C, which ends the program. Raises InputError if a folder does not exist."""
     folders = Folders(settings.folders)
     token = None if is_local(settings.host) and not settings.token else settings.token or secrets.token_urlsafe(24)
     windows = Windows(settings.most_windows)
 
     app.add_middleware(BodyLimit, most=2 * MOST_UPLOADED)
     app.add_middleware(Gate, token=token)
-    # Middleware that is added stands within NiceGUI's own.
+    # add_middleware adds inside of NiceGUI's own middleware; LeftRequests must be outermost.
     build_middleware_stack = app.build_middleware_stack
     app.build_middleware_stack = lambda: LeftRequests(build_middleware_stack())  # type: ignore[method-assign]
     app.add_static_files("/realcam", _STATIC)
 
-    # By the title a page knows whether what it has kept is of this shot.
+    # The page recognises by its title whether its stored state belongs to this shot.
     @ui.page("/", title=f"{source.name} - realcam", response_timeout=30)
     async def page(client: Client) -> None:
         try:
@@ -85,7 +85,7 @@ def serve(shot: Shot, source: ShotSource, settings: ServerSettings) -> None:
             return
         build_page(client, window, folders, source)
 
-    # Not a coroutine: the server draws them on threads of its own.
+    # Not a coroutine, so that the server draws previews on worker threads.
     @app.get("/realcam-lenses/{name}.svg")
     def preview(name: str) -> Response:
         try:
@@ -111,7 +111,7 @@ def serve(shot: Shot, source: ShotSource, settings: ServerSettings) -> None:
             threading.Thread(target=process.warm_up, args=(module,), daemon=True).start()
 
     tell_in_one_line()
-    # Some connections are cut at the end because no client closes them.
+    # Hides the message about connections that clients have not closed at shutdown.
     logging.getLogger("uvicorn.error").addFilter(lambda record: "timeout graceful shutdown" not in record.getMessage())
     status = 128 + signal.SIGINT
 
@@ -120,7 +120,7 @@ def serve(shot: Shot, source: ShotSource, settings: ServerSettings) -> None:
         status = 128 + signal.SIGTERM
         raise KeyboardInterrupt
 
-    signal.signal(signal.SIGTERM, end)  # which the server calls when it has shut down
+    signal.signal(signal.SIGTERM, end)  # the server calls this handler after its shutdown
     with contextlib.suppress(KeyboardInterrupt):
         ui.run(
             host=settings.host,
@@ -135,26 +135,26 @@ def serve(shot: Shot, source: ShotSource, settings: ServerSettings) -> None:
             ws_max_size=_MOST_MESSAGE,
             tailwind=True,
             timeout_graceful_shutdown=_GOODBYE_S,
-            # Called when the server listens; the startup handlers are called before that.
+            # Called once the server listens, whereas startup handlers are called before.
             callback_notify=tell,
             timeout_notify=10**9,
         )
     for process in (reader, plotter):
         process.end()
-    # Python would wait for what threads are doing: frames, plans and drawings that nobody is going to see.
+    # Python would wait for threads to finish frames, plans and drawings that are no longer needed.
     sys.stdout.flush()
     sys.stderr.flush()
     os._exit(status)
 
 
 def check_port(host: str, port: int) -> None:
-    """Raises InputError where the server could not listen."""
+    """Raises InputError if the server cannot listen at the address."""
     try:
         for family, kind, protocol, _, address in socket.getaddrinfo(host, port, type=socket.SOCK_STREAM):
             with socket.socket(family, kind, protocol) as listening:
                 listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
                 if family == socket.AF_INET6:
-                    listening.setsockopt(socket.IPPROTO_IPV6, socket.IPV6_V6ONLY, 1)  # as the server does
+                    listening.setsockopt(socket.IPPROTO_IPV6, socket.IPV6_V6ONLY, 1)  # as in the server
                 listening.bind(address)
                 listening.listen()
     except OSError as error:

@@ -1,4 +1,4 @@
-"""The way from other threads to the server's loop."""
+"""Calls from other threads to the server's event loop."""
 
 from __future__ import annotations
 
@@ -9,6 +9,6 @@ from typing import Any
 
 
 def call_on_loop(loop: asyncio.AbstractEventLoop, function: Callable[..., Any], *arguments: Any) -> None:
-    """May be called from any thread. While the server is going down, the call is dropped."""
+    """Schedules a call on the loop. May be called from any thread. Has no effect while the server is shutting down."""
     with suppress(RuntimeError):
         loop.call_soon_threadsafe(function, *arguments)

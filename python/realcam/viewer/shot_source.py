@@ -1,4 +1,4 @@
-"""What a bench was opened with: a shot file, or a scene file."""
+"""The shot or scene file with which a bench was opened."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from ..shot import Shot, is_shot_file, shot_with_words, text_of_shot_of
 
 @dataclass(frozen=True)
 class ShotSource:
-    """text: of a shot file. folder: what paths in it are relative to."""
+    """Source of a bench. text: content of a shot file. folder: base of its relative paths."""
 
     name: str
     text: str
@@ -19,7 +19,8 @@ class ShotSource:
 
     @classmethod
     def opened(cls, path: Path, device: str, words: Mapping[str, str] | None = None) -> tuple[ShotSource, Shot]:
-        """words: of the camera, as for shot_with_words; a shot that is saved has them. Raises what Shot.load raises."""
+        """Opens a shot or scene file. words: camera options, as for shot_with_words; saved shots include them. Raises
+        the errors of Shot.load."""
         shot = shot_with_words(path, words or {}, device)
         text = path.read_text(encoding="utf-8") if is_shot_file(path) else text_of_shot_of(path.name)
         return cls(path.name, text, path.absolute().parent), shot

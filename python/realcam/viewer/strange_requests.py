@@ -1,4 +1,4 @@
-"""What the server's log says of requests that no page of ours makes."""
+"""Logging of malformed requests, which our page never sends."""
 
 from __future__ import annotations
 
@@ -6,15 +6,15 @@ import logging
 import traceback
 from pathlib import Path
 
-# These loggers report errors about what came over the network.
+# Loggers of errors caused by network input.
 _LOGGERS = ("asyncio", "nicegui", "uvicorn.error", "engineio.server", "socketio.server")
 _PACKAGE = Path(__file__).parents[1]
-_MIDDLEWARE = ("access.py", "left_requests.py")  # stand around all code that answers requests
+_MIDDLEWARE = ("access.py", "left_requests.py")  # in the traceback of every request
 
 
 class OneLine(logging.Filter):
-    """Makes one line of an exception that realcam's code had no part in: the server's libraries do not check all that
-    they are sent, and a stranger must not fill the log with tracebacks.
+    """Shortens exceptions outside of realcam's code to one line: the server's libraries do not validate all input, and
+    an attacker must not fill the log with tracebacks.
     """
 
     def filter(self, record: logging.LogRecord) -> bool:
@@ -33,6 +33,6 @@ def _is_ours(error: BaseException) -> bool:
 
 
 def tell_in_one_line() -> None:
-    """From now on all loggers of the server's libraries write an error in one line."""
+    """Installs OneLine in the loggers of the server's libraries."""
     for name in _LOGGERS:
         logging.getLogger(name).addFilter(OneLine())

@@ -1,7 +1,8 @@
-"""The WebSocket between a window's bench and its page: frames and drawings one way, mouse and keys the other.
+"""WebSocket between a window's bench and its page: sends frames and drawings, receives mouse and keyboard input.
 
 A frame is a binary message: the length of a JSON header as four bytes, little-endian, the header, a JPEG. At most one
-is under way; of those that come meanwhile the newest is sent when the page has acknowledged it. All else is JSON text.
+frame is unacknowledged; once the page has acknowledged it, the newest waiting one is sent. Other messages are JSON
+text.
 """
 
 from __future__ import annotations
@@ -27,13 +28,13 @@ from .server_loop import call_on_loop
 
 _log = logging.getLogger(__name__)
 
-_QUALITIES = (40, 90)  # of JPEG
-_SLOW_S, _QUICK_S = 0.120, 0.050  # from sending a frame to its acknowledgement
-_LAST_S = 0.5  # of a last frame, which then comes once more at its best: some times as large, while nobody waits
+_QUALITIES = (40, 90)  # lowest and highest JPEG quality
+_SLOW_S, _QUICK_S = 0.120, 0.050  # round-trip times of a frame above and below which the quality is adapted
+_LAST_S = 0.5  # largest round-trip time of a final frame at which it is sent again at the highest quality
 
 
 class PictureStream:
-    """Serves the pages that show one bench: one at a time, and the next one after a lost connection."""
+    """Serves the page of one bench: one connection at a time, and a new one after a lost connection."""
 
     def __init__(self, bench: LensBench, executor: ThreadPoolExecutor) -> None:
         self._bench, self._executor = bench, executor
@@ -41,10 +42,10 @@ class PictureStream:
         self._frames: dict[str, Frame] = {}
         self._texts: dict[str, str] = {}
         self._news = asyncio.Event()
-        self.inbox = Inbox()  #: outlives a connection that is lost
-        self._serving: list[asyncio.Task[None]] = []  #: of the newest connection
-        self._sent: tuple[str, float] | None = None  #: the frame that is not acknowledged, and when it was sent
-        self._sent_frame: Frame | None = None  #: the last one
+        self.inbox = Inbox()  #: outlives a lost connection
+        self._serving: list[asyncio.Task[None]] = []  #: tasks of the newest connection
+        self._sent: tuple[str, float] | None = None  #: the unacknowledged frame, and the time at which it was sent
+        self._sent_frame: Frame | None = None  #: the last frame sent
         self._quality = _QUALITIES[1]
         bench.listeners.frame = self._offer_frame
         bench.listeners.lens = lambda view: self._offer_text("lens", view)
@@ -55,9 +56,9 @@ class PictureStream:
         bench.listeners.rungs = lambda rungs, note: self._offer_text("rungs", {"rungs": rungs, "note": note})
 
     async def serve(self, socket: WebSocket) -> None:
-        """Until the page goes. Refuses what no page of ours sends by closing the connection."""
+        """Serves until the page disconnects. Closes the connection at a message that our page never sends."""
         await socket.accept()
-        for task in self._serving:  # a connection that has died without a word would go on taking frames
+        for task in self._serving:  # a dead connection would continue to take frames
             task.cancel()
         self._sent = None
         tasks = [
@@ -97,15 +98,15 @@ class PictureStream:
     async def _work(self) -> None:
         while True:
             message = await self.inbox.next()
-            # Shielded, because what waits for its turn would be given up with the connection.
+            # Shielded, because otherwise a queued action would be cancelled with the connection.
             bad = await asyncio.shield(self._loop.run_in_executor(self._executor, self._perform, message))
             if bad:
                 raise bad
 
     def _perform(self, message: Message) -> BadMessage | None:
-        """On the executor's thread. Raises nothing, because nobody waits for it where the connection is lost meanwhile.
+        """Performs a message on the executor's thread. Never raises, because nobody awaits it after a lost connection.
 
-        Returns what makes it no message of our pages.
+        Returns the BadMessage of a message that our page never sends.
         """
         try:
             perform(message, self._bench)
@@ -138,23 +139,23 @@ class PictureStream:
             return
         took = time.perf_counter() - self._sent[1]
         self._sent = None
-        # Down by a share, up by steps: a slow moment is forgotten after ten quick frames.
+        # Multiplicative decrease, additive increase: recovers from a slow moment within ten fast frames.
         lowest, highest = _QUALITIES
         if took > _SLOW_S:
             self._quality = max(lowest, int(0.8 * self._quality))
         elif took < _QUICK_S:
             self._quality = min(highest, self._quality + 5)
         frame = self._sent_frame
-        # Nothing would come any more, and the last frame of a picture would stay as a slow moment has left it.
+        # Sends a final frame of reduced quality again, because no further frame would replace it.
         is_sent_again = bool(frame and frame.is_final and frame.jpeg_quality < highest and not self._frames)
         is_sent_again &= took <= _LAST_S
         self._bench.set_jpeg_quality(highest if is_sent_again else self._quality)
         self._news.set()
         if is_sent_again:
-            with contextlib.suppress(RuntimeError):  # the window is closed
+            with contextlib.suppress(RuntimeError):  # raised if the window is closed
                 self._executor.submit(self._bench.show_again)
 
-    # On any thread.
+    # The following functions may be called on any thread.
 
     def _offer_frame(self, slot: str, frame: Frame) -> None:
         call_on_loop(self._loop, self._put_frame, slot, frame)

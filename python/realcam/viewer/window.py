@@ -1,4 +1,4 @@
-"""What one browser window has on the server."""
+"""Server-side state of one browser window."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ T = TypeVar("T")
 
 
 class Window:
-    """A bench, the stream to its page, and the thread on which all of the user's actions are done in their order."""
+    """A bench, the stream to its page, and the thread that performs the user's actions in order."""
 
     def __init__(self, bench: LensBench) -> None:
         self.key = secrets.token_urlsafe(16)
@@ -25,15 +25,15 @@ class Window:
 
     @property
     def path(self) -> str:
-        """The path of its WebSocket."""
+        """Path of its WebSocket."""
         return f"/realcam/stream/{self.key}"
 
     async def do(self, action: Callable[..., T], *arguments: Any, **named: Any) -> T:
-        """Does it after what was asked for before. Raises what it raises."""
+        """Performs an action after all earlier ones. Raises the action's exceptions."""
         loop = asyncio.get_running_loop()
         return await loop.run_in_executor(self._actions, lambda: action(*arguments, **named))
 
     def close(self) -> None:
-        """Ends its threads; from any thread but these."""
+        """Ends its threads. May be called from any other thread."""
         self._actions.shutdown(wait=True, cancel_futures=True)
         self.bench.close()

@@ -1,4 +1,4 @@
-"""The windows that are open."""
+"""Registry of the open windows."""
 
 from __future__ import annotations
 
@@ -13,27 +13,29 @@ from .window import Window
 
 
 class Windows:
-    """At most so many: each has threads, a scene on the device and a picture. To be used on the server's loop."""
+    """Open windows, at most `most`, as each has threads, a scene on the device and a picture. For use on the server's
+    loop."""
 
     def __init__(self, most: int) -> None:
         self._most = most
         self._open: dict[str, tuple[Client, Window]] = {}
         self._in_the_making = 0
-        # Not the loop's own executor, for which the server would wait at its end.
+        # Not the loop's default executor, for which the server would wait at shutdown.
         self._executor = ThreadPoolExecutor(thread_name_prefix="realcam-windows")
 
     def get(self, key: str) -> Window | None:
-        """By the window's key."""
+        """Returns the window with a key; None if it is not open."""
         return self._open[key][1] if key in self._open else None
 
     async def open(self, client: Client, make: Callable[[], LensBench]) -> Window | None:
-        """One more, whose bench is made on another thread. None where there are too many. Raises what `make` raises."""
+        """Opens a window, whose bench is made on another thread. Returns None if too many are open. Raises the
+        exceptions of `make`."""
         left = None
         if len(self._open) + self._in_the_making >= self._most:
             left = self._one_that_is_left()
             if left is None:
                 return None
-        self._in_the_making += 1  # before anything is waited for, in which more are asked for
+        self._in_the_making += 1  # before the first await, during which more windows may be requested
         try:
             if left:
                 await asyncio.wrap_future(self._executor.submit(left.close))
@@ -46,7 +48,7 @@ class Windows:
         finally:
             self._in_the_making -= 1
         window = Window(bench)
-        if client.is_deleted:  # in the meantime
+        if client.is_deleted:  # while the bench was made
             self._executor.submit(window.close)
             return None
         self._open[window.key] = client, window
@@ -58,7 +60,8 @@ class Windows:
             self._executor.submit(window.close)
 
     def _one_that_is_left(self) -> Window | None:
-        """The oldest one whose page has gone, if any has; it would have been kept for some time yet."""
+        """Removes and returns the oldest window without a connection, before its time to reconnect ends; None: there is
+        no such window."""
         for key, (client, window) in self._open.items():
             if not client.has_socket_connection:
                 del self._open[key]

@@ -1,4 +1,4 @@
-"""Work in a process of its own, which may crash, never end, or be ended."""
+"""Function calls in a separate process, which may crash, hang or be killed."""
 
 from __future__ import annotations
 
@@ -18,33 +18,34 @@ from typing import Any, TypeVar
 from .._core import InputError
 
 T = TypeVar("T")
-_NICENESS = 5  # pictures go before
+_NICENESS = 5  # lower priority than rendering
 _LONGEST_IMPORT_S = 60.0
-_MOST_BYTES = 4 << 30  # of memory that the process may take
+_MOST_BYTES = 4 << 30  # memory limit of the process
 _PROCESSES = multiprocessing.get_context("spawn")
 
 
 class WorkError(InputError):
-    """Work that was not done in time, or crashed. `str` says which, as the end of a sentence about it."""
+    """A call that timed out or crashed. Its message is the predicate of a sentence: "crashed"."""
 
 
 class WorkerProcess:
-    """Calls functions one at a time, in a process that is begun when it is wanted, and anew when it is gone.
+    """Calls functions one at a time in a process, which is started on demand and restarted if it has died.
 
-    The process ends with its parent, whatever it does at that time and however the parent ends.
+    The process ends with its parent, whatever either is doing.
     """
 
     def __init__(self) -> None:
-        self._turn = threading.Lock()  # of calls
-        self._beginning = threading.Lock()  # of what is below, while it changes
+        self._turn = threading.Lock()  # serialises calls
+        self._beginning = threading.Lock()  # guards the fields below
         self._is_ended = False
         self._process: BaseProcess | None = None
         self._line: Connection | None = None
 
     def call(self, function: Callable[..., T], *arguments: Any, seconds: float) -> T:
-        """What the function gives or raises. Both it and its values must be such as can be pickled.
+        """Returns the function's result or raises its exception. Function, arguments and result must be picklable.
 
-        Raises WorkError after so many seconds, in which the process is begun, too, if it has to be.
+        Raises WorkError if the process crashes, or after `seconds`, which include the start of the process if
+        necessary.
         """
         with self._turn:
             line = self._begun()
@@ -65,12 +66,12 @@ class WorkerProcess:
         return result
 
     def warm_up(self, module: str) -> None:
-        """Begins the process and imports a module, so that the first call need not wait for either."""
+        """Starts the process and imports a module, to shorten the first call."""
         with contextlib.suppress(WorkError):
             self.call(_import, module, seconds=_LONGEST_IMPORT_S)
 
     def end(self) -> None:
-        """Ends the process for good, whatever it does; a call that waits for it raises WorkError, as do later ones."""
+        """Kills the process permanently. A call in progress raises WorkError, and so do later calls."""
         with self._beginning:
             self._is_ended = True
             self._kill()
@@ -102,7 +103,7 @@ class WorkerProcess:
 
 
 def _work(line: Connection) -> None:
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # a terminal's Ctrl-C is the parent's
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C in a terminal is handled by the parent
     _end_with_parent()
     os.nice(_NICENESS)
     resource.setrlimit(resource.RLIMIT_DATA, (_MOST_BYTES, _MOST_BYTES))
@@ -124,12 +125,12 @@ def _import(module: str) -> None:
 
 
 def _end_with_parent() -> None:
-    """Has the kernel send SIGIO, which ends a process, when the pipe to the parent closes: no code has to run."""
+    """Lets the kernel send SIGIO, whose default action ends the process, when the pipe to the parent closes."""
     parent = multiprocessing.parent_process()
     assert parent is not None
     signal.signal(signal.SIGIO, signal.SIG_DFL)
     fcntl.fcntl(parent.sentinel, fcntl.F_SETOWN, os.getpid())
     flags = fcntl.fcntl(parent.sentinel, fcntl.F_GETFL)
     fcntl.fcntl(parent.sentinel, fcntl.F_SETFL, flags | os.O_ASYNC)
-    if not parent.is_alive():  # since before
+    if not parent.is_alive():  # the parent ended before the signal was set up
         os._exit(1)

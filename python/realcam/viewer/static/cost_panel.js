@@ -1,8 +1,8 @@
-// The effects with what the planner says of them, and what the picture costs.
+// Effects with the planner's decisions, and costs of the picture.
 
 import { streamAt } from "/realcam/stream.js";
 
-// Which stand out from a light page and a dark one.
+// Colours that are visible on a light page and a dark one.
 const COLOURS = ["#4a78d6", "#c7791a", "#2f9a58", "#d9493c", "#9467bd", "#15939f", "#b0608f", "#80803a", "#5b8f9e", "#e0709a", "#a0642d", "#8f8f8f"];
 const W = 300, H = 120, LEFT = 34, BOTTOM = 20;
 
@@ -110,7 +110,7 @@ export default {
     colour: (k) => COLOURS[k % COLOURS.length],
     planned: (row) => (!row ? "" : row.is_kept ? " (on)" : " (off)"),
     spoken: (name) => name[0].toUpperCase() + name.slice(1).replaceAll("_", " "),
-    /// A sentence on what the effect changes here.
+    /// Sentence about the size of an effect in this picture.
     size(name) {
       const row = this.rows[name], short = (x) => (x === null ? "∞" : String(Number(x.toPrecision(2)))); // JSON has no infinity
       if (!row) return "";

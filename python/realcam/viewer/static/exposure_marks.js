@@ -1,11 +1,11 @@
-// What cameras draw over a picture, from its 8-bit codes: histogram, clipping, focus peaking.
+// Camera overlays computed from 8-bit codes: histogram, clipping, focus peaking.
 
-const CLIPPED = 254; // JPEG moves codes by one or two
-const PEAKING = 44; // codes by which the brightness of a pixel differs from its neighbours' where an edge is sharp
-const SURE = 4; // standard deviations of the noise by which an edge has to stand out of it
-const NOISE_GAIN = Math.sqrt(20); // of the Laplacian below: the root of the sum of its squared weights
+const CLIPPED = 254; // JPEG changes codes by one or two
+const PEAKING = 44; // smallest response of the Laplacian below at a sharp edge, in codes
+const SURE = 4; // smallest response at an edge, in standard deviations of its noise
+const NOISE_GAIN = Math.sqrt(20); // noise gain of the Laplacian below: root of the sum of its squared weights
 
-/// Counts of 64 bins for red, green, blue.
+/// Histograms of 64 bins for red, green, blue.
 export function histogramOf(image) {
   const bins = [new Uint32Array(64), new Uint32Array(64), new Uint32Array(64)];
   const data = image.data;
@@ -13,7 +13,7 @@ export function histogramOf(image) {
   return bins;
 }
 
-/// Share of the pixels with a channel at its upper end.
+/// Fraction of the pixels with a clipped channel.
 export function clippedShare(image) {
   const data = image.data;
   let count = 0;
@@ -22,8 +22,8 @@ export function clippedShare(image) {
   return count / (data.length / 4);
 }
 
-/// Marks in a picture of the same size: what is clipped as red stripes, sharp edges in yellow. noise: of parts of the
-/// picture, in codes, as rows of numbers; without it nothing tells edges from noise, and no edge is marked.
+/// Returns an overlay of the same size: clipped pixels as red stripes, sharp edges in yellow. noise: RMS noise of tiles
+/// of the picture, in codes, as rows of numbers; without it, edges cannot be told from noise and none is marked.
 export function marksOf(image, { clipping, peaking, noise = null }) {
   const { width, height, data } = image;
   const marks = new ImageData(width, height);
@@ -38,9 +38,9 @@ export function marksOf(image, { clipping, peaking, noise = null }) {
   return marks;
 }
 
-/// Where the brightness bends by more than noise does, at neighbouring pixels: an edge is a line, noise is not.
+/// Pixels whose Laplacian exceeds the noise together with that of a neighbour: an edge is a line, noise is not.
 function sharpEdges({ width, height, data }, noise) {
-  // A pixel that is brighter or darker than all around it is no edge, but a rare sample.
+  // An isolated brighter or darker pixel is an outlier of the samples, not an edge.
   const green = new Uint8ClampedArray(width * height);
   for (let k = 0; k < green.length; ++k) green[k] = data[4 * k + 1];
   const even = green.slice();
@@ -87,7 +87,7 @@ export function drawHistogram(canvas, bins) {
   const context = canvas.getContext("2d");
   const { width, height } = canvas;
   context.clearRect(0, 0, width, height);
-  // The fullest bin but for the two ends, which hold what is black and what is clipped.
+  // The fullest bin except for the two ends, which hold black and clipped pixels.
   const highest = Math.max(1, ...bins.flatMap((channel) => [...channel.subarray(1, 63)]));
   context.globalCompositeOperation = "screen";
   ["#e0453a", "#35b25f", "#4a7dff"].forEach((colour, c) => {

@@ -1,4 +1,4 @@
-// What mouse and keys do: by its button, and by the key "?".
+// Dialog of mouse and keyboard controls, opened by its button or the key "?".
 
 const ROWS = [
   ["drag, arrow keys", "move the camera around its subject"],

@@ -1,4 +1,4 @@
-// The lens: its section, to scale, whose surfaces can be dragged, and the table of its surfaces.
+// The lens: a section to scale with surfaces that can be dragged, and the table of surfaces.
 
 import { streamAt, oncePerFrame } from "/realcam/stream.js";
 import { profile, radiusOfSag, sag } from "/realcam/lens_shape.js";
@@ -117,7 +117,7 @@ export default {
     history: { can_undo: false, can_redo: false }, grade: "commercial", figures: FIGURES,
   }),
   computed: {
-    // As SVG wants them, once for each lens and not for each step of a drag.
+    // SVG paths, computed once for each lens and not at each step of a drag.
     shapes() {
       const { elements, crossings, faces, blockers, film } = this.view;
       return {
@@ -131,7 +131,7 @@ export default {
     surface() {
       return this.view && this.chosen !== null ? this.view.surfaces[this.chosen] : null;
     },
-    /// Of the chosen surface: what can be dragged, and where it is taken.
+    /// Drag handles of the chosen surface, and their positions.
     handles() {
       const s = this.surface;
       if (!s || !this.view.is_in_place) return []; // a drag moves points along the axis and away from it
@@ -148,7 +148,7 @@ export default {
       const radii = this.view?.surfaces.some((row) => "radius_x_mm" in row) ? [RADIUS, RADIUS_X] : [RADIUS];
       return [...radii, ...COLUMNS, ...terms.map((p) => [`a${p}`, `A${p}`, `mm^${1 - p}`, `Aspheric coefficient of r^${p}`])];
     },
-    /// Of the columns, so that their longest values are shown whole.
+    /// Widths of the columns, wide enough for their longest values.
     widths() {
       const longest = (key) => Math.max(6, ...this.view.surfaces.filter((row) => this.has(row, key)).map((row) => this.shown(row, key).length));
       return Object.fromEntries(this.columns.map(([key]) => [key, `calc(${longest(key)}ch + 0.75rem)`]));
@@ -184,7 +184,7 @@ export default {
     setHistory(can_undo, can_redo) {
       this.history = { can_undo, can_redo };
     },
-    /// Glass and film fill the drawing, wherever the film is.
+    /// Fits the view to film, faces and stops.
     fit() {
       const v = this.view, points = [...v.film, ...v.faces.flatMap((f) => f.parts.flat()), ...v.blockers.flatMap((b) => b.lines.flat())];
       const zs = points.map(([z]) => z), ys = points.map(([, y]) => y);
@@ -228,7 +228,7 @@ export default {
       };
       event.preventDefault();
     },
-    /// The mouse in mm.
+    /// Position of the mouse in mm.
     at(event) {
       const m = this.held.scale;
       return [(event.clientX - m.e) / m.a, -(event.clientY - m.f) / m.d];

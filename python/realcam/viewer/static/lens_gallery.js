@@ -1,11 +1,11 @@
-// The bundled lenses as cards, found by their names, kinds and figures.
+// The bundled lenses as cards, filtered by name, kind and numbers.
 
 const FOCAL_LENGTHS_MM = [[0, 20], [20, 35], [35, 70], [70, 135], [135, Infinity]];
 const F_NUMBERS = [1.4, 2, 2.8, 4];
-const ENGRAVED = 1.05; // f-numbers are engraved as those of the series that are so near
+const ENGRAVED = 1.05; // f-numbers within this ratio of a standard one are engraved as that one
 const YEARS = [[0, 1949], [1950, 1969], [1970, 1989], [1990, Infinity]];
 
-/// Of whole numbers up to the last, or of numbers below the end.
+/// Text of a range: of integers including the last, or of numbers below its end.
 const range = ([from, to], last = "below") =>
   !from ? `${last === "below" ? "below" : "until"} ${to}` : to === Infinity ? `from ${from}` : `${from} to ${to}`;
 

@@ -1,4 +1,4 @@
-// The shape of a surface, for what follows the mouse before the server has answered. Lengths in mm.
+// Shape of a surface, for drawing drags before the server has answered. Lengths in mm.
 
 /// z of a conic with an even asphere at a distance from the axis (ISO 10110-12).
 export function sag(surface, h) {
@@ -9,7 +9,7 @@ export function sag(surface, h) {
   return z;
 }
 
-/// The radius of curvature with which the conic's share of the sag at h is as large; null for a plane.
+/// Radius of curvature for which the surface has the sag z at h; null for a plane.
 export function radiusOfSag(surface, h, z) {
   const rest = sag({ ...surface, radius_mm: null }, h);
   const conicShare = z - rest;
@@ -17,7 +17,7 @@ export function radiusOfSag(surface, h, z) {
   return Math.abs(curvature) < 1e-6 ? null : 1 / curvature;
 }
 
-/// Points of the section from rim to rim.
+/// Points of the surface's section from rim to rim.
 export function profile(surface, steps = 48) {
   const points = [];
   for (let k = -steps; k <= steps; ++k) {

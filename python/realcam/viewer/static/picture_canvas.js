@@ -1,4 +1,4 @@
-// The picture as it is streamed, and what the mouse and the keys do with it.
+// The streamed picture, and its mouse and keyboard controls.
 
 import { streamAt, oncePerFrame } from "/realcam/stream.js";
 import { clippedShare, drawHistogram, histogramOf, marksOf } from "/realcam/exposure_marks.js";
@@ -57,7 +57,7 @@ export default {
       const clipped = this.clipped > 0.0005 ? `, ${(100 * this.clipped).toFixed(1)}% clipped` : "";
       return `${h.width} × ${h.height} pixels, ${h.samples} sample${h.samples === 1 ? "" : "s"}${noise}${clipped}${done}`;
     },
-    /// As wide as the column, but no higher than most of the window.
+    /// Fits the picture to the column's width and to most of the window's height.
     stageStyle() {
       const h = this.header;
       return h ? { width: `min(100%, ${(75 * h.whole_width) / h.whole_height}vh)` } : {};
@@ -131,7 +131,7 @@ export default {
       const a = this.bitmaps.a;
       if (!a) return;
       const scratch = (this.scratch ??= document.createElement("canvas"));
-      // Half the pixels each way are enough for a histogram, but not for edges and stripes.
+      // A reduced resolution is sufficient for a histogram, but not for edges and stripes.
       const scale = this.peaking || this.clipping ? 1 : Math.min(1, 320 / a.width);
       scratch.width = Math.max(1, Math.round(a.width * scale));
       scratch.height = Math.max(1, Math.round(a.height * scale));
@@ -186,7 +186,7 @@ export default {
       this.$emit("picked", { u, v });
     },
     wheel(event) {
-      // A mouse's wheel moves by 100 pixels or 3 lines a notch, a trackpad by a few pixels at a time.
+      // A mouse wheel scrolls by 100 pixels or 3 lines per notch, a trackpad by a few pixels at a time.
       const notches = event.deltaY / (event.deltaMode === WheelEvent.DOM_DELTA_LINE ? 3 : 100);
       if (notches) this.stream.send({ type: "dolly", steps: -0.5 * Math.max(-3, Math.min(3, notches)) });
     },
@@ -194,7 +194,7 @@ export default {
       if (!this.magnifier || !this.mouse) return;
       const { x, y, u, v } = this.mouse;
       const canvas = this.$refs.canvas, target = this.$refs.magnifier, box = this.$refs.stage.getBoundingClientRect();
-      // The page shows the picture larger or smaller than it is; enlarged is what the page shows.
+      // The page scales the picture; the loupe magnifies relative to the scaled picture.
       const size = (target.width / MAGNIFIED) * (canvas.width / box.width);
       const side = (mouse, length) => (mouse + 16 + target.width < length ? mouse + 16 : mouse - 16 - target.width);
       const left = side(x - box.left, box.width), top = side(y - box.top, box.height);
@@ -209,7 +209,7 @@ export default {
       const way = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key];
       const turn = { "[": ["aperture", -1], "]": ["aperture", 1], ",": ["shutter", -1], ".": ["shutter", 1],
         i: ["iso", 1], I: ["iso", -1], z: ["zoom", 1], Z: ["zoom", -1] }[event.key];
-      // Many keyboards have brackets on a third level, which is reached by these keys.
+      // On many keyboards, brackets are typed with these modifiers.
       if ((event.ctrlKey || event.metaKey || event.altKey) && !"[]".includes(event.key)) return;
       if (way) {
         this.stream.send({ type: event.shiftKey ? "pan" : "orbit", x: -KEY_STEP * way[0], y: -KEY_STEP * way[1] });

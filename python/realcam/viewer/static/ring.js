@@ -1,4 +1,4 @@
-// A ring or dial of the camera: a slider that says what is engraved where it stands.
+// A ring or dial of the camera: a slider labelled with the engraving of its position.
 
 export default {
   props: { label: String, help: String, last: Number, step: Number, text: String, answered: Number },
@@ -9,7 +9,7 @@ export default {
     return { turns: this.answered, turned: this.step, gestures: 0 };
   },
   computed: {
-    /// Until the server has done the last turn, what it says is older than where the hand is.
+    /// Step to show: the user's own until the server has answered the last change.
     at() {
       return this.answered === this.turns ? this.step : this.turned;
     },

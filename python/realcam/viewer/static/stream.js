@@ -1,4 +1,4 @@
-// The WebSocket to the window's bench, shared by all components of the page. See stream.py for what it carries.
+// WebSocket to the window's bench, shared by all components of the page. See stream.py for its protocol.
 
 const FIRST_WAIT_MS = 250;
 const KEPT = `what the window had: ${document.title}`; // which names the shot
@@ -17,13 +17,13 @@ class Stream {
     this.connect();
   }
 
-  /// What the page had before it was loaded again, by its user or because the server was started anew.
+  /// Restores the state of the page before a reload, by its user or after a restart of the server.
   restore() {
     const kept = sessionStorage.getItem(KEPT);
     if (kept) this.send({ type: "restore", state: JSON.parse(kept) });
   }
 
-  /// The shot as it is in its file.
+  /// Discards the stored state and reloads the page, which then shows the shot as in its file.
   startAgain() {
     this.on("state", () => sessionStorage.removeItem(KEPT));
     sessionStorage.removeItem(KEPT);
@@ -78,7 +78,7 @@ class Stream {
     for (const listener of this.listeners.get(type) ?? []) listener(message);
   }
 
-  /// Returns what ends it.
+  /// Adds a listener. Returns a function that removes it.
   on(type, listener) {
     if (!this.listeners.has(type)) this.listeners.set(type, new Set());
     this.listeners.get(type).add(listener);
@@ -97,10 +97,10 @@ export function streamAt(path) {
   if (!streams.has(path)) streams.set(path, new Stream(path));
   return streams.get(path);
 }
-// For scripts that look at a page from outside, tests above all.
+// For scripts that inspect a page from outside, such as tests.
 window.realcamStreams = streams;
 
-/// Calls f with the last arguments, once for each picture that the browser draws.
+/// Calls f with the latest arguments, at most once per animation frame.
 export function oncePerFrame(f) {
   let waiting = null;
   return (...args) => {

@@ -1,4 +1,4 @@
-// A row of tabs and the panel of the chosen one, after the tabs pattern of the ARIA Authoring Practices Guide.
+// Row of tabs and panel of the chosen tab, following the tabs pattern of the ARIA Authoring Practices Guide.
 
 export default {
   props: { names: Array },
