@@ -56,7 +56,7 @@ def run() -> None:
     warnings.simplefilter("always", UserWarning)
     command = typer.main.get_command(app)
     finish(command)
-    _record_inputs(sys.argv[1:2] != ["view"])  # the bench saves what its user has asked for, also over a lens
+    _record_inputs(sys.argv[1:2] != ["view"])  # not for the bench, whose user may overwrite its input files
     try:
         sys.exit(command(sys.argv[1:] or ["--help"], prog_name="realcam", standalone_mode=False))
     except UsageError as error:

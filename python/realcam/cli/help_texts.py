@@ -20,7 +20,7 @@ def finish(command: Any, words: tuple[str, ...] = ()) -> None:
     """Finishes a command as typer makes it, and all below it. `words`: those that call it, without the program's
     name."""
     for parameter in command.params:
-        # Without a metavar the help shows the parameter's own name instead of its type.
+        # A parameter without a metavar gets its own name, where typer would show its type.
         if parameter.metavar is None and not getattr(parameter, "is_flag", False):
             parameter.metavar = str(parameter.name).upper()
         # Omits the type after an argument's name, as the metavar is sufficient.

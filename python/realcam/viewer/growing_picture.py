@@ -36,7 +36,7 @@ class GrowingPicture:
     samples: int = 0
     spent_s: float = 0.0  #: time spent on these samples
     steps: deque[tuple[int, float]] = field(default_factory=lambda: deque(maxlen=8))
-    #: samples and seconds of the last refinements, of which at most every fourth includes denoising
+    #: samples and seconds of the last refinements; more than four, because every fourth one may include denoising
     exposure_time_s: float = 0.0  #: exposure time of the samples, with which they were last rendered
     is_final: bool = False
     refines_from: float = 0.0  #: time.perf_counter()

@@ -9,7 +9,7 @@ _MOST_STEPS = 200
 
 
 class History(Generic[T]):
-    """Undo history: a sequence of states, one of which is current."""
+    """Undo history: a sequence of states with a current one."""
 
     def __init__(self, first: T) -> None:
         self._states, self._at = [first], 0

@@ -94,7 +94,7 @@ class LensPanel:
             return
         name, content = event.file.name, await event.file.read()
         try:
-            # Not on the window's own thread, so that the user's actions need not wait for the file.
+            # Read outside of the window's own thread, so that the user's actions need not wait for the file.
             read = await run.io_bound(lens_from, name, content)
             if read is None:  # the server is shutting down
                 return

@@ -85,7 +85,7 @@ def serve(shot: Shot, source: ShotSource, settings: ServerSettings) -> None:
             return
         build_page(client, window, folders, source)
 
-    # Not a coroutine, so that the server draws previews on worker threads.
+    # A plain function, not a coroutine, so that the server draws previews on worker threads.
     @app.get("/realcam-lenses/{name}.svg")
     def preview(name: str) -> Response:
         try:

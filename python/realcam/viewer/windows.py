@@ -20,7 +20,7 @@ class Windows:
         self._most = most
         self._open: dict[str, tuple[Client, Window]] = {}
         self._in_the_making = 0
-        # Not the loop's default executor, for which the server would wait at shutdown.
+        # A separate executor, because the server would wait at shutdown for the loop's default one.
         self._executor = ThreadPoolExecutor(thread_name_prefix="realcam-windows")
 
     def get(self, key: str) -> Window | None:

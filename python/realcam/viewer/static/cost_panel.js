@@ -93,7 +93,7 @@ export default {
     take(header) {
       if (header.slot !== "a") return;
       if (header.costs) this.costs = header.costs;
-      const isAgain = header.is_final && header.samples === this.samples; // as another JPEG
+      const isAgain = header.is_final && header.samples === this.samples; // the same picture at a higher JPEG quality
       this.samples = header.samples;
       if (header.serial !== this.serial) {
         this.serial = header.serial;

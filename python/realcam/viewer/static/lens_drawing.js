@@ -174,10 +174,10 @@ export default {
       const cell = document.activeElement;
       const isMarked = cell?.dataset.cell && cell.selectionEnd - cell.selectionStart === cell.value.length;
       if (this.typed?.isSent) this.typed = null;
-      this.view = Object.freeze(view); // Vue need not watch each of its points
-      if (isMarked) this.$nextTick(() => cell.select()); // what is typed next is to replace its new value, too
+      this.view = Object.freeze(view); // not reactive: Vue need not watch each point
+      if (isMarked) this.$nextTick(() => cell.select()); // so that further typing replaces the new value as well
       if (this.chosen !== null && this.chosen >= view.surfaces.length) this.chosen = null;
-      if (this.held) return; // the scale stays while something is dragged
+      if (this.held) return; // the scale is fixed during a drag
       this.dragged = null;
       this.fit();
     },
@@ -216,13 +216,13 @@ export default {
       this.stream.send({ type, ...more });
     },
     edit(surface, field, text) {
-      this.typed = { cell: `${surface}-${field}`, text, isSent: true }; // until the lens comes that it makes
+      this.typed = { cell: `${surface}-${field}`, text, isSent: true }; // shown until the edited lens arrives
       const isNumber = field !== "glass" && text.trim() !== "" && !Number.isNaN(Number(text));
       this.send("edit", { surface, field, value: isNumber ? Number(text) : text });
     },
     take(event, handle) {
       this.$refs.svg.setPointerCapture(event.pointerId);
-      // The scale stays while something is held; to ask for it at each step would lay out the page each time.
+      // The scale is fixed during a drag; reading it at each step would force a page layout each time.
       this.held = {
         ...handle, surface: this.chosen, from: { ...this.surface }, gesture: ++gestures, scale: this.$refs.svg.getScreenCTM(),
       };

@@ -72,7 +72,7 @@ export default {
     clipping() { this.drawMarks(); },
   },
   created() {
-    this.bitmaps = {}; // not reactive: Vue need not look into pictures
+    this.bitmaps = {}; // not reactive: Vue need not watch pictures
   },
   mounted() {
     this.stream = streamAt(this.path);

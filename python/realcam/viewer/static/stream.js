@@ -1,7 +1,7 @@
 // WebSocket to the window's bench, shared by all components of the page. See stream.py for its protocol.
 
 const FIRST_WAIT_MS = 250;
-const KEPT = `what the window had: ${document.title}`; // which names the shot
+const KEPT = `what the window had: ${document.title}`; // the title contains the shot's name
 const LONGEST_WAIT_MS = 4000;
 
 class Stream {
@@ -11,7 +11,7 @@ class Stream {
     this.latest = new Map(); // for components that are mounted later
     this.wait = FIRST_WAIT_MS;
     this.framesShown = 0;
-    this.shown = {}; // headers of the frames that the page shows, by their slots
+    this.shown = {}; // headers of the frames shown, by slot
     this.isNew = true;
     this.on("state", ({ state }) => sessionStorage.setItem(KEPT, JSON.stringify(state)));
     this.connect();
@@ -45,7 +45,7 @@ class Stream {
     this.socket.onclose = (event) => {
       this.tell("connection", { isOpen: false });
       if (event.code === 4404) {
-        location.reload(); // the server was started anew and does not know this window
+        location.reload(); // the server was restarted and does not know this window
         return;
       }
       setTimeout(() => this.connect(), this.wait);
