@@ -25,7 +25,7 @@ class Recipe:
     """Parameters of a data set. A pair of numbers is a range that is sampled uniformly.
 
     count: number of pictures. size: columns and rows. seed: the same recipe and seed give the same pictures. lenses:
-    names or files. f_stops: factors of the lens's smallest f-number. objects: number of objects in a scene. models:
+    names or files. f_stops: factors of the lens's f-number. objects: number of objects in a scene. models:
     files of the objects (.glb, .obj, ...) by category, scaled to one metre; {}: boxes, balls and pyramids. speed_m_s:
     speed of the objects along the floor. camera_speed_m_s, camera_turn_deg_s: speed and angular speed of the camera, in
     any direction and about any axis. next_after_s: time from a picture to the next one, which is the target of the

@@ -49,7 +49,7 @@ def shot_text(scene: bpy.types.Scene, scene_file: str) -> str:
     rings = scene.camera.data.realcam
     figures = lenses()[rings.lens]
     width_mm, height_mm = film_mm(rings.lens, rings.film)
-    # Blender fits the longer side of the film to the longer side of the picture and crops the other.
+    # Blender fits the film's longer side to the picture's longer side; the other side follows from the aspect ratio.
     columns, rows = scene.render.resolution_x, scene.render.resolution_y
     longer_mm = max(width_mm, height_mm)
     film = [longer_mm * columns / max(columns, rows), longer_mm * rows / max(columns, rows)]

@@ -38,7 +38,7 @@ export function marksOf(image, { clipping, peaking, noise = null }) {
   return marks;
 }
 
-/// Pixels whose Laplacian exceeds the noise together with that of a neighbour: an edge is a line, noise is not.
+/// Pixels whose Laplacian exceeds the noise, as do those of at least two neighbours: an edge is a line, noise is not.
 function sharpEdges({ width, height, data }, noise) {
   // An isolated brighter or darker pixel is an outlier of the samples, not an edge.
   const green = new Uint8ClampedArray(width * height);
