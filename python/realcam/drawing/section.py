@@ -71,8 +71,7 @@ def cross_section(
     rays_from: "object": each bundle comes from an object point, so that aberrations show at the film; or "film": rays
       traced backwards from film points, as the camera samples them.
     fields: fractions of the height of the film's corner, or, if the film is larger than the image circle, of the
-    largest
-      height that receives at least a quarter as many rays as the axis.
+      largest height that receives at least a quarter as many rays as the axis.
     fields_deg: field angles instead, as in Lens.spot; only with rays from the object.
     wavelengths_nm: None: the design wavelength.
     object_distance_m: from object plane to front vertex, inf allowed; None: the plane in focus.
