@@ -23,7 +23,7 @@ int fail(const std::string& message) {
     return kFailure;
 }
 
-/// CLI11's objects cannot be copied or moved.
+/// Adds the commands to `app` in place, because CLI11's objects can be neither copied nor moved.
 void set_up(CLI::App& app, const FilmWriter* film_writer = nullptr) {
     app.name("realcam");
     app.description("Photographs 3D scenes through real lenses.");

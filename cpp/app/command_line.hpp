@@ -7,8 +7,8 @@ namespace realcam::app {
 class FilmWriter;
 
 struct ListedOption {
-    std::vector<std::string> names;  ///< "-o" and "--output"; of an argument none
-    std::string type;                ///< "FILE"; of a flag empty
+    std::vector<std::string> names;  ///< "-o" and "--output"; empty for a positional argument
+    std::string type;                ///< "FILE"; empty for a flag
     std::string help;
 };
 struct ListedCommand {
@@ -17,11 +17,11 @@ struct ListedCommand {
     std::vector<ListedOption> options;
 };
 
-/// All commands that run_command_line takes.
+/// All commands that run_command_line accepts.
 std::vector<ListedCommand> listed_commands();
 
-/// The program: `argv` as main gets it. Returns the exit code; whatever goes wrong has been told on stderr.
-/// film_writer: null where there is none.
+/// Runs the program with main's arguments. Returns the exit code; errors have been printed on stderr. `film_writer`:
+/// null if this program writes no videos.
 int run_command_line(int argc, char** argv, const FilmWriter* film_writer = nullptr);
 
 }  // namespace realcam::app

@@ -11,11 +11,12 @@ namespace realcam::app {
 namespace {
 
 constexpr double kNearlyAll = 0.75;  // of the pixels
-// 8-bit codes of the luminance: what lies two stops below middle grey and more, and what has hardly any shades left.
+// 8-bit luminance codes: values below kBlack are two stops or more below middle grey; from kWhite on, hardly any tonal
+// detail is left.
 constexpr int kBlack = 64, kWhite = 235;
-constexpr double kOffBy_stops = 3;  // a scene at night is meant to be darker than grey, and snow brighter
+constexpr double kOffBy_stops = 3;  // night scenes are meant to be darker than middle grey, and snow brighter
 
-/// Shares of the pixels that are black and white.
+/// Fractions of the pixels that are black and white.
 struct Ends {
     double black = 0, white = 0;
 };

@@ -69,9 +69,9 @@ std::vector<std::string> FilmOutputs::finish(const std::vector<int>& frames, dou
         std::vector<std::string> pictures;
         for (const int frame : frames) pictures.push_back(frame_of(film, frame));
         writer_->write(film, pictures, frames_per_second, keep_going);
-        std::error_code error;  // what is left over does no harm
+        std::error_code error;  // leftover files do no harm
         for (const std::string& picture : pictures) fs::remove(picture, error);
-        fs::remove(folder_of(film), error);  // unless it has other frames, which another film may want
+        fs::remove(folder_of(film), error);  // fails if the folder holds other frames, which another video may need
     }
     return films_;
 }

@@ -5,19 +5,19 @@
 
 namespace realcam::app {
 
-/// Has the help of the program, and of all commands that are added afterwards, printed by io::text_of.
+/// Prints the help of the program, and of all commands that are added afterwards, through io::text_of.
 void set_help(CLI::App& app);
 
-/// Command lines that the help of a command shows at its end.
+/// Sets the example command lines at the end of a command's help.
 void set_examples(CLI::App& command, const std::vector<std::string>& examples);
 
-/// The words that call it: "realcam lens info".
+/// Full name of a command: "realcam lens info".
 std::string path_of(const CLI::App& command);
 
-/// "-o" and "--output"; of an argument none.
+/// "-o" and "--output"; empty for a positional argument.
 std::vector<std::string> names_of(const CLI::Option& option);
 
-/// "FILE"; empty for a flag, whose type of CLI11 nobody gives.
+/// "FILE"; empty for a flag.
 std::string type_of(const CLI::Option& option);
 
 }  // namespace realcam::app

@@ -15,7 +15,7 @@ void take_note(int signal) {
 void handle(void (*handler)(int)) {
     struct sigaction action{};
     action.sa_handler = handler;
-    action.sa_flags = SA_RESTART;  // a write that is under way goes on
+    action.sa_flags = SA_RESTART;  // restarts an interrupted write
     sigemptyset(&action.sa_mask);
     sigaction(SIGINT, &action, nullptr);
     sigaction(SIGTERM, &action, nullptr);

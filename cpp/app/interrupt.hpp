@@ -2,8 +2,8 @@
 
 namespace realcam::app {
 
-/// While it lives, Ctrl-C and SIGTERM are taken note of and do not end the program, so that it can leave without half a
-/// file behind. At other times they end it, as usual.
+/// While an object lives, Ctrl-C and SIGTERM are recorded and do not end the program, so that it leaves no partial file
+/// behind. At other times they end it, as usual.
 class Interrupt {
 public:
     Interrupt();
@@ -11,9 +11,9 @@ public:
     Interrupt& operator=(const Interrupt&) = delete;
     ~Interrupt();
 
-    /// The last signal that came; 0: none.
+    /// The last signal received; 0 before the first.
     static int signal();
-    /// Returns true after a second Ctrl-C or SIGTERM: nothing more is to be written.
+    /// Returns true after SIGTERM or a second Ctrl-C: nothing more is to be written.
     static bool is_final();
 };
 

@@ -45,7 +45,7 @@ std::string material_name(const Surface& surface) {
     return surface.material.is_air() ? "air" : surface.material.label;
 }
 
-/// The name that a lens file gives it; else what it is.
+/// Name from the lens file, or else a description of the coating.
 std::string coating_name(const Coating& coating) {
     if (!coating.name.empty()) return coating.name;
     switch (coating.kind) {
@@ -62,7 +62,7 @@ std::string vector_text(Vec3d v) {
     return '(' + number_text(v.x, 6) + ", " + number_text(v.y, 6) + ", " + number_text(v.z, 6) + ')';
 }
 
-/// How it is moved from its place; empty: it is not.
+/// Displacement of a surface in words; empty if it is not displaced.
 std::string place_text(const SurfacePlacement& place) {
     if (place.is_in_place()) return "";
     std::string text = place.returns ? "moved alone" : "moved";
@@ -132,7 +132,7 @@ std::string table(const LensSystem& lens) {
     return text;
 }
 
-/// Full angles across width, height and diagonal, degrees; NaN where no light reaches that far.
+/// Full field angles across width, height and diagonal, in degrees; NaN if no light reaches the ends of that dimension.
 std::array<double, 3> field_of_view(const LensSystem& lens) {
     const auto full = [&](double size) { return 2 * field_angle(lens, size / 2) * 180 / std::numbers::pi; };
     return {full(lens.film_width), full(lens.film_height), full(hypotenuse(lens.film_width, lens.film_height))};
@@ -152,7 +152,7 @@ std::string field_text(const std::array<double, 3>& degrees) {
     return lit + dark;
 }
 
-/// What is assumed of surfaces of which the lens does not say how they are coated; empty where it says all.
+/// Assumptions about the coatings that the lens does not state; empty if it states all.
 std::string coating_assumptions(const LensSystem& lens) {
     const std::vector<int> unknown = surfaces_with_unknown_coating(lens);
     const auto mirrors = std::count_if(unknown.begin(), unknown.end(), [&](int i) {
@@ -168,7 +168,7 @@ std::string coating_assumptions(const LensSystem& lens) {
     return "not stated: " + glass + (glass.empty() || metal.empty() ? "" : ", ") + metal;
 }
 
-/// Nothing where a material is not known at the design wavelength; `why` then says which.
+/// Returns std::nullopt if the index of a material is unknown at the design wavelength; `why` then names it.
 std::optional<double> known_t_stop(const LensSystem& lens, std::string& why) {
     try {
         return t_stop(lens, lens.wavelength_nm);
@@ -184,7 +184,7 @@ std::string t_stop_text(const LensSystem& lens) {
     return value ? "T/" + number_text(*value) : "unknown: " + why;
 }
 
-/// Each zoom position with its focal length and f-number, at rest.
+/// One line per zoom position, with its focal length and f-number in the unfocused state of the lens file.
 std::vector<std::string> zoom_lines(const LensSystem& lens) {
     std::vector<std::string> lines;
     for (std::size_t i = 0; i < lens.zoom.positions.size(); ++i) {
@@ -224,7 +224,7 @@ std::string lens_as_text(const LensSystem& lens) {
             line("  at " + number_text(meridian.azimuth_deg, 4) + " degrees from x", mm(meridian.focal_length));
     line("back focal distance", mm(data.back_focal_distance));
     line("front focal distance", mm(data.front_focal_distance));
-    // The ring's, and beside it that of a lens whose focusing group has moved.
+    // The f-number of the ring, followed by the working f-number if a focusing group has moved.
     const std::string f_number = number_text(f_number_at_infinity(lens)), focused = number_text(data.f_number);
     line("f-number", std::string(7, ' ') + "f/" + f_number + (f_number == focused ? "" : ", as focused f/" + focused));
     line("T-stop", std::string(7, ' ') + t_stop_text(lens));

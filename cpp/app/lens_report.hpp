@@ -5,9 +5,9 @@
 
 namespace realcam::app {
 
-/// The table of surfaces and the first-order data, for people.
+/// Surface table and first-order data as text.
 std::string lens_as_text(const LensSystem& lens);
-/// The same, for programs; null where a value is infinite or does not exist.
+/// The same data as JSON; null if a value is infinite or does not exist.
 std::string lens_as_json(const LensSystem& lens);
 
 }  // namespace realcam::app

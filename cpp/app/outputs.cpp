@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Whether both names mean the same file, also where neither exists yet.
+/// True if both names denote the same file, even if it does not exist yet.
 bool same_file(const std::string& a, const std::string& b) {
     std::error_code error;
     if (fs::equivalent(a, b, error)) return true;
@@ -64,7 +64,7 @@ std::string film_digest(const shot::ShotRequest& request, const Camera& camera, 
         for (const char c : bytes) digest = (digest ^ static_cast<unsigned char>(c)) * 0x100000001b3;
     };
     add(text.str());
-    // By contents alone, in an order that does not depend on names: a film's folder may be renamed.
+    // Hashes contents alone, in an order independent of names: a film's folder may be renamed.
     std::vector<std::string> contents;
     for (const std::string& path : io::recorded_inputs()) {
         io::RegularFile file(path);

@@ -6,22 +6,22 @@
 
 namespace realcam::app {
 
-/// Whether an output is a film (see film_outputs.hpp), and no picture.
+/// True if an output is a video (see film_outputs.hpp), not a picture.
 bool is_film(const std::string& output);
 
-/// Throws ImageFileError where one of the pictures could not be written, and InputError where two outputs are the same
-/// file: before the work, not after it.
+/// Throws ImageFileError if one of the pictures could not be written, and InputError if two outputs are the same file.
+/// Called before the work, not after it.
 void check_outputs(const std::vector<std::string>& outputs);
 
-/// Digest of a picture's settings for the entry "realcam:film" of a frame: of the settings of a request, of the placed
-/// but not yet metered camera, of the contents of all recorded inputs, and of `more`. Throws FileError.
+/// Digest of a picture's settings, for the metadata entry "realcam:film" of a frame. Covers the settings of the
+/// request, the posed but not yet metered camera, the contents of all recorded inputs, and `more`. Throws FileError.
 std::string film_digest(const shot::ShotRequest& request, const Camera& camera, const std::string& more);
 
-/// The numbers of frames that a user names: "7", "1-240" or "1-240x10". Throws InputError.
+/// Parses the frame numbers that a user specifies: "7", "1-240" or "1-240x10". Throws InputError.
 std::vector<int> frame_numbers(const std::string& text);
 
-/// The file of a frame: the number stands in place of the last "####" in the file's name, with so many digits, or else,
-/// with four, before its suffix.
+/// File name of a frame: the number replaces the last "####" in the file's name, zero-padded to as many digits as there
+/// are #. Without a #, it is inserted before the suffix, with four digits.
 std::string frame_file(const std::string& output, int number);
 
 }  // namespace realcam::app

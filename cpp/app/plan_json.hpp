@@ -5,7 +5,7 @@
 
 namespace realcam::app {
 
-/// A plan for programs; null where a number is infinite or does not exist.
+/// Plan as JSON; null if a number is infinite or does not exist.
 std::string json_of(const Plan& plan);
 
 }  // namespace realcam::app

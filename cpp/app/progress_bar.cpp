@@ -41,7 +41,7 @@ void ProgressBar::show(double done) {
                             std::string(static_cast<std::size_t>(kWidth - filled), '.');
     const double elapsed = std::chrono::duration<double>(last_ - start_).count();
     std::fprintf(stderr, "\r%s [%s] %3.0f%%", what_.c_str(), bar.c_str(), 100 * done);
-    // An early guess is a wild one.
+    // The first estimates are too uncertain to show.
     if (done > 0.02) std::fprintf(stderr, ", %.0f s left", elapsed * (1 - done) / done);
     std::fputs("\x1b[K", stderr);
     std::fflush(stderr);

@@ -4,7 +4,7 @@
 
 namespace realcam::app {
 
-/// One line on stderr that rewrites itself; silent where stderr is no terminal. It goes away when it is destroyed.
+/// One line on stderr that is redrawn in place; silent if stderr is no terminal. The destructor clears it.
 class ProgressBar {
 public:
     explicit ProgressBar(std::string what, bool is_shown = true);
@@ -14,13 +14,13 @@ public:
 
     /// `done`: 0 to 1. Draws at most ten times a second.
     void show(double done);
-    /// Draws the seconds that have passed, for work of unknown length.
+    /// Draws the elapsed seconds, for work of unknown length.
     void show_seconds();
-    /// Makes way for a line of text.
+    /// Clears the line, so that text can be printed.
     void clear();
 
 private:
-    /// Returns true, and takes note of the time, if the line is to be drawn again.
+    /// Returns true, and records the time, if the line is due to be redrawn.
     bool is_due();
 
     using Clock = std::chrono::steady_clock;

@@ -44,7 +44,7 @@ void say(const std::string& text) {
     std::fprintf(stderr, "realcam: %s\n", text.c_str());
 }
 
-/// Names what the memory was wanted for.
+/// Runs `work`; if memory runs out, the error names its purpose, `what`.
 template <class Work>
 auto with_memory_for(const std::string& what, Work&& work) {
     try {
@@ -58,12 +58,12 @@ bool is_wanted() {
     return Interrupt::signal() == 0;
 }
 
-/// The same of the work that makes a file of what is there.
+/// Like is_wanted, for work that writes the samples taken so far to a file: false after the final signal.
 bool is_to_be_finished() {
     return !Interrupt::is_final();
 }
 
-/// Work that a signal stops.
+/// Runs `work`; if it was cancelled, throws Interrupted with the received signal.
 template <class Work>
 auto until_interrupted(Work&& work) {
     try {
@@ -74,7 +74,7 @@ auto until_interrupted(Work&& work) {
 }
 
 void check_memory(const Film& film, LayerSet layers) {
-    // The memory that the CPU's session needs while it turns its sums into a picture.
+    // Memory that the CPU's session needs while it develops its sums into a picture.
     std::size_t bytes_per_pixel = sizeof(PixelSum) + 16;
     if (layers.has_any(kSampledLayers)) bytes_per_pixel += sizeof(LayerSum);
     if (layers.has_any(kMiddleLayers)) bytes_per_pixel += sizeof(MiddleSurface);
@@ -112,14 +112,14 @@ public:
         std::optional<Denoiser> denoiser = denoiser_for(request);
         if (denoiser) request.settings.layers.add(kDenoiserLayers);
         check_memory(camera.film, request.settings.layers);
-        // First, because reading a scene may take long.
+        // Created first, because reading a scene may take long.
         const auto session = make_session(words_.device, [this](const std::string& text) { warn(text); });
         shot::Shot shot = set_up_shot(request, std::move(camera));
         for (const std::string& file : frames.empty() ? words_.outputs : outputs_.all_files(frames))
             image_io::check_no_input(file);
         if (!frames.empty()) film_digest_ = film_digest(request, shot.camera, std::to_string(words_.frames_per_second));
         const Darkroom darkroom{*session, denoiser ? &*denoiser : nullptr, written_layers};
-        // Until here nothing is on disk, and a signal may simply end the program.
+        // Nothing is on disk before this point, so that until here a signal may simply end the program.
         const Interrupt interrupt;
         meter_exposure(*session, shot, request);
         if (!frames.empty()) return film(darkroom, shot, request, frames);
@@ -146,27 +146,27 @@ public:
     }
 
 private:
-    /// What turns a shot into a picture.
+    /// Everything that turns a shot into a picture.
     struct Darkroom {
         Session& session;
-        Denoiser* denoiser;  ///< null: noise stays
+        Denoiser* denoiser;  ///< null: no denoising
         LayerSet written_layers;
     };
 
-    /// One that the user asked for, or that .png may need (denoises_if_noisy). Where the library is missing or cannot
-    /// use the device, the latter stay noisy.
+    /// Returns a denoiser if the user requested one, or if .png may need one (denoises_if_noisy). If the library is
+    /// missing or cannot use the device, a request throws Error; otherwise pictures stay noisy.
     std::optional<Denoiser> denoiser_for(const shot::ShotRequest& request) {
         if (!request.denoises && !denoises_if_noisy(request)) return std::nullopt;
         try {
             return std::optional<Denoiser>(std::in_place, words_.device, request.settings.threads);
-        } catch (const Error& error) {  // no library, or none for this device
+        } catch (const Error& error) {  // library missing, or not available for this device
             if (request.denoises) throw;
             why_no_denoiser_ = error.what();
             return std::nullopt;
         }
     }
 
-    /// Whether pictures for screens are denoised if they miss the default noise goal.
+    /// True if pictures for screens are denoised when they miss the default noise goal.
     bool denoises_if_noisy(const shot::ShotRequest& request) const {
         return request.sampling == shot::Sampling::unsaid && !request.denoises && !request.keeps_noise &&
                !request.settings.layers.has_any(kHalfLayers) &&
@@ -192,7 +192,7 @@ private:
         return shot;
     }
 
-    /// Decides what is left to the planner, for a picture or for some frames of a film; returns it in words.
+    /// Makes the decisions left to the planner, for a picture or for some frames of a film. Returns a one-line summary.
     std::string settle(Session& session, shot::Shot& shot, shot::ShotRequest& request,
                        const std::vector<Camera>& cameras) {
         SettledFilm film = until_interrupted([&] {
@@ -224,18 +224,19 @@ private:
                                shot::frame_opens_s(camera, frame, words_.frames_per_second));
     }
 
-    /// True if a file is a whole picture of the current frame, taken with the settings of this film.
+    /// True if a file is a complete picture of the current frame, taken with the settings of this film.
     bool is_done(const std::string& file) const {
         return is_file(file) && until_interrupted([&] {
                                     return image_io::entry_of_whole_file(file, "realcam:film", is_wanted);
                                 }) == frame_digest_;
     }
 
-    /// Frames that are done stay.
+    /// Takes the frames of a film that are not done yet, and encodes its videos.
     void film(const Darkroom& darkroom, shot::Shot& shot, shot::ShotRequest& request, const std::vector<int>& frames) {
         const std::string decisions = settle(darkroom.session, shot, request, cameras_to_plan(shot, request, frames));
         const Camera camera = shot.camera;
-        // The last frame should not be the one to tell that a lens cannot be as its keys say.
+        // Checks all frames before the first is taken, so that a lens that cannot follow its keys is not reported at
+        // the last.
         std::set<std::string> notices;
         for (const int frame : frames) {
             const Camera taken_by = camera_of_frame(camera, request, frame);
@@ -286,8 +287,8 @@ private:
             if (!words_.is_quiet && !words_.as_json) std::fputs(("wrote " + film + '\n').c_str(), stdout);
     }
 
-    /// Takes and writes a picture; its figures. `finishes`: asked whether a picture that a signal has stopped is
-    /// written; empty: it is not.
+    /// Takes and writes a picture; returns its figures. `finishes`: returns true if a picture that a signal has stopped
+    /// is still to be written; empty: such a picture is discarded.
     std::string take(const Darkroom& darkroom, const shot::Shot& shot, const shot::ShotRequest& request,
                      const std::string& decisions, const std::vector<std::string>& files,
                      const KeepGoing& finishes = {}) {
@@ -370,7 +371,7 @@ private:
         });
     }
 
-    /// `raw`: goes into .exr; `shown`: into other files.
+    /// `raw`: written to .exr; `shown`: to other files.
     void write(const Image& raw, const Image& shown, const shot::Shot& shot, const shot::ShotRequest& request,
                const std::string& decisions, const std::string& denoiser, const std::vector<std::string>& files,
                const KeepGoing& goes_on) const {
@@ -394,10 +395,10 @@ private:
     const RenderWords& words_;
     FilmOutputs outputs_;
     std::chrono::steady_clock::time_point start_;
-    std::vector<std::string> warnings_;  ///< that were told
+    std::vector<std::string> warnings_;  ///< already printed
     std::string why_no_denoiser_;
     io::InputRecording inputs_;
-    std::string film_digest_, frame_digest_;  ///< empty: a still
+    std::string film_digest_, frame_digest_;  ///< empty for a still
 };
 
 }  // namespace

@@ -6,15 +6,15 @@ namespace realcam::app {
 
 class FilmWriter;
 
-/// Adds `render`. It throws Interrupted where a signal stopped it. film_writer: null where there is none; the pointer
-/// is kept.
+/// Adds `render`, which throws Interrupted if a signal stopped it. `film_writer`: null if this program writes no
+/// videos; the pointer is kept.
 void add_render_command(CLI::App& app, const FilmWriter* film_writer);
-/// Adds `plan`, which looks at a shot and renders nothing.
+/// Adds `plan`, which plans a shot without rendering it.
 void add_plan_command(CLI::App& app);
 
 struct Interrupted {
     int signal;
-    std::string remark;  ///< what was done before, to follow on "stopped"
+    std::string remark;  ///< work done before the signal; printed after "stopped"
 };
 
 }  // namespace realcam::app

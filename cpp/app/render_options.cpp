@@ -15,7 +15,7 @@ bool writes_layers(const RenderWords& w) {
     return std::any_of(w.outputs.begin(), w.outputs.end(), is_exr);
 }
 
-/// An empty word would read as an option that was left out.
+/// An empty value would be read as an omitted option.
 CLI::Validator not_empty() {
     return CLI::Validator([](std::string& word) { return word.empty() ? "is empty" : ""; }, "", "");
 }
@@ -94,7 +94,7 @@ shot::ShotRequest understand(const RenderWords& w) {
     for (const auto& [key, word] : w.changes.options)
         if (key->name == std::string_view("layers"))
             throw InputError("--layers: layers are written to .exr, and no --output is one");
-    request.settings.layers = {};  // those of a shot file cost nothing where nobody would see them
+    request.settings.layers = {};  // layers of a shot file would cost time, and no output could hold them
     return request;
 }
 

@@ -9,29 +9,29 @@
 
 namespace realcam::app {
 
-/// What was typed behind `render`.
+/// Options of the command `render`.
 struct RenderWords {
     std::string scene, device = "auto";
-    shot::ShotChanges changes;  ///< to what the shot file says
+    shot::ShotChanges changes;  ///< overrides of the shot file's values
     bool denoises = false, keeps_noise = false;  ///< see ShotRequest
     std::vector<std::string> outputs;
-    std::optional<std::string> frames;  ///< of a film; none: a single picture
+    std::optional<std::string> frames;  ///< of a film; std::nullopt for a single picture
     double frames_per_second = 24;
-    bool takes_again = false;  ///< frames that are there, too
+    bool takes_again = false;  ///< also frames that already exist
     bool verbose = false, explains = false, as_json = false, is_quiet = false;
     LensWords lens_file;
 };
 
-/// Whether the file holds linear exposure (.exr), and not developed codes for a screen.
+/// True if the file holds linear exposure (.exr), not developed 8-bit values for a screen.
 bool is_exr(const std::string& path);
 
-/// Those that say what is photographed and how.
+/// Adds the options for what is photographed and how.
 void add_shot_options(CLI::App& command, RenderWords& words);
-/// The same, and what to write.
+/// Adds the shot options and those for the output.
 void add_render_options(CLI::App& command, RenderWords& words);
 
-/// What they mean: those of the shot file, if `scene` is one, with typed values instead of those in the file.
-/// Throws InputError that names option or file.
+/// Builds the request from the options. If `scene` is a shot file, options override its values. Throws InputError that
+/// names the option or file.
 shot::ShotRequest understand(const RenderWords& words);
 
 }  // namespace realcam::app

@@ -17,7 +17,7 @@ std::string percent(double part, double whole) {
     return text;
 }
 
-/// "12.3 M".
+/// A rate in millions per second: "12.3 M".
 std::string million(double count, double seconds) {
     char text[32];
     std::snprintf(text, sizeof text, "%.1f M", seconds > 0 ? 1e-6 * count / seconds : 0.0);

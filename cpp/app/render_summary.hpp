@@ -7,13 +7,13 @@
 
 namespace realcam::app {
 
-/// What was photographed, and how long it took, some lines. `seconds`: wall clock of everything. `verbose`: also rays
-/// per second, and where the time went. `denoiser`: its name; empty: there was none.
+/// Summary of a picture and its cost, in some lines. `seconds`: wall-clock time of the whole command. `verbose`: adds
+/// rays per second, and the time by stage. `denoiser`: its name, empty if the picture was not denoised.
 std::string summary(const shot::Shot& shot, const RenderSettings& settings, const Image& image,
                     const std::vector<std::string>& pictures, const std::string& denoiser, double seconds,
                     bool verbose);
 
-/// A line on a frame of a film.
+/// One-line summary of a frame of a film.
 std::string frame_summary(int frame, const Camera& camera, const std::vector<std::string>& pictures);
 
 }  // namespace realcam::app

@@ -14,7 +14,7 @@ std::string duration_text(double seconds) {
     return number_text(seconds / 3600, 2) + " hours";
 }
 
-/// Nobody needs to be told of what is over sooner.
+/// Shorter durations are not announced.
 constexpr double kLong_s = 3;
 
 }  // namespace

@@ -6,18 +6,20 @@
 
 namespace realcam::app {
 
-/// What a picture that is to have little noise tells of how long it takes.
+/// Messages about the expected duration of a picture with a noise goal.
 class SamplingNotice {
 public:
     SamplingNotice(const NoiseGoal& goal, shot::Sampling sampling) : goal_(goal), sampling_(sampling) {}
 
-    /// What the samples go on until, and after which time they end all the same; a line.
+    /// The noise goal and the time limit, in a line.
     std::string aim() const;
 
-    /// Takes note that a share of the samples is taken, from 0 to 1. Returns the share of the time.
+    /// Records that a fraction of the samples is taken, from 0 to 1. Returns the fraction done: the larger of `share`
+    /// and the elapsed fraction of the time limit.
     double took(double share);
 
-    /// How long that is expected to last, when there is something to go by; a line, once. Empty: not now.
+    /// The expected duration, in a line, the first time it can be estimated. Empty at other times and for short
+    /// durations.
     std::string expectation();
 
 private:

@@ -9,13 +9,13 @@
 namespace realcam::app {
 namespace {
 
-/// The command that was typed, as far as there is one.
+/// The innermost command on the command line; the program itself if it names no command.
 const CLI::App& typed_command(const CLI::App& app) {
     const std::vector<CLI::App*> typed = app.get_subcommands();
     return typed.empty() ? app : typed_command(*typed.back());
 }
 
-/// Long names: who mistypes one letter means anything.
+/// Long names only: a mistyped one-letter option could be any other one.
 std::vector<std::string> option_names(const CLI::App& command) {
     std::vector<std::string> names;
     for (const CLI::Option* option : command.get_options())
@@ -35,7 +35,7 @@ std::string with_commas(const std::vector<std::string>& names) {
     return text;
 }
 
-/// CLI11's own words, but for those that the commands in Python say otherwise.
+/// CLI11's message, reworded where the commands in Python use other words.
 std::string said(const CLI::ParseError& error) {
     const std::string words = error.what();
     constexpr std::array<std::pair<const char*, const char*>, 3> kInPlaceOf{{
@@ -46,7 +46,7 @@ std::string said(const CLI::ParseError& error) {
     for (const auto& [of_cli11, ours] : kInPlaceOf) {
         const std::size_t at = words.find(of_cli11);
         if (at == std::string::npos) continue;
-        // Where a flag has a value, its name comes without dashes.
+        // If a flag has a value, CLI11 reports its name without dashes.
         const std::string dashes = words[0] == '-' ? "" : at == 1 ? "-" : "--";
         return dashes + words.substr(0, at) + ours;
     }
@@ -55,7 +55,7 @@ std::string said(const CLI::ParseError& error) {
 
 std::string what_is_wrong(const CLI::App& command, const CLI::ParseError& error) {
     const std::vector<std::string> left = command.remaining(), commands = command_names(command);
-    // Before what is missing: a misspelt option is missing, too.
+    // Unknown options come before missing ones: a misspelt option is missing, too.
     for (const std::string& word : left) {
         if (word.size() < 2 || word[0] != '-') continue;
         const std::string option = word.substr(0, word.find('='));

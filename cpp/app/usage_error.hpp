@@ -4,8 +4,8 @@
 
 namespace realcam::app {
 
-/// What is wrong with the command line, and the nearest to it that is not: a misspelt option or command, or CLI11's own
-/// words; and where the options stand. `app`: the program's, after it has thrown `error`.
+/// Describes an error of the command line: an unknown option or command with the nearest known name, or CLI11's own
+/// message; and where the options are listed. `app`: the program's, after it has thrown `error`.
 std::string usage_message(const CLI::App& app, const CLI::ParseError& error);
 
 }  // namespace realcam::app

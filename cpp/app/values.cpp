@@ -25,7 +25,7 @@ std::string distance_text(double metres) {
 std::string exposure_text(double seconds) {
     const double inverse = 1 / seconds;
     if (inverse < 2.5) return number_text(seconds) + " s";
-    constexpr double kMostInFull = 1e6;  // no shutter is faster
+    constexpr double kMostInFull = 1e6;  // larger denominators are not written out: no shutter is faster
     const bool in_full = inverse >= 10 && inverse <= kMostInFull;
     return "1/" + (in_full ? std::to_string(std::llround(inverse)) : number_text(inverse, 2)) + " s";
 }

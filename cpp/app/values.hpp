@@ -5,14 +5,14 @@
 
 namespace realcam::app {
 
-/// "1.5". Throws InputError, naming the option.
+/// Parses a number such as "1.5". Throws InputError that names the option.
 double parse_number(const std::string& option, const std::string& text);
-/// "2.5", "inf". The same.
+/// Parses metres such as "2.5", or "inf". Throws InputError that names the option.
 double parse_distance(const std::string& option, const std::string& text);
 
-/// "2.5 m", "infinity".
+/// Formats a distance: "2.5 m", "infinity".
 std::string distance_text(double metres);
-/// "1/125 s", "2 s".
+/// Formats an exposure time: "1/125 s", "2 s".
 std::string exposure_text(double seconds);
 
 }  // namespace realcam::app

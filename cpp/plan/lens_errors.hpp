@@ -13,23 +13,24 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Pixels.
+/// Diameter of a blur disc, in pixels, from which it hides displacements.
 inline constexpr double kWideDisc = 10;
 
-/// By how much one disc blurs more than another, px: the diameter of a disc that makes the sharper one's picture as
-/// soft as the other's. A picture has as much detail at every scale (its spectrum falls with the frequency). So for
-/// wide discs the relative difference counts: kShare of the diameter as much as half a pixel where all is sharp.
+/// Visible difference between two blur discs of diameters `a` and `b`, px: the diameter of a disc that blurs the
+/// sharper picture as much as the other one. Pictures have as much detail at every scale (the spectrum falls with the
+/// frequency), so that for wide discs the relative difference counts: kShare of the diameter as much as half a pixel in
+/// a sharp picture.
 inline double blur_between(double a, double b) {
     constexpr double kShare = 0.05;
     const double smaller = std::min(a, b), visible = 1 + 8 * kShare * smaller * smaller;
     return std::sqrt(std::fabs(a * a - b * b) / visible);
 }
 
-/// How a picture through another camera model differs from that through every surface: the most over the film.
+/// Largest differences over the film between the picture of another camera model and that of the full lens.
 struct ModelError {
-    double moved_px = 0;  ///< by which it shows things elsewhere; less of what discs wider than kWideDisc blur
+    double moved_px = 0;  ///< displacement; reduced in proportion under discs wider than kWideDisc
     double blur_px = 0;  ///< see blur_between
-    double light_codes = 0;  ///< by which it is brighter or darker
+    double light_codes = 0;  ///< difference in brightness
 
     bool is_within(const PlanThresholds& thresholds) const {
         return moved_px < thresholds.pixels && blur_px < thresholds.pixels && light_codes < thresholds.codes;
@@ -39,17 +40,17 @@ struct ModelError {
 struct LensErrors {
     ModelError pinhole, thin, mapped, thick;
     double defocus_px = 0;  ///< widest disc of confusion of a lens without aberrations
-    double lateral_colour_px = 0;  ///< between blue and red light
-    double axial_colour_px = 0;  ///< by which one of them is blurred more
-    double film_sine = 0;  ///< of half the angle at which the film's middle sees the aperture
+    double lateral_colour_px = 0;  ///< displacement between blue and red light
+    double axial_colour_px = 0;  ///< difference in blur between blue and red light
+    double film_sine = 0;  ///< sine of half the angle under which the film centre sees the aperture
 };
 
 namespace lens_errors_detail {
 
-/// Wavelengths beyond which lies a tenth each of what the eye sees of white light.
+/// Wavelengths below and above which lies a tenth each of the luminous response to white light.
 inline constexpr double kBlue_nm = 500, kRed_nm = 620;
 
-/// NaN, of a model that sees nothing there, is more than any number.
+/// Raises `most` to `value`. NaN, from a model that sees nothing at that point, counts as infinite.
 inline void raise(double& most, double value) {
     if (!(value <= most)) most = std::isnan(value) ? kInfinity : value;
 }
@@ -61,11 +62,12 @@ inline void compare(const BundleSpot& full, const BundleSpot& other, double px_p
     raise(error.blur_px, blur_between(px_per_mm * full.diameter, px_per_mm * other.diameter));
 }
 
-/// Codes of a tile that is so dark that no blur in it is visible. It may be half black and half twice as bright, and
+/// Codes below which a tile is too dark to show any blur. Such a tile may be half black and half twice as bright, and
 /// half a pixel of blur takes an eighth of that.
 inline constexpr double kDarkCodes = 4;
 
-/// Where something is seen of the scene, and where it would be sharp, as far as that lies between.
+/// Object distances from the front vertex, mm, at which models are compared: the nearest and the farthest in view, and
+/// the plane in focus, clamped between them.
 inline std::vector<double> depths_of(const SceneFacts& facts, const LensSystem& lens) {
     double nearest = kInfinity, farthest = 0;
     for (const SeenTile& tile : facts.tiles) {
@@ -78,7 +80,8 @@ inline std::vector<double> depths_of(const SceneFacts& facts, const LensSystem& 
     return {nearest, std::clamp(focus, nearest, farthest), farthest};
 }
 
-/// The brightest of the four tiles at a share of the way from the middle to the corners.
+/// Value of the brightest of the four tiles at a fraction `share` of the distance from the picture's centre to its
+/// corners.
 inline double value_at(const SceneFacts& facts, double share) {
     double most = 0;
     for (const double x : {-share, share})
@@ -88,8 +91,8 @@ inline double value_at(const SceneFacts& facts, double share) {
 
 }  // namespace lens_errors_detail
 
-/// `full`: the view of a camera with the model full; `ideal`: of the same with an ideal lens. Rays from the middle of
-/// the film to its corner are compared where the scene is.
+/// `full`: view of a camera with the full model; `ideal`: view of the same camera with an ideal lens. Ray bundles from
+/// the film centre to a corner are compared at the object distances of the scene.
 inline LensErrors lens_errors(const CameraView& full, const CameraView& ideal, const LensSystem& lens,
                               const SceneFacts& facts, const PupilTracer& tracer) {
     using namespace lens_errors_detail;
@@ -100,7 +103,7 @@ inline LensErrors lens_errors(const CameraView& full, const CameraView& ideal, c
     LensErrors errors;
     errors.film_sine = std::sqrt(static_cast<double>(ideal.axis_irradiance) / std::numbers::pi);
     for (const double share : {0.0, 0.25, 0.5, 0.7, 0.85, 0.97}) {
-        // To the corner farthest from the axis.
+        // Towards the corner farthest from the axis.
         const Vec2f film = {
             full.film_middle.x + std::copysign(static_cast<float>(share) * full.film_half_width, full.film_middle.x),
             full.film_middle.y + std::copysign(static_cast<float>(share) * full.film_half_height, full.film_middle.y)};
@@ -115,8 +118,8 @@ inline LensErrors lens_errors(const CameraView& full, const CameraView& ideal, c
         };
         for (ModelError* error : {&errors.pinhole, &errors.thin}) raise(error->light_codes, codes_between(thin.light));
         raise(errors.thick.light_codes, codes_between(thick.light));
-        if (!(traced.light > 0)) continue;  // outside of what the lens lights
-        // The thin lens at the place that shows in the plane in focus what this one shows here.
+        if (!(traced.light > 0)) continue;  // outside the image circle
+        // The film point at which the thin lens images the same point of the plane in focus.
         const BundleSpot there = spot_of(traced, full.circle, sharp), ideally = spot_of(thin, full.circle, sharp);
         const auto scale = static_cast<float>(
             film.x != 0 || film.y != 0 ? hypotenuse(there.x, there.y) / hypotenuse(ideally.x, ideally.y) : 1.0);

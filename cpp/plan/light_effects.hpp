@@ -17,13 +17,13 @@
 
 namespace REALCAM_NAMESPACE {
 
-// By how much ghosts, coatings and the edges of the aperture change codes of the developed picture, from closed forms.
+// Changes in codes of the developed picture by ghosts, coatings and diffraction, from closed forms.
 
 namespace light_effects_detail {
 
 inline constexpr double kGreen_mm = 550e-6;
 
-/// The sensor value of an irradiance on the film, lux.
+/// Sensor value of an irradiance on the film, lux.
 inline double value_of(const Camera& camera, double lux) {
     return sensor_value(lux * camera.exposure_time_s, camera.iso);
 }
@@ -32,7 +32,7 @@ inline double codes_between(double dark, double added) {
     return code_of(dark + added) - code_of(dark);
 }
 
-/// Where the light of a slope would be without a lens's errors, or on the axis for slope 0, in shares of the picture.
+/// Point of the picture in fractions of its width and height, as imaged by a lens without aberrations.
 struct PicturePlace {
     double across, down;
 };
@@ -43,7 +43,7 @@ inline PicturePlace place_of(const Camera& camera, double film_x, double film_y)
     return {pixel.x / film.width, pixel.y / film.height};
 }
 
-/// The darkest tile within a disc of the picture; nothing where none is.
+/// Value of the darkest tile around a point, within these radii; std::nullopt if no tile is.
 inline std::optional<double> darkest_within(const SceneFacts& facts, PicturePlace place, double radius_across,
                                             double radius_down) {
     const auto range = [](double middle, double radius, int count) {
@@ -63,12 +63,12 @@ inline std::optional<double> darkest_within(const SceneFacts& facts, PicturePlac
     return least;
 }
 
-/// Beside a place of the picture.
+/// Value of the darkest tile next to a point of the picture.
 inline std::optional<double> darkest_beside(const SceneFacts& facts, PicturePlace place) {
     return darkest_within(facts, place, 1.0 / facts.columns, 1.0 / facts.rows);
 }
 
-/// So many that one of them brings what shows most.
+/// The brightest lights in front of the camera, enough to include the one whose effects are the most visible.
 inline std::vector<SeenLight> brightest_in_front(const SceneFacts& facts) {
     constexpr std::size_t kMost = 16;
     std::vector<SeenLight> lights;
@@ -83,7 +83,7 @@ inline double brightest(const SceneFacts& facts) {
     return most;
 }
 
-/// Which light comes to the film by a pair of surfaces, by first order.
+/// First-order properties of the light that reaches the film by reflection at a pair of surfaces.
 class GhostBundle {
 public:
     GhostBundle(const LensSystem& lens, GhostPair pair, double wavelength_nm)
@@ -92,12 +92,12 @@ public:
           of_height_(on_film(path_.of_height)),
           of_slope_(on_film(path_.of_slope)) {}
 
-    /// The spot of a parallel bundle: its middle and its radius on the film, mm, and its radius in front of the lens.
-    /// Nothing where the rims block all of it.
+    /// Spot of a parallel bundle: its centre and its radius on the film, mm, and its radius in front of the lens, mm.
     struct Spot {
         double middle, radius, radius_in_front;
     };
 
+    /// Returns std::nullopt if the rims block the whole bundle.
     std::optional<Spot> spot_of(double slope) const {
         double low = -kInfinity, high = kInfinity;
         for (const GhostPath::Meeting& meeting : path_.meetings) {
@@ -111,8 +111,8 @@ public:
         return Spot{of_height_ * (low + high) / 2 + of_slope_ * slope, std::fabs(of_height_) * radius, radius};
     }
 
-    /// What the middle of the film sees: the sine of half the angle from which light comes to it, and the slope in the
-    /// scene of its outermost ray. As wide as the narrowest rim lets it be.
+    /// Light that converges on the film centre: the sine of its half angle, and the slope in the scene of its outermost
+    /// ray, both limited by the narrowest rim.
     struct View {
         double sine, slope_in_scene;
     };
@@ -137,14 +137,15 @@ private:
 
     const LensSystem& lens_;
     GhostPath path_;
-    double of_height_, of_slope_;  ///< on the film
+    double of_height_, of_slope_;  ///< film height per unit of height and of slope in front of the lens
 };
 
-/// In the middle of what red, green and blue show.
+/// Centres of the red, green and blue bands.
 inline constexpr double kColours_nm[] = {610, 540, 460};
 inline constexpr std::size_t kColours = std::size(kColours_nm);
 
-/// In each of the colours, and last at the lens's own wavelength, which stands for all of them without dispersion.
+/// Axial transmittances at each of the colours and, last, at the lens's own wavelength, which stands for all colours
+/// without dispersion.
 inline std::vector<AxialShares> shares_of(const LensSystem& lens) {
     std::vector<AxialShares> shares;
     for (const double wavelength_nm : kColours_nm) shares.emplace_back(lens, wavelength_nm);
@@ -154,13 +155,13 @@ inline std::vector<AxialShares> shares_of(const LensSystem& lens) {
 
 }  // namespace light_effects_detail
 
-/// By how much an effect of surfaces changes the light of the picture.
+/// Change of the picture by an effect of the surfaces.
 struct LightChange {
     double codes = 0;  ///< in the colour that shows it most
-    double colour_codes = 0;  ///< by which a colour shows it more or less than at one wavelength for all colours
+    double colour_codes = 0;  ///< largest difference of a colour from the result with one wavelength for all colours
 };
 
-/// What the surfaces keep, where the picture is brightest without being clipped.
+/// Light lost at the surfaces, where the picture is brightest without being clipped.
 inline LightChange coating_codes(const Camera& camera, const SceneFacts& facts) {
     using namespace light_effects_detail;
     const double value = std::min(brightest(facts), 1.0);
@@ -176,25 +177,26 @@ inline LightChange coating_codes(const Camera& camera, const SceneFacts& facts) 
     return change;
 }
 
-/// Ghosts, and which of them is the brightest.
+/// Change by ghosts, with the pair of surfaces of the most visible one.
 struct GhostChange : LightChange {
-    GhostPair brightest{-1, -1};  ///< none: it is the veil of all
+    GhostPair brightest{-1, -1};  ///< -1: the veil of all ghosts is the most visible
 };
 
 namespace light_effects_detail {
 
-/// The disc that one ghost makes of a lamp on the film, in one colour.
+/// Disc that one ghost makes of a lamp on the film, in one colour.
 struct GhostDisc {
     double middle, radius;  ///< mm; along the direction to the lamp, from the middle of the film
-    double value;  ///< of the developed picture
-    double darkest;  ///< of the picture without it, within the disc
+    double value;  ///< developed value that it adds
+    double darkest;  ///< lowest value of the picture without it, within the disc
 };
 
-/// `share`: of the light that the ghost's way keeps; `pixel`: mm. Nothing where rims or the frame leave nothing of it.
+/// `share`: fraction of the light that the ghost path transmits; `pixel`: pixel size, mm. Returns std::nullopt if the
+/// rims block the ghost, or it lies outside the frame.
 inline std::optional<GhostDisc> ghost_disc(const Camera& camera, const SceneFacts& facts, const GhostBundle& bundle,
                                            const SeenLight& light, double share, double pixel) {
     const double across = light.from.x / -light.from.z, down = light.from.y / -light.from.z;
-    // On the axis too the place of the ghost moves with the slope, by as much as close to it.
+    // The position of a ghost is proportional to the slope near the axis; on the axis a small slope avoids 0 / 0.
     const double slope = std::max(hypotenuse(across, down), 1e-6);
     const std::optional<GhostBundle::Spot> spot = bundle.spot_of(slope);
     if (!spot) return {};
@@ -210,8 +212,8 @@ inline std::optional<GhostDisc> ghost_disc(const Camera& camera, const SceneFact
     return GhostDisc{spot->middle, radius, value_of(camera, share * lux), *dark};
 }
 
-/// By how many codes a disc in one colour differs from that at the lens's own wavelength. It differs by its light, and
-/// in the crescent that only one of the two reaches. A pixel may see a part of the crescent only.
+/// Difference in codes between a disc in one colour and that at the lens's own wavelength: by its light, and in the
+/// crescent that only one of the two covers. The crescent may be narrower than a pixel.
 inline double colour_between(const GhostDisc& disc, double veil, const GhostDisc& of_one, double veil_of_one,
                              double pixel) {
     const double light = std::fabs(codes_between(disc.darkest, disc.value + veil) -
@@ -222,9 +224,9 @@ inline double colour_between(const GhostDisc& disc, double veil, const GhostDisc
 
 }  // namespace light_effects_detail
 
-/// By first order, in the colour that shows it most. The light of a lamp fills a disc; where the picture is darkest in
-/// it, it shows most. The veil that all ghosts make of what the lens sees shows most where the picture is darkest.
-/// Light of the radiance L that converges on the film with the sine s has the irradiance pi L s^2.
+/// Changes by ghosts, by first order, in the colour that shows them most. The light of a lamp fills a disc and is the
+/// most visible where the picture is darkest within it. The veil of all ghosts of the scene is the most visible where
+/// the picture is darkest. Light of radiance L that converges on the film with the sine s has the irradiance pi L s^2.
 inline GhostChange ghost_codes(const Camera& camera, const SceneFacts& facts) {
     using namespace light_effects_detail;
     const LensSystem& lens = camera.lens;
@@ -279,8 +281,9 @@ inline GhostChange ghost_codes(const Camera& camera, const SceneFacts& facts) {
     return most;
 }
 
-/// Two pixels beside bright things: a point's, whose spread falls with the third power of the distance, and an edge's,
-/// with the first (the mean over all directions; docs/diffraction.md). Where the picture beside them is darkest.
+/// Diffraction two pixels from bright things, where the picture next to them is darkest: the spread of a point falls
+/// with the third power of the distance, that of an edge with the first (mean over all directions;
+/// docs/diffraction.md).
 inline double starburst_codes(const Camera& camera, const SceneFacts& facts) {
     using namespace light_effects_detail;
     const LensSystem& lens = camera.lens;
@@ -307,13 +310,14 @@ inline double starburst_codes(const Camera& camera, const SceneFacts& facts) {
     return codes;
 }
 
-/// By how much more an aperture with a dark middle softens what is large than an open one. What diffraction takes from
-/// the contrast of coarse detail is in the ratio of the aperture's edge to its area: 1 / (1 - the ratio of the radii).
+/// Factor by which a central obstruction increases the blur of coarse detail by diffraction. The loss of contrast is
+/// proportional to the perimeter of the aperture over its area, which makes the factor 1 / (1 - the ratio of the
+/// radii).
 inline double edge_of_obstruction(const LensSystem& lens) {
     return 1 / (1 - std::sqrt(1 - unobstructed_share(lens, lens.wavelength_nm)));
 }
 
-/// Diameter of the disc within Airy's first dark ring, in the middle of the film. `film_sine`: see LensErrors.
+/// Diameter of the first dark ring of the Airy pattern, in the film centre, px. `film_sine`: see LensErrors.
 inline double airy_diameter_px(const Camera& camera, double film_sine) {
     return 1.22 * light_effects_detail::kGreen_mm / film_sine * camera.film.width / camera.film.width_mm;
 }

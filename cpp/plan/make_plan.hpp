@@ -7,8 +7,8 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Looks at the scene and at the lens, and plans what the settings leave to the planner. `settings`: of the picture.
-/// Throws what probe_scene throws, and InputError for a lens that passes nothing and for thresholds that are none.
+/// Probes the scene and the lens, and plans what the settings leave to the planner. `settings`: those of the picture.
+/// Throws what probe_scene throws, and InputError if the lens passes no light or a threshold is invalid.
 inline Plan make_plan(Session& session, const Assembly& scene, const Camera& camera, const RenderSettings& settings,
                       bool measures_times, const PupilTracer& tracer, const Progress& progress = {}) {
     validate(settings);
@@ -17,7 +17,7 @@ inline Plan make_plan(Session& session, const Assembly& scene, const Camera& cam
         plan_bounces(session, scene, camera, settings, plan, progress);
         return plan;
     }
-    // What errors and effects amount to is looked at without tilts: they change little of it.
+    // Errors and effects are estimated for the centred lens, because tilts change them little.
     Camera full = camera;
     full.lens = centred(camera.lens);
     const SceneFacts facts = probe_scene(session, scene, full, settings, progress);

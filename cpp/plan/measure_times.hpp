@@ -14,10 +14,10 @@ namespace REALCAM_NAMESPACE {
 
 namespace measure_times_detail {
 
-/// Long enough that a clock and a device's start do not count.
+/// Long enough that the resolution of the clock and the start of a device do not matter.
 inline constexpr double kLeast_s = 0.02;
 
-/// Seconds for so many samples: the least of three times, because other programs can only slow one down.
+/// Seconds for `spp` samples per pixel: the least of three runs, because other programs can only slow one down.
 inline double seconds_of(Session& session, int spp, const Progress& progress) {
     double least = kInfinity;
     for (int i = 0; i < 3; ++i) {
@@ -30,9 +30,9 @@ inline double seconds_of(Session& session, int spp, const Progress& progress) {
 
 }  // namespace measure_times_detail
 
-/// Measures what each effect of a plan adds to this picture's time on the session's device, each by itself beside every
-/// surface of the lens without effects: some tenths of a second for each. Preparations, which a picture needs once, are
-/// not counted. `settings`: of the picture. What this camera cannot have keeps no time.
+/// Measures the additional time of each effect of a plan on the session's device, relative to the full lens without
+/// effects, one effect at a time; takes some tenths of a second for each. Preparations, which a picture needs once, are
+/// not counted. `settings`: those of the picture. Effects that this camera cannot have get no time.
 inline void measure_times(Session& session, const Assembly& scene, Camera camera, RenderSettings settings, Plan& plan,
                           const Progress& progress) {
     using namespace measure_times_detail;
@@ -51,11 +51,11 @@ inline void measure_times(Session& session, const Assembly& scene, Camera camera
         RenderSettings given = settings;
         if (!effects.have_wavelengths()) given.illuminant.reset();
         session.set(scene, camera, given, keep_going);
-        session.add(1, progress);  // whatever a device does but once
+        session.add(1, progress);  // runs what a device does only once
     };
     set(none);
-    // What takes longer than that in few pixels is measured in these: a sample costs nearly as much as in the whole
-    // picture. A GPU takes the whole, because there its memory counts too.
+    // The film grows until a run takes kLeast_s: a sample of a small film costs nearly as much as one of the whole
+    // picture. A GPU needs the whole picture, because there its use of memory counts, too.
     int spp = 1;
     double alone = seconds_of(session, spp, progress);
     while (alone < kLeast_s && spp < (1 << 20)) {
@@ -77,13 +77,13 @@ inline void measure_times(Session& session, const Assembly& scene, Camera camera
             continue;
         }
         const EffectInfo* effect = find_effect(plan.decisions[k].name);
-        if (!effect) continue;  // what comes along with the camera model
+        if (!effect) continue;  // it comes with the camera model
         EffectChoice one = none;
         one.*effect->member = true;
         try {
             set(one);
         } catch (const InputError&) {
-            continue;  // of a glass that is not known at all wavelengths, say
+            continue;  // for example because the index of a glass is not known at all wavelengths
         }
         with[k] = seconds_of(session, spp, progress);
     }

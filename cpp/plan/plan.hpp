@@ -12,32 +12,32 @@ namespace REALCAM_NAMESPACE {
 
 enum class SizeUnit { pixels, codes };
 
-/// A shot in which there is nothing to decide upon.
+/// Thrown for a shot with nothing to decide upon, because the camera sees no object and no light.
 struct NothingToPlan : InputError {
     using InputError::InputError;
 };
 
-/// Who decided.
+/// The origin of a decision.
 enum class DecidedBy { planner, user };
 
-/// One thing that a picture may have or do without.
+/// Decision on one effect that a picture may have or do without.
 struct PlanDecision {
     std::string name;
-    double size;  ///< by how much the picture changes where it is left out; infinite: beyond all measure
+    double size;  ///< change of the picture if the effect is left out; may be infinite
     SizeUnit unit;
     double threshold;
     bool is_kept;
     DecidedBy by = DecidedBy::planner;
     std::optional<double>
-        time;  ///< that it adds to the picture's, as a share of that without any effect; where measured
+        time;  ///< additional time as a fraction of the time without any effect; std::nullopt if not measured
     std::string reason;  ///< a sentence
 
     bool operator==(const PlanDecision&) const = default;
 };
 
-/// What a shot calls for.
+/// Camera model, effects and bounces that a shot requires.
 struct Plan {
-    CameraModel model = CameraModel::full_lens;  ///< the cheapest that looks like every surface of the lens
+    CameraModel model = CameraModel::full_lens;  ///< the cheapest whose picture matches that of the full lens
     EffectChoice effects;
     int max_bounces = 1;  ///< of light in the scene
     std::vector<PlanDecision> decisions;

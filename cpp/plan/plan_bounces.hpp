@@ -14,15 +14,16 @@ namespace REALCAM_NAMESPACE {
 
 namespace plan_bounces_detail {
 
-/// Pixels of the longer side, pixels of the side of a square, and samples of a pixel. What differs is looked for in
-/// means of squares, because roulette lets few paths go on, which shine in single pixels.
+/// Pixels of the longer side, pixels of the side of a square, and samples per pixel. Pictures are compared by means
+/// over squares, because roulette lets few paths continue, which light up single pixels.
 inline constexpr int kLongSide = 48, kSquare = 4, kSamples = 32;
-/// Share of the threshold that the small picture may lack. It underestimates light that few samples find, such as that
-/// of many reflections in glass. Superfluous bounces cost little, because few paths take them.
+/// Fraction of the threshold that the small picture may lack. It underestimates light that few samples find, such as
+/// that of many reflections in glass. Superfluous bounces cost little, because few paths take them.
 inline constexpr double kMargin = 0.5;
 
-/// A small picture as linear 8-bit codes of its squares, of three channels each. That of another number of bounces
-/// follows the same paths, as far as they go, so that both differ by the light of the other bounces alone.
+/// Renders a small picture; returns linear 8-bit codes of its squares, three channels each. With another number of
+/// bounces the same paths are followed as far as they go, so that two pictures differ only by the light of the
+/// additional bounces.
 inline std::vector<double> small_picture(Session& session, const Assembly& scene, const Camera& camera,
                                          RenderSettings settings, int max_bounces, const Progress& progress) {
     settings.max_bounces = max_bounces;
@@ -50,8 +51,8 @@ inline double largest_difference(const std::vector<double>& a, const std::vector
 
 }  // namespace plan_bounces_detail
 
-/// Decides how often light may bounce: the least number with which a small picture lacks less than the threshold of
-/// codes in all of its squares. `settings`: of the picture. Throws what take_picture throws.
+/// Decides on the number of bounces: the least with which every square of a small picture lacks less than kMargin times
+/// the threshold of codes. `settings`: those of the picture. Throws what take_picture throws.
 inline void plan_bounces(Session& session, const Assembly& scene, Camera camera, RenderSettings settings, Plan& plan,
                          const Progress& progress) {
     using namespace plan_bounces_detail;
@@ -61,7 +62,7 @@ inline void plan_bounces(Session& session, const Assembly& scene, Camera camera,
     }
     const double threshold = settings.thresholds.codes;
     camera.film = with_long_side(camera.film, kLongSide);
-    // A pinhole shows it sooner, wherever a lens has an axis.
+    // A pinhole camera gives the same answer faster, if the lens has an axis.
     if (const LensSystem on_axis = centred(camera.lens); on_axis.is_rotational()) {
         camera.lens = on_axis;
         camera.model = CameraModel::pinhole;

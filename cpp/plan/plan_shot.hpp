@@ -13,7 +13,7 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// The effects of a picture for which there is no plan: those that somebody has named.
+/// Effects of a picture without a plan: those that the user named.
 inline EffectChoice without_plan(EffectChoice effects) {
     effects.is_automatic = false;
     effects.named = 0;
@@ -22,7 +22,7 @@ inline EffectChoice without_plan(EffectChoice effects) {
 
 namespace plan_shot_detail {
 
-/// Two or three digits.
+/// Formats a size with about two digits.
 inline std::string short_size(double size) {
     char text[32];
     std::snprintf(text, sizeof text, size < 0.095 ? "%.2g" : size < 9.95 ? "%.1f" : "%.0f", size);
@@ -55,15 +55,16 @@ private:
         return camera;
     }
 
-    /// Whether the effect is one of surfaces, which an ideal lens has not.
+    /// True if the effect needs the surfaces of the lens, and the user chose an ideal lens.
     bool is_impossible(const EffectInfo& effect) const { return effect.needs_full_lens && !may_choose_model_; }
 
-    /// `doubt`, or why the lens cannot show the effect.
+    /// Reason why the lens cannot show the effect; if it can, `doubt`.
     std::string doubt_or_refusal(const EffectInfo& effect, const std::string& doubt) const {
         return effect.needs_round_lens && !is_round_ ? "but only a centred lens of revolution can show it" : doubt;
     }
 
-    /// `reason`: what is so large. `leave`: why it is left to the user; empty: it is not.
+    /// `reason`: source of the size, in words. `leave`: why only the user may switch the effect on; empty if the
+    /// planner may.
     void decide(const char* name, double size, SizeUnit unit, std::string reason, const std::string& leave = "") {
         const EffectInfo& effect = *find_effect(name);
         const std::string doubt = doubt_or_refusal(effect, leave);
@@ -78,7 +79,8 @@ private:
                                    is_named ? DecidedBy::user : DecidedBy::planner, std::nullopt, reason});
     }
 
-    /// Glass without a word on its coating is taken as bare, which few lenses are.
+    /// Reason to leave effects of coatings to the user: glass of unknown coating is simulated as bare, which few lenses
+    /// are. Empty if the coatings of all glass are known.
     std::string doubt_of_coatings() const {
         const std::vector<Surface>& surfaces = camera_.lens.surfaces;
         const std::vector<int> unknown = surfaces_with_unknown_coating(camera_.lens);
@@ -126,8 +128,8 @@ private:
                    "the stars of lamps bring " + codes(star) + " two pixels beside them");
     }
 
-    /// Decides on the colour of glass, coatings and ghosts. Coatings are of one wavelength where neither dispersion nor
-    /// diffraction brings others. Ghosts have others by dispersion alone.
+    /// Decides on the colour of glass, coatings and ghosts. Coatings are evaluated at one wavelength unless dispersion
+    /// or diffraction samples others; ghosts are unless dispersion does.
     void decide_colour() {
         const double lateral = errors_.lateral_colour_px, axial = errors_.axial_colour_px;
         const double of_glass = std::max(lateral, axial);
@@ -147,7 +149,7 @@ private:
     void decide_motion() {
         double most = 0;
         for (const SeenTile& tile : facts_.tiles)
-            if (tile.motion_px > most) most = tile.motion_px;  // NaN: it leaves what the lens shows
+            if (tile.motion_px > most) most = tile.motion_px;  // NaN: the surface leaves the image circle
         if (most == 0) return;
         const double seen = camera_.exposure_time_s, rows = camera_.shutter.readout_time_s;
         const double skew = seen > 0 ? most * rows / seen : 0;
@@ -191,14 +193,14 @@ private:
     const SceneFacts& facts_;
     const RenderSettings& settings_;
     const bool is_round_;
-    const bool may_choose_model_ = camera_.model == CameraModel::full_lens;  ///< else the camera's stays
+    const bool may_choose_model_ = camera_.model == CameraModel::full_lens;  ///< otherwise the camera's model is used
     Plan plan_;
-    double coating_colour_codes_ = 0, ghost_colour_codes_ = 0;  ///< of those that are kept
+    double coating_colour_codes_ = 0, ghost_colour_codes_ = 0;  ///< of the effects that are kept
 };
 
 }  // namespace plan_shot_detail
 
-/// What is worth simulating of a shot. Of the settings' effects those that were named stay as they are.
+/// Plans which effects and which camera model a shot needs. Effects that the settings name stay as specified.
 inline Plan plan_shot(const Camera& camera, const LensErrors& errors, const SceneFacts& facts,
                       const RenderSettings& settings) {
     return plan_shot_detail::Planner(camera, errors, facts, settings).plan();

@@ -18,7 +18,7 @@ inline std::string size_text(double size, SizeUnit unit) {
     return unit == SizeUnit::pixels ? number_text(size, 3) + " px" : counted(size, "code", 3);
 }
 
-/// In a line, for a picture's metadata: "ghosts 0.3 codes left out, defocus 31 px kept".
+/// One-line summary for a picture's metadata: "ghosts 0.3 codes left out, defocus 31 px kept".
 inline std::string summary_of(const Plan& plan) {
     std::string text;
     for (const PlanDecision& decision : plan.decisions)
@@ -27,7 +27,7 @@ inline std::string summary_of(const Plan& plan) {
     return text;
 }
 
-/// A table for people. `model_name`: of the plan's camera model.
+/// Plan as a table of text. `model_name`: name of the plan's camera model.
 inline std::string text_of(const Plan& plan, const std::string& model_name) {
     using Row = std::array<std::string, 6>;
     std::vector<Row> rows = {{"effect", "size", "threshold", "", "time", "because"}};

@@ -14,13 +14,13 @@ namespace REALCAM_NAMESPACE {
 
 namespace probe_scene_detail {
 
-/// Pixels of the longer side.
+/// Pixels of the longer side of the small picture.
 inline constexpr int kLongSide = 48;
 
-/// So many of the brightest lights are looked for behind what may hide them. The others count as seen.
+/// Number of lights, the brightest first, whose visibility is tested. Others count as visible.
 inline constexpr std::size_t kLooked = 16;
 
-/// Adds a light of the scene; `towards`: from the lens, in scene axes, metres; of a sun a direction.
+/// Adds a light of the scene. `towards`: vector from the lens to it, in scene axes, metres; for a sun, a direction.
 inline void add_light(const InverseAffine<double>& camera_from_scene, Vec3d towards, double lux, double solid_angle_sr,
                       bool is_sun, SceneFacts& facts) {
     if (!(lux > 0)) return;
@@ -28,13 +28,13 @@ inline void add_light(const InverseAffine<double>& camera_from_scene, Vec3d towa
     facts.lights.push_back({from, lux, is_sun ? kInfinity : length(towards), solid_angle_sr});
 }
 
-/// Whether anything is in the way to a light. `camera`: a pinhole, turned to it.
+/// True if something occludes a light. `camera`: a pinhole camera, which is turned towards it.
 inline bool is_hidden(Session& session, const Assembly& scene, Camera camera, RenderSettings settings,
                       const Affine<double>& scene_from_camera, const SeenLight& light) {
     const FirstOrder data = first_order(camera.lens, camera.lens.wavelength_nm);
     const double pupil_m = 0.001 * (camera.lens.film_position() - data.entrance_pupil_position);
     const Vec3d direction = scene_from_camera.direction(light.from);
-    // Its pinhole is where the lens's is.
+    // Puts the pinhole at the entrance pupil of the lens.
     camera.pose.position_m = scene_from_camera.point({0, 0, -pupil_m}) - pupil_m * direction;
     camera.pose.look_at_m = camera.pose.position_m + direction;
     camera.pose.up = std::fabs(direction.y) < 0.9 ? Vec3d{0, 1, 0} : Vec3d{1, 0, 0};
@@ -44,12 +44,12 @@ inline bool is_hidden(Session& session, const Assembly& scene, Camera camera, Re
     camera.film.shift_mm = {0, 0};
     settings.spp = 1;
     const Image image = take_picture(session, scene, camera, settings, {});
-    // A lamp's own surface is not in its way, which bulges towards the lens by its radius at most.
+    // Excludes the lamp's own surface, which bulges towards the lens by its radius at most.
     const double nearest = light.distance_m * (0.999 - 2 * std::sqrt(light.solid_angle_sr)) - 1e-3;
     return static_cast<double>(image.layers[0].values[0]) < pupil_m + nearest;
 }
 
-/// Leaves those that the lens sees.
+/// Removes the lights that are hidden from the lens.
 inline void drop_hidden(Session& session, const Assembly& scene, const Camera& camera, const RenderSettings& settings,
                         const Affine<double>& scene_from_camera, std::vector<SeenLight>& lights) {
     std::sort(lights.begin(), lights.end(),
@@ -65,7 +65,7 @@ inline double luminance_of(Color c) {
     return static_cast<double>(luminance(c));
 }
 
-/// `camera`, `settings`: of the small picture.
+/// Renders the view far beyond the frame. `camera`, `settings`: those of the small picture.
 inline WideView wide_view(Session& session, const Assembly& scene, Camera camera, RenderSettings settings,
                           const Progress& progress) {
     WideView view{16, 2, {}};
@@ -82,7 +82,7 @@ inline WideView wide_view(Session& session, const Assembly& scene, Camera camera
     return view;
 }
 
-/// Point lights of one object, and for each of its materials that emit the triangles together.
+/// Adds the point lights of an object, and one light for all triangles of each emissive material.
 inline void add_lights_of(const Scene& object, const Affine<double>& scene_from_object, Vec3d lens_m,
                           const InverseAffine<double>& camera_from_scene, SceneFacts& facts) {
     for (const ScenePointLight& point : object.points) {
@@ -91,7 +91,7 @@ inline void add_lights_of(const Scene& object, const Affine<double>& scene_from_
     }
     struct Lamp {
         double solid_angle = 0;
-        Vec3d way = {0, 0, 0};  ///< mean over it, times it
+        Vec3d way = {0, 0, 0};  ///< integral of the vector from the lens over the solid angle
     };
     std::vector<Lamp> lamps(object.materials.size());
     for (const Triangle& triangle : object.triangles) {
@@ -114,8 +114,8 @@ inline void add_lights_of(const Scene& object, const Affine<double>& scene_from_
 
 }  // namespace probe_scene_detail
 
-/// Looks at a scene with a small picture through a pinhole. `settings`: of the picture that is planned. Throws what
-/// take_picture throws, and InputError where the camera sees neither an object nor any light.
+/// Probes a scene with a small picture through a pinhole. `settings`: those of the picture that is planned. Throws what
+/// take_picture throws, and NothingToPlan if the camera sees neither an object nor any light.
 inline SceneFacts probe_scene(Session& session, const Assembly& scene, Camera camera, RenderSettings settings,
                               const Progress& progress) {
     using namespace probe_scene_detail;

@@ -7,7 +7,7 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// The light of one film point, followed back into the scene: what one camera model makes of it.
+/// Ray bundle of one film point, traced into the scene through one camera model.
 struct SampledBundle {
     static constexpr int kRays = PupilTracer::kBlock;
 
@@ -16,10 +16,10 @@ struct SampledBundle {
     double light = 0;  ///< irradiance for unit radiance
 };
 
-/// A bundle in a plane of the scene.
+/// Intersection of a bundle with a plane of the scene.
 struct BundleSpot {
-    double x, y;      ///< of its middle, as a film point that a lens without aberrations would show there, mm
-    double diameter;  ///< of an even disc with the same mean square radius, mm on the film
+    double x, y;      ///< centre, as the film point at which a lens without aberrations would image it, mm
+    double diameter;  ///< of a uniform disc with the same mean square radius, mm on the film
 };
 
 namespace sampled_bundles_detail {
@@ -30,7 +30,7 @@ inline Vec2f pupil_number(int ray) {
 
 }  // namespace sampled_bundles_detail
 
-/// `ray_of(u)`: an ideal lens's.
+/// `ray_of(u)`: ray of an ideal lens for the pupil sample `u`.
 template <class RayOf>
 SampledBundle ideal_bundle(RayOf&& ray_of) {
     SampledBundle bundle;
@@ -43,7 +43,8 @@ SampledBundle ideal_bundle(RayOf&& ray_of) {
     return bundle;
 }
 
-/// Through every surface. `path`: of the lens, for light of one wavelength from the film; `camera`: with its pupil.
+/// Bundle through every surface. `path`: lens from the film to the scene, at one wavelength; `camera`: view that holds
+/// the pupil.
 inline SampledBundle traced_bundle(const CameraView& camera, const LensView<float>& path, Vec2f film,
                                    const PupilTracer& tracer) {
     PupilTracer::Rays inside;
@@ -68,10 +69,10 @@ inline SampledBundle traced_bundle(const CameraView& camera, const LensView<floa
     return bundle;
 }
 
-/// `distance_mm`: of a plane from the front vertex; infinite is allowed. No numbers where no light passes.
+/// `distance_mm`: distance of the plane from the front vertex; may be infinite. Members are NaN if no light passes.
 inline BundleSpot spot_of(const SampledBundle& bundle, const CircleOfConfusion& circle, double distance_mm) {
     const bool is_far = !(distance_mm < 1e30);
-    // A film height of 1 mm is so many mm there, or at infinity such a slope.
+    // Size in that plane, or slope at infinity, of a film height of 1 mm.
     const double scale =
         is_far ? static_cast<double>(circle.middle_slope)
                : static_cast<double>(circle.middle) + distance_mm * static_cast<double>(circle.middle_slope);

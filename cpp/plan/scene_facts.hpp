@@ -7,26 +7,26 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// What a tile of the film sees.
+/// View of the scene from one tile of the film.
 struct SeenTile {
-    double depth_mm;  ///< along the axis from the front vertex; infinite: nothing is there
-    double value;  ///< luminance of the developed picture, 1: white; more than that where it is too bright
-    double motion_px;  ///< by which it moves on the film while a pixel is exposed
+    double depth_mm;  ///< along the axis from the front vertex; infinite: no surface
+    double value;  ///< luminance of the developed picture; 1: white, above 1: overexposed
+    double motion_px;  ///< displacement on the film during the exposure of a pixel; NaN: it leaves the image circle
 };
 
-/// What the camera would see far beyond its frame, in squares about the axis of the lens.
+/// View far beyond the frame of the camera, as a square grid about the axis of the lens.
 struct WideView {
-    int side = 0;  ///< squares of a row
-    double half_slope = 0;  ///< of the direction of its edges
-    std::vector<double> values;  ///< as those of tiles
+    int side = 0;  ///< number of squares in a row
+    double half_slope = 0;  ///< slope of the directions at its edges
+    std::vector<double> values;  ///< as in SeenTile, row by row
 
-    /// Over the directions about the axis up to a slope.
+    /// Mean value over the directions about the axis up to a slope.
     double mean_within(double slope) const {
         double sum = 0, count = 0;
         for (int y = 0; y < side; ++y)
             for (int x = 0; x < side; ++x) {
                 const double scale = 2 * half_slope / side, away = 0.5 * (side - 1);
-                // Those that it just touches count, so that there is always one.
+                // Squares that the cone only touches count, so that there is always one.
                 if (hypotenuse(x - away, y - away) * scale > slope + scale) continue;
                 sum += values[static_cast<std::size_t>(y * side + x)];
                 ++count;
@@ -35,17 +35,17 @@ struct WideView {
     }
 };
 
-/// A light that is small, as the camera sees it.
+/// Light of small size as seen by the camera.
 struct SeenLight {
     Vec3d from;  ///< unit, towards the light, in the axes of the lens
     double illuminance_lux;  ///< across that direction, at the lens
-    double distance_m;       ///< infinite: a sun's
-    double solid_angle_sr;   ///< 0: without any size, so that no ray from the film meets it
+    double distance_m;       ///< infinite for a sun
+    double solid_angle_sr;   ///< 0: a point, which no ray from the film hits
 
     bool is_point() const { return solid_angle_sr == 0; }
 };
 
-/// A scene as one camera sees it: all that the planner knows of it.
+/// A scene as seen by one camera: all that the planner knows about it.
 struct SceneFacts {
     int columns = 0, rows = 0;
     std::vector<SeenTile> tiles;  ///< row by row

@@ -9,19 +9,19 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// What a picture, or all frames of a film, are taken with once nothing is left to the planner.
+/// Settings of a picture, or of all frames of a film, after planning.
 struct SettledFilm {
     CameraModel model = CameraModel::full_lens;
     RenderSettings settings;
     std::vector<Plan> plans;  ///< of the frames that were planned
     std::string summary;      ///< of the plans, in a line
-    std::string warning;      ///< why there was nothing to plan; empty: there was, or nothing was left to decide
+    std::string warning;      ///< why there was nothing to plan; otherwise empty
 };
 
-/// Plans some frames, given by their cameras, together: all effects that any of them calls for, because one that comes
-/// and goes would show, but for those that the lens of another cannot show; and their camera model, or that of the
-/// cameras where they call for different ones. A frame that sees nothing has no say. Throws what make_plan throws, but
-/// for NothingToPlan.
+/// Plans some frames, given by their cameras, together. An effect is used if any frame calls for it, because one that
+/// comes and goes would be visible, unless the lens of another frame cannot show it. The camera model is the planned
+/// one, or that of the cameras if the plans differ. Frames that see nothing are ignored. Throws what make_plan throws,
+/// except NothingToPlan.
 inline SettledFilm settle_film(Session& session, const Assembly& scene, const std::vector<Camera>& cameras,
                                const RenderSettings& asked, const PupilTracer& tracer, const Progress& progress = {}) {
     SettledFilm film{cameras.front().model, asked, {}, "", ""};

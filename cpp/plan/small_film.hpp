@@ -5,7 +5,7 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// The same film with so many pixels along its longer side, or as many as it has.
+/// Returns the film with at most this many pixels along its longer side.
 inline Film with_long_side(Film film, int pixels) {
     const double scale = std::min(1.0, static_cast<double>(pixels) / std::max(film.width, film.height));
     film.width = std::max(1, static_cast<int>(film.width * scale));
