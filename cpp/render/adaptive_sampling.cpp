@@ -72,15 +72,15 @@ void AdaptiveSampling::add(std::span<const float> exposure, const std::vector<st
         }
         taken[half] = counts[pixel];
     });
-    // N new samples change the mean of B by N / (B + N) of what both means differ, whose variance is s^2 (1/B + 1/N).
-    // So the variance of the new mean, s^2 / (B + N), is B / N of the change's.
+    // N new samples change the mean of B by N / (B + N) of the difference of both means, whose variance is s^2 (1/B +
+    // 1/N). So the variance of the new mean, s^2 / (B + N), is B / N times that of the change.
     const double traced_now = *std::max_element(counts.begin(), counts.end());
     const double over_change = traced_samples_ / std::max(traced_now, 1.0);
     for (std::size_t h = 0; h < halves_.size(); ++h) {
         const double numbers = 3 * std::max(halves_[h].pixels, 1.0);
         halves_[h].mean = mean[h] / numbers;
         if (taken[h] == 0) continue;
-        // Both kinds of samples are independent, so that what they change adds up in squares.
+        // Both kinds of samples are independent, so that the squares of their changes add up.
         halves_[h].add(std::max(0.0, difference[h] - by_lights[h]) / numbers, taken[h]);
         if (is_traced) halves_[h].traced = over_change * by_lights[h] / numbers;
     }
@@ -113,7 +113,7 @@ double AdaptiveSampling::left() const {
 }
 
 void AdaptiveSampling::Half::add(double change, double taken) {
-    // The difference says little where fewer samples are added than there are.
+    // The difference is a poor estimate if fewer samples are added than the half has.
     const bool is_doubling = taken >= samples;
     samples += taken;
     if (!is_doubling) return;
@@ -150,7 +150,7 @@ double AdaptiveSampling::decay_of(std::size_t half) const {
             numbers += 3 * near.pixels;
         }
     if (!(last > 0) || !(before > 0)) return 1;
-    // Two deviations of the logarithm of a quotient of mean squares over so many numbers.
+    // The ratio less two standard deviations of its logarithm, for mean squares over this many values.
     return std::clamp(std::log2(before / last) - 2 * std::numbers::log2e * 2 / std::sqrt(numbers), 1.0, kMostDecay);
 }
 

@@ -12,10 +12,10 @@ enum class RenderStage { lens, scene, other };
 
 namespace advance_path_detail {
 
-/// Russian roulette begins at this bounce: dim paths are ended at random, and those that are kept count more.
+/// First bounce with Russian roulette, which ends dim paths at random and increases the weight of the others.
 inline constexpr int kFirstRoulette = 3;
 
-/// Ends a path with the probability that its throughput has lost.
+/// Ends a path with the probability 1 - q, where q is the ratio of its throughput to its initial weight.
 template <int N>
 REALCAM_INLINE void play_roulette(const SampleBlock<N>& block, int bounce, int place, PathState<N>& path) {
     const Color throughput = path.throughput[place];
@@ -35,8 +35,8 @@ REALCAM_INLINE bool any_active(const SceneRays<N>& rays) {
     return any != 0;
 }
 
-/// Traces shadow rays, and adds the light that comes along them. `darkens`: whether a path ends where its light is
-/// hidden.
+/// Traces shadow rays, and adds the light of those that are not occluded. `darkens(i)`: true if path i ends when its
+/// light is occluded.
 template <SceneKind scene_kind, int N, class SceneT, class Probe, class Darkens>
 REALCAM_INLINE void add_light(const ShadowRays<N>& light, SceneT&& scene, Probe&& probe, const Darkens& darkens,
                               PathState<N>& path, PathResults<N>& results) {
@@ -56,7 +56,7 @@ REALCAM_INLINE void add_light(const ShadowRays<N>& light, SceneT&& scene, Probe&
     }
 }
 
-/// What scenes of SceneKind::any ask of a shadow ray to a surface's light of this number.
+/// Sets the properties of the shadow ray for light sample `number` that only scenes of SceneKind::any need.
 template <SceneKind scene_kind, int N>
 REALCAM_INLINE void number_shadow_ray(const PathState<N>& path, int place, int number, SceneRays<N>& rays) {
     if constexpr (scene_kind == SceneKind::any) {
@@ -65,7 +65,8 @@ REALCAM_INLINE void number_shadow_ray(const PathState<N>& path, int place, int n
     }
 }
 
-/// Scatters the path of a GPU's thread, which has no room for more than one shadow ray: each is traced when it is set.
+/// Scatters the path of a GPU's thread. Shadow rays are traced as soon as they are set, because a thread has room for
+/// one.
 template <SceneKind scene_kind, class SceneT, class Probe>
 REALCAM_INLINE void scatter_one(const SceneView& view, const PathSettings& settings, const SampleBlock<1>& block,
                                 int bounce, const Surfaces<1>& surfaces, SceneT&& scene, Probe&& probe,
@@ -98,10 +99,10 @@ REALCAM_INLINE void scatter_many(const SceneView& view, const PathSettings& sett
                                  int bounce, SurfacesT& surfaces, SceneT&& scene, Probe&& probe, PathState<N>& path,
                                  PathResults<N>& results) {
     LightRays<N> shadow;
-    std::int32_t darkens[N];  // surfaces that show nothing but shadows
+    std::int32_t darkens[N];  // surfaces that show only shadows
     for (int k = 0; k < kLightSampleCount; ++k) {
         REALCAM_LANES
-        for (int i = 0; i < N; ++i) shadow[k].rays.active[i] = 0;  // also of the places that are not in use
+        for (int i = 0; i < N; ++i) shadow[k].rays.active[i] = 0;  // unused lanes, too
         for (int i = 0; i < path.count; ++i) number_shadow_ray<scene_kind>(path, i, k, shadow[k].rays);
     }
     if constexpr (scene_kind == SceneKind::plain)
@@ -114,7 +115,7 @@ REALCAM_INLINE void scatter_many(const SceneView& view, const PathSettings& sett
 
 }  // namespace advance_path_detail
 
-/// Rays from the film through the lens.
+/// Generates the rays from the film through the lens, and starts their paths.
 template <LensKind lens_kind, SceneKind scene_kind, Effects effects = kNoEffects, int N>
 REALCAM_HD inline void begin_paths(const CameraView& camera, const SampleBlock<N>& block,
                                    PathStateWith<N, effects>& path, PathResults<N>& results) {
@@ -124,8 +125,8 @@ REALCAM_HD inline void begin_paths(const CameraView& camera, const SampleBlock<N
     generate_rays_with<lens_kind, effects>(camera, block, film, path.wavelengths, camera_rays);
     if constexpr (scene_kind == SceneKind::any) expose_rays(camera, block, camera_rays, path.rays.time);
     start_paths(camera_rays, path, results);
-    // The edges of the aperture spread the light of lamps, which is looked for with the density at which both ways are
-    // as good.
+    // Diffraction at the edges of the aperture spreads the light of lamps. Such rays have the density with which pixel
+    // samples and splats find that light equally well.
     if constexpr (effects.diffraction) {
         REALCAM_LANES
         for (int i = 0; i < N; ++i)
@@ -134,9 +135,9 @@ REALCAM_HD inline void begin_paths(const CameraView& camera, const SampleBlock<N
     }
 }
 
-/// Takes each path to the next surface, collects the light that reaches it there, and scatters it. Returns whether any
-/// goes on. `SceneT` offers intersect(rays, hits) and occluded(rays, hidden) for N rays; `Probe` offers
-/// enter(RenderStage) and costs nothing where nobody asks for the time.
+/// Traces each path to its next surface, adds the light that reaches it there, and scatters it. Returns true if any
+/// path continues. `SceneT` provides intersect(rays, hits) and occluded(rays, hidden) for N rays; `Probe` provides
+/// enter(RenderStage), which costs nothing if the time is not measured.
 template <SceneKind scene_kind, int N, class SceneT, class Probe>
 REALCAM_HD inline bool advance_paths(const SceneView& view, const CameraView& camera, const PathSettings& settings,
                                      const SampleBlock<N>& block, int bounce, SceneT&& scene, Probe&& probe,
@@ -153,7 +154,7 @@ REALCAM_HD inline bool advance_paths(const SceneView& view, const CameraView& ca
     scene.intersect(path.rays, hits);
     probe.enter(RenderStage::other);
     meet_surfaces<scene_kind>(view, camera, settings, block, bounce, hits, path, results, surfaces);
-    if (path.count == 0) return false;  // on a GPU, so that registers do not keep what only continuing paths need
+    if (path.count == 0) return false;  // on a GPU this frees the registers of what only continuing paths need
     const int places = path.places();
     if constexpr (N == 1)
         scatter_one<scene_kind>(view, settings, block, bounce, surfaces, scene, probe, path, results);

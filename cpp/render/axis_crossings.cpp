@@ -10,7 +10,7 @@ AxisCrossings::AxisCrossings(const Assembly& assembly, Vec3d origin, Vec3d direc
     ObjectBoxes boxes;
     for (const Instance& instance : assembly.instances) {
         const InverseAffine<double> into = instance.scene_from_object.inverse();
-        // The map keeps the line's parameter: the same distance in the scene.
+        // The map keeps the line's parameter, which is therefore a distance in the scene.
         const Vec3d from = into.point(origin), along = into.direction(direction);
         if (meets(boxes.of(*instance.object), from, along)) add(*instance.object, from, along);
     }

@@ -9,15 +9,15 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// One light of a picture that was traced apart from the samples of its pixels, in the host's memory.
+/// One kind of a picture's light that was traced apart from the samples of its pixels, in host memory.
 struct SplatFilm {
     GhostLight light = GhostLight::of_lights;
     std::vector<GhostSum> sums;  ///< of all pixels, film by film (GhostFilmView)
-    std::vector<unsigned long long> blocks;  ///< in each film
+    std::vector<unsigned long long> blocks;  ///< number of sample blocks in each film
     double units_per_lux = 1;
     int width = 0, height = 0;  ///< pixels
 
-    /// So many films without light.
+    /// Films without light; `films`: their number.
     static SplatFilm empty(GhostLight light, int width, int height, int films, double units_per_lux) {
         const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height),
                           count = static_cast<std::size_t>(films);
@@ -37,26 +37,26 @@ struct SplatFilm {
     }
 };
 
-/// Views of at most kMostSplats films, which must outlive them.
+/// View of at most kMostSplats films, which must outlive it.
 SplattedLight view_of(const std::vector<SplatFilm>& films);
 
-/// A film in the host's memory as it is developed. The pixels' sums and the splats must outlive it.
+/// View of a film in host memory for its development. The pixels' sums and the splats must outlive it.
 FilmView view_of(const FilmSums& pixels, int width, int height, const RenderSettings& settings,
                  const std::vector<SplatFilm>& splats);
 
-/// What of the exposure these are, 3 per pixel, lux seconds. Empty where they have no pixels.
+/// Exposure by the traced light, 3 per pixel, lux seconds. Empty if the films have no pixels.
 std::vector<float> traced_exposure(const std::vector<SplatFilm>& films, double exposure_time_s);
 
-/// What the pixels of a region have collected.
+/// Accumulated samples of the pixels of a region.
 struct RegionSums {
     FilmSums pixels;
     RenderStats stats;
 };
 
-/// What all parts of a film have collected together, wherever they were exposed.
+/// Accumulated samples of a whole film, merged from all its parts, wherever they were exposed.
 struct CollectedFilm {
     FilmSums pixels;
-    std::vector<LayerSum> layers;  ///< of all pixels; empty: no layer is wanted that needs them
+    std::vector<LayerSum> layers;  ///< of all pixels; empty if no requested layer needs them
     std::vector<SplatFilm> splats;
     RenderStats stats;
 };

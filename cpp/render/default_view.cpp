@@ -14,9 +14,9 @@ namespace realcam {
 
 namespace {
 
-/// Focuses on the first surface on the axis beyond the lens; where there is none, on the plane through the middle of
-/// the subject. Throws InputError where the lens cannot. `film_m`: the position of the film on the line of the
-/// crossings, which run along the camera's view.
+/// Focuses on the first surface on the axis beyond the lens or, if nothing is there, on the plane through the centre of
+/// the subject. `film_m`: position of the film on the line of `axis`, which runs along the view direction. Throws
+/// InputError if the lens cannot focus there.
 void autofocus(Camera& camera, const LensSystem& lens, const AxisCrossings& axis, double film_m,
                const BoundingBox& subject) {
     const double lens_end_m = camera.lens.film_position() / 1000;
@@ -29,18 +29,18 @@ void autofocus(Camera& camera, const LensSystem& lens, const AxisCrossings& axis
     camera.lens = focused(lens, 1000 * distance_m);
 }
 
-/// From the entrance pupil to the film, along the axis.
+/// Distance from the entrance pupil to the film along the axis.
 double film_to_pupil_m(const LensSystem& lens) {
     const double pupil = nominal_first_order(lens).entrance_pupil_position;
     return (lens.film_position() - (std::isfinite(pupil) ? pupil : 0.0)) / 1000;
 }
 
-/// The direction in which the front of a scene looks: +z as in glTF, or -y where z is up.
+/// The direction that the front of a scene faces: +z as in glTF, or -y if z is up.
 Vec3d front_of(Vec3d up) {
     return std::fabs(up.z) > 0.99 * length(up) ? Vec3d{0, -1, 0} : Vec3d{0, 0, 1};
 }
 
-/// The axes of a view that was chosen, unit vectors.
+/// Axes of an automatically chosen view, unit vectors.
 struct ViewAxes {
     Vec3d front, right, up;  ///< front: from the subject to the camera, horizontal
 
@@ -56,7 +56,7 @@ struct ViewAxes {
         right = cross(up, front);
     }
 
-    /// Returns whether the side of the subject in this direction is a wall. The direction is nearly along an axis.
+    /// Returns true if the subject's side in this direction is a wall. The direction is nearly along an axis.
     static bool has_wall(const Subject& subject, Vec3d direction) {
         const auto along = coordinates(direction);
         const auto largest = std::ranges::max_element(along, {}, [](double c) { return std::fabs(c); });
@@ -69,24 +69,25 @@ struct ViewAxes {
     }
 };
 
-/// From the subject to the camera: the elevation is half of that of the line from the lower front edge to the upper
-/// back edge. So an upright picture is seen from in front, a floor from 45 degrees above. A room is entered level.
+/// Direction from the subject to the camera. Its elevation is half of that of the line from the lower front edge to the
+/// upper back edge: an upright picture is seen from in front, a floor from 45 degrees above. A room is viewed
+/// horizontally.
 Vec3d direction_to_camera(const Subject& subject, const ViewAxes& axes) {
     if (subject.is_room()) return axes.front;
     const double elevation = 0.5 * std::atan2(axes.extent(subject.box, axes.front), axes.extent(subject.box, axes.up));
     return std::cos(elevation) * axes.front + std::sin(elevation) * axes.up;
 }
 
-/// Entrance pupil to `target` at which every corner of the box lies in the picture, or, of an open room, at which its
-/// open side fills the picture. The field counts up to 90 degrees: to fill the picture of a fisheye, the camera would
-/// have to stand inside the scene. No corner lies in the lens.
+/// Distance from the entrance pupil to `target` at which every corner of the box lies in the picture or, for an open
+/// room, at which its open side fills the picture. The field is limited to 90 degrees: to fill the picture of a
+/// fisheye, the camera would have to stand inside the scene. No corner lies in the lens.
 double filling_distance(const BoundingBox& box, const Camera& camera, Vec3d target, bool is_open_room) {
     constexpr double kFilledShare = 0.9;
     const auto tangent = [&](double half_film_mm) {
         const double angle = widest_field_angle(camera.lens, half_film_mm);
         return angle > 0 && angle < std::numbers::pi / 4 ? std::tan(angle) : 1.0;
     };
-    // The axis looks at the target: of a film that is shifted the narrower side counts, as far as there is one.
+    // The axis points at the target: if the film is shifted, its narrower side decides.
     const auto half = [](double side, double shift) { return std::max(0.5 * side - std::fabs(shift), 0.1 * side); };
     const Film& film = camera.film;
     const double tan_x = tangent(half(film.width_mm, film.shift_mm.x)),
@@ -106,8 +107,8 @@ double filling_distance(const BoundingBox& box, const Camera& camera, Vec3d targ
     return distance;
 }
 
-/// How far from its target the camera may stand, so that no surface is between it and its subject; infinite where
-/// nothing is in front of it. `axis`: along the camera's view, from the target.
+/// Largest distance of the camera from its target at which no surface lies between camera and subject; infinite if
+/// nothing is in front of the subject. `axis`: along the view direction, from the target.
 double free_distance(const AxisCrossings& axis, const BoundingBox& subject, Vec3d target, Vec3d backward) {
     double edge = 1e-6 * subject.diagonal();
     for (int corner = 0; corner < 8; ++corner)
@@ -118,7 +119,8 @@ double free_distance(const AxisCrossings& axis, const BoundingBox& subject, Vec3
     return limit;
 }
 
-/// The camera of the scene whose view is taken; null: none. Throws InputError where there is none of that name.
+/// The scene's camera whose view is used; null: choose a view. Throws InputError if the scene has no camera of the
+/// requested name.
 const SceneCamera* chosen_camera(const Assembly& assembly, const ViewRequest& request) {
     const bool is_placed = request.position_m || request.look_at_m;
     if (request.camera.empty()) {
@@ -139,14 +141,14 @@ const SceneCamera* chosen_camera(const Assembly& assembly, const ViewRequest& re
                      (names.empty() ? "it has none" : "it has " + names));
 }
 
-/// Where a camera of the scene is: the entrance pupil of the lens in its place.
+/// Pose with the entrance pupil of the lens at the position of a scene's camera.
 Pose pose_of(const Affine<double>& scene_from_camera, const LensSystem& lens) {
     const Vec3d backward = normalized(scene_from_camera.z);
     const Vec3d position = scene_from_camera.origin + film_to_pupil_m(lens) * backward;
     return {position, position - backward, normalized(scene_from_camera.y)};
 }
 
-/// Takes the place, the direction and the motion of a camera of the scene.
+/// Takes over the position, direction and motion of a camera of the scene.
 void take_view(Camera& camera, const Assembly& assembly, const SceneCamera& from,
                const std::optional<double>& focus_distance_m) {
     const LensSystem lens = camera.lens;
@@ -157,7 +159,7 @@ void take_view(Camera& camera, const Assembly& assembly, const SceneCamera& from
         validate(camera);
     } else {
         const BoundingBox box = Subject(assembly).box;
-        // Where the film is depends on the focus, and that on where the film is.
+        // The film position depends on the focus, and the focus on the film position, so both are iterated.
         for (int i = 0; i < 4; ++i) {
             camera.pose = pose_of(place, camera.lens);
             validate(camera);
@@ -173,11 +175,11 @@ void take_view(Camera& camera, const Assembly& assembly, const SceneCamera& from
     set_motion(camera, std::move(keys));
 }
 
-/// Stands in that corner of a closed room which has the longest free view towards the target, a little above half of
-/// its height. Throws InputError where the lens cannot focus there.
+/// Places the camera in the corner of a closed room with the longest free view towards the target, a little above half
+/// of the room's height. Throws InputError if the lens cannot focus there.
 void stand_inside(Camera& camera, const Assembly& assembly, const BoundingBox& room, const ViewAxes& axes,
                   const std::optional<double>& focus_distance_m) {
-    constexpr double kAside = 0.42, kAbove = 0.1;  // of the room's extent, from its middle
+    constexpr double kAside = 0.42, kAbove = 0.1;  // fractions of the room's extent, from its centre
     double longest = 0;
     for (const double forth : {1, -1})
         for (const double aside : {1, -1}) {
@@ -200,8 +202,8 @@ void stand_inside(Camera& camera, const Assembly& assembly, const BoundingBox& r
     autofocus(camera, lens, AxisCrossings(assembly, camera.pose.position_m, forward), 0, room);
 }
 
-/// Stands so far from its target that the subject fills the picture, or where the next surface in front of it begins,
-/// and steps back where the lens cannot focus that near.
+/// Places the camera at the distance at which the subject fills the picture, or nearer if another surface would be in
+/// between. Steps back if the lens cannot focus that near.
 void stand_outside(Camera& camera, const Assembly& assembly, const BoundingBox& subject, bool is_open_room,
                    Vec3d backward, const std::optional<double>& focus_distance_m) {
     const Vec3d target = camera.pose.look_at_m;
@@ -211,7 +213,7 @@ void stand_outside(Camera& camera, const Assembly& assembly, const BoundingBox& 
     const AxisCrossings axis(assembly, target, -backward);
     double limit = 0.99 * free_distance(axis, subject, target, backward);
     if (focus_distance_m) camera.lens = focused(lens, 1000 * *focus_distance_m);
-    // The field narrows as the lens focuses nearer, and the lens focuses nearer as the field widens.
+    // The field of view and the focus depend on each other, so both are iterated.
     double least = 0;
     for (int i = 0, settled = 0; i < 100 && settled < 4; ++i) {
         const double distance =
@@ -275,7 +277,7 @@ const SceneCamera* set_view(Camera& camera, const Assembly& assembly, const View
             camera = std::move(inside);
             return nullptr;
         } catch (const InputError&) {
-            // A room that is too small for the lens is seen from outside.
+            // The lens does not fit into the room, which is then seen from outside.
         }
     }
     stand_outside(camera, assembly, subject.box, subject.is_room() && !is_closed, direction_to_camera(subject, axes),

@@ -11,7 +11,7 @@ namespace realcam {
 
 namespace {
 
-/// Without what stands before and behind it.
+/// The effect's name without a leading minus sign and without a parameter.
 std::string effect_of(const std::string& name) {
     const std::size_t begin = name.starts_with('-') ? 1 : 0;
     return name.substr(begin, std::min(name.find('='), name.size()) - begin);
@@ -106,7 +106,7 @@ EffectChoice effects_named(const std::vector<std::string>& names) {
 
 namespace {
 
-/// "surface 3 of ", "surfaces 1, 2 and 3 of " and the lens. `numbers`: from 1.
+/// "surface 3 of " or "surfaces 1, 2 and 3 of ", followed by the lens's name. `numbers`: from 1.
 std::string surfaces_text(const std::vector<int>& numbers, const LensSystem& lens) {
     std::vector<std::string> words;
     for (const int number : numbers) words.push_back(std::to_string(number));

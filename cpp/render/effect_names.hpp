@@ -13,16 +13,16 @@ inline std::uint32_t bit_of(const EffectInfo& effect) {
     return 1u << (&effect - kEffects);
 }
 
-/// By the name in kEffects; null for one that is none.
+/// Finds an effect by its name in kEffects; null if the name is unknown.
 const EffectInfo* find_effect(const std::string& name);
 
-/// What an effect is and what it needs, in a line.
+/// One-line description of an effect and of its requirements.
 std::string line_of(const EffectInfo& effect);
 
-/// "1, 2 and 3".
+/// Joins words: "1, 2 and 3".
 std::string listed(const std::vector<std::string>& words);
 
-/// The names of those with a property, a member of EffectInfo: "dispersion and diffraction".
+/// Names of the effects with a property, a member of EffectInfo: "dispersion and diffraction".
 template <class Property>
 std::string effects_that(Property property) {
     std::vector<std::string> names;
@@ -33,13 +33,14 @@ std::string effects_that(Property property) {
 
 std::string effect_names();
 
-/// Those that are switched on or left out, as effects_named understands them.
+/// Names of the effects that are switched on or left out, in the form that effects_named parses.
 std::vector<std::string> names_of(const EffectChoice& effects);
 
-/// "none" stands alone. Throws InputError for a name that is none, and where one is both named and left out.
+/// Parses names of effects; "none" must be the only one. Throws InputError if a name is unknown, or an effect is both
+/// named and left out.
 EffectChoice effects_named(const std::vector<std::string>& names);
 
-/// What lens, scene and camera cannot give of the effects, a sentence each. The picture is taken without it.
+/// Data for the effects that the lens lacks, a sentence each. The picture is taken without them.
 std::vector<std::string> effect_notices(const EffectChoice& effects, const LensSystem& lens);
 
 }  // namespace REALCAM_NAMESPACE

@@ -4,7 +4,7 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// sample_environment_image for many random numbers at once, as vector code.
+/// sample_environment_image for many random numbers at once, vectorised.
 template <int N>
 class EnvironmentSamples {
 public:

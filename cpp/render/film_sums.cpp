@@ -12,7 +12,7 @@ std::size_t pixels_of(const FilmView& film) {
     return static_cast<std::size_t>(film.pixel_count());
 }
 
-/// visit(pixel, what lies around it) for some pixels of a film.
+/// Calls visit(pixel, neighbourhood) for a range of pixels of a film.
 template <class Visit>
 void for_neighbourhoods(const FilmView& film, std::size_t first, std::size_t last, Visit&& visit) {
     constexpr int kReach = PixelNeighbourhood::kReach;
@@ -33,7 +33,7 @@ void for_neighbourhoods(const FilmView& film, std::size_t first, std::size_t las
     }
 }
 
-/// take(pixel, channel, irradiance of the splatted light, balance) for each channel of a film.
+/// Calls take(pixel, channel, irradiance of the splatted light, balance) for each channel of each pixel of a film.
 template <class Take>
 void for_channels(const FilmView& film, const RayLoop& loop, Take&& take) {
     const auto visit = [&](std::size_t i, const PixelNeighbourhood& around) {
@@ -46,7 +46,7 @@ void for_channels(const FilmView& film, const RayLoop& loop, Take&& take) {
     });
 }
 
-/// take(place, exposure) for each channel of a film, at its place among them all.
+/// Calls take(index, exposure) for each channel of each pixel, with its index in the picture's array.
 template <class Take>
 void for_exposures(const FilmView& film, double exposure_time_s, const RayLoop& loop, Take&& take) {
     for_channels(film, loop, [&](std::size_t i, int channel, double ghosts, double balance) {

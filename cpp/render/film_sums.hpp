@@ -8,26 +8,26 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// A film in the host's memory while it is exposed, row by row.
+/// Accumulated samples of a film in host memory, row by row.
 using FilmSums = std::vector<PixelSum>;
 
-/// Exposure and depth of a film, without what the picture cost. `loop`: over its pixels.
+/// Develops exposure and depth of a film; the cost of the picture is not filled in. `loop`: runs over its pixels.
 Image developed(const FilmView& film, double exposure_time_s, const RayLoop& loop = {});
 
-/// A film as 8-bit sRGB, 3 per pixel. `loop`: likewise.
+/// Develops a film as 8-bit sRGB, 3 per pixel. `loop`: runs over its pixels.
 std::vector<std::uint8_t> developed_codes(const FilmView& film, double exposure_time_s, double iso, ToneCurve curve,
                                           const RayLoop& loop = {});
 
-/// Variance of the exposure, 3 per pixel (PixelSum::variance).
-/// The exposure of the light that was traced from the lights.
+/// Exposure by the light that was traced from the lights, 3 per pixel.
 LayerImage developed_traced(const FilmView& film, double exposure_time_s);
 
+/// Variance of the exposure, 3 per pixel (PixelSum::variance).
 LayerImage developed_variance(const FilmView& film, double exposure_time_s);
 
-/// The layers of PixelSum::besides that are wanted: the variance, or the halves of dual pixels.
+/// The requested layers among the variance, the traced light and the halves of dual pixels.
 std::vector<LayerImage> developed_besides(const FilmView& film, LayerSet wanted, double exposure_time_s);
 
-/// How many samples each pixel has.
+/// Number of samples of each pixel.
 std::vector<std::int64_t> samples_of(const FilmSums& film);
 
 }  // namespace REALCAM_NAMESPACE

@@ -4,7 +4,7 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// A film in the memory of the host or of a GPU, as it is developed.
+/// A film in the memory of the host or of a GPU, for its development.
 struct FilmView {
     const PixelSum* pixels;  ///< row by row
     int width, height;
@@ -17,8 +17,8 @@ struct FilmView {
         return PixelNeighbourhood::of_column(pixels, width, height, column, row, balance.wavelengths);
     }
 
-    /// take(channel, irradiance of the splatted light, balance) of a pixel: what PixelSum::exposure asks for.
-    /// `around`: of the pixel, where anything is balanced.
+    /// Calls take(channel, irradiance of the splatted light, balance) for a pixel, with the arguments of
+    /// PixelSum::exposure. `around`: the pixel's neighbourhood; unused without control variates.
     template <class Take>
     REALCAM_HD void for_channels(std::int64_t pixel, const PixelNeighbourhood& around, Take&& take) const {
         const PixelSum& sum = pixels[pixel];

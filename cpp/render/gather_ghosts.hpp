@@ -4,28 +4,28 @@
 
 namespace REALCAM_NAMESPACE {
 
-// Ghosts of what objects reflect, backward: from the film along one ghost's way into the scene, where a path begins as
-// it does behind the lens. What a ray meets of the lights themselves is left to samples that begin there
-// (splat_ghosts.hpp), except where these cannot find it.
+// Ghosts of light that objects reflect, traced backward: from the film along one ghost path into the scene, where a
+// scene path begins as it does behind the lens. Light that a ray would collect by hitting a light itself is left to
+// samples that start at the lights (splat_ghosts.hpp), except where these cannot find it.
 
 namespace gather_ghosts_detail {
 
-/// Less than that of any light: weighed against it, what a ray meets of a light counts for nothing.
+/// Density below that of any sampled light: its MIS weight makes direct hits of lights count for nothing.
 inline constexpr float kLeftToLights = 1e-30f;
 
 struct NoProbe {
     REALCAM_HD void enter(RenderStage) {}
 };
 
-/// Samples anywhere on the film, and the rays through the last vertex plane to them; back along which they go.
+/// Samples at random points of the film, with rays from there through the last vertex plane.
 template <int N>
 struct FilmRays {
     SampleBlock<N> block;
     LensRays<float, N> rays;
-    Lanes<float, N> weight;  ///< times radiance: irradiance on the film
+    Lanes<float, N> weight;  ///< irradiance on the film per unit of radiance
 };
 
-/// A ray from a film point to the last vertex plane, in which it goes to one place of the entry's rectangle.
+/// Ray from a film point to a point of the entry rectangle in the last vertex plane.
 struct FilmRay {
     Vec3f origin, direction;
     float weight;
@@ -53,7 +53,7 @@ REALCAM_INLINE FilmRay free_film_ray(const CameraView& camera, const GhostView& 
     const FilmSurface<float> surface = film_surface(camera);
     const Vec3f from = surface.place(film), to = Vec3f{at.along, at.across, 0} - from;
     const float squared = dot(to, to), index = ghosts.film_index, scale = index / std::sqrt(squared);
-    // The cosines, at the film and in the plane, times the squared distance.
+    // Product of the cosines at the film and in the plane, times the squared distance.
     const float cosines = -to.z * dot(to, surface.direction(film, {0, 0, -1}));
     const float weight = index * index * cosines / (squared * squared * at.density);
     return {from, scale * to, select((cell >= 0) & (cosines > 0.0f), weight, 0.0f)};
@@ -93,8 +93,8 @@ REALCAM_INLINE void start_film_rays(const CameraView& camera, const GhostView& g
 
 }  // namespace gather_ghosts_detail
 
-/// Takes N samples of a block, from number `first` in it: splat(pixel, irradiance, dither) as of splat_ghosts.
-/// `SceneT`: as in advance_paths.
+/// Takes N samples of a block, from its sample `first` on, and calls splat(pixel, irradiance, dither) as splat_ghosts
+/// does. `SceneT`: as in advance_paths.
 template <LensKind lens_kind, SceneKind scene_kind, bool has_wavelengths, int N, class SceneT, class Splat>
 REALCAM_HD inline void gather_ghosts(const SceneView& view, const CameraView& camera, const PathSettings& settings,
                                      const GhostView& ghosts, GhostRange range, std::uint32_t first, SceneT&& scene,
@@ -114,7 +114,7 @@ REALCAM_HD inline void gather_ghosts(const SceneView& view, const CameraView& ca
     PassedPower<N> passed;
     pass_ghost_way<lens_kind, has_wavelengths>(ghosts, block.way, film.rays, variable, passed);
     CameraRays<N> camera_rays;
-    // Each pixel as if it had all the samples, of which it has but some.
+    // Each pixel is scaled as if it received all samples, of which it receives only some.
     const float scale = static_cast<float>(camera.width) * static_cast<float>(camera.height) / block.way.probability;
     REALCAM_LANES
     for (int i = 0; i < N; ++i) {

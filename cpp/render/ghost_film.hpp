@@ -9,15 +9,15 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Ghosts on one pixel: irradiance in fixed point, because sums of integers are the same whatever their order.
+/// Ghosts on one pixel: irradiance in fixed point, because sums of integers do not depend on their order.
 struct GhostSum {
     std::int64_t units[3];
 };
 
-/// The unit is a small part of the irradiance that all light would bring to a pixel which passed through the whole
-/// front of the lens to it alone. Ghosts are 1e4 to 1e8 times dimmer: 2^-36. The image of a lamp in focus does bring
-/// all of it to one pixel, with all samples of the film: 2^-28, so that 2^35 samples do not overflow the sum, and a
-/// lamp 1e8 times dimmer than another one still counts units in each sample.
+/// The unit is a small fraction of the irradiance of a pixel on which all light that enters the front of the lens
+/// falls. Ghosts are 1e4 to 1e8 times dimmer than that: 2^-36. The image of a lamp in focus does bring all light to one
+/// pixel, with all samples of the film: 2^-28, so that 2^35 samples do not overflow the sum, and a lamp 1e8 times
+/// dimmer than another one still counts units in each sample.
 inline double ghost_units_per_lux(const SceneView& scene, const CameraView& camera, const GhostView& ghosts) {
     const LightReceiver middle{front_vertex(camera, camera.front_vertex_m), {0, 0, 0}};
     double light = scene.has_environment ? 4 * static_cast<double>(environment_importance(scene)) : 0.0;
@@ -31,33 +31,35 @@ inline double ghost_units_per_lux(const SceneView& scene, const CameraView& came
     return most > 1e-30 ? units / most : units;
 }
 
-/// To which of so many films (GhostFilmView) a block's samples are added.
+/// Index of the film (GhostFilmView) to which a block's samples are added.
 REALCAM_INLINE int film_of_block(std::uint64_t block, int films) {
     return static_cast<int>(block) & (films - 1);
 }
 
-/// `dither`: a random number from 0 to 1, so that what is less than a unit is not lost in the mean.
+/// Converts irradiance to units. `dither`: random number in [0, 1), so that the mean of values below one unit is
+/// preserved.
 REALCAM_INLINE std::int64_t ghost_units(float lux, double units_per_lux, float dither) {
     constexpr double kMost = 0x1p52;
     const double units = static_cast<double>(lux) * units_per_lux + static_cast<double>(dither);
     return static_cast<std::int64_t>(units < kMost ? std::floor(units) : kMost);
 }
 
-/// One light of a picture that was traced apart from its samples, to be added to what these saw. Where the variance is
-/// wanted, there are two films: of blocks with even and of those with odd numbers.
+/// One kind of a picture's light that was traced apart from its samples, to be added to their light. If the variance is
+/// requested, there are two films, of the blocks with even and with odd indices.
 struct GhostFilmView {
     GhostLight light = GhostLight::of_lights;
-    const GhostSum* sums = nullptr;  ///< of all pixels, film by film; null: there are none
+    const GhostSum* sums = nullptr;  ///< of all pixels, film by film; null: no light
     int films = 1;
     double units_per_lux = 1;
-    const unsigned long long* blocks = nullptr;  ///< of kGhostBlock samples of the whole film, that are in each film
-    int width = 0, height = 0;                   ///< pixels
+    const unsigned long long* blocks = nullptr;  ///< number of blocks, of kGhostBlock samples of the whole film, in
+                                                 ///< each film
+    int width = 0, height = 0;  ///< pixels
 
-    /// Ghosts are smoothed by one pixel (a binomial filter of five by five), which costs them no detail worth the name
-    /// and takes as much noise from them as thirteen times the samples would.
+    /// Irradiance of a pixel. Ghosts are smoothed by one pixel (a binomial filter of five by five), which loses no
+    /// relevant detail and reduces their noise as much as thirteen times the samples would.
     REALCAM_HD double irradiance(std::int64_t pixel, int channel) const { return irradiance(pixel, channel, 0, films); }
 
-    /// Of the irradiance, lux^2: by the difference between the two films. NaN where one has no sample.
+    /// Variance of the irradiance, lux^2, by the difference between the two films. NaN if one has no sample.
     double variance(std::int64_t pixel, int channel) const {
         if (!sums) return 0;
         if (films < 2 || blocks[0] == 0 || blocks[1] == 0) return std::numeric_limits<double>::quiet_NaN();
@@ -67,7 +69,7 @@ struct GhostFilmView {
     }
 
 private:
-    /// By some of the films.
+    /// Irradiance from the films [first_film, end).
     REALCAM_HD double irradiance(std::int64_t pixel, int channel, int first_film, int end) const {
         unsigned long long taken = 0;
         for (int film = first_film; sums && film < end; ++film) taken += blocks[film];
@@ -83,7 +85,7 @@ private:
         };
         if (light == GhostLight::starbursts || light == GhostLight::direct) return units_at(pixel) / scale;
         constexpr double kWeights[] = {1, 4, 6, 4, 1}, kSum = 256;
-        // Beyond the border lies the border's own pixel again.
+        // Pixels beyond the border repeat the border's own pixel.
         const auto inside = [](int place, int count) { return place < 0 ? 0 : place < count ? place : count - 1; };
         const int column = static_cast<int>(pixel % width), row = static_cast<int>(pixel / width);
         std::int64_t columns[5];
@@ -117,17 +119,17 @@ struct SplattedLight {
     }
 };
 
-/// Blocks of samples of the whole film.
+/// Range of blocks of samples of the whole film.
 struct GhostBlocks {
     std::uint64_t first, end;
 };
 
-/// Those that belong to some samples of each pixel.
+/// The blocks that belong to some samples of each pixel.
 inline GhostBlocks ghost_blocks(const CameraView& camera, const SampleRange& range, const GhostView& ghosts) {
     const std::uint64_t pixels = static_cast<std::uint64_t>(camera.width) * static_cast<std::uint64_t>(camera.height),
                         per_block = kGhostBlock * static_cast<std::uint64_t>(ghosts.pixel_samples);
-    // At least one for each sample, so that twice the samples are twice the blocks in small pictures, too: by what a
-    // picture changes then its noise is known (AdaptiveSampling).
+    // At least one block for each sample, so that twice the samples are twice the blocks in small pictures, too:
+    // AdaptiveSampling measures noise by the change of a picture with doubled samples.
     const auto up_to = [&](std::uint64_t samples) {
         return std::max(samples, (samples * pixels + per_block - 1) / per_block);
     };

@@ -8,26 +8,26 @@
 
 namespace REALCAM_NAMESPACE {
 
-// The ways of ghosts through the lens, for samples from the lights on (splat_ghosts.hpp) and for samples from the film
-// on (gather_ghosts.hpp). All samples of a block take the same way, so that they run as vector code.
+// Ghost paths through the lens, for samples that start at the lights (splat_ghosts.hpp) and at the film
+// (gather_ghosts.hpp). All samples of a block take the same path, so that they are vectorised.
 
-/// So many samples in a row take the same way.
+/// Number of consecutive samples that take the same ghost path.
 inline constexpr std::uint32_t kGhostBlock = 256;
 
-/// Ghost samples, of the whole film together.
+/// Ghost samples, counted over the whole film.
 struct GhostRange {
     std::uint64_t first_block;
     std::uint32_t seed;
 };
 
-/// What the samples of a block have in common.
+/// Properties that the samples of a block share.
 struct GhostBlock {
     GhostWay way;
-    std::int32_t number;  ///< of that way
+    std::int32_t number;  ///< index of that path
     std::uint32_t stream, first_sample;
 };
 
-/// The first of a range. A sequence has 2^32 samples, 2^24 blocks.
+/// The first block of a range. A sequence has 2^32 samples, 2^24 blocks.
 REALCAM_INLINE GhostBlock ghost_block(const GhostView& ghosts, GhostRange range) {
     const auto block = static_cast<std::uint32_t>(range.first_block);
     const std::uint32_t round = hash32(range.seed, static_cast<std::uint32_t>(range.first_block >> 24) + 1u);
@@ -37,15 +37,15 @@ REALCAM_INLINE GhostBlock ghost_block(const GhostView& ghosts, GhostRange range)
 
 namespace ghost_ways_detail {
 
-/// Share of the samples that enter somewhere about the entry's rectangle, and share of those that enter anywhere: for
-/// what the rectangles have missed.
+/// Fractions of the samples that enter in an enlarged entry rectangle, and anywhere on the plane, to find light that
+/// the rectangles have missed. The rectangle is enlarged kAroundScale times.
 inline constexpr float kAround = 1.0f / 16, kAnywhere = 1.0f / 64, kAroundScale = 3;
 
 }  // namespace ghost_ways_detail
 
-/// A place in the plane of a GhostEntry.
+/// Point in the plane of a GhostEntry.
 struct EntryPlace {
-    float along, across;  ///< away from the axis, and across that, mm
+    float along, across;  ///< radial and tangential coordinates, mm
     float density;  ///< per mm^2
 };
 
@@ -78,7 +78,7 @@ REALCAM_INLINE EntryPlace entry_place(const Entry& entry, float reach, Vec2f u) 
     return {along, across, density};
 }
 
-/// Takes rays along a way. `variable`: of each ray's wavelength.
+/// Traces rays along a ghost path. `variable`: dispersion variable of each ray's wavelength.
 template <LensKind lens_kind, bool has_wavelengths, int N>
 REALCAM_INLINE void pass_ghost_way(const GhostView& ghosts, const GhostWay& way, LensRays<float, N>& rays,
                                    const float (&variable)[N], PassedPower<N>& passed) {

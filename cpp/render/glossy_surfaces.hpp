@@ -4,15 +4,15 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// What the paths of a block have met in a scene that is not plain: in lanes what GlossyBsdf describes, and point by
-/// point all else, whose lanes are black.
+/// Surfaces that the paths of a block have hit in a scene that is not plain. Surfaces that GlossyBsdf describes are
+/// stored in lanes; others are stored point by point, and their lanes are black.
 template <int N>
 struct GlossySurfaces {
     Vec3Lanes<float, N> position, geometric_normal, normal;
     ColorLanes<N> base, f0;
     Lanes<float, N> self_offset, f90, metallic, alpha;
     Lanes<std::int32_t, N> is_glossy;
-    Lanes<float, N> lobe_share;  ///< LightLobe's, since find_lobes
+    Lanes<float, N> lobe_share;  ///< of LightLobe; set by find_lobes
     Surfaces<N> others;
 
     REALCAM_INLINE void set(int place, const SurfacePoint& point) {
@@ -24,7 +24,7 @@ struct GlossySurfaces {
         set(place, is_glossy[place] ? glossy_surface(point) : GlossySurface{});
         if (!is_glossy[place]) others.set(place, point);
     }
-    /// Gives a place that no path uses the numbers of one that is in use.
+    /// Fills an unused lane with the values of a lane in use.
     REALCAM_INLINE void copy(int from, int to) {
         position.set(to, position[from]);
         geometric_normal.set(to, geometric_normal[from]);
@@ -39,7 +39,7 @@ struct GlossySurfaces {
     REALCAM_INLINE GlossySurface glossy(int place) const {
         return {base[place], f0[place], f90[place], metallic[place], alpha[place]};
     }
-    /// Once for all that asks for them, which is each turn in the tree of lights.
+    /// Computes the lobes once, because each step down the tree of lights reads them.
     REALCAM_INLINE void find_lobes(const PathState<N>& path) {
         const int places = whole_vectors<N>(path.count);
         REALCAM_LANES

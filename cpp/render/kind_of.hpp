@@ -4,12 +4,13 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// What the kernels for a picture have to know.
+/// Kind of scene for which the kernels of a picture are compiled.
 inline SceneKind kind_of(const SceneView& scene, const CameraView& camera) {
     return camera.key_count > 0 ? SceneKind::any : scene.kind;
 }
 
-/// What is there to be compared with stays out of the code for plain lenses.
+/// Kind of lens for which the kernels are compiled. Methods that only serve for comparison, pixel pupils and the
+/// polynomial model, are left out of the code for plain lenses.
 inline LensKind lens_kind_of(const CameraView& camera) {
     if (has_any_lens(camera)) return LensKind::any;
     const bool compares = camera.pixel_pupils.known || camera.model == CameraModel::polynomial_lens;

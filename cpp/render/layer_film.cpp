@@ -8,7 +8,7 @@ namespace layer_film_detail {
 
 namespace {
 
-/// A mean; 0 of nothing.
+/// Weighted mean; 0 if the weight is 0.
 float mean(double sum, double weight) {
     return weight > 0 ? static_cast<float>(sum / weight) : 0.0f;
 }

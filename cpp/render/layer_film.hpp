@@ -8,7 +8,7 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// What the layers of a film have collected, row by row. Empty: nothing of the kind yet.
+/// Accumulated layers of a film, row by row. A vector is empty before its layers are computed.
 struct LayerFilm {
     std::vector<LayerSum> sums;
     std::vector<MiddleSurface> middle;
@@ -16,7 +16,7 @@ struct LayerFilm {
 
 namespace layer_film_detail {
 
-/// f(pixel, out) for each pixel's values.
+/// Makes an image of a layer; f(pixel, out) writes the values of each pixel.
 template <class Pixel, class F>
 LayerImage made(Layer layer, const std::vector<Pixel>& film, F&& f) {
     const std::size_t channels = static_cast<std::size_t>(info_of(layer).channels);
@@ -35,7 +35,7 @@ LayerImage numbered(Layer layer, const std::vector<MiddleSurface>& film, F&& f) 
 
 }  // namespace layer_film_detail
 
-/// The wanted layers among kSampledLayers and kMiddleLayers, but motion. `origin_m`: of the scene as it was placed.
+/// The requested layers among kSampledLayers and kMiddleLayers, except motion. `origin_m`: origin of the placed scene.
 std::vector<LayerImage> developed(const LayerFilm& film, LayerSet wanted, const SurfaceIds& ids, Vec3d origin_m);
 
 }  // namespace REALCAM_NAMESPACE

@@ -4,22 +4,22 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// What one sample of a pixel saw first.
+/// First surface that each sample of a block hits.
 template <int N>
 struct LayerResults {
     Lanes<float, N> weight;  ///< of the sample in the exposure; 0: blocked in the lens
-    Lanes<std::int32_t, N> met;  ///< 1 where there is a surface
-    Vec3Lanes<float, N> normal;  ///< shading normal, unit, scene axes, on the side from which it is seen
+    Lanes<std::int32_t, N> met;  ///< 1 if a surface was hit
+    Vec3Lanes<float, N> normal;  ///< shading normal, unit, scene axes, on the visible side
     ColorLanes<N> albedo;
-    Lanes<float, N> circle_mm;  ///< of confusion, diameter on the film
+    Lanes<float, N> circle_mm;  ///< circle of confusion, diameter on the film
 };
 
-/// What the layers of one pixel have collected, weighted as the samples are in the exposure.
+/// Accumulated layers of one pixel, weighted as its samples are in the exposure.
 struct LayerSum {
     double weight;  ///< of all samples that passed the lens
-    double met;     ///< of those that met a surface
-    double normal[3], albedo[3];  ///< over those that met one
-    double circle_mm;             ///< over all
+    double met;     ///< of those that hit a surface
+    double normal[3], albedo[3];  ///< sums over those that hit a surface
+    double circle_mm;             ///< sum over all
 
     REALCAM_HD LayerSum& operator+=(const LayerSum& other) {
         weight += other.weight;
@@ -47,14 +47,14 @@ struct LayerSum {
     }
 };
 
-/// The nearest surface in a pixel's middle ray.
+/// Nearest surface on the ray of a pixel's centre.
 struct MiddleSurface {
-    float depth;   ///< metres along the axis from the film; infinite: nothing there; NaN: no ray passes the lens
-    Vec3f normal;  ///< as in LayerResults; 0 where there is no surface
-    std::uint32_t triangle;  ///< kNoTriangle where there is no surface
-    std::uint32_t instance;  ///< kNoInstance: of static geometry
-    std::uint32_t material;  ///< in the list of the scene or object that the triangle is a part of
-    Vec3f position;  ///< in the placed scene; where there is no surface, the direction of the ray
+    float depth;   ///< metres along the axis from the film; infinite: no surface; NaN: no ray passes the lens
+    Vec3f normal;  ///< as in LayerResults; 0 if there is no surface
+    std::uint32_t triangle;  ///< kNoTriangle if there is no surface
+    std::uint32_t instance;  ///< kNoInstance for static geometry
+    std::uint32_t material;  ///< index in the scene or object to which the triangle belongs
+    Vec3f position;  ///< in the placed scene; without a surface, the direction of the ray
 };
 
 }  // namespace REALCAM_NAMESPACE

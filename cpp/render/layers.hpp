@@ -11,7 +11,7 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// What may be wanted of a picture besides light: per pixel, numbers that describe what was seen there.
+/// Additional output of a picture, per pixel: properties of the visible surfaces and of the samples.
 enum class Layer : std::uint32_t {
     depth,
     normal,
@@ -33,10 +33,10 @@ enum class Layer : std::uint32_t {
 struct LayerInfo {
     const char* name;  ///< on the command line, in shot files and in Python
     int channels;
-    bool is_number;  ///< uint32 instead of float
+    bool is_number;  ///< values are uint32 instead of float
 };
 
-/// In the order of Layer.
+/// All layers, in the order of Layer.
 inline constexpr std::array<LayerInfo, 15> kLayers = {{
     {"depth", 1, false},
     {"normal", 3, false},
@@ -65,7 +65,7 @@ public:
     constexpr LayerSet(std::initializer_list<Layer> layers) {
         for (const Layer layer : layers) add(layer);
     }
-    /// Each but those that exclude another one, kHalfLayers.
+    /// All layers except kHalfLayers, which exclude another one.
     static constexpr LayerSet all() {
         LayerSet set;
         set.bits_ = (1u << static_cast<std::uint32_t>(Layer::dual_pixel_left)) - 1;
@@ -82,14 +82,14 @@ private:
     std::uint32_t bits_ = 0;
 };
 
-/// Those for which samples are traced to their first surface once more.
+/// Layers for which samples are traced to their first surface a second time.
 inline constexpr LayerSet kSampledLayers = {Layer::normal, Layer::albedo, Layer::circle_of_confusion_mm};
-/// Those of the surface in the middle ray of each pixel.
+/// Layers of the surface on the ray of each pixel's centre.
 inline constexpr LayerSet kMiddleLayers = {Layer::depth_middle, Layer::normal_middle, Layer::object_id,
                                            Layer::material_id,  Layer::motion,        Layer::position_middle};
-/// By which the picture is denoised; the light that was traced is kept out of that.
+/// Layers for the denoiser, which leaves out the traced light.
 inline constexpr LayerSet kDenoiserLayers = {Layer::albedo, Layer::normal, Layer::traced_light};
-/// The exposure through the left and the right half of the exit pupil.
+/// Exposure through the left and the right half of the exit pupil.
 inline constexpr LayerSet kHalfLayers = {Layer::dual_pixel_left, Layer::dual_pixel_right};
 
 /// The names of all layers, for messages.
@@ -97,13 +97,13 @@ std::string layer_names();
 
 std::vector<std::string> names_of(LayerSet set);
 
-/// The layers of these names; "all" means each. Throws InputError for another name.
+/// Parses names of layers; "all" stands for LayerSet::all(). Throws InputError if a name is unknown.
 LayerSet layers_named(const std::vector<std::string>& names);
 
-/// The names of objects or materials by their ids. 0, which has no name, is nothing.
+/// Names of objects or materials, indexed by their ids. Id 0 has an empty name and means no surface.
 using IdNames = std::vector<std::string>;
 
-/// One layer of a picture: height * width * channels values, or, where the layer is one of numbers, such numbers.
+/// One layer of a picture: height * width * channels elements, in `numbers` if LayerInfo::is_number, else in `values`.
 struct LayerImage {
     Layer layer;
     std::vector<float> values;

@@ -7,10 +7,10 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// The passes of a range, after each of which pixels learn. What a sample knows must not depend on how samples are
-/// spread over threads, and hangs together with its number alone. Each pass has random numbers of its own: samples of
-/// one sequence keep away from each other, and what was learnt from the first of them would tell where the later ones
-/// are not.
+/// Divides a range into passes, after each of which pixels learn. The knowledge of a sample must not depend on the
+/// distribution of samples over threads, and therefore follows from its index alone. Each pass has its own random
+/// numbers: samples of one sequence keep away from each other, so that learning from the first ones would tell where
+/// the later ones are not.
 std::vector<SampleRange> learning_passes(const SampleRange& range);
 
 }  // namespace REALCAM_NAMESPACE

@@ -13,7 +13,7 @@ std::optional<SceneAndCamera> without_left_out_motion(const Assembly& scene, con
         shutter.blurs = false;
         return seen;
     }
-    // All is seen at one time, at which it stands still, so that the kernels without motion serve.
+    // All rows are exposed at one instant, at which the scene stands still, so that the kernels without motion suffice.
     const double middle_s = shutter.opens_s + 0.5 * camera.exposure_time_s;
     seen.camera.pose = pose_at(camera, middle_s);
     seen.camera.motion.clear();

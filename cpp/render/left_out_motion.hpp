@@ -12,8 +12,8 @@ struct SceneAndCamera {
     Camera camera;
 };
 
-/// Scene and camera as a picture sees them that leaves out motion blur or the rolling shutter; nothing where it leaves
-/// out neither, so that no frame pays for a copy.
+/// Scene and camera for a picture that leaves out motion blur or the rolling shutter. Returns std::nullopt if it leaves
+/// out neither, which saves each frame a copy.
 std::optional<SceneAndCamera> without_left_out_motion(const Assembly& scene, const Camera& camera,
                                                       const EffectChoice& effects);
 

@@ -3,7 +3,7 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// What choose_light returns for many receivers.
+/// Results of choose_light for many receivers.
 template <int N>
 struct LightChoices {
     Lanes<std::int32_t, N> light;
@@ -14,8 +14,8 @@ struct LightChoices {
 
 namespace light_choices_detail {
 
-/// Nodes side by side. In rows of four numbers, of which gcc makes vectors by shuffling whole rows: to read single
-/// numbers of nodes that lie anywhere takes it an instruction for each.
+/// Nodes of the light tree in lanes. They are stored in rows of four numbers, because gcc makes vectors of these by
+/// shuffling whole rows; reading single numbers of scattered nodes takes it an instruction each.
 template <int N>
 class LightNodeLanes {
 public:
@@ -44,12 +44,12 @@ private:
 
 }  // namespace light_choices_detail
 
-/// choose_light for many receivers at once. Those of a vector take their turns in the tree in step, which is vector
-/// code. `receiver(i)`: at a place. `u`: below 1.
+/// choose_light for many receivers at once. The receivers of a vector descend the tree in step, which is vectorised.
+/// `receiver(i)`: the receiver of lane i. `u`: below 1.
 template <int N, class Receivers>
 REALCAM_INLINE void choose_lights(const SceneView& scene, const Receivers& receiver, const float (&u)[N],
                                   const std::uint32_t (&seed)[N], int places, LightChoices<N>& chosen) {
-    // By vectors, because each takes as many turns as its deepest light.
+    // By vectors, because each takes as many steps as its deepest light.
     constexpr int kWidth = whole_vectors<N>(1);
     const LightNode* const nodes = scene.light_nodes;
     for (int begin = 0; begin < places; begin += kWidth) {
@@ -67,7 +67,7 @@ REALCAM_INLINE void choose_lights(const SceneView& scene, const Receivers& recei
         for (bool goes_on = nodes[0].second_child > 0; goes_on;) {
             light_choices_detail::LightNodeLanes<kWidth> firsts, seconds;  // children
             for (int i = 0; i < kWidth; ++i) {
-                // Those that are at their leaf look at the root's children, and stay.
+                // Lanes that have reached a leaf evaluate the root's children, and keep their node.
                 const bool is_inner = second[i] > 0;
                 firsts.set(i, nodes[is_inner ? node[i] + 1 : 1]);
                 seconds.set(i, nodes[is_inner ? second[i] : 1]);

@@ -12,7 +12,7 @@ namespace realcam {
 namespace {
 
 constexpr int kBlock = PupilTracer::kBlock;
-/// Fewer do not tell where all the others are.
+/// With fewer, the extent of the hits is too uncertain.
 constexpr int kEnoughHits = 32;
 constexpr int kMostRounds = 10;
 
@@ -20,7 +20,7 @@ float half_tangent_of(Vec3f from) {
     return hypotenuse(from.x, from.y) / (1 - from.z);
 }
 
-/// In the lens's own axes.
+/// Plane of the entries in the lens's own axes.
 EntryPlane plane_in_lens(const TracedLight& light) {
     CameraPlacement lens{};
     lens.right = {1, 0, 0};
@@ -84,7 +84,7 @@ LightEntries::Probe LightEntries::probe(const Places& places, const TracedLight&
             if (rays.status[k] != 0) continue;
             const Vec2f place = film_surface(camera_).landing(rays.origin[k], rays.direction[k]);
             const Vec2f film = {place.x - camera_.film_middle.x, place.y - camera_.film_middle.y};
-            // A pixel more, for what other wavelengths and diffraction bring there.
+            // One pixel more, for other wavelengths and for diffraction.
             if (!(std::fabs(film.x) <= camera_.film_half_width + 1 / columns_per_mm) ||
                 !(std::fabs(film.y) <= camera_.film_half_height + 1 / columns_per_mm))
                 continue;
@@ -110,20 +110,20 @@ std::optional<FoundLight> LightEntries::of(const LightGroup& group) const {
     const float sine = hypotenuse(light.from.x, light.from.y);
     const Vec2f away = sine > 0 ? Vec2f{light.from.x / sine, light.from.y / sine} : Vec2f{1, 0};
     light.along = {-light.from.z * away.x, -light.from.z * away.y, sine};
-    // A place of the front that is nearer to the light may see it in the field where the front's middle does not.
+    // A front point nearer to the light may see it within the field even if the front's centre does not.
     Vec3f nearest = middle;
     if (light.kind != TracedLightKind::sun) {
         nearest = (1.0f / static_cast<float>(places.size())) * middle;
         const float beside = hypotenuse(nearest.x, nearest.y);
         nearest = {std::max(0.0f, beside - front_reach_), 0, nearest.z};
     }
-    GhostEntry entry{};  // nothing known: all of the front is looked at
+    GhostEntry entry{};  // unknown: the whole front is searched
     if (pupil_entries_) {
         if (!(half_tangent_of(normalized(nearest)) < 1.5f * pupil_entries_->largest_half_tangent()))
             return std::nullopt;
         entry = pupil_entries_->at(half_tangent_of(light.from));
     }
-    // A light that is near is seen elsewhere and in other sizes than one that is far: from twice the size on.
+    // A near light is seen in another position and size than a distant one: the search begins at twice the size.
     const float middle_along = 0.5f * (entry.low + entry.high),
                 reach = std::max({entry.high - entry.low, 2 * entry.half_width, front_reach_ / 64});
     const PlaneRectangle front = {-front_reach_, front_reach_, -front_reach_, front_reach_};
@@ -133,7 +133,7 @@ std::optional<FoundLight> LightEntries::of(const LightGroup& group) const {
     Probe found;
     bool is_coarse = true;
     for (int round = 0; round < kMostRounds; ++round) {
-        // What the rectangle of a point or a sun leaves out is lost, while samples of pixels find it of an emitter.
+        // Light outside the rectangle of a point or a sun is lost, while pixel samples find that of an emitter.
         int rays = light.kind == TracedLightKind::triangles ? kBlock : 4 * kBlock;
         found = probe(places, light, in, rays);
         if (found.hits < kEnoughHits && rays == kBlock) found = probe(places, light, in, rays = 4 * kBlock);
@@ -143,7 +143,7 @@ std::optional<FoundLight> LightEntries::of(const LightGroup& group) const {
             in = front;
             continue;
         }
-        // A margin for what lies between the rays.
+        // A margin for light between the rays.
         const auto widened = [&](float low, float high, float whole) {
             const float share = found.hits < kEnoughHits ? 1.0f : is_coarse ? 0.3f : 0.1f;
             const float margin = share * std::max(high - low, whole / std::sqrt(static_cast<float>(rays)));
@@ -158,7 +158,7 @@ std::optional<FoundLight> LightEntries::of(const LightGroup& group) const {
             if (!is_coarse) break;
             is_coarse = false;
         } else {
-            // The pupil's rays were few in this direction, as near the axis: there is more light beside.
+            // The pupil had few rays in this direction, as near the axis: there is more light next to the rectangle.
             const float along = 0.5f * (in.high_along - in.low_along), across = 0.5f * (in.high_across - in.low_across);
             in = {in.low_along - along, in.high_along + along, in.low_across - across, in.high_across + across};
         }

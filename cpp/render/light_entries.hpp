@@ -8,33 +8,33 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// A light with its rectangle of entries.
+/// A light with its entry rectangle.
 struct FoundLight {
     TracedLight light;
-    double pixels;  ///< of the film, that its light covers
+    double pixels;  ///< pixels of the film that its light covers
 };
 
-/// Looks for where the light of lamps enters the lens, by rays from them: first about where rays of the pupil leave the
-/// lens in their direction, then in the rectangle that holds what was found. Where that ends at the border of what was
-/// looked at, in more.
+/// Searches for the area in which the light of lamps enters the lens, by tracing rays from them: first around the area
+/// in which rays of the pupil leave the lens in their direction, then in the rectangle that contains the hits. If the
+/// hits reach the border of the searched rectangle, it is enlarged.
 class LightEntries {
 public:
-    /// `camera`: of the set-up.
+    /// `camera`: that of `setup`.
     LightEntries(const SceneView& scene, const CameraView& camera, const CameraSetup& setup, const PupilTracer& tracer);
 
-    /// Nothing where no light of the group reaches the film.
+    /// Returns std::nullopt if no light of the group reaches the film.
     std::optional<FoundLight> of(const LightGroup& group) const;
 
 private:
-    /// What rays through a rectangle have found.
+    /// Hits of rays through a rectangle.
     struct Probe {
         int hits = 0;
-        PlaneRectangle entries{}, film{};  ///< mm; pixels
+        PlaneRectangle entries{}, film{};  ///< bounds of the hits: at the entry, mm, and on the film, pixels
     };
 
     using Places = std::array<Vec3f, 64>;
 
-    /// A place of the group in the lens's frame, mm; of a sun the direction towards it.
+    /// Point of the group in the lens's frame, mm; for a sun, the direction towards it.
     Vec3f place_of(const LightGroup& group, std::uint32_t number) const;
     Probe probe(const Places& places, const TracedLight& light, const PlaneRectangle& in, int rays) const;
 
@@ -42,8 +42,8 @@ private:
     const CameraView& camera_;
     LensView<float> to_film_;
     const PupilTracer& tracer_;
-    const PupilEntries* pupil_entries_;  ///< of a lens of revolution; else null
-    float front_reach_;  ///< radius of a circle that holds all places where light enters the lens, mm
+    const PupilEntries* pupil_entries_;  ///< of a rotationally symmetric lens; otherwise null
+    float front_reach_;  ///< radius of a circle that contains all points at which light enters the lens, mm
 };
 
 }  // namespace REALCAM_NAMESPACE

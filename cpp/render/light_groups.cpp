@@ -11,26 +11,26 @@
 namespace realcam {
 namespace {
 
-/// Largest share of a pixel's samples that hit a lamp which is traced. If more hit it, samples of pixels have less
-/// noise than samples from the lamp would.
+/// Largest fraction of a pixel's samples that hit a traced lamp. If more hit it, samples of pixels have less noise than
+/// samples from the lamp would.
 constexpr double kLargestShare = 0.8;
-/// Depth up to which an emitter continues another, as a multiple of the radius in which a pixel sees it. So surfaces
-/// are one up to a slope of 76 degrees to the line of sight, and a wall behind a lamp is apart from it.
+/// Depth up to which an emitter continues another one, as a multiple of the radius that a pixel sees. Surfaces are thus
+/// one up to a slope of 76 degrees to the view direction, and a wall behind a lamp is separate from it.
 constexpr double kDepth = 4;
 
-/// Region that the samples of one pixel see at a distance: the blur's disc, swept over the pixel. m.
+/// Region that the samples of one pixel cover at a distance: the blur disc, swept over the pixel. In metres.
 struct Footprint {
-    double blur;   ///< radius of the disc
+    double blur;  ///< radius of the disc
     double pixel;  ///< side of a square of the pixel's area
 
     /// Area of the sum of a disc and a square.
     double area() const { return std::numbers::pi * blur * blur + 4 * blur * pixel + pixel * pixel; }
-    /// Largest size of a group. The diagonal of a bounding box is up to 1.73 times as long as a round lamp is wide.
+    /// Largest size of a group. The diagonal of a bounding box is up to 1.73 times the width of a round lamp.
     double size() const { return 2 * (blur + pixel); }
 };
 
-/// Signed area of the triangle of a point O with O + a and O + b, as far as it lies in the circle of this radius about
-/// O. a and b are at right angles to the axis, about which the turn from a to b counts as positive.
+/// Signed area of the part of the triangle O, O + a, O + b that lies in the circle of this radius about O. a and b are
+/// perpendicular to `axis`; an angle from a to b counterclockwise about it counts as positive.
 double area_in_circle(Vec3d a, Vec3d b, Vec3d axis, double radius) {
     const auto double_area = [&](Vec3d from, Vec3d to) { return dot(cross(from, to), axis); };
     const auto sector = [&](Vec3d from, Vec3d to) {
@@ -46,19 +46,19 @@ double area_in_circle(Vec3d a, Vec3d b, Vec3d axis, double radius) {
     return sector(a, enters) + 0.5 * double_area(enters, leaves) + sector(leaves, b);
 }
 
-/// A cylinder about a line of sight, as wide as what the samples of a pixel see there.
+/// Cylinder about a view direction, as wide as a pixel's footprint.
 struct Surroundings {
     Vec3d middle, axis;
     double radius;
 
     double area() const { return std::numbers::pi * radius * radius; }
-    /// Returns whether a sphere about a point may intersect the cylinder.
+    /// Returns true if a sphere about a point may intersect the cylinder.
     bool reaches(Vec3d point, double ball) const {
         const Vec3d way = point - middle;
         const double along = dot(way, axis), across = length(way - along * axis);
         return std::fabs(along) < kDepth * radius + ball && across < radius + ball;
     }
-    /// Area of the cylinder's cross-section that the light covers, projected along the line of sight.
+    /// Area of the cylinder's cross-section that the light covers, projected along the axis.
     double covered_by(const AreaLight& light) const {
         const Vec3d corner = static_cast<Vec3d>(light.corner) - middle;
         Vec3d corners[] = {corner, corner + static_cast<Vec3d>(light.edge_u),
@@ -89,7 +89,7 @@ public:
     }
 
 private:
-    /// Footprint of a pixel in the middle of the film, at the distance of a point.
+    /// Footprint of the pixel at the film's centre, at the distance of a point.
     Footprint footprint(Vec3f point) const {
         const float mm = 1000 * length(point - front_);
         const auto at_distance = [&](float value, float slope) {
@@ -102,14 +102,14 @@ private:
                 std::sqrt(pixel_mm2) * at_distance(circle.middle, circle.middle_slope)};
     }
 
-    /// Whether light leaves the triangle towards some place of the lens's front.
+    /// True if light leaves the triangle towards some point of the lens's front.
     bool shines(const AreaLight& light) const {
         if (light.is_two_sided || light.instance != kNoInstance || camera_.key_count > 0) return true;
         const double reach_m = 2e-3 * std::fabs(static_cast<double>(camera_.circle.rim));
         return static_cast<double>(dot(front_ - light.corner, light.normal)) > -reach_m;
     }
 
-    /// f(number) of all lights of a node: point lights, and behind them area lights.
+    /// Calls f(index) for all lights of a node. Indices count the point lights first, and then the area lights.
     template <class F>
     void for_lights(std::int32_t at, F&& f) const {
         const LightNode& node = scene_.light_nodes[at];
@@ -130,8 +130,8 @@ private:
         return light < scene_.point_count ? kNoInstance : scene_.areas[light - scene_.point_count].instance;
     }
 
-    /// Of all lights of a node together. The node's own bounds also hold the way of lights that move; what moves with
-    /// one instance stays as large as it is.
+    /// Size of all lights of a node together. The node's own bounds include the path of moving lights; lights that move
+    /// with one instance keep their own size.
     double size_m(std::int32_t at) const {
         const double swept = 2 * std::sqrt(static_cast<double>(scene_.light_nodes[at].squared_radius));
         std::int32_t leaf = at;
@@ -171,7 +171,7 @@ private:
         if (group.share < kLargestShare) groups_.push_back(std::move(group));
     }
 
-    /// See LightGroup::share; not much more than kLargestShare, from which it makes no difference.
+    /// Computes LightGroup::share, up to about kLargestShare, beyond which it makes no difference.
     double filled_share(const LightGroup& group) const {
         double area = 0, brightness = 0;
         Vec3d middle = {};
@@ -203,8 +203,8 @@ private:
                1.0 / 3 * (static_cast<Vec3d>(light.edge_u) + static_cast<Vec3d>(light.edge_v));
     }
 
-    /// Subtracts from an area what a node's emitters cover of it, until nothing is left. Those that are darker count in
-    /// proportion to their brightness, as samples that meet them find so much less light.
+    /// Subtracts the area that a node's emitters cover from `left`, until nothing is left. Darker emitters count in
+    /// proportion to their brightness, because samples that hit them find less light.
     void subtract_lights(std::int32_t at, const Surroundings& seen, double brightness, double& left) const {
         const LightNode& node = scene_.light_nodes[at];
         if (left <= 0 ||

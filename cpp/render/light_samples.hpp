@@ -6,7 +6,7 @@
 
 namespace REALCAM_NAMESPACE {
 
-// sample_light for all paths of a block at once: what area lights and the environment ask for is vector code.
+// sample_light for all paths of a block at once, vectorised for area lights and the environment.
 
 template <int N>
 struct LightSamples {
@@ -37,12 +37,12 @@ REALCAM_INLINE LightSample select(bool condition, const LightSample& a, const Li
 
 enum class Source : std::int32_t { none, area, sky, other };
 
-/// The lights that lanes have picked.
+/// The lights that were picked for the lanes.
 template <int N>
 struct PickedLights {
     Lanes<Source, N> source;
     Lanes<float, N> probability;
-    Vec2Lanes<float, N> u;  ///< what the choice has left of the random numbers
+    Vec2Lanes<float, N> u;  ///< random numbers left over after the choice
     LightSamples<N> others;
     // For area lights:
     Vec3Lanes<float, N> corner, edge_u, edge_v, normal;
@@ -83,7 +83,7 @@ struct PickedLights {
 
 }  // namespace light_samples_detail
 
-/// light_kinds of all surfaces.
+/// light_kinds of all surfaces, in lanes.
 template <int N>
 class LightKindsLanes {
 public:
@@ -125,15 +125,15 @@ private:
 
 namespace light_samples_detail {
 
-/// Places on the area lights that lanes have picked.
+/// Points on the area lights that were picked for the lanes.
 template <int N>
 struct LightPlaces {
     Vec2Lanes<float, N> at;  ///< barycentric
     Lanes<std::int32_t, N> is_near;
-    Lanes<float, N> solid_angle;  ///< of lights that are near
+    Lanes<float, N> solid_angle;  ///< of near lights
 };
 
-/// As sample_area_light draws them.
+/// Samples points as sample_area_light does.
 template <int N, class SurfacesT>
 REALCAM_INLINE void sample_places(const PickedLights<N>& picked, const SurfacesT& surfaces, int places,
                                   LightPlaces<N>& drawn) {
@@ -158,12 +158,12 @@ REALCAM_INLINE void sample_places(const PickedLights<N>& picked, const SurfacesT
     }
 }
 
-/// Whether the places in its tables can be counted in 32 bits.
+/// True if indices into the environment's tables fit 32 bits.
 REALCAM_INLINE bool fits_lanes(const EnvironmentView& environment) {
     return !environment.pixels || std::int64_t{environment.height} * (environment.width + 1) < (1 << 30);
 }
 
-/// Of the point and area lights, for all surfaces.
+/// Chooses among the point and area lights, for all surfaces.
 template <int N, class SurfacesT, class Seeds>
 REALCAM_INLINE void choose_local_lights(const SceneView& scene, const LightKindsLanes<N>& kinds,
                                         const SurfacesT& surfaces, const PathState<N>& path, const PathNumbers<N>& u,
@@ -182,13 +182,13 @@ REALCAM_INLINE void choose_local_lights(const SceneView& scene, const LightKinds
         rest, seeds, places, chosen);
 }
 
-/// As pick_light does for one receiver.
+/// Picks lights as pick_light does for one receiver.
 template <SceneKind scene_kind, int N, class SurfacesT, class Seeds>
 REALCAM_INLINE void pick_lights(const SceneView& scene, const LightKindsLanes<N>& kinds, int number,
                                 const SurfacesT& surfaces, const PathState<N>& path, const PathNumbers<N>& u,
                                 const Seeds& seed, PickedLights<N>& picked) {
     const int places = whole_vectors<N>(path.count);
-    for (int i = 0; i < places; ++i) picked.source[i] = Source::none;  // also of the places that are not in use
+    for (int i = 0; i < places; ++i) picked.source[i] = Source::none;  // unused lanes, too
     LightChoices<N> local;
     if (number == 0 && scene.light_node_count > 0) choose_local_lights(scene, kinds, surfaces, path, u, seed, local);
     for (int i = 0; i < path.count; ++i) {
@@ -209,8 +209,8 @@ REALCAM_INLINE void pick_lights(const SceneView& scene, const LightKindsLanes<N>
 
 }  // namespace light_samples_detail
 
-/// A sample of this number for each path whose surface is_in_lanes(place); others get no light, from their normal. `u`
-/// and `seed(place)`: as sample_light's.
+/// Draws light sample `number` for each path whose surface is_in_lanes(place). Others get no light, with their normal
+/// as the direction. `u`, `seed(place)`: as in sample_light.
 template <SceneKind scene_kind, int N, class SurfacesT, class Seeds>
 REALCAM_INLINE void sample_lights(const SceneView& scene, const LightKindsLanes<N>& kinds, int number,
                                   const SurfacesT& surfaces, const PathState<N>& path, const PathNumbers<N>& u,
@@ -265,7 +265,7 @@ REALCAM_INLINE void sample_lights(const SceneView& scene, const LightKindsLanes<
         for (int i = 0; i < count; ++i)
             if (picked.source[i] == Source::other) samples.set(i, picked.others[i]);
     }
-    // Lanes without a light hold what was in memory, and a BSDF looks up tables by the direction.
+    // Lanes without a light hold uninitialised memory, and a BSDF indexes tables by the direction.
     REALCAM_LANES
     for (int i = 0; i < places; ++i) {
         const float probability = picked.probability[i];

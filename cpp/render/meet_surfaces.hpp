@@ -4,7 +4,7 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// What the paths of a block have met, on their way from one surface to the next.
+/// Surfaces that the paths of a block have hit.
 template <int N>
 struct Surfaces {
     SurfacePoint points[N];
@@ -12,13 +12,13 @@ struct Surfaces {
     REALCAM_INLINE void set(int place, const SurfacePoint& point) { points[place] = point; }
 };
 
-/// The same in a plain scene, for vector code.
+/// Surfaces of a plain scene, in lanes.
 template <int N>
 struct PlainSurfaces {
     Vec3Lanes<float, N> position, geometric_normal, normal;
     ColorLanes<N> diffuse, phong;
     Lanes<float, N> self_offset, shininess;
-    bool has_phong = false;  ///< any of them
+    bool has_phong = false;  ///< true if any surface has a Phong lobe
 
     REALCAM_INLINE void set(int place, const SurfacePoint& point) {
         position.set(place, point.position);
@@ -49,7 +49,7 @@ REALCAM_INLINE float depth_at(const CameraView& camera, Vec3f position, float ti
     return depth_from(camera, position);
 }
 
-/// Behind the dimensions of all random numbers.
+/// Beyond the dimensions of all random numbers.
 inline constexpr std::uint32_t kFootprintSalt = 0x40000;
 
 /// The footprint of a ray from the film.
@@ -61,8 +61,8 @@ REALCAM_INLINE Footprint film_footprint(const CameraView& camera, const SampleBl
     return {width * width / number, unit_float(block.bits(lane, kFootprintSalt))};
 }
 
-/// Collects the light of an environment's image along rays that have met nothing, which thereby end. In two turns, so
-/// that memory is asked for many pixels at once.
+/// Adds the light of an environment's image along rays that have hit nothing, and ends these. Two loops, so that memory
+/// is read for many pixels at once.
 template <SceneKind scene_kind, int N>
 REALCAM_INLINE void end_at_image(const SceneView& view, const PathSettings& settings, int bounce, const Hits<N>& hits,
                                  PathState<N>& path, PathResults<N>& results) {
@@ -84,8 +84,8 @@ REALCAM_INLINE void end_at_image(const SceneView& view, const PathSettings& sett
 
 }  // namespace meet_surfaces_detail
 
-/// Collects what comes along the rays, from emitters that they have met or from the environment, and makes the points
-/// ready from which paths go on. Those paths take the first places.
+/// Adds the light of hit emitters and of the environment, and sets the surface points from which paths continue.
+/// Continuing paths move to the first lanes.
 template <SceneKind scene_kind, int N, class SurfacesT>
 REALCAM_INLINE void meet_surfaces(const SceneView& view, const CameraView& camera, const PathSettings& settings,
                                   const SampleBlock<N>& block, int bounce, const Hits<N>& hits, PathState<N>& path,

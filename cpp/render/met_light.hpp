@@ -6,10 +6,10 @@
 
 namespace REALCAM_NAMESPACE {
 
-// Light is looked for in two ways: in a direction that the lights suggest, and in one that the BSDF suggests. What
-// either finds is weighted by the densities with which both could have found it (Veach and Guibas 1995).
+// Light is sampled in two ways: by the lights and by the BSDF. Each contribution is weighted by the densities of both
+// (multiple importance sampling, Veach and Guibas 1995).
 
-/// `limit` > 0: of what a path may bring.
+/// Limits the contribution of a path, if `limit` > 0.
 REALCAM_INLINE Color clamped(Color c, float limit) {
     const float most = largest(c);
     return limit > 0.0f && most > limit ? (limit / most) * c : c;
@@ -22,17 +22,17 @@ REALCAM_INLINE LightReceiver receiver_of(const PathState<N>& path, int lane) {
     return {path.receiver_position[lane], path.receiver_normal[lane], time_of<scene_kind>(path, lane), lobe};
 }
 
-/// How the environment was looked for at the surface that a ray left. `bounce`: at which the ray ends.
+/// Sampling method of the environment at the surface that a ray left. `bounce`: at which the ray ends.
 template <SceneKind scene_kind, int N>
 REALCAM_INLINE SkySampling receiver_sky(const SceneView& scene, const PathSettings& settings, const PathState<N>& path,
                                         int bounce, int lane) {
-    // A ray that has gone through surfaces which show nothing but shadows left one further back.
+    // A ray that passed surfaces which show only shadows left an earlier one.
     if constexpr (scene_kind == SceneKind::any) return path.receiver_sky[lane];
     if (bounce == 0) return SkySampling::chosen;  // straight from the lens (set_first_density)
     return sky_sampling(scene, goes_on(settings, bounce - 1), bounce == 1);
 }
 
-/// Light that the environment sends along the ray of a lane.
+/// Light of the environment along the ray of a lane, with its MIS weight.
 template <SceneKind scene_kind, int N>
 REALCAM_INLINE Color environment_light(const SceneView& scene, const PathSettings& settings, const PathState<N>& path,
                                        int bounce, int lane) {
@@ -46,7 +46,7 @@ REALCAM_INLINE Color environment_light(const SceneView& scene, const PathSetting
     return (weight * path.throughput[lane]) * environment_radiance(scene.environment, direction);
 }
 
-/// The same for an environment's image, in whose pixel the ray ends.
+/// Light of an environment's image, whose pixel the ray hits, with its MIS weight.
 template <SceneKind scene_kind, int N>
 REALCAM_INLINE Color environment_image_light(const SceneView& scene, const PathSettings& settings,
                                              const PathState<N>& path, int bounce, int lane, EnvironmentPixel pixel) {
@@ -60,7 +60,7 @@ REALCAM_INLINE Color environment_image_light(const SceneView& scene, const PathS
     return (weight * path.throughput[lane]) * pixel_radiance(scene.environment, pixel);
 }
 
-/// Light that the emitter at a hit sends along the ray of a lane.
+/// Light of the emitter at a hit along the ray of a lane, with its MIS weight.
 template <SceneKind scene_kind, int N>
 REALCAM_INLINE Color emitter_light(const SceneView& scene, const CameraView& camera, const PathSettings& settings,
                                    const PathState<N>& path, int bounce, int lane, Hit hit, const SurfacePoint& point) {

@@ -38,7 +38,7 @@ double metered_exposure_time(Session& session, const Assembly& scene, Camera cam
     settings.spp = 16;
     settings.noise.reset();
     settings.layers = {};
-    if (settings.effects.is_automatic) {  // which they are depends on the exposure
+    if (settings.effects.is_automatic) {  // their choice depends on the exposure
         EffectChoice effects;
         // A real camera measures the light that its lens lets through.
         const bool is_named = (settings.effects.named & bit_of(*find_effect("coatings"))) != 0;

@@ -13,7 +13,7 @@ namespace realcam {
 
 namespace {
 
-/// Where things are when a row of pixels begins to be exposed, in the middle of that, and at the end.
+/// Positions of surfaces when the exposure of a row of pixels begins, in its middle, and when it ends.
 class RowMotion {
 public:
     enum When : std::size_t { begin, middle, end };
@@ -26,7 +26,8 @@ public:
             from_scene_[k] = camera_detail::scene_from_camera(pose_at(camera, times_[k])).inverse();
     }
 
-    /// In the axes of the camera at a time, of what is at a place of the scene in the middle.
+    /// Position in the axes of the camera at `when`, for a point that is at `place` in the scene in the middle of the
+    /// exposure.
     Vec3d point(Vec3d place, std::uint32_t instance, When when) {
         return from_scene_[when].point(moved(place, instance, when));
     }
@@ -57,7 +58,7 @@ LayerImage motion_vectors(const std::vector<MiddleSurface>& film, const Assembly
     std::optional<PictureMap> map;
     if (anything_moves) map.emplace(placed_camera);
     const auto width = static_cast<std::size_t>(camera.film.width);
-    std::optional<RowMotion> motion;  // one for all rows where they are exposed together
+    std::optional<RowMotion> motion;  // one for all rows if they are exposed together
     for (std::size_t row = 0; row * width < film.size(); ++row) {
         if (!motion || camera.shutter.readout_time_s > 0) motion.emplace(scene, camera, static_cast<int>(row));
         for (std::size_t i = row * width; i < (row + 1) * width; ++i) {

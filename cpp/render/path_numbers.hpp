@@ -4,8 +4,8 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// The random numbers of a dimension of a bounce, for each path. A GPU's thread draws them when it wants them, because
-/// it has no registers in which to keep them.
+/// Random numbers of one dimension of a bounce, for each path. A GPU's thread draws them on demand, because it has no
+/// registers to keep them.
 template <int N>
 class PathNumbers {
 public:
@@ -25,7 +25,7 @@ public:
         : block_(block), dimension_(dimension) {}
 
     REALCAM_INLINE Vec2f operator[](int) const {
-        // By name, so that there is no code for the other dimensions of the joint sequence.
+        // By named constants, so that no code is generated for the other dimensions of the joint sequence.
         if (dimension_ == kFirstLight) return block_.random(0, kFirstLight);
         if (dimension_ == kFirstScatter) return block_.random(0, kFirstScatter);
         return sample_2d(block_.stream[0], block_.sample[0], dimension_);

@@ -5,29 +5,29 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// How light is followed through the scene.
+/// Transport of light through the scene.
 enum class LightTransport : std::int32_t {
-    paths,    ///< all ways of light, by path tracing (Kajiya 1986)
-    whitted,  ///< direct light, and what mirrors and smooth glass show (Whitted 1980)
+    paths,    ///< all light paths, by path tracing (Kajiya 1986)
+    whitted,  ///< direct light, and specular reflection and transmission (Whitted 1980)
 };
 
-/// How the images of lights are found that are small, or out of focus (trace_lights.hpp).
+/// Sampling of the images of lights that are small or out of focus (trace_lights.hpp).
 enum class LightTracing : std::int32_t {
     weighted,  ///< by samples of pixels and by samples from the lights, each weighted by the densities of both
-    off,       ///< by samples of pixels alone, which never meet points and suns
-    alone,     ///< by samples from the lights alone, to compare
+    off,       ///< by samples of pixels alone, which never hit points and suns
+    alone,     ///< by samples from the lights alone, for comparison
 };
 
 struct PathSettings {
-    std::int32_t max_bounces = 0;  ///< after which a path ends; 0: direct light only
+    std::int32_t max_bounces = 0;  ///< bounces after which a path ends; 0: direct light only
     LightTransport transport = LightTransport::paths;
-    float clamp = 0;  ///< radiance above which what a path brings after its first hit is cut off, cd/m^2; 0: never
+    float clamp = 0;  ///< largest radiance that a path adds after its first hit, cd/m^2; 0: no limit
 
     constexpr bool operator==(const PathSettings&) const = default;
 };
 
-/// Whether all lobes of a surface send out rays. After the last bounce, one more ray looks for the light that narrow
-/// lobes show.
+/// True if all lobes of a surface send out rays. After the last bounce, one more ray finds the light that narrow lobes
+/// show.
 REALCAM_INLINE bool goes_on(const PathSettings& settings, int bounce) {
     return bounce < settings.max_bounces && settings.transport == LightTransport::paths;
 }

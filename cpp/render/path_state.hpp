@@ -8,72 +8,74 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Rays for traversal. Lanes with active 0 are left out.
+/// Rays for traversal. Lanes with active 0 are skipped.
 template <int N>
 struct SceneRays {
     Vec3Lanes<float, N> origin, direction;
-    Lanes<float, N> far;  ///< how far along the ray to look, in lengths of the direction
+    Lanes<float, N> far;  ///< end of the ray, in lengths of its direction
     Lanes<std::int32_t, N> active;
-    // For scenes of SceneKind::any alone:
-    Lanes<std::uint32_t, N> number;  ///< by which a ray decides at holes
-    Lanes<float, N> time;  ///< share of the exposure (see instance_at.hpp)
+    // Only for scenes of SceneKind::any:
+    Lanes<std::uint32_t, N> number;  ///< random number for the ray's decisions at holes
+    Lanes<float, N> time;  ///< fraction of the exposure (see instance_at.hpp)
 };
 
-/// The number of the ray that a sample sends out at a bounce; the camera's is bounce 0.
+/// Random number of the ray that a sample sends out at a bounce; bounce 0 is the camera's ray.
 template <int N>
 REALCAM_INLINE std::uint32_t ray_number(const SampleBlock<N>& block, int lane, int bounce) {
     return path_ray_number(block.bits(lane, ~static_cast<std::uint32_t>(bounce)));
 }
 
-/// What a block of paths saw. Irradiance per sample: its mean over a pixel's samples is the pixel's irradiance.
+/// Results of a block of paths. Irradiance per sample: its mean over a pixel's samples is the pixel's irradiance.
 template <int N>
 struct PathResults {
     ColorLanes<N> irradiance;
-    Lanes<float, N> depth;  ///< of the first hit along the camera's axis from the film,
-                            ///< metres; below 0 behind the film; kFarAway: none
-    Lanes<float, N> weight;  ///< of the sample in the exposure (CameraRays)
+    Lanes<float, N> depth;  ///< of the first hit along the camera's axis from the film, metres; negative behind the
+                            ///< film; kFarAway: no hit
+    Lanes<float, N> weight;  ///< weight of the sample in the exposure (CameraRays)
     Lanes<std::int32_t, N> sampled, passed;
 };
 
-/// And what they bring to other pixels, at the further steps of their wavelengths.
+/// Contributions of a block of paths to other pixels, at the further wavelengths of their samples.
 template <int N>
 struct SharedResults {
     ColorLanes<N> irradiance[kSharedWavelengths - 1];
-    ColorLanes<N> white[kSharedWavelengths - 1];  ///< for how many samples they count
-    Lanes<std::int32_t, N> away[kSharedWavelengths - 1];  ///< from the sample's own pixel in the sums; 0: nothing
+    ColorLanes<N> white[kSharedWavelengths - 1];  ///< contributions if the scene were white: the number of samples that
+                                                  ///< they count for
+    Lanes<std::int32_t, N> away[kSharedWavelengths - 1];  ///< offset from the sample's own pixel in the sums; 0: no
+                                                          ///< contribution
 };
 struct NothingShared {};
 struct NoExcess {};
 template <int N, Effects effects>
 struct PathResultsWith : PathResults<N> {
     [[no_unique_address]] std::conditional_t<effects.share_pixels(), SharedResults<N>, NothingShared> shared;
-    /// By how much those that pass count in their own pixel for more than one, in each channel.
+    /// Weight of the passing samples in their own pixel, less one, by channel (film_balance.hpp).
     [[no_unique_address]] std::conditional_t<effects.have_wavelengths(), ColorLanes<N>, NoExcess> excess;
 };
 
-/// Paths on their way from the film into the scene: the next ray of each, and what is known of the way up to it. At
-/// each surface those that have ended give their places to others, so that the first ones are in use.
+/// Paths on their way from the film into the scene: the next ray of each, and the state of the path up to it. At each
+/// surface the paths that continue move to the first lanes.
 template <int N>
 struct PathState {
-    int count = N;  ///< places in use, some of them perhaps by paths that have ended since
+    int count = N;  ///< lanes in use; some of their paths may have ended since
     SceneRays<N> rays;
-    ColorLanes<N> throughput;  ///< irradiance on the film for a unit of radiance that comes along the ray
-    Lanes<float, N> weight;  ///< the throughput with which the path began
-    Lanes<float, N> pdf;  ///< with which the ray's direction was drawn, per steradian
-    Vec3Lanes<float, N> receiver_position, receiver_normal;  ///< of the surface that the ray left (LightReceiver)
-    Vec3Lanes<float, N> receiver_to_eye;  ///< its LightLobe, not for SceneKind::plain
+    ColorLanes<N> throughput;  ///< irradiance on the film per unit of radiance along the ray
+    Lanes<float, N> weight;  ///< initial throughput of the path
+    Lanes<float, N> pdf;  ///< density with which the ray's direction was sampled, per steradian
+    Vec3Lanes<float, N> receiver_position, receiver_normal;  ///< at the surface that the ray left (LightReceiver)
+    Vec3Lanes<float, N> receiver_to_eye;  ///< its LightLobe; unused for SceneKind::plain
     Lanes<float, N> receiver_alpha, receiver_share;
-    Lanes<SkySampling, N> receiver_sky;  ///< how the environment was looked for there; for SceneKind::any alone
-    ColorLanes<N> absorption;  ///< of the medium that the ray is in, per metre
+    Lanes<SkySampling, N> receiver_sky;  ///< sampling of the environment there; for SceneKind::any only
+    ColorLanes<N> absorption;  ///< absorption of the medium around the ray, per metre
 
     REALCAM_INLINE PathState() {
         REALCAM_LANES
         for (int i = 0; i < N; ++i) lane_[i] = i;
     }
 
-    /// As count, but where the path is known to be there, a constant for a GPU.
+    /// Number of lanes in use: count or, on a GPU, the constant 1.
     REALCAM_INLINE int places() const { return N > 1 ? count : 1; }
-    /// Which sample of the block a path belongs to.
+    /// Lane of the block whose sample a path belongs to.
     REALCAM_INLINE int lane(int place) const {
         if constexpr (N > 1) return lane_[place];
         return 0;
@@ -86,7 +88,7 @@ struct PathState {
         receiver_alpha[place] = lobe.alpha;
         receiver_share[place] = lobe.share;
     }
-    /// Moves what a path at a surface still needs of its way there.
+    /// Moves the state that a path still needs once it has reached a surface.
     template <SceneKind scene_kind>
     REALCAM_INLINE void move(int from, int to) {
         if constexpr (N > 1) {
@@ -98,7 +100,7 @@ struct PathState {
             if constexpr (scene_kind == SceneKind::any) {
                 rays.time[to] = rays.time[from];
                 rays.number[to] = rays.number[from];
-                // These are kept where a ray continues through a surface that shows nothing but shadows:
+                // Needed if the ray continues through a surface that shows only shadows:
                 pdf[to] = pdf[from];
                 receiver_position.set(to, receiver_position[from]);
                 receiver_normal.set(to, receiver_normal[from]);
@@ -112,14 +114,14 @@ private:
     Lanes<std::int32_t, N> lane_;
 };
 
-/// When a path goes through the scene, as a share of the exposure.
+/// Time at which a path goes through the scene, as a fraction of the exposure.
 template <SceneKind scene_kind, int N>
 REALCAM_INLINE float time_of(const PathState<N>& path, int lane) {
     if constexpr (scene_kind == SceneKind::any) return path.rays.time[lane];
     return 0.0f;
 }
 
-/// What paths with these effects carry.
+/// State of paths with these effects.
 template <int N, Effects effects>
 struct PathStateWith : PathState<N> {
     WavelengthsWith<N, effects> wavelengths;

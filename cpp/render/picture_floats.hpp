@@ -9,7 +9,7 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Numbers of a picture, which copies share. They begin without a value, because all of them are written, and may lie
+/// Values of a picture, shared between copies. They start uninitialised, because all of them are written, and may lie
 /// in memory that a GPU writes at full speed.
 class PictureFloats {
 public:

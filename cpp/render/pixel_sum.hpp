@@ -7,17 +7,17 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// What one pixel has collected. Sums in double: a million samples in float would drift by a thousandth. The pixels of
-/// a picture may have different numbers of samples.
+/// Accumulated samples of one pixel. Sums are in double: a million samples in float would drift by a thousandth. The
+/// pixels of a picture may have different numbers of samples.
 struct PixelSum {
     double irradiance[3];   ///< lux, summed over the samples
-    double besides[3];  ///< summed where layers ask for it: squares of the samples' irradiance, or the irradiance
-                        ///< of those that came through the right half of the exit pupil; else, of samples with
-                        ///< wavelengths, what film_balance.hpp needs
-    double depth;  ///< metres, summed over those that met something, times their weight in the exposure
-    double met;  ///< their weight
-    std::uint64_t samples, passed;  ///< and those that passed the lens; a small picture that is never finished has
-                                    ///< more than 2^32 within minutes
+    double besides[3];  ///< additional sums: squares of the samples' irradiance (Layer::variance), or the irradiance
+                        ///< through the right half of the exit pupil (kHalfLayers); otherwise, for samples with
+                        ///< wavelengths, their excess (film_balance.hpp)
+    double depth;  ///< metres, summed over samples that hit a surface, times their weight in the exposure
+    double met;  ///< sum of these weights
+    std::uint64_t samples, passed;  ///< passed: through the lens; a small picture that is never finished has more than
+                                    ///< 2^32 samples within minutes
 
     REALCAM_HD PixelSum& operator+=(const PixelSum& other) {
         for (int c = 0; c < 3; ++c) irradiance[c] += other.irradiance[c];
@@ -62,7 +62,7 @@ struct PixelSum {
         const double rgb[3] = {static_cast<double>(c.r), static_cast<double>(c.g), static_cast<double>(c.b)};
         for (int i = 0; i < 3; ++i) besides[i] += rgb[i] * rgb[i];
     }
-    /// `is_right`: of the sample (find_right_half).
+    /// `is_right`: true if the sample came through the right half (find_right_half).
     template <int N>
     REALCAM_INLINE void add_half(const PathResults<N>& results, int lane, bool is_right) {
         if (!is_right) return;
@@ -72,27 +72,27 @@ struct PixelSum {
         besides[2] += static_cast<double>(c.b);
     }
 
-    /// Lux seconds on the film; 0 where no sample was taken. `ghosts`: irradiance that was found apart from them, lux.
-    /// `balance`: see film_balance.hpp.
+    /// Lux seconds on the film; 0 without samples. `ghosts`: irradiance that was traced apart from the samples, lux.
+    /// `balance`: factor of film_balance.hpp.
     REALCAM_HD float exposure(int channel, double exposure_time_s, double ghosts = 0, double balance = 1) const {
         if (samples == 0) return 0;
         return film_exposure((balance * irradiance[channel] / static_cast<double>(samples) + ghosts) * exposure_time_s);
     }
     /// Variance of the exposure, (lux seconds)^2, as the mean of independent samples; NaN for fewer than two. `ghosts`:
-    /// that of the irradiance that was found apart from them, lux^2.
+    /// variance of the irradiance that was traced apart from the samples, lux^2.
     REALCAM_HD float variance(int channel, double exposure_time_s, double ghosts = 0) const {
         if (samples < 2) return std::numeric_limits<float>::quiet_NaN();
         const double n = static_cast<double>(samples), sum = irradiance[channel];
         const double spread = besides[channel] - sum * sum / n;
         return film_exposure(((spread > 0 ? spread : 0) / (n * (n - 1)) + ghosts) * exposure_time_s * exposure_time_s);
     }
-    /// The part of the exposure that came through the right half. Half of the ghosts is counted for it.
+    /// Exposure through the right half of the exit pupil. Half of the ghosts is counted for it.
     REALCAM_HD float right_exposure(int channel, double exposure_time_s, double ghosts = 0, double balance = 1) const {
         if (samples == 0) return 0;
         const double mean = balance * besides[channel] / static_cast<double>(samples);
         return film_exposure((mean + 0.5 * ghosts) * exposure_time_s);
     }
-    /// Mean depth, metres; infinite where nothing was met.
+    /// Mean depth, metres; infinite if no sample hit a surface.
     REALCAM_HD float mean_depth() const {
         return met > 0 ? static_cast<float>(depth / met) : std::numeric_limits<float>::infinity();
     }

@@ -6,17 +6,17 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// From which size on something is simulated, where the planner decides (cpp/plan).
+/// Sizes from which on the planner simulates an effect (cpp/plan).
 struct PlanThresholds {
-    double pixels = 0.5;  ///< by which something moves or is blurred
-    double codes = 1;     ///< by which an 8-bit code of the developed picture changes
+    double pixels = 0.5;  ///< displacement or blur
+    double codes = 1;     ///< change of an 8-bit code of the developed picture
 
     bool operator==(const PlanThresholds&) const = default;
 };
 
 inline constexpr const char* kQualityNames = "draft, photo or reference";
 
-/// Thresholds by a name; nothing for one that is none.
+/// Thresholds of a named quality; std::nullopt if the name is unknown.
 inline std::optional<PlanThresholds> quality_named(const std::string& name) {
     if (name == "draft") return PlanThresholds{2, 4};
     if (name == "photo") return PlanThresholds{};

@@ -3,8 +3,8 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Turns the light of a sample into the film's colours, in equal parts at the wavelengths for which it counts.
-/// `coated`: with what the lens passes on of each.
+/// Converts the light of a sample into the film's colours, in equal parts at the wavelengths that the sample counts
+/// for. `coated`: each part is weighted with the lens's transmittance.
 template <bool coated, int N, Effects effects>
 REALCAM_INLINE void count_wavelengths(const DispersionView& view, const SampleWavelengths<N>& of, int lane,
                                       PathResultsWith<N, effects>& results) {
@@ -46,7 +46,7 @@ REALCAM_INLINE void count_wavelengths(const DispersionView& view, const SampleWa
     results.excess.set(lane, excess);
 }
 
-/// Takes one block of samples from the film, through the lens, to the scene and its lights: the whole path.
+/// Takes one block of samples along the whole path: from the film, through the lens, to the scene and its lights.
 ///
 /// `lens_kind`: any, or the lens's own; `scene_kind`: any, or the scene's own. SceneT and Probe as in advance_paths. A
 /// GPU thread runs this with N = 1.

@@ -26,8 +26,8 @@ std::thread started(Work&& work) {
 
 }  // namespace run_with_progress_detail
 
-/// Runs `work` on a thread of its own, so that the caller's thread is free to be asked whether to go on, and to stop
-/// it. `stop`: an std::atomic<bool>, or what takes `true` and is read in the same way.
+/// Runs `work` on a thread of its own, while the caller's thread calls `keep_going`, and sets `stop` once that returns
+/// false or throws. `stop`: an std::atomic<bool>, or a type that is assigned `true` and read in the same way.
 template <class Work, class Stop>
 void run_heeding(Work&& work, const KeepGoing& keep_going, Stop& stop) {
     if (!keep_going) {
@@ -66,7 +66,7 @@ void run_heeding(Work&& work, const KeepGoing& keep_going, Stop& stop) {
     if (failure) std::rethrow_exception(failure);
 }
 
-/// The same for work of which a share is done, from 0 to 1. The end is told, too.
+/// run_heeding for work with progress; `share()`: the fraction done, from 0 to 1. The end is reported, too.
 template <class Work, class Share, class Stop>
 void run_with_progress(Work&& work, Share&& share, const Progress& progress, Stop& stop) {
     run_heeding(work, progress ? KeepGoing([&] { return progress(share()); }) : KeepGoing(), stop);

@@ -7,21 +7,21 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Samples of every pixel, as the random numbers know them.
+/// Samples of every pixel, by their indices in a random sequence.
 struct SampleRange {
     std::uint32_t seed, first, count;
 };
 
-/// A picture on a CPU adds its samples up in pieces of so many, beginning with the first, so that parts of this size
+/// Number of samples that a picture on a CPU adds up at a time, beginning with the first, so that parts of this size
 /// that are exposed apart give the same sums.
 inline constexpr std::uint32_t kSamplesPerSum = 256;
 
-/// How many samples of a range single pixels take: the first ones, up to their number.
+/// Number of samples of a range that each pixel takes: the first ones, up to its count.
 struct PixelCounts {
-    const std::uint32_t* counts = nullptr;  ///< of the film's pixels, row by row; none: all samples
-    std::uint32_t taken = 0;                ///< of them, before the range
+    const std::uint32_t* counts = nullptr;  ///< of the film's pixels, row by row; null: all samples
+    std::uint32_t taken = 0;                ///< samples of these counts that were taken before the range
 
-    /// The counts of the rest of the range, behind so many of its samples.
+    /// Counts for the remainder of the range, after its first `samples` samples.
     PixelCounts behind(std::uint32_t samples) const { return {counts, taken + samples}; }
 
     std::uint32_t of(std::size_t pixel, const SampleRange& range) const {
@@ -30,8 +30,8 @@ struct PixelCounts {
     }
 };
 
-/// The next samples from `taken` to `wanted`, or those up to where a random sequence ends. A sequence has 2^32 samples,
-/// and a picture that is never finished continues with the sequence of the next seed.
+/// The next samples from `taken` to `wanted`, or up to the end of a random sequence. A sequence has 2^32 samples, and a
+/// picture that is never finished continues with the sequence of the next seed.
 inline SampleRange next_samples(std::uint32_t seed, std::int64_t taken, std::int64_t wanted) {
     constexpr std::int64_t kSequence = std::int64_t{1} << 32;
     const std::int64_t first = taken % kSequence, count = std::min(wanted - taken, kSequence - first);

@@ -6,7 +6,7 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Keeps the lobes that send out a ray where not all do.
+/// Restricts a BSDF to the lobes that send out a ray, if not all do.
 template <class BsdfT>
 REALCAM_INLINE void keep_senders(const PathSettings& settings, BsdfT& bsdf) {
     if (settings.transport == LightTransport::whitted)
@@ -15,7 +15,7 @@ REALCAM_INLINE void keep_senders(const PathSettings& settings, BsdfT& bsdf) {
         bsdf.keep_narrow_lobes();
 }
 
-/// The light that a sample of the lights brings to a path at a surface.
+/// Sets the shadow ray and the unoccluded contribution of a light sample, for a path at a surface.
 template <int N, class BsdfT>
 REALCAM_INLINE void light_path(const PathSettings& settings, int bounce, int lane, const SurfacePlace& place,
                                BsdfT bsdf, const LightSample& light, const PathState<N>& path, ShadowRays<N>& shadow) {
@@ -24,7 +24,7 @@ REALCAM_INLINE void light_path(const PathSettings& settings, int bounce, int lan
     if (goes_on(settings, bounce)) {
         seen = mis_weight(light.pdf, bsdf.pdf(light.direction)) * all_lobes;
     } else {
-        // A lobe that sends out no ray sees light samples alone.
+        // Lobes that send out no ray get light from light samples alone, with a weight of 1.
         keep_senders(settings, bsdf);
         const Color of_senders = bsdf.eval(light.direction);
         seen = all_lobes;
@@ -35,8 +35,8 @@ REALCAM_INLINE void light_path(const PathSettings& settings, int bounce, int lan
     shadow.set(lane, place, light, clamped(seen, limit));
 }
 
-/// Where a path at a surface goes next. `u`, `chance`: random numbers for that. Returns whether it goes through the
-/// surface.
+/// Samples the next ray of a path at a surface. `u`, `chance`: random numbers for it. Returns true if the ray is
+/// refracted through the surface.
 template <int N, class BsdfT>
 REALCAM_INLINE bool scatter_path(const PathSettings& settings, int bounce, int lane, const SurfacePlace& place,
                                  const LightReceiver& receiver, BsdfT& bsdf, const PathNumbers<N>& u, float chance,
@@ -56,9 +56,9 @@ REALCAM_INLINE bool scatter_path(const PathSettings& settings, int bounce, int l
 
 namespace scatter_paths_detail {
 
-/// A sample of one of the lights, by the illuminance that each would bring if nothing stood in between. It is one of
-/// eight pairs of samples, chosen by its share of their illuminance (resampling, Talbot et al. 2005). Where
-/// all of those are behind the surface, up to 64 are drawn. Black: no light.
+/// Samples a light in proportion to its unoccluded illuminance: one of eight pairs of samples, chosen by its share of
+/// their illuminance (resampling, Talbot et al. 2005). If all of those are behind the surface, up to 64 are drawn.
+/// Black if there is no light.
 template <SceneKind scene_kind>
 REALCAM_ONE_COPY LightSample light_by_illuminance(const SceneView& scene, LightReceiver receiver, std::uint32_t seed) {
     LightSample chosen{{0, 1, 0}, kFarAway, 1.0f, {0, 0, 0}, kDelta};
@@ -81,8 +81,8 @@ REALCAM_ONE_COPY LightSample light_by_illuminance(const SceneView& scene, LightR
 
 }  // namespace scatter_paths_detail
 
-/// Scatters a path at a point. `seed`: of the sample at this bounce. `shadow`: a LightRays, or what offers the same and
-/// traces a ray as soon as it is set. Returns whether the surface shows nothing but shadows.
+/// Scatters a path at a point. `seed`: of the sample at this bounce. `shadow`: a LightRays, or a type with the same
+/// interface that traces a ray as soon as it is set. Returns true if the surface shows only shadows.
 template <SceneKind scene_kind, int N, class LightRaysT>
 REALCAM_INLINE bool scatter_at(const SceneView& view, const PathSettings& settings, int bounce, int place,
                                const SurfacePoint& point, const PathNumbers<N>& light_numbers,
@@ -93,8 +93,8 @@ REALCAM_INLINE bool scatter_at(const SceneView& view, const PathSettings& settin
     const float time = time_of<scene_kind>(path, place);
     if constexpr (scene_kind == SceneKind::any) {
         if (point.material->only_shadows) {
-            // What is behind is seen as far as the light here is not hidden. The ray keeps its direction, and so the
-            // density of that.
+            // The background is visible to the extent that the light here is not occluded. The ray keeps its direction,
+            // and therefore its density.
             const LightSample light =
                 light_by_illuminance<scene_kind>(view, {point.position, point.normal, time}, seed);
             path.rays.origin.set(place, ray_start(point, direction));
@@ -109,7 +109,7 @@ REALCAM_INLINE bool scatter_at(const SceneView& view, const PathSettings& settin
     LightReceiver receiver = {point.position, bsdf.is_opaque() ? point.normal : Vec3f{0, 0, 0}, time};
     if constexpr (scene_kind != SceneKind::plain) receiver.lobe = light_lobe(point, -direction);
     const SkySampling sky = sky_sampling(view, goes_on(settings, bounce), bounce == 0);
-    // One copy of the code, because a GPU's cache of instructions is full.
+    // Not unrolled, because a GPU's instruction cache is full.
     REALCAM_NO_UNROLL
     for (int k = 0; k < kLightSampleCount; ++k) {
         if (!has_light(view, sky, k)) continue;

@@ -6,8 +6,8 @@ namespace REALCAM_NAMESPACE {
 
 namespace scatter_plain_paths_detail {
 
-/// Light for Lambert's lobe, as scatter_path finds it for one path. `goes_on`: at compile time, because gcc makes no
-/// vector code of a loop that asks for it.
+/// Light for the Lambert lobe, as light_path computes it for one path. `goes_on`: a template parameter, because gcc
+/// does not vectorise a loop that tests it.
 template <bool goes_on, int N>
 REALCAM_INLINE void light_lambert(const PathSettings& settings, int bounce, const PlainSurfaces<N>& surfaces,
                                   const LightSamples<N>& lights, const PathState<N>& path, ShadowRays<N>& shadow) {
@@ -26,7 +26,7 @@ REALCAM_INLINE void light_lambert(const PathSettings& settings, int bounce, cons
     }
 }
 
-/// The next ray for Lambert's lobe, likewise.
+/// Next rays for the Lambert lobe, as scatter_path computes them for one path.
 template <int N>
 REALCAM_INLINE void scatter_lambert(const PlainSurfaces<N>& surfaces, const PathNumbers<N>& u, PathState<N>& path) {
     const int count = path.count, places = whole_vectors<N>(count);
@@ -55,7 +55,7 @@ REALCAM_INLINE PlainBsdf phong_bsdf(const PlainSurfaces<N>& surfaces, const Path
 
 }  // namespace scatter_plain_paths_detail
 
-/// scatter_paths for a plain scene and many lanes: Lambert's lobe, which most surfaces have alone, as vector code.
+/// scatter_paths for a plain scene and many lanes. The Lambert lobe, the only one of most surfaces, is vectorised.
 template <int N>
 REALCAM_INLINE void scatter_plain_paths(const SceneView& view, const PathSettings& settings,
                                         const SampleBlock<N>& block, int bounce, const PlainSurfaces<N>& surfaces,

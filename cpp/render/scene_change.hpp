@@ -4,14 +4,14 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// What a backend has to do for the next picture.
+/// Work of a backend before the next picture.
 enum class SceneChange {
     none,
-    transforms,  ///< RenderSpaceScene::move serves
+    transforms,  ///< RenderSpaceScene::move suffices
     all,     ///< another scene, or a camera too far from the position of the last
 };
 
-/// `last`: null where there was none.
+/// Compares a scene with that of the last picture. `last`: null before the first.
 SceneChange scene_change(const RenderSpaceScene* last, const Assembly& scene, const Camera& camera);
 
 }  // namespace REALCAM_NAMESPACE

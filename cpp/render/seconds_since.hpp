@@ -5,7 +5,7 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// By the wall clock.
+/// Wall-clock seconds since `start`.
 inline double seconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }

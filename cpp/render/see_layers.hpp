@@ -10,7 +10,7 @@ namespace REALCAM_NAMESPACE {
 
 namespace see_layers_detail {
 
-/// Traces the rays that passed to their first surfaces. They have their numbers and times.
+/// Traces the rays that passed the lens to their first surfaces. Their random numbers and times are set before.
 template <int N, class SceneT>
 REALCAM_HD inline void trace_to_surfaces(const CameraRays<N>& camera_rays, SceneT&& scene, SceneRays<N>& rays,
                                          Hits<N>& hits) {
@@ -30,7 +30,7 @@ REALCAM_INLINE float circle_at(const CameraView& camera, float depth_m) {
 
 }  // namespace see_layers_detail
 
-/// What the samples of a block, which are those of render_samples, see first. SceneT as in advance_paths.
+/// First surfaces of the samples of a block, the same samples as in render_samples. SceneT as in advance_paths.
 template <int N, class SceneT>
 REALCAM_HD inline void see_layers(const SceneView& view, const CameraView& camera, const SampleBlock<N>& block,
                                   SceneT&& scene, LayerResults<N>& results) {
@@ -62,7 +62,7 @@ REALCAM_HD inline void see_layers(const SceneView& view, const CameraView& camer
     }
 }
 
-/// The nearest surface in the middle ray of each pixel of a block (middle_rays).
+/// Nearest surface on the ray of each pixel's centre, for a block (middle_rays).
 template <int N, class SceneT>
 REALCAM_HD inline void see_middle_surfaces(const SceneView& view, const CameraView& camera, const SampleBlock<N>& block,
                                            SceneT&& scene, MiddleSurface (&surfaces)[N]) {

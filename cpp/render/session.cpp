@@ -247,9 +247,11 @@ bool Session::is_same_exposure(const Assembly& scene, const Camera& camera) cons
 
 bool Session::has_sums_for(LayerSet wanted) const {
     const LayerSet had = settings_.layers;
-    if (had.has_any(kHalfLayers) != wanted.has_any(kHalfLayers)) return false;  // which also choose how lights are met
+    if (had.has_any(kHalfLayers) != wanted.has_any(kHalfLayers))
+        return false;  // these layers also switch off light
+                                                                                // tracing
     if (had.has(Layer::variance) == wanted.has(Layer::variance)) return true;
-    // Squares that nobody asks for any more do no harm, unless they lie where wavelengths are balanced.
+    // Squares that are no longer requested do no harm, unless the excess of wavelengths needs their memory.
     return had.has(Layer::variance) && !settings_.effects.have_wavelengths();
 }
 
@@ -268,12 +270,12 @@ void Session::make_ready(const Assembly& wanted_scene, const Camera& wanted_came
     const Assembly& scene = changed ? changed->scene : wanted_scene;
     const Camera& camera = changed ? changed->camera : wanted_camera;
     const bool is_same = ready_ && is_same_picture(scene, camera, settings);
-    // Frames of a camera that stands still become a picture: with the pupil that any session would find.
+    // Frames of a camera that stands still add up to a picture, which has the pupil that any session would find.
     const bool stands_still = is_same && start == PupilStart::near_last && !has_pupil_anew();
     if (!is_same || stands_still) {
-        ready_ = false;  // whatever fails from here on, the next call begins anew
+        ready_ = false;  // if anything fails from here on, the next call prepares everything
         give_up_samples();
-        scene_ = {};  // before the next takes as much memory
+        scene_ = {};  // frees its memory before the next scene takes as much
         OwnStop stop(*this);
         const auto begin = std::chrono::steady_clock::now();
         prepare(scene, camera, settings, start, keep_going, stop);
@@ -381,15 +383,15 @@ ReachedNoise Session::take_until(const NoiseGoal& goal, std::atomic<double>& sha
     noise_so_far_ = {};
     if (is_new) {
         mean_samples_ = AdaptiveSampling::first_samples(goal);
-        // A count for each pixel, though it is the same: what the two halves of a tile find must be independent, so
-        // that no pixel may share its samples.
+        // Counts for each pixel, though all are equal: the two halves of a tile must be independent, so that no pixel
+        // may share its samples.
         const std::vector<std::uint32_t> first(pixel_count(), static_cast<std::uint32_t>(mean_samples_));
         take_round(mean_samples_, first.data(), true);
     }
     AdaptiveSampling tiles(camera_.film.width, camera_.film.height, goal, camera_.iso, develop().exposure,
                            count_samples(), develop_traced());
     const auto pixels = static_cast<double>(pixel_count());
-    // Layers are seen afterwards, in a time that belongs to the goal's, too.
+    // Layers are computed afterwards, within the time limit of the goal.
     const double layer_seconds = std::isfinite(goal.seconds) ? seconds_of_layers(stop) : 0;
     double taken = is_new ? static_cast<double>(mean_samples_) * pixels : 0;
     while (!stop) {
@@ -407,7 +409,7 @@ ReachedNoise Session::take_until(const NoiseGoal& goal, std::atomic<double>& sha
         take_round(most, counts.data(), tiles.traces_lights());
         if (stop) {
             mean_samples_ = mean_of(count_samples());
-            return noise_so_far_;  // differences of half a round are no measure
+            return noise_so_far_;  // differences of half a round are no measure of the noise
         }
         double round = 0;
         for (const std::uint32_t count : counts) round += count;

@@ -5,23 +5,23 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Where a ray starts so as not to meet its own surface again: on the side to which it goes.
+/// Start of a ray, offset to the side of its direction, so that it does not hit its own surface again.
 REALCAM_INLINE Vec3f ray_start(const SurfacePlace& place, Vec3f direction) {
     const float offset = select(dot(place.geometric_normal, direction) < 0.0f, -place.self_offset, place.self_offset);
     return place.position + offset * place.geometric_normal;
 }
 
-/// The rays that test whether lights are hidden.
+/// Rays that test the visibility of lights.
 template <int N>
 struct ShadowRays {
     SceneRays<N> rays;
-    ColorLanes<N> unshadowed;  ///< what comes along them to the film if nothing is in the way
+    ColorLanes<N> unshadowed;  ///< contribution to the film if nothing occludes the light
 
-    /// `seen`: of the light, by the film. Without branches, so that it becomes vector code.
+    /// `seen`: contribution to the film if nothing occludes the light. Without branches, so that it is vectorised.
     REALCAM_INLINE void set(int lane, const SurfacePlace& place, const LightSample& light, Color seen) {
         const Vec3f start = ray_start(place, light.direction);
-        // To a light that is near, from the start, so that its distance is 1: it may be as near as the offset. The ray
-        // stops short of the light, which is itself in the scene.
+        // For a near light the ray's direction is the vector from its start to the light, so that the distance is 1:
+        // the light may be as near as the offset. The ray stops short of the light, which is itself in the scene.
         const bool is_near = light.distance < kFarAway;
         const Vec3f way = light.distance * light.direction - (start - place.position);
         rays.origin.set(lane, start);
@@ -32,7 +32,7 @@ struct ShadowRays {
     }
 };
 
-/// The shadow rays of many paths, to be traced together: one for each sample of the lights.
+/// Shadow rays of many paths, to be traced together: one for each light sample.
 template <int N>
 struct LightRays {
     ShadowRays<N> rays[kLightSampleCount];

@@ -6,17 +6,17 @@
 
 namespace REALCAM_NAMESPACE {
 
-// Ghosts and starbursts of lights, forward: from a light through a place in front of the lens, along one ghost's way or
-// the lens's own, to wherever on the film it ends.
+// Ghosts and starbursts of lights, traced forward: from a light through a point in front of the lens, along one ghost
+// path or the direct path, to the point of the film that it reaches.
 
 namespace splat_ghosts_detail {
 
-/// Dimension pairs of the random sequence, behind that of the way.
+/// Dimension pairs of the random sequence, after that of the ghost path.
 namespace ghost_dimension {
 inline constexpr std::uint32_t light = 1, entry = 2, time = 3, diffraction = 4;
 }
 
-/// The axes of a lens in the scene.
+/// Axes of a lens in the scene.
 struct LensFrame {
     CameraPlacement camera;
     float front_vertex_m;
@@ -24,7 +24,7 @@ struct LensFrame {
     REALCAM_INLINE Vec3f direction(Vec3f scene) const {
         return {dot(scene, camera.right), dot(scene, camera.up), dot(scene, camera.backward)};
     }
-    /// The scene's coordinates of a place in mm, relative to the front vertex.
+    /// Scene coordinates of a point that is given in mm, relative to the front vertex.
     REALCAM_INLINE Vec3f place_in_scene(Vec3f lens_mm) const {
         return camera.position + (0.001f * lens_mm.x) * camera.right + (0.001f * lens_mm.y) * camera.up +
                (0.001f * lens_mm.z - front_vertex_m) * camera.backward;
@@ -35,7 +35,7 @@ REALCAM_INLINE LensFrame lens_frame(const CameraView& camera, float time) {
     return {camera_at(camera, time), camera.front_vertex_m};
 }
 
-/// A pixel of the film, or -1.
+/// Index of the pixel at a film point; -1 if it lies outside the film.
 REALCAM_INLINE std::int32_t pixel_at(const CameraView& camera, float x, float y) {
     const float column =
         0.5f * static_cast<float>(camera.width) * (1.0f - (x - camera.film_middle.x) / camera.film_half_width);
@@ -46,13 +46,13 @@ REALCAM_INLINE std::int32_t pixel_at(const CameraView& camera, float x, float y)
     return inside ? static_cast<std::int32_t>(row) * camera.width + static_cast<std::int32_t>(column) : -1;
 }
 
-/// The time from the begin of the first row's exposure to the end of the last one's.
+/// Time from the beginning of the first row's exposure to the end of the last row's.
 REALCAM_INLINE float all_times(const CameraView& camera) {
     return camera.exposed_time + camera.row_time * static_cast<float>(camera.height);
 }
 
-/// By how much a sample of this time counts on a row of pixels, which sees what falls on it while it is exposed: or, if
-/// that is but a moment, until the next row's.
+/// Weight of a sample of this time on a row of pixels. A row receives the light of its exposure or, if that is shorter,
+/// of the time until the next row begins.
 REALCAM_INLINE float exposure_weight(const CameraView& camera, std::int32_t row, float time) {
     if (!(camera.row_time > 0.0f)) return 1.0f;
     const float begin = static_cast<float>(row) * camera.row_time;
@@ -64,19 +64,19 @@ REALCAM_INLINE float exposure_weight(const CameraView& camera, std::int32_t row,
 template <int N>
 struct GhostSamples {
     Lanes<std::uint32_t, N> number;
-    Lanes<float, N> place, variable;  ///< of the wavelength
+    Lanes<float, N> place, variable;  ///< position among the wavelength cells, and dispersion variable of the
+                                      ///< wavelength
     Lanes<float, N> time;
     LightPick lights[N];
-    Vec3Lanes<float, N> from;  ///< unit, towards the light, as the middle of the lens sees it; in the lens's axes
+    Vec3Lanes<float, N> from;  ///< unit, towards the light from the front vertex, in the lens's axes
     LensRays<float, N> rays;  ///< first in front of the lens, then behind it
-    Lanes<float, N> density;  ///< of the place where it enters, per mm^2
-    Lanes<float, N> light_density;  ///< of its place on the lights, per steradian; kDelta:
-                                    ///< no ray meets it
+    Lanes<float, N> density;  ///< of the entry point, per mm^2
+    Lanes<float, N> light_density;  ///< of the point on the lights, per steradian; kDelta: no ray hits it
     ColorLanes<N> color;  ///< flux, then irradiance that its pixel would have if all samples were like it
     SceneRays<N> shadow;
 };
 
-/// Sets the ray from a place to the light that a sample has found there.
+/// Sets the shadow ray from a point to the light that was sampled there.
 template <int N>
 REALCAM_INLINE void set_shadow_ray(Vec3f from, const LightSample& light, int lane, GhostSamples<N>& samples) {
     const bool is_near = light.distance < kFarAway;
@@ -85,7 +85,7 @@ REALCAM_INLINE void set_shadow_ray(Vec3f from, const LightSample& light, int lan
     samples.shadow.far[lane] = is_near ? (light.reach > 0.0f ? light.reach : 0.0f) : kFarAway;
 }
 
-/// Chooses a light, for the middle of the lens.
+/// Chooses lights, as seen from the front vertex.
 template <SceneKind scene_kind, int N>
 REALCAM_INLINE void choose_lights(const SceneView& view, const CameraView& camera, std::uint32_t stream,
                                   std::uint32_t first, GhostSamples<N>& samples) {
@@ -103,7 +103,7 @@ REALCAM_INLINE void choose_lights(const SceneView& view, const CameraView& camer
         if (light.probability > 0.0f) {
             const LightSample sample = sample_picked<scene_kind>(view, middle, light);
             from = frame.direction(sample.direction);
-            // For area lights that are seen from the side, kDelta says that there is no light.
+            // For area lights that are seen from the side, kDelta means that there is no light.
             if (light.kind == LightKind::area || light.kind == LightKind::environment)
                 samples.light_density[i] = sample.pdf < kDelta ? light.probability * sample.pdf : 0.0f;
         }
@@ -111,16 +111,16 @@ REALCAM_INLINE void choose_lights(const SceneView& view, const CameraView& camer
     }
 }
 
-/// A place in front of the lens through which light of a direction may go one way.
+/// Point in front of the lens through which light of a direction may take a ghost path.
 struct LightEntry {
     Vec3f origin;
     float density;  ///< per mm^2
-    bool seen;  ///< whether any light of that direction may
+    bool seen;  ///< false if no light of that direction passes
 };
 
 REALCAM_INLINE LightEntry round_light_entry(const GhostView& ghosts, const GhostEntry* entries, Vec3f from, Vec2f u) {
     const auto [x, y, z] = from;
-    const float sine = std::sqrt(x * x + y * y), half_tangent = sine / (1.0f - z);  // no number right behind
+    const float sine = std::sqrt(x * x + y * y), half_tangent = sine / (1.0f - z);  // NaN directly behind the lens
     const bool seen = (half_tangent < ghosts.largest_half_tangent) & (z < 0.9f);
     const int bin = static_cast<int>(select(seen, half_tangent / ghosts.largest_half_tangent, 0.0f) *
                                      static_cast<float>(kGhostBins));
@@ -164,7 +164,7 @@ REALCAM_INLINE void choose_entries(const GhostView& ghosts, const GhostBlock& bl
     }
 }
 
-/// Sends the light from where it really comes to that place. `scale`: of the flux.
+/// Sends the light from its own position to the entry point. `scale`: of the flux.
 template <SceneKind scene_kind, int N>
 REALCAM_INLINE void send_light(const SceneView& view, const CameraView& camera, float scale, GhostSamples<N>& samples) {
     LensRays<float, N>& rays = samples.rays;
@@ -173,7 +173,8 @@ REALCAM_INLINE void send_light(const SceneView& view, const CameraView& camera, 
         const LensFrame frame = lens_frame(camera, samples.time[i]);
         const LightReceiver here{frame.place_in_scene(rays.origin[i]), {0, 0, 0}, samples.time[i]};
         const LightSample light = sample_picked<scene_kind>(view, here, samples.lights[i]);
-        // A light that is near has another direction here, and the plane is across that in the middle.
+        // A near light has another direction here than at the front vertex, and the entry plane is perpendicular to the
+        // latter.
         const Vec3f to_light = frame.direction(light.direction);
         const float cosine = dot(to_light, samples.from[i]);
         if (is_black(light.irradiance) || !(cosine > 0.0f)) {
@@ -187,9 +188,9 @@ REALCAM_INLINE void send_light(const SceneView& view, const CameraView& camera, 
     }
 }
 
-/// Where light that geometrical optics brings to `film` goes by diffraction, and how much of it. Starbursts are what
-/// the edges of the aperture diffract, and of lights that rays meet as much of that as samples of pixels leave to
-/// splats (set_first_density). The images of lights are the rest.
+/// Diffracts light that geometrical optics brings to `film`; returns the new film point and scales the light.
+/// Starbursts are the light that the edges of the aperture diffract; for lights that rays hit, the part of it that
+/// pixel samples leave to splats (set_first_density). The images of lights get all other light.
 template <int N>
 REALCAM_INLINE Vec2f diffracted(const CameraView& camera, GhostLight light, Vec2f film, Vec2f u, Vec2f v, int lane,
                                 GhostSamples<N>& samples) {
@@ -211,7 +212,7 @@ REALCAM_INLINE Vec2f diffracted(const CameraView& camera, GhostLight light, Vec2
     return {film.x + nm * kick.x, film.y + nm * kick.y};
 }
 
-/// The pixels that the light reaches, or -1, and what it brings there if nothing in the scene is in its way.
+/// Finds the pixels that the light reaches, or -1, and its contribution there if nothing in the scene occludes it.
 template <LensKind lens_kind, SceneKind scene_kind, bool has_wavelengths, int N>
 REALCAM_INLINE void reach_film(const CameraView& camera, const GhostView& ghosts, std::uint32_t stream,
                                std::uint32_t first, const PassedPower<N>& passed, GhostSamples<N>& samples,
@@ -245,9 +246,9 @@ REALCAM_INLINE void reach_film(const CameraView& camera, const GhostView& ghosts
 
 }  // namespace splat_ghosts_detail
 
-/// Takes N samples of a block, from number `first` in it: splat(pixel, irradiance, dither) for each that lights a
-/// pixel. The irradiance is that which the pixel would have if each sample were like this one; `dither`: a random
-/// number. `SceneT`: as in advance_paths.
+/// Takes N samples of a block, from its sample `first` on, and calls splat(pixel, irradiance, dither) for each that
+/// lights a pixel. The irradiance is that of the pixel if all samples were like this one; `dither`: a random number.
+/// `SceneT`: as in advance_paths.
 template <LensKind lens_kind, SceneKind scene_kind, bool has_wavelengths, int N, class SceneT, class Splat>
 REALCAM_HD inline void splat_ghosts(const SceneView& view, const CameraView& camera, const GhostView& ghosts,
                                     GhostRange range, std::uint32_t first, SceneT&& scene, Splat&& splat) {

@@ -4,8 +4,9 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Light that is looked for from the lights on, too (splat_ghosts.hpp), is weighed between both ways: a ray that leaves
-/// the lens meets lights as one whose direction was drawn with that density.
+/// Sets the density against which the light that a ray hits straight from the lens is weighted, if that light is also
+/// sampled from the lights (splat_ghosts.hpp): as if the ray's direction had been sampled with this density at the
+/// front vertex.
 template <SceneKind scene_kind, int N>
 REALCAM_INLINE void set_first_density(const CameraView& camera, float density, int lane, PathState<N>& path) {
     Vec3f front = front_vertex(camera, camera.front_vertex_m);
@@ -19,7 +20,7 @@ REALCAM_INLINE void set_first_density(const CameraView& camera, float density, i
     path.receiver_normal.set(lane, {0, 0, 0});
 }
 
-/// Rays that have left the lens become paths.
+/// Starts paths with the rays that have left the lens.
 template <int N>
 REALCAM_INLINE void start_paths(const CameraRays<N>& camera_rays, PathState<N>& path, PathResults<N>& results) {
     REALCAM_LANES

@@ -16,8 +16,7 @@ struct Part {
     bool is_subject = true;
 };
 
-/// For each triangle of a scene the number of its part, and how many parts there are: the connected components of the
-/// triangles' vertices.
+/// Connected components of a scene's triangles by their vertices: the part of each triangle, and the number of parts.
 struct Components {
     explicit Components(const Scene& scene) : of_triangle(scene.triangles.size()) {
         std::vector<std::uint32_t> parent(scene.positions_m.size());
@@ -40,7 +39,7 @@ struct Components {
 
 struct Facet {
     BoundingBox box;
-    Vec3d area_m2;  ///< along the normal; zero for the box of an instance
+    Vec3d area_m2;  ///< area vector along the normal; zero for the box of an instance
     bool emits = false;
 };
 
@@ -54,7 +53,7 @@ public:
         });
     }
 
-    /// f(number of the part, facet).
+    /// Calls f(index of the part, facet).
     template <class F>
     void for_facets(F&& f) {
         std::size_t first = for_triangles(*assembly_.static_geometry, 0, [](Vec3d p) { return p; }, f);
@@ -119,12 +118,12 @@ bool stay_away(Parts& parts, const std::vector<bool>& others, const BoundingBox&
     return !any_is_near;
 }
 
-/// Removes the surroundings that enclose or carry the rest from `chosen`, which is sorted by length.
+/// Removes from `chosen`, which is sorted by length, the surroundings that enclose or carry the remaining parts.
 bool take_enclosing(Parts& parts, std::vector<Part*>& chosen) {
     constexpr double kMuchLonger = 4;
-    std::vector<BoundingBox> rest(chosen.size() + 1);  // of the parts from one on
+    std::vector<BoundingBox> rest(chosen.size() + 1);  // bounds of the parts from an index on
     for (std::size_t k = chosen.size(); k-- > 0;) (rest[k] = rest[k + 1]).add(chosen[k]->box);
-    std::vector<BoundingBox> boxes(chosen.size() + 1);  // of the parts before one
+    std::vector<BoundingBox> boxes(chosen.size() + 1);  // bounds of the parts before an index
     std::vector<std::size_t> triangles(chosen.size() + 1);
     for (std::size_t k = 0; k < chosen.size(); ++k) {
         (boxes[k + 1] = boxes[k]).add(chosen[k]->box);

@@ -9,9 +9,9 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Ids of what a scene consists of. Objects: 1 is static geometry, and instances follow in their order. Materials: from
-/// 1 on, those of static geometry, then those of each object, in the order in which it is first instanced; all
-/// instances of an object share them.
+/// Ids of the objects and materials of a scene. Objects: 1 is static geometry, and instances follow in their order.
+/// Materials: from 1 on, those of static geometry, then those of each object, in the order in which it is first
+/// instanced; all instances of an object share them.
 class SurfaceIds {
 public:
     explicit SurfaceIds(const Assembly& assembly);
@@ -32,7 +32,7 @@ private:
     }
 
     IdNames objects_, materials_;
-    std::vector<std::uint32_t> first_material_;  ///< of static geometry, then of each instance
+    std::vector<std::uint32_t> first_material_;  ///< first id: of static geometry, then of each instance
 };
 
 }  // namespace REALCAM_NAMESPACE

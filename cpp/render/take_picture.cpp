@@ -12,8 +12,8 @@
 namespace realcam {
 namespace {
 
-/// Takes the samples in rounds that double their number, so that no pixel has less than half of those of another
-/// wherever the picture is stopped. The samples are those of one round.
+/// Takes the samples in rounds that double their number, so that no pixel has less than half as many as another one
+/// whenever the picture is stopped. The samples are the same as in a single round.
 void add_evenly(Session& session, int spp, const Progress& progress) {
     constexpr int kFirst = 8;
     for (int taken = 0; taken < spp;) {
@@ -51,7 +51,7 @@ Image take_picture(Session& session, const Assembly& scene, const Camera& camera
         if (!finishes || !finishes() || std::ranges::min(session.sample_counts().counts) == 0) throw;
         is_stopped = true;
     }
-    constexpr std::int64_t kLayerSamplesOfStopped = 16;  // who stops a picture does not wait for those of all samples
+    constexpr std::int64_t kLayerSamplesOfStopped = 16;  // after a stop, layers of all samples would take too long
     Image image = session.picture(finishes, is_stopped ? kLayerSamplesOfStopped : Session::kAllSamples);
     if (is_stopped)
         shortfall = settings.noise ? "it was stopped; " + shortfall_of(session.noise_so_far(), *settings.noise)

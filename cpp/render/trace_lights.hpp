@@ -4,25 +4,25 @@
 
 namespace REALCAM_NAMESPACE {
 
-// Images of lights, from the lights on: from a place on a light through a place where its light enters the lens to
-// wherever on the film it ends (light tracing). A lamp out of focus covers a large disc of the film, of which each
-// point sees it in a small part of the pupil only: samples of pixels seldom meet it, samples from the lamp always light
-// the disc.
+// Images of lights by light tracing: from a point on a light through a point at which its light enters the lens, to the
+// point of the film that it reaches. A lamp out of focus covers a large disc of the film, each point of which sees it
+// in a small part of the pupil only: samples of pixels seldom hit the lamp, samples from the lamp always light the
+// disc.
 
 namespace trace_lights_detail {
 
 using splat_ghosts_detail::GhostSamples;
 
-/// Pairs of the random sequence of a light.
+/// Dimension pairs of the random sequence of a light.
 namespace traced_dimension {
 inline constexpr std::uint32_t entry = 0, place = 1, time = 2;
 }
 
-/// A place on a light, as one entry sees it.
+/// Point on a light, as seen from one entry point.
 struct TracedPlace {
-    LightSample sample;  ///< irradiance over the density of the place
-    float traced = 0;  ///< traced_samples, without the entry's cosine; 0: nothing else finds it
-    bool is_met = false;  ///< by samples of pixels
+    LightSample sample;  ///< irradiance over the density of the point
+    float traced = 0;  ///< traced_samples, without the entry's cosine; 0: only samples from the light find it
+    bool is_met = false;  ///< true if samples of pixels can hit it
 };
 
 template <SceneKind scene_kind>
@@ -43,14 +43,14 @@ REALCAM_INLINE TracedPlace place_on(const SceneView& scene, const TracedLightsVi
     const LightSample sample = sample_area<scene_kind>(scene, triangle, entry, {chosen.fresh, u.y});
     TracedPlace place{sample, 0, true};
     place.sample.irradiance = (1.0f / chosen.probability) * sample.irradiance;
-    // Its density per steradian has the cosine and the distance in it.
+    // The density per steradian contains the cosine and the distance.
     if (sample.pdf < kDelta)
         place.traced = lights.scale * light.probability * chosen.probability * sample.pdf / light.entries.area();
     return place;
 }
 
-/// Takes the light, its time, place and entry for each sample, and sends the light there. `wavelength`: of each sample
-/// the place of its first one among the cells.
+/// Chooses light, time, point and entry of each sample, and sends the light there. `wavelength`: position of each
+/// sample's first wavelength among the wavelength cells.
 template <SceneKind scene_kind, bool has_wavelengths, int N>
 REALCAM_INLINE void send_traced_light(const SceneView& view, const CameraView& camera, std::uint32_t round,
                                       std::uint32_t first, GhostSamples<N>& samples, Lanes<float, N>& wavelength) {
@@ -79,7 +79,7 @@ REALCAM_INLINE void send_traced_light(const SceneView& view, const CameraView& c
         samples.rays.status[i] = static_cast<int>(RayStatus::vignetted);
         if (is_black(place.sample.irradiance) || !(cosine > 0.0f)) continue;
         samples.rays.status[i] = 0;
-        // Of 1 / (1 + 1 / r^2), for any r.
+        // Equals 1 / (1 + 1 / r^2), for any r.
         const float weight = place.is_met ? 1.0f - mis_weight(1.0f, place.traced / cosine) : 1.0f;
         const float scale = weight * cosine * light.entries.area() / light.probability;
         samples.color.set(i, bounded_light(scale * place.sample.irradiance));
@@ -90,7 +90,7 @@ REALCAM_INLINE void send_traced_light(const SceneView& view, const CameraView& c
     }
 }
 
-/// `first`: where a sample's first wavelength lies among the cells.
+/// `first`: position of each sample's first wavelength among the wavelength cells.
 template <int N>
 REALCAM_INLINE void set_wavelengths(const DispersionView& view, const float (&first)[N], int step,
                                     GhostSamples<N>& samples) {
@@ -103,8 +103,8 @@ REALCAM_INLINE void set_wavelengths(const DispersionView& view, const float (&fi
 
 }  // namespace trace_lights_detail
 
-/// splat_ghosts for the images of lights. All lights take the same way through the lens, so that each sample of a block
-/// has a light of its own.
+/// splat_ghosts for the images of lights. All lights take the direct path through the lens, so that each sample of a
+/// block has a light of its own.
 template <LensKind lens_kind, SceneKind scene_kind, bool has_wavelengths, int N, class SceneT, class Splat>
 REALCAM_HD inline void trace_lights(const SceneView& view, const CameraView& camera, const GhostView& way,
                                     GhostRange range, std::uint32_t first, SceneT&& scene, Splat&& splat) {
@@ -116,7 +116,7 @@ REALCAM_HD inline void trace_lights(const SceneView& view, const CameraView& cam
     GhostSamples<N> samples;
     [[maybe_unused]] Lanes<float, N> wavelength;
     send_traced_light<scene_kind, has_wavelengths>(view, camera, round, first_sample, samples, wavelength);
-    // Light of a sample enters at one place, and each of its wavelengths goes its own way from there.
+    // Light of a sample enters at one point, from which each of its wavelengths takes a path of its own.
     constexpr int kMostSteps = has_wavelengths ? kSharedWavelengths : 1;
     const int steps = has_wavelengths && camera.dispersion.cell_count > 1 ? kMostSteps : 1;
     const float share = 1.0f / static_cast<float>(steps);

@@ -7,12 +7,12 @@
 
 namespace REALCAM_NAMESPACE {
 
-// The image of a light is found by samples of pixels that meet the light, and by samples from the light on
-// (trace_lights.hpp). Both know a way of light by its place on the light and the place where it enters the lens. What
-// either finds is weighted by the densities of both there (Veach and Guibas 1995). For samples of pixels a mean density
-// serves: any weights are right that both compute alike.
+// The image of a light is found by samples of pixels that hit the light, and by samples that start at the light
+// (trace_lights.hpp). Both identify a light path by its point on the light and its entry point into the lens, and each
+// contribution is weighted by the densities of both methods there (Veach and Guibas 1995). For samples of pixels a mean
+// density suffices: any weights are unbiased if both methods compute the same ones.
 
-/// The plane in which a light's rectangle of entries lies. Axes in the scene, all unit.
+/// Plane of a light's entry rectangle. Axes in the scene, all unit.
 struct EntryPlane {
     Vec3f from, along, across;
     Vec3f middle;  ///< the lens's front vertex
@@ -26,16 +26,16 @@ REALCAM_INLINE EntryPlane entry_plane(const CameraPlacement& camera, float front
             front_vertex(camera, front_vertex_m)};
 }
 
-/// How many samples from the light on, for one sample of each pixel that goes this way. `cosine`, `distance`: at the
-/// light's surface, of the way to the entry, m; `entry_cosine`: with the light's plane of entries; `pdf`: with which
-/// samples of the light take the place, per square metre.
+/// Number of samples from the light per sample of each pixel, for this light path. `cosine`, `distance`: at the light's
+/// surface, of the path to the entry, m; `entry_cosine`: to the normal of the entry plane; `pdf`: density of the point
+/// in samples from the light, per square metre.
 REALCAM_INLINE float traced_samples(const TracedLightsView& lights, const TracedLight& light, float pdf, float cosine,
                                     float distance, float entry_cosine) {
     return lights.scale * light.probability * pdf * distance * distance /
            (light.entries.area() * cosine * entry_cosine);
 }
 
-/// What counts of an emitter's light that a ray meets straight from the film.
+/// MIS weight of an emitter's light that a ray hits straight from the film.
 template <SceneKind scene_kind, int N>
 REALCAM_INLINE float seen_light_weight(const SceneView& scene, const CameraView& camera, const PathState<N>& path,
                                        int place, Hit hit, const SurfacePoint& point) {
@@ -52,7 +52,7 @@ REALCAM_INLINE float seen_light_weight(const SceneView& scene, const CameraView&
     const Vec3f direction = path.rays.direction[place];
     const float entry_cosine = dot(direction, plane.from);
     if (!(entry_cosine > 0.0f)) return 1.0f;
-    // From the light, because the ray may have begun anywhere on its way.
+    // Measured from the light, because the ray may begin anywhere on the path.
     const float distance = dot(point.position - plane.middle, plane.from) / entry_cosine;
     const Vec3f entry = point.position - distance * direction - plane.middle;
     if (!(distance > 0.0f) ||

@@ -17,10 +17,10 @@ namespace {
 
 /// Samples of a light for each pixel that its light covers and each sample of that pixel.
 constexpr double kSamplesPerPixel = 6;
-constexpr std::int32_t kMostOften = 2, kLeastOften = 64;  ///< samples of pixels for one from the lights
+constexpr std::int32_t kMostOften = 2, kLeastOften = 64;  ///< limits for pixel_samples_
 constexpr int kMostHalvings = 12;
 
-/// Powers of two whose sum is 1, near these weights.
+/// Exponents n of powers 2^-n that approximate these weights and whose sum is 1.
 std::vector<int> halvings_of(const std::vector<double>& weights) {
     double sum = 0;
     for (const double weight : weights) sum += weight;
@@ -32,7 +32,7 @@ std::vector<int> halvings_of(const std::vector<double>& weights) {
         left -= std::int64_t{1} << (kMostHalvings - halvings.back());
     }
     const auto lacks = [&](std::size_t i) { return weights[i] * std::exp2(halvings[i]); };
-    // Too much, because those that would get less than the least get that: the largest give.
+    // The sum exceeds 1 because small weights were raised to the least power: the largest weights are reduced.
     while (left < 0) {
         std::size_t richest = halvings.size();
         for (std::size_t i = 0; i < halvings.size(); ++i)
@@ -65,7 +65,7 @@ TracedLights::TracedLights(const SceneView& scene, const CameraView& camera, con
     std::vector<std::size_t> seen;
     for (std::size_t k = 0; k < groups.size(); ++k)
         if (found[k]) seen.push_back(k);
-    // Those whose light covers most come first; a film has no more turns than there are of these.
+    // The lights that cover most of the film come first; there are no more turns than this number of lights.
     std::stable_sort(seen.begin(), seen.end(),
                      [&](std::size_t a, std::size_t b) { return found[a]->pixels > found[b]->pixels; });
     seen.resize(std::min<std::size_t>(seen.size(), std::size_t{1} << kMostHalvings));
@@ -118,7 +118,7 @@ void TracedLights::add(const SceneView& scene, const LightGroup& group, TracedLi
         }
         triangles_.insert(triangles_.end(), group.lights.begin(), group.lights.end());
     } else {
-        cdfs_.push_back(0);  // so that a light's table begins behind its triangles' and its own number
+        cdfs_.push_back(0);  // keeps each light's table at the index of its first triangle plus its own index
     }
     lights_.push_back(light);
 }
@@ -127,7 +127,7 @@ void TracedLights::set_turns() {
     std::vector<std::int32_t> order(lights_.size());
     std::iota(order.begin(), order.end(), 0);
     const auto halvings = [&](std::int32_t light) { return lights_[static_cast<std::size_t>(light)].halvings; };
-    // So each light's interval begins at a multiple of its length, and the last bits of a sample's number tell it.
+    // Each light's interval then begins at a multiple of its length, and the last bits of a sample's index select it.
     std::stable_sort(order.begin(), order.end(),
                      [&](std::int32_t a, std::int32_t b) { return halvings(a) < halvings(b); });
     const int bits = halvings(order.back());
@@ -158,7 +158,7 @@ double least_lamp_share(const SceneView& scene, const CameraView& camera, const 
     const double cosine = std::cos(setup.widest_angle());
     double least = 1;
     for (const LightGroup& group : light_groups(scene, camera)) {
-        if (group.kind != TracedLightKind::triangles) continue;  // no ray meets the others
+        if (group.kind != TracedLightKind::triangles) continue;  // no ray hits the others
         const Vec3f way = scene.areas[group.lights.front()].corner - front;
         const bool is_in_view =
             static_cast<double>(-dot(way, camera.backward)) > cosine * static_cast<double>(length(way));

@@ -8,23 +8,24 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Chooses the lights whose images are found from their own side (trace_lights.hpp), and how many samples each gets:
-/// points and suns, which no ray meets, and emitters that fill little of the pupil. Owns the memory of its view.
+/// Chooses the lights whose images are found by light tracing (trace_lights.hpp), and the number of samples of each:
+/// points and suns, which no ray hits, and emitters that fill little of a pixel's footprint. Owns the memory of its
+/// view.
 class TracedLights {
 public:
     TracedLights() = default;
-    /// `camera`: of the set-up, with the scene's origin. The set-up has entries of its pupil.
+    /// `camera`: that of the set-up, with the scene's origin. The set-up has entries of its pupil.
     TracedLights(const SceneView& scene, const CameraView& camera, const CameraSetup& setup, LightTracing tracing,
                  const PupilTracer& tracer);
 
     bool empty() const { return lights_.empty(); }
     TracedLightsView view() const;
-    /// How often samples are taken: one for so many of pixels.
+    /// Number of pixel samples for each sample from the lights.
     std::int32_t pixel_samples() const { return pixel_samples_; }
 
 private:
     void add(const SceneView& scene, const LightGroup& group, TracedLight light);
-    /// Which light a sample takes, by its number.
+    /// Sets the light of each sample, by the sample's index.
     void set_turns();
 
     std::vector<TracedLight> lights_;
@@ -34,12 +35,12 @@ private:
     float scale_ = 0;
 };
 
-/// Those of a picture: none where the camera's model has no way for them. `camera`: of the set-up.
+/// Traced lights of a picture; empty if the camera's model has no light path for them. `camera`: that of the set-up.
 TracedLights traced_lights(const SceneView& scene, const CameraView& camera, const CameraSetup& setup,
                            LightTracing tracing, const PupilTracer& tracer);
 
-/// The smallest share of a pixel's footprint that a lamp in view fills. Returns 1 if lamps are traced, or none is in
-/// view.
+/// The smallest fraction of a pixel's footprint that a lamp in view fills. Returns 1 if lamps are traced, or no lamp is
+/// in view.
 double least_lamp_share(const SceneView& scene, const CameraView& camera, const CameraSetup& setup,
                         LightTracing tracing);
 

@@ -47,7 +47,7 @@ FollowedIso::FollowedIso(Session& session, const Assembly& scene, Camera camera,
       smoothing_s_(smoothing_s) {}
 
 double FollowedIso::at(int number, const Progress& progress) {
-    constexpr double kOldest = 5;  // times the smoothing: what is older has less than a hundredth of the weight
+    constexpr double kOldest = 5;  // times the smoothing: older frames have less than a hundredth of the weight
     const double frames = smoothing_s_ * frames_per_second_;
     const int first = std::max(std::min(number, 1), number - static_cast<int>(std::min(kOldest * frames, 1e6)));
     double sum = 0, weights = 0;

@@ -17,7 +17,7 @@ toml::array array_of(const std::vector<double>& values) {
     return array;
 }
 
-/// Gives the value of a word to `take` where it is not the word itself. False for a word that is no value.
+/// Passes the value of a word to `take`, unless the word is itself the value. Returns false if the word is invalid.
 template <class Take>
 bool take_word(Syntax syntax, const std::string& word, const Take& take) {
     const auto take_numbers = [&](char separator, std::size_t count) {

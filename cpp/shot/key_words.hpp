@@ -3,7 +3,7 @@
 
 namespace realcam::shot {
 
-/// Reads the values of a table that are one word, as the command line has them. `shot`: the same table, for messages.
+/// Parses the values of a table that are single words, as on the command line. `shot`: the same table, for messages.
 /// Throws InputError.
 void read_words(toml::table& table, const ShotTable& shot);
 

@@ -9,8 +9,8 @@
 
 namespace realcam::shot {
 
-// The words for camera models, tone curves, light transport, pupil sampling and light tracing, as command line and shot
-// files have them.
+// Names of camera models, tone curves, light transport, pupil sampling and light tracing on the command line and in
+// shot files.
 
 inline constexpr const char* kModelNames = "full, full_double, polynomial, thick, mapped, thin or pinhole";
 inline constexpr const char* kToneNames = "film or linear";

@@ -6,10 +6,10 @@
 
 namespace realcam::shot {
 
-/// How pictures are read: the programs give OpenImageIO's.
+/// Functions that read pictures; the programs supply those of OpenImageIO.
 struct PictureReaders {
     io::ImageReader texture;
-    /// `layer`: one of an OpenEXR's layers, or empty. `warn` takes what was put up with.
+    /// `layer`: name of an OpenEXR layer, or empty. `warn`: receives what was tolerated in the file.
     std::function<Environment(const std::string& path, const std::string& layer,
                               const std::function<void(const std::string&)>& warn)>
         environment;

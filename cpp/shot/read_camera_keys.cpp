@@ -12,12 +12,12 @@ std::optional<KeyWay> way_named(std::string_view name) {
     return std::nullopt;
 }
 
-/// The key of the file that a value of [[key]] stands in place of.
+/// A key of the file that a value in [[key]] replaces; both together are an error.
 struct StillKey {
     bool (*has)(const CameraKey& key);
-    const char* key;    ///< of [[key]]
-    const char* still;  ///< of the file
-    bool is_of_lens = false;  ///< and not of the camera: what the file says is of its first lens
+    const char* key;    ///< name in [[key]]
+    const char* still;  ///< name in the file
+    bool is_of_lens = false;  ///< a setting of the lens, not of the camera: the file's value belongs to its first lens
 };
 
 template <auto value>
@@ -38,7 +38,7 @@ constexpr StillKey kStill[] = {{has<&CameraKey::focus_m>, "focus_m", "focus_m", 
                                {has<&CameraKey::film_right_mm>, "film_shift_mm", "film_shift_mm"}};
 
 void read_keys(const ShotTable& shot, ShotRequest& request) {
-    bool has_other_lens = shot.is_changed("lens");  // in place of those of its keys
+    bool has_other_lens = shot.is_changed("lens");  // a changed lens replaces those of the keys
     for (const ShotTable& table : shot.tables("key")) {
         table.allow({"time_s", "lens", "focus_m", "focal_length_mm", "f_number", "blades", "blade_rounding",
                      "blade_rotation_deg", "exposure_time_s", "iso", "film_shift_mm", "interpolation"});

@@ -4,10 +4,10 @@
 
 namespace realcam::shot {
 
-/// What the key "lens" of a table says, as ShotRequest::lens; empty: it has none.
+/// Value of the key "lens" of a table, in the form of ShotRequest::lens; empty if the key is absent.
 std::string lens_of(const ShotTable& table);
 
-/// The tables [[key]] and [shake] of a shot file, and what follows the meter. Throws InputError naming file and line.
+/// Reads the tables [[key]] and [shake] of a shot file. Throws InputError naming file and line.
 void read_camera_keys(const ShotTable& shot, ShotRequest& request);
 
 }  // namespace realcam::shot

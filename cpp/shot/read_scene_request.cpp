@@ -18,7 +18,7 @@ Color color_of(Vec3d v) {
     return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
 }
 
-/// A material that a renderer could not use, and lights, are told at their lines, as SceneChecks tells them.
+/// Checks a material or lights as SceneChecks does, so that errors are reported at their lines.
 void check(const Scene& part) {
     const std::string kWhere = "scene: material 0: ";
     Scene scene = part;
@@ -64,7 +64,7 @@ public:
     }
 
 private:
-    /// These keys, and those of both models.
+    /// Allows these keys, and those of both models.
     void allow(std::vector<std::string_view> keys) const {
         for (const char* common : {"model", "texture", "emission", "emission_texture", "double_sided", "transmission",
                                    "transmission_texture", "ior", "absorption", "thin", "opacity", "opacity_cutoff",

@@ -4,7 +4,7 @@
 
 namespace realcam::shot {
 
-/// The tables [[object]], [material.NAME] and [[light]] of a shot file. Throws InputError naming file and line.
+/// Reads the tables [[object]], [material.NAME] and [[light]] of a shot file. Throws InputError naming file and line.
 SceneRequest read_scene_request(const ShotTable& shot);
 
 }  // namespace realcam::shot

@@ -7,21 +7,21 @@
 
 namespace realcam::shot {
 
-// What a shot file adds to the scene that it photographs. `place` is where the file says so, for messages.
+// Additions of a shot file to the scene that it photographs. `place`: position in the shot file, for messages.
 
 struct MaterialRequest {
     std::string name, place;
     Material values;
-    /// Files, in the order of kMaterialTextures; empty: none.
+    /// Files, in the order of kMaterialTextures; empty: no texture.
     std::array<std::string, kMaterialTextures.size()> textures;
 };
 
-/// Another file, put into the scene.
+/// Another scene file that is placed in the scene.
 struct ObjectRequest {
     std::string file, name, place;
     double scale = 1;  ///< metres per unit of the file
     Placement placement;
-    std::string material;  ///< for all of it; empty: its own
+    std::string material;  ///< replaces all materials of the file; empty: keeps them
 };
 
 struct SceneRequest {

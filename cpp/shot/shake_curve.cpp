@@ -101,7 +101,7 @@ private:
 
     const std::string& path_;
     std::size_t line_ = 0;
-    std::vector<std::size_t> columns_;  ///< by their places in kColumns
+    std::vector<std::size_t> columns_;  ///< as indices into kColumns
 };
 
 }  // namespace

@@ -7,7 +7,7 @@
 namespace realcam::shot {
 
 /// Reads a curve of shake from a table of numbers, .csv, whose first line names its columns: time_s, x_deg, y_deg,
-/// z_deg, x_m, y_m and z_m, in any order; but for the time any may be missing. Throws InputError naming file and line.
+/// z_deg, x_m, y_m and z_m, in any order. All except time_s may be missing. Throws InputError naming file and line.
 std::vector<ShakeKey> read_shake_curve(const std::string& path);
 
 }  // namespace realcam::shot

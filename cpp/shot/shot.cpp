@@ -36,7 +36,7 @@ Rings blades_of(const ShotRequest& request) {
     return {{}, request.blades, request.blade_rounding, request.blade_rotation_deg, {}, false, {}};
 }
 
-/// What is said of a lens that is made for a film smaller than the camera's; empty: it is not.
+/// Notice about a lens that is made for a film smaller than the camera's; otherwise empty.
 std::string film_notice(const LensSystem& lens, const Film& film) {
     const double made_for = hypotenuse(lens.film_width, lens.film_height);
     if (made_for >= 0.99 * hypotenuse(film.width_mm, film.height_mm)) return "";
@@ -48,7 +48,7 @@ std::string film_notice(const LensSystem& lens, const Film& film) {
     return text;
 }
 
-/// Work on a key of a file, whose place goes before what is wrong with it.
+/// Runs work on a key of a file; errors begin with the key's position.
 template <class Work>
 void at_place(const std::string& place, Work&& work) {
     try {
@@ -61,7 +61,7 @@ void at_place(const std::string& place, Work&& work) {
     }
 }
 
-/// The lens with the rings of a shot. One that was chosen in place of the shot's own need not be as fast.
+/// The lens with the rings of a shot. A lens that replaces the shot's own may be slower than the shot's f-number.
 LensSystem with_shot_rings(const ShotRequest& request, const LensSystem& lens) {
     Rings rings = blades_of(request);
     if (!request.zoom.empty()) rings.zoom = request.zoom;
@@ -75,7 +75,7 @@ LensSystem with_shot_rings(const ShotRequest& request, const LensSystem& lens) {
     return set;
 }
 
-/// Whether the camera can be as each of the keys says.
+/// Throws InputError if the camera cannot take the state of a key.
 void check_keys(const ShotRequest& request, const Camera& camera) {
     for (std::size_t i = 0; i < request.keys.size(); ++i)
         at_place(request.key_places[i], [&] {
@@ -114,7 +114,7 @@ void settle_noise_goal(ShotRequest& request) {
 
 void settle_keys(ShotRequest& request) {
     io::LensReadOptions options = request.lens_options;
-    options.glasses.clear();  // which are those of the first lens
+    options.glasses.clear();  // these belong to the first lens
     for (std::size_t i = 0; i < request.keys.size(); ++i)
         if (std::optional<LensSystem>& lens = request.keys[i].lens)
             at_place(request.key_places[i],

@@ -20,13 +20,13 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kFormat = 1;
-/// A shot file is some lines; what is larger is something else.
+/// A shot file has some lines; anything larger is another kind of file.
 constexpr std::uintmax_t kMostBytes = 1 << 20;
 
-/// Keys that are more than one value, and are read with others.
+/// Keys that are not in shot_keys(): tables, and values that are read together with others.
 constexpr std::string_view kTables[] = {"format", "scene", "object", "material", "light", "pose", "key", "shake"};
 
-/// The keys of a shot file, read into a request.
+/// Reads the keys of a shot file into a request.
 class ShotReader {
 public:
     ShotReader(const toml::table& table, const std::string& path, const Changes& changes)
@@ -59,7 +59,7 @@ private:
         });
     }
 
-    /// What several keys together may not say.
+    /// Throws InputError if keys contradict each other.
     void check(ShotRequest& shot) const {
         exclude("environment", {"environment_cd_m2"});
         exclude("zoom", {"focal_length_mm"});
@@ -101,7 +101,7 @@ void allow_known(const ShotTable& table) {
     table.allow(names);
 }
 
-/// What says the same as a key in another way.
+/// Keys that a key replaces.
 std::vector<std::string_view> replaced_by(std::string_view name) {
     if (name == "pose") return {"camera", "position_m", "look_at_m"};
     for (const ShotKey& key : shot_keys())
@@ -115,8 +115,7 @@ std::string option_of(std::string_view name) {
     return '"' + std::string(name) + '"';
 }
 
-/// Puts the changes in place of what a shot says. They have no lines in messages: toml++ copies a node without its
-/// source.
+/// Applies the changes to a shot. They have no lines in messages: toml++ copies a node without its source.
 void change(toml::table& shot, const toml::table& changes) {
     const auto forget = [&](std::string_view key) {
         shot.erase(key);
@@ -146,7 +145,7 @@ void change(toml::table& shot, const toml::table& changes) {
 }  // namespace
 
 void check_environment(Vec3f v) {
-    constexpr float kBrightest = 1e20f;  // as scene_checks.hpp has it
+    constexpr float kBrightest = 1e20f;  // same limit as in scene_checks.hpp
     const auto good = [](float c) { return c >= 0 && c <= kBrightest; };
     if (!good(v.x) || !good(v.y) || !good(v.z))
         throw InputError("an environment's radiance must lie between 0 and 1e20 cd/m^2");

@@ -11,21 +11,21 @@ namespace realcam::shot {
 /// True for a shot file, false for a scene file.
 bool is_shot_file(const std::string& path);
 
-/// Values that take the place of those of a shot file, and of those that they exclude, also in its tables [[key]].
-/// Their paths are relative to the current folder.
+/// Values that replace those of a shot file, and those that they exclude, also in its tables [[key]]. Their paths are
+/// relative to the current folder.
 struct ShotChanges {
-    std::string toml;  ///< keys with their values
-    std::vector<std::pair<const ShotKey*, std::string>> options;  ///< of the command line, with their words
+    std::string toml;  ///< keys with their values, as TOML
+    std::vector<std::pair<const ShotKey*, std::string>> options;  ///< options of the command line, with their words
 };
 
-/// The request of a shot file (format 1, described in docs/shot-files.md), whose paths are relative to it, or of a
-/// scene file alone. Throws InputError that names file, line and key.
+/// Reads the request of a shot file (format 1, described in docs/shot-files.md), whose paths are relative to it, or of
+/// a scene file alone. Throws InputError that names file, line and key.
 ShotRequest read_shot(const std::string& path, const ShotChanges& changes = {});
 
-/// The request of a scene that has no shot file. `path`: as of read_shot.
+/// Request for a scene without a shot file. `path`: the scene file.
 ShotRequest shot_of_scene(const std::string& path, const ShotChanges& changes = {});
 
-/// The same from the text of a shot file. `path` is what messages call it, and what its paths are relative to.
+/// Parses the text of a shot file. `path`: its name in messages, and the file to which its paths are relative.
 ShotRequest parse_shot(std::string_view text, const std::string& path, const ShotChanges& changes = {});
 
 }  // namespace realcam::shot

@@ -15,7 +15,7 @@ using Table = const ShotTable&;
 using Key = const ShotKey&;
 using Request = ShotRequest&;
 
-/// A member of a request, or of one of its members.
+/// Returns a member of a request, or of one of its members.
 template <auto... path>
 auto& at(Request r) {
     return (r.*....*path);
@@ -69,7 +69,7 @@ void to_pair(Table t, Key key, Request r) {
     at<path...>(r) = {v[0], v[1]};
 }
 
-/// Work on the names that a key lists, before whose mistakes the key is named.
+/// Runs work on the names that a key lists; errors begin with the key.
 template <class Work>
 void of_names(Table t, Key key, const Work& work) {
     try {
@@ -84,7 +84,7 @@ void to_named(Table t, Key key, Request r) {
     at<path...>(r) = *t.named(key.name, find, key.wanted);
 }
 
-/// A part of the goal of the noise, which is checked with what is known of it by then.
+/// Reads a part of the noise goal, and checks it together with the parts read before.
 template <auto read>
 void to_noise(Table t, Key key, Request r) {
     read(t, key, r);
@@ -103,7 +103,7 @@ void to_resolution(Table t, Key key, Request r) {
     r.resolution = {t.whole(key.name, v[0]), t.whole(key.name, v[1])};
 }
 
-/// On the command line a word that is no file may be a misspelt number.
+/// On the command line a word that names no file may be a misspelt number.
 void to_environment(Table t, Key key, Request r) {
     if (!t.find(key.name)->is_number()) {
         r.environment_file = t.path(key.name);
@@ -139,7 +139,7 @@ void to_layers(Table t, Key key, Request r) {
     of_names(t, key, [&] { r.settings.layers = layers_named(names); });
 }
 
-/// A name, a wavelength, or [wavelength, power] of each point of a table.
+/// Parses a spectrum: a name, a wavelength, or [wavelength, power] of each point of a table.
 Illuminant illuminant_of(const toml::node& node) {
     if (const auto* name = node.as_string()) return Illuminant::parse(name->get());
     if (node.is_number()) return Illuminant::line(node.value_or(0.0));

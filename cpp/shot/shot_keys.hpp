@@ -10,7 +10,7 @@ namespace realcam::shot {
 
 class ShotTable;
 
-/// How the value of a key is written where it is one word, as on the command line.
+/// Syntax of a key's value if it is a single word, as on the command line.
 enum class Syntax {
     text,
     number,             ///< 0.5, 1/125
@@ -28,18 +28,18 @@ enum class Syntax {
 /// A setting of a shot: a key of shot files, a keyword of Python's Shot.load, and an option of the command line.
 struct ShotKey {
     const char* name;
-    const char* option;  ///< null where the command line has none
-    const char* group;   ///< the heading of the option in help texts
-    const char* placeholder;  ///< of its value there, which names the unit
+    const char* option;  ///< null if the command line has no such option
+    const char* group;   ///< heading of the option in help texts
+    const char* placeholder;  ///< for the option's value in help texts; names the unit
     Syntax syntax;
-    const char* wanted;  ///< values, as messages name them
-    std::string text;    ///< what it says
-    const char* initial;  ///< what holds where it is left out, in words
-    std::vector<std::string_view> replaces;  ///< keys that say the same in another way, or of something else
-    void (*read)(const ShotTable&, const ShotKey&, ShotRequest&);  ///< called where the table has the key
+    const char* wanted;  ///< expected values, as messages name them
+    std::string text;    ///< description in help texts
+    const char* initial;  ///< default value, in words
+    std::vector<std::string_view> replaces;  ///< keys that a change of this key removes
+    void (*read)(const ShotTable&, const ShotKey&, ShotRequest&);  ///< called if the table has the key
 };
 
-/// In the order in which they are read and listed.
+/// All keys, in the order in which they are read and listed.
 std::span<const ShotKey> shot_keys();
 
 }  // namespace realcam::shot

@@ -82,7 +82,7 @@ private:
         }
     }
 
-    /// Puts f(part) in place of each part, the same for all that share it; null leaves it.
+    /// Replaces each part by f(part), which is called once for all users of a part; null keeps the part.
     template <class F>
     static void each_part(Assembly& scene, F&& f) {
         std::map<const Scene*, SharedScene> made;

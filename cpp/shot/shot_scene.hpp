@@ -6,12 +6,12 @@
 
 namespace realcam::shot {
 
-/// The scene with the objects, materials and lights of a shot file. A material takes the place of those of its name, in
-/// static geometry and objects. Throws InputError, SceneFileError, ImageFileError, and Cancelled.
+/// Adds the objects, materials and lights of a shot file to a scene. A material replaces those of its name, in static
+/// geometry and objects. Throws InputError, SceneFileError, ImageFileError, and Cancelled.
 Assembly with_request(Assembly scene, const SceneRequest& request, const PictureReaders& readers,
                       const KeepGoing& keep_going = {});
 
-/// A picture as a texture. Throws InputError where it cannot be read.
+/// Reads a picture as a texture. Throws InputError if it cannot be read.
 Texture read_texture(const std::string& path, io::TextureUse use, const PictureReaders& readers);
 
 }  // namespace realcam::shot

@@ -13,17 +13,17 @@
 
 namespace realcam::shot {
 
-/// Values that take the place of those in a shot file, by their keys.
+/// Values that replace those of a shot file, by their keys.
 struct Changes {
     toml::table values;
-    std::function<std::string(std::string_view)> name;  ///< of a key in messages; empty: the key in quotes
+    std::function<std::string(std::string_view)> name;  ///< name of a key in messages; empty: the key in quotes
 };
 
-/// A table of a shot file. Its complaints are InputErrors that name file and line; paths are relative to the file's
-/// folder. Of keys that were changed they name the key alone, and their paths are relative to the current folder.
+/// A table of a shot file. Errors are InputErrors that name file and line; paths are relative to the file's folder. For
+/// changed keys, errors name the key alone, and paths are relative to the current folder.
 class ShotTable : public io::TomlTable {
 public:
-    /// `changes`: of the keys of this table; null: none. Both must outlive it.
+    /// `changes`: for the keys of this table, or null. `table` and `changes` must outlive this object.
     ShotTable(const toml::table& table, const std::string& path, const Changes* changes = nullptr)
         : TomlTable(table, path, 0, fail_at), folder_(std::filesystem::path(path).parent_path()), changes_(changes) {
         if (changes && changes->name)
@@ -32,21 +32,21 @@ public:
             };
     }
 
-    /// A node without a line is of a change.
+    /// A node without a line belongs to a change.
     [[noreturn]] static void fail_at(const std::string& message, const std::string& file, int line, int) {
         throw InputError((line > 0 ? file + ':' + std::to_string(line) + ": " : "") + message);
     }
 
     bool is_changed(std::string_view key) const { return changes_ && changes_->values.contains(key); }
 
-    /// Where the table, or a key of it, stands: "shot.toml:12".
+    /// Position of the table, or of a key of it: "shot.toml:12".
     std::string place(const char* key = nullptr) const {
         const toml::node* node = key ? find(key) : nullptr;
         return file() + ":" +
                std::to_string((node ? *node : static_cast<const toml::node&>(raw())).source().begin.line);
     }
 
-    /// The tables [[key]], in their order; none where the key is absent.
+    /// The tables [[key]], in their order; empty if the key is absent.
     std::vector<ShotTable> tables(const char* key) const {
         std::vector<ShotTable> all;
         const toml::node* node = find(key);
@@ -86,7 +86,7 @@ public:
         return *v;
     }
 
-    /// A number, for all three, or three of them.
+    /// One number for all three components, or three numbers.
     std::optional<Vec3d> number_or_three(const char* key) const {
         const toml::node* node = find(key);
         if (!node) return std::nullopt;
@@ -95,7 +95,7 @@ public:
         return Vec3d{v, v, v};
     }
 
-    /// None for the text "auto", too.
+    /// Returns std::nullopt for the text "auto", too.
     std::optional<double> number_or_auto(const char* key, const char* wanted) const {
         const toml::node* node = find(key);
         if (!node || node->value<std::string>() == "auto") return std::nullopt;
@@ -112,7 +112,7 @@ public:
         return static_cast<Value>(number);
     }
 
-    /// Relative to the folder of the shot file; empty where the key is absent.
+    /// Path relative to the folder of the shot file; empty if the key is absent.
     std::string path(const char* key) const {
         std::string text = name(key);
         if (text.empty()) {
@@ -122,7 +122,7 @@ public:
         return is_changed(key) ? text : (folder_ / text).string();
     }
 
-    /// The system would take what stands before a null character for the name.
+    /// Rejects null characters: the system would take the text before one for the name.
     std::string name(const char* key) const {
         const std::string value = text(key);
         if (value.find('\0') != std::string::npos) fail(shown(key) + " holds a null character", find(key));
@@ -138,7 +138,7 @@ public:
         return found;
     }
 
-    /// What a check of values says, with the line of the key, or of the table.
+    /// Runs a check of values; its errors get the line of the key or, without a key, of the table.
     template <class Check>
     void checked(const char* key, Check&& check) const {
         try {
