@@ -10,7 +10,7 @@
 namespace realcam::app {
 namespace {
 
-constexpr double kNearlyAll = 0.75;  // of the pixels
+constexpr double kNearlyAll = 0.75;  // fraction of the pixels
 // 8-bit luminance codes: values below kBlack are two stops or more below middle grey; from kWhite on, hardly any tonal
 // detail is left.
 constexpr int kBlack = 64, kWhite = 235;

@@ -184,7 +184,7 @@ std::string t_stop_text(const LensSystem& lens) {
     return value ? "T/" + number_text(*value) : "unknown: " + why;
 }
 
-/// One line per zoom position, with its focal length and f-number in the unfocused state of the lens file.
+/// One line per zoom position: its focal length and f-number at the focus distance for which the lens file lists it.
 std::vector<std::string> zoom_lines(const LensSystem& lens) {
     std::vector<std::string> lines;
     for (std::size_t i = 0; i < lens.zoom.positions.size(); ++i) {

@@ -119,7 +119,7 @@ public:
             image_io::check_no_input(file);
         if (!frames.empty()) film_digest_ = film_digest(request, shot.camera, std::to_string(words_.frames_per_second));
         const Darkroom darkroom{*session, denoiser ? &*denoiser : nullptr, written_layers};
-        // Nothing is on disk before this point, so that until here a signal may simply end the program.
+        // Until this point the disk is untouched, and a signal may simply end the program.
         const Interrupt interrupt;
         meter_exposure(*session, shot, request);
         if (!frames.empty()) return film(darkroom, shot, request, frames);

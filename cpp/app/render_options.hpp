@@ -15,9 +15,9 @@ struct RenderWords {
     shot::ShotChanges changes;  ///< overrides of the shot file's values
     bool denoises = false, keeps_noise = false;  ///< see ShotRequest
     std::vector<std::string> outputs;
-    std::optional<std::string> frames;  ///< of a film; std::nullopt for a single picture
+    std::optional<std::string> frames;  ///< frames of a film; std::nullopt for a single picture
     double frames_per_second = 24;
-    bool takes_again = false;  ///< also frames that already exist
+    bool takes_again = false;  ///< takes frames that already exist again
     bool verbose = false, explains = false, as_json = false, is_quiet = false;
     LensWords lens_file;
 };

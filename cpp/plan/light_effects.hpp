@@ -118,7 +118,7 @@ public:
     };
 
     View view_from_the_middle() const {
-        // Rays to the middle of the film have heights and slopes in front of the lens in the ratio of these two.
+        // A ray to the film centre has height and slope in front of the lens in the ratio of these two.
         const double height = of_slope_, slope = -of_height_;
         double most = kInfinity;
         for (const GhostPath::Meeting& meeting : path_.meetings)
@@ -186,7 +186,7 @@ namespace light_effects_detail {
 
 /// Disc that one ghost makes of a lamp on the film, in one colour.
 struct GhostDisc {
-    double middle, radius;  ///< mm; along the direction to the lamp, from the middle of the film
+    double middle, radius;  ///< mm; along the direction to the lamp, from the film centre
     double value;  ///< developed value that it adds
     double darkest;  ///< lowest value of the picture without it, within the disc
 };

@@ -55,7 +55,7 @@ inline void measure_times(Session& session, const Assembly& scene, Camera camera
     };
     set(none);
     // The film grows until a run takes kLeast_s: a sample of a small film costs nearly as much as one of the whole
-    // picture. A GPU needs the whole picture, because there its use of memory counts, too.
+    // picture. On a fast device it grows to the whole picture, where the use of memory counts, too.
     int spp = 1;
     double alone = seconds_of(session, spp, progress);
     while (alone < kLeast_s && spp < (1 << 20)) {

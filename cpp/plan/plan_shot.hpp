@@ -195,7 +195,7 @@ private:
     const bool is_round_;
     const bool may_choose_model_ = camera_.model == CameraModel::full_lens;  ///< otherwise the camera's model is used
     Plan plan_;
-    double coating_colour_codes_ = 0, ghost_colour_codes_ = 0;  ///< of the effects that are kept
+    double coating_colour_codes_ = 0, ghost_colour_codes_ = 0;  ///< only for effects that are kept
 };
 
 }  // namespace plan_shot_detail

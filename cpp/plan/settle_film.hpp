@@ -13,8 +13,8 @@ namespace REALCAM_NAMESPACE {
 struct SettledFilm {
     CameraModel model = CameraModel::full_lens;
     RenderSettings settings;
-    std::vector<Plan> plans;  ///< of the frames that were planned
-    std::string summary;      ///< of the plans, in a line
+    std::vector<Plan> plans;  ///< one for each frame that was planned
+    std::string summary;      ///< the plans in one line
     std::string warning;      ///< why there was nothing to plan; otherwise empty
 };
 

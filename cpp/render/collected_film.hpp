@@ -12,7 +12,7 @@ namespace REALCAM_NAMESPACE {
 /// One kind of a picture's light that was traced apart from the samples of its pixels, in host memory.
 struct SplatFilm {
     GhostLight light = GhostLight::of_lights;
-    std::vector<GhostSum> sums;  ///< of all pixels, film by film (GhostFilmView)
+    std::vector<GhostSum> sums;  ///< values for all pixels, film by film (GhostFilmView)
     std::vector<unsigned long long> blocks;  ///< number of sample blocks in each film
     double units_per_lux = 1;
     int width = 0, height = 0;  ///< pixels
@@ -56,7 +56,7 @@ struct RegionSums {
 /// Accumulated samples of a whole film, merged from all its parts, wherever they were exposed.
 struct CollectedFilm {
     FilmSums pixels;
-    std::vector<LayerSum> layers;  ///< of all pixels; empty if no requested layer needs them
+    std::vector<LayerSum> layers;  ///< one for each pixel; empty if no requested layer needs them
     std::vector<SplatFilm> splats;
     RenderStats stats;
 };

@@ -144,10 +144,11 @@ REALCAM_HD inline double pass_balance(const PixelSum& pixel, const PixelNeighbou
 /// Factor that scales a pixel's light in a channel to the weights of its neighbours: a control variate whose
 /// coefficient is the light itself (Owen, Monte Carlo theory, methods and examples, 2013, section 8.9).
 ///
-/// With d, the excess by chance, the light of a uniformly white scene is 1 + d. 1 - s d (1 - d) is near 1 / (1 + d) for
-/// any factor s. Light and d come from the same samples, so that their product has a mean of its own, which depends on
-/// the light's colour. It is estimated by the mean over the surrounding pixels, weighted with their light, and
-/// subtracted, so that the sum over uniform light is unchanged, whatever its colour and the number of samples are.
+/// With d, the excess by chance, the light of a uniformly white scene is 1 + d, and 1 - d (1 - d) is near 1 / (1 + d).
+/// The correction is scaled by n / (n + kFew) for n samples. Light and d come from the same samples, so that their
+/// product has a mean of its own, which depends on the light's colour. It is estimated by the mean over the surrounding
+/// pixels, weighted with their light, and subtracted, so that the sum over uniform light is unchanged, whatever its
+/// colour and the number of samples are.
 REALCAM_HD inline double wavelength_balance(const PixelSum& pixel, int channel, const PixelNeighbourhood& around) {
     constexpr double kFew = 1;
     if (!around.is_lit(channel)) return 1;

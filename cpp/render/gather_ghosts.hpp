@@ -103,7 +103,7 @@ REALCAM_HD inline void gather_ghosts(const SceneView& view, const CameraView& ca
     const GhostBlock block = ghost_block(ghosts, range);
     FilmRays<N> film;
     start_film_rays<lens_kind>(camera, ghosts, block, first, film);
-    [[maybe_unused]] Lanes<float, N> place, variable;  // of the wavelength
+    [[maybe_unused]] Lanes<float, N> place, variable;  // position among the wavelength cells, and dispersion variable
     if constexpr (has_wavelengths) {
         REALCAM_LANES
         for (int i = 0; i < N; ++i) {
@@ -114,7 +114,7 @@ REALCAM_HD inline void gather_ghosts(const SceneView& view, const CameraView& ca
     PassedPower<N> passed;
     pass_ghost_way<lens_kind, has_wavelengths>(ghosts, block.way, film.rays, variable, passed);
     CameraRays<N> camera_rays;
-    // Each pixel is scaled as if it received all samples, of which it receives only some.
+    // A sample is scaled as if its pixel received all samples of the film, each of which goes to one pixel.
     const float scale = static_cast<float>(camera.width) * static_cast<float>(camera.height) / block.way.probability;
     REALCAM_LANES
     for (int i = 0; i < N; ++i) {

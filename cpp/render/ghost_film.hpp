@@ -48,7 +48,7 @@ REALCAM_INLINE std::int64_t ghost_units(float lux, double units_per_lux, float d
 /// requested, there are two films, of the blocks with even and with odd indices.
 struct GhostFilmView {
     GhostLight light = GhostLight::of_lights;
-    const GhostSum* sums = nullptr;  ///< of all pixels, film by film; null: no light
+    const GhostSum* sums = nullptr;  ///< values for all pixels, film by film; null: no light
     int films = 1;
     double units_per_lux = 1;
     const unsigned long long* blocks = nullptr;  ///< number of blocks, of kGhostBlock samples of the whole film, in

@@ -12,7 +12,7 @@ struct GlossySurfaces {
     ColorLanes<N> base, f0;
     Lanes<float, N> self_offset, f90, metallic, alpha;
     Lanes<std::int32_t, N> is_glossy;
-    Lanes<float, N> lobe_share;  ///< of LightLobe; set by find_lobes
+    Lanes<float, N> lobe_share;  ///< LightLobe::share; set by find_lobes
     Surfaces<N> others;
 
     REALCAM_INLINE void set(int place, const SurfacePoint& point) {

@@ -7,7 +7,7 @@ namespace REALCAM_NAMESPACE {
 /// First surface that each sample of a block hits.
 template <int N>
 struct LayerResults {
-    Lanes<float, N> weight;  ///< of the sample in the exposure; 0: blocked in the lens
+    Lanes<float, N> weight;  ///< weight of the sample in the exposure; 0: blocked in the lens
     Lanes<std::int32_t, N> met;  ///< 1 if a surface was hit
     Vec3Lanes<float, N> normal;  ///< shading normal, unit, scene axes, on the visible side
     ColorLanes<N> albedo;
@@ -16,8 +16,8 @@ struct LayerResults {
 
 /// Accumulated layers of one pixel, weighted as its samples are in the exposure.
 struct LayerSum {
-    double weight;  ///< of all samples that passed the lens
-    double met;     ///< of those that hit a surface
+    double weight;  ///< sum over all samples that passed the lens
+    double met;     ///< sum over those that hit a surface
     double normal[3], albedo[3];  ///< sums over those that hit a surface
     double circle_mm;             ///< sum over all
 

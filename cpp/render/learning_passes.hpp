@@ -9,8 +9,8 @@ namespace REALCAM_NAMESPACE {
 
 /// Divides a range into passes, after each of which pixels learn. The knowledge of a sample must not depend on the
 /// distribution of samples over threads, and therefore follows from its index alone. Each pass has its own random
-/// numbers: samples of one sequence keep away from each other, so that learning from the first ones would tell where
-/// the later ones are not.
+/// numbers: samples of one sequence keep their distance from each other, so that those of the first ones would predict
+/// where later ones are missing.
 std::vector<SampleRange> learning_passes(const SampleRange& range);
 
 }  // namespace REALCAM_NAMESPACE

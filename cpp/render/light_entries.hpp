@@ -42,7 +42,7 @@ private:
     const CameraView& camera_;
     LensView<float> to_film_;
     const PupilTracer& tracer_;
-    const PupilEntries* pupil_entries_;  ///< of a rotationally symmetric lens; otherwise null
+    const PupilEntries* pupil_entries_;  ///< for a rotationally symmetric lens; otherwise null
     float front_reach_;  ///< radius of a circle that contains all points at which light enters the lens, mm
 };
 

@@ -21,9 +21,9 @@ constexpr double kDepth = 4;
 /// Region that the samples of one pixel cover at a distance: the blur disc, swept over the pixel. In metres.
 struct Footprint {
     double blur;  ///< radius of the disc
-    double pixel;  ///< side of a square of the pixel's area
+    double pixel;  ///< side of a square with the area of the pixel
 
-    /// Area of the sum of a disc and a square.
+    /// Area of the disc swept over the square (Minkowski sum).
     double area() const { return std::numbers::pi * blur * blur + 4 * blur * pixel + pixel * pixel; }
     /// Largest size of a group. The diagonal of a bounding box is up to 1.73 times the width of a round lamp.
     double size() const { return 2 * (blur + pixel); }

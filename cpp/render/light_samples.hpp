@@ -130,7 +130,7 @@ template <int N>
 struct LightPlaces {
     Vec2Lanes<float, N> at;  ///< barycentric
     Lanes<std::int32_t, N> is_near;
-    Lanes<float, N> solid_angle;  ///< of near lights
+    Lanes<float, N> solid_angle;  ///< for near lights
 };
 
 /// Samples points as sample_area_light does.

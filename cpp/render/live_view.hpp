@@ -35,7 +35,7 @@ public:
 private:
     std::shared_ptr<Session> session_;
     Assembly scene_;
-    bool has_frame_ = false;  ///< of the current scene
+    bool has_frame_ = false;  ///< true after the first frame of the current scene
 };
 
 }  // namespace REALCAM_NAMESPACE

@@ -35,7 +35,7 @@ struct NoiseRequest {
 
 /// Result of sampling for a goal. NaN if too few samples were taken to know.
 struct ReachedNoise {
-    double noise = std::numeric_limits<double>::quiet_NaN();  ///< of the noisiest tile, in the goal's unit
+    double noise = std::numeric_limits<double>::quiet_NaN();  ///< noise of the noisiest tile, in the goal's unit
     bool is_reached = false;
     double samples_wanted = noise;  ///< samples per pixel that the noisiest tile needs
     /// Smallest fraction of a pixel's footprint that is filled by a lamp which may have been missed; 1 if no lamp was.

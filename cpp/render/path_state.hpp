@@ -29,8 +29,8 @@ REALCAM_INLINE std::uint32_t ray_number(const SampleBlock<N>& block, int lane, i
 template <int N>
 struct PathResults {
     ColorLanes<N> irradiance;
-    Lanes<float, N> depth;  ///< of the first hit along the camera's axis from the film, metres; negative behind the
-                            ///< film; kFarAway: no hit
+    Lanes<float, N> depth;  ///< depth of the first hit along the camera's axis from the film, metres; negative behind
+                            ///< the film; kFarAway: no hit
     Lanes<float, N> weight;  ///< weight of the sample in the exposure (CameraRays)
     Lanes<std::int32_t, N> sampled, passed;
 };

@@ -25,7 +25,7 @@ inline constexpr EffectChoice kAutomaticEffects = [] {
     return effects;
 }();
 
-inline constexpr int kMostBounces = 64;  ///< mirrors that reflect 95% of the light leave 4% of it
+inline constexpr int kMostBounces = 64;  ///< after so many bounces, mirrors that reflect 95% leave 4% of the light
 
 /// Settings of a picture, common to the command line, shot files, Python, and all kinds of sessions.
 struct RenderSettings {

@@ -18,7 +18,7 @@ inline constexpr std::uint32_t kSamplesPerSum = 256;
 
 /// Number of samples of a range that each pixel takes: the first ones, up to its count.
 struct PixelCounts {
-    const std::uint32_t* counts = nullptr;  ///< of the film's pixels, row by row; null: all samples
+    const std::uint32_t* counts = nullptr;  ///< one for each pixel of the film, row by row; null: all samples
     std::uint32_t taken = 0;                ///< samples of these counts that were taken before the range
 
     /// Counts for the remainder of the range, after its first `samples` samples.

@@ -7,12 +7,13 @@ namespace REALCAM_NAMESPACE {
 
 namespace scatter_glossy_paths_detail {
 
-/// Which of a surface's lobes send out a ray, and how often each is chosen. Numbers that are 1 or 0 stand for questions
-/// that are the same for all lanes: gcc makes no vector code of a loop that asks them.
+/// Lobes of a surface that send out a ray, and the probability of each. The flags are numbers, 1 or 0, because gcc does
+/// not vectorise a loop with branches on conditions, even if these are the same for all lanes.
 struct GlossySenders {
     float diffuse_sends, specular_sends;
 
-    /// After the last bounce rough lobes alone send one, and for mirrors alone none of these.
+    /// After the last bounce only the specular lobe sends out a ray. With LightTransport::whitted it does not either,
+    /// because it is not a mirror.
     REALCAM_INLINE GlossySenders(const PathSettings& settings, int bounce)
         : diffuse_sends(goes_on(settings, bounce) ? 1.0f : 0.0f),
           specular_sends(settings.transport == LightTransport::whitted ? 0.0f : 1.0f) {}
@@ -31,7 +32,7 @@ struct GlossySenders {
     }
 };
 
-/// Light for surfaces that GlossyBsdf describes, as light_path finds it for one path. Others stay dark.
+/// Light for surfaces that GlossyBsdf describes, as light_path computes it for one path. Others get no light.
 template <int N>
 REALCAM_INLINE void light_glossy(const PathSettings& settings, int bounce, const GlossySurfaces<N>& surfaces,
                                  const LightSamples<N>& lights, const PathState<N>& path, ShadowRays<N>& shadow) {
@@ -53,7 +54,7 @@ REALCAM_INLINE void light_glossy(const PathSettings& settings, int bounce, const
     }
 }
 
-/// The next ray for these surfaces, as scatter_path finds it for one path. Others keep their paths.
+/// Next rays for these surfaces, as scatter_path computes them for one path. Others keep their paths.
 template <SceneKind scene_kind, int N>
 REALCAM_INLINE void scatter_glossy(const PathSettings& settings, int bounce, SkySampling sky,
                                    const GlossySurfaces<N>& surfaces, const PathNumbers<N>& u, PathState<N>& path) {
@@ -74,7 +75,7 @@ REALCAM_INLINE void scatter_glossy(const PathSettings& settings, int bounce, Sky
         const Vec3f direction = bsdf.sample(is_diffuse, number);
         const GlossyBsdf::Value value = bsdf.eval(direction);
         const float pdf = shares.pdf_of(value);
-        // The diffuse lobe that sends no ray is left out.
+        // A diffuse lobe that sends out no ray is left out.
         const Color sum = senders.diffuse_sends * value.diffuse + value.specular;
         const Color next = select(pdf > 0.0f, (1.0f / pdf) * throughput * sum, Color{0, 0, 0});
         path.rays.active[i] = (is_used & !is_black(next)) ? 1 : 0;
@@ -91,7 +92,7 @@ REALCAM_INLINE void scatter_glossy(const PathSettings& settings, int bounce, Sky
 
 }  // namespace scatter_glossy_paths_detail
 
-/// scatter_paths for many lanes: as vector code for surfaces that GlossyBsdf describes.
+/// scatter_paths for many lanes, vectorised for surfaces that GlossyBsdf describes.
 template <SceneKind scene_kind, int N>
 REALCAM_INLINE void scatter_glossy_paths(const SceneView& view, const PathSettings& settings,
                                          const SampleBlock<N>& block, int bounce, GlossySurfaces<N>& surfaces,
@@ -101,7 +102,7 @@ REALCAM_INLINE void scatter_glossy_paths(const SceneView& view, const PathSettin
     const PathNumbers<N> light_numbers(block, path, first_dimension + dimension::light),
         scatter_numbers(block, path, first_dimension + dimension::scatter);
     const auto seed = [&](int i) { return block.bits(path.lane(i), first_dimension); };
-    // What fills the last vector is looked up in tables too, and so must be numbers.
+    // Unused lanes of the last vector are looked up in tables, too, and must hold valid numbers.
     for (int i = path.count; i < whole_vectors<N>(path.count); ++i) {
         surfaces.copy(0, i);
         path.rays.direction.set(i, path.rays.direction[0]);

@@ -82,7 +82,7 @@ REALCAM_ONE_COPY LightSample light_by_illuminance(const SceneView& scene, LightR
 }  // namespace scatter_paths_detail
 
 /// Scatters a path at a point. `seed`: of the sample at this bounce. `shadow`: a LightRays, or a type with the same
-/// interface that traces a ray as soon as it is set. Returns true if the surface shows only shadows.
+/// interface that traces each ray once it is set. Returns true if the surface shows only shadows.
 template <SceneKind scene_kind, int N, class LightRaysT>
 REALCAM_INLINE bool scatter_at(const SceneView& view, const PathSettings& settings, int bounce, int place,
                                const SurfacePoint& point, const PathNumbers<N>& light_numbers,
@@ -109,7 +109,7 @@ REALCAM_INLINE bool scatter_at(const SceneView& view, const PathSettings& settin
     LightReceiver receiver = {point.position, bsdf.is_opaque() ? point.normal : Vec3f{0, 0, 0}, time};
     if constexpr (scene_kind != SceneKind::plain) receiver.lobe = light_lobe(point, -direction);
     const SkySampling sky = sky_sampling(view, goes_on(settings, bounce), bounce == 0);
-    // Not unrolled, because a GPU's instruction cache is full.
+    // Unrolled code would overflow the instruction cache of a GPU.
     REALCAM_NO_UNROLL
     for (int k = 0; k < kLightSampleCount; ++k) {
         if (!has_light(view, sky, k)) continue;

@@ -23,21 +23,21 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// The number of samples of each pixel, row by row.
+/// Number of samples of each pixel, row by row.
 struct SampleCounts {
     int width, height;
     std::vector<std::int64_t> counts;
 };
 
-/// What becomes of the samples that were taken before a stop.
+/// Treatment of the samples that were taken before a stop.
 enum class Collected { keep, drop };
 
-/// One picture on a device, which collects samples for as long as scene, camera and settings stay the same. From one
-/// `set` to the next, only what changed is prepared again.
+/// One picture on a device, which accumulates samples as long as scene, camera and settings stay the same. Each `set`
+/// prepares only what has changed.
 ///
-/// Threads take turns: a call waits for that of another thread, but for `cancel`, which ends it. All functions throw
-/// DeviceError; after one the next `set` prepares everything anew. `keep_going` and `progress` are asked some 20 times
-/// a second on the calling thread, and what they throw comes out.
+/// Calls of several threads run one after the other, except `cancel`, which ends the call of another thread. All
+/// functions throw DeviceError; after one the next `set` prepares everything from scratch. `keep_going` and `progress`
+/// are called some 20 times a second on the calling thread, and their exceptions propagate.
 class Session {
 public:
     Session() = default;
@@ -45,78 +45,79 @@ public:
     Session(const Session&) = delete;
     Session& operator=(const Session&) = delete;
 
-    /// The device, for people.
+    /// Name of the device, for people.
     virtual std::string name() const = 0;
 
-    /// Throws InputError and SceneFileError for a scene that makes no picture, and Cancelled.
+    /// Throws InputError and SceneFileError if the scene is invalid, and Cancelled.
     void check(const Assembly& scene, const KeepGoing& keep_going = {});
 
-    /// What is photographed from now on. A new picture begins with other parts or transforms of the scene, another
-    /// lens, film, model or pose of the camera, or another seed or number of bounces. Where something moves, another
-    /// time of exposure begins one, too. Else exposure time and ISO only develop it anew. Throws InputError for what
-    /// makes no picture, and Cancelled.
+    /// Sets the scene, camera and settings that are photographed from now on. A new picture begins if parts or
+    /// transforms of the scene change, or the lens, film, model or pose of the camera, or the seed, the number of
+    /// bounces or another setting of the samples. If something moves, another time of exposure begins one, too.
+    /// Otherwise exposure time and ISO only change its development. Throws InputError if there can be no picture, and
+    /// Cancelled.
     void set(const Assembly& scene, const Camera& camera, const RenderSettings& settings,
              const KeepGoing& keep_going = {});
 
     static constexpr std::int64_t kAllSamples = std::numeric_limits<std::int64_t>::max();
 
-    /// Gives up all samples.
+    /// Discards all samples.
     void restart(const KeepGoing& keep_going = {});
 
-    /// Takes so many samples more of each pixel, and returns when they are there. Throws InputError where nothing is
-    /// set, and Cancelled: what was taken until then stays, so that pixels may differ in their number of samples.
+    /// Takes `spp` more samples of each pixel, and returns when they are complete. Throws InputError if nothing is set,
+    /// and Cancelled: samples taken until then are kept, so that pixels may differ in their number of samples.
     void add(int spp, const Progress& progress = {});
 
-    /// Takes samples of the pixels that are noisier than wanted, until none is (see AdaptiveSampling). Throws
-    /// InputError where nothing is set, and Cancelled: what was taken until then stays.
+    /// Takes samples of the pixels that are noisier than the goal, until all have reached it (see AdaptiveSampling).
+    /// Throws InputError if nothing is set, and Cancelled: samples taken until then are kept.
     ReachedNoise add_until(const NoiseGoal& goal, const Progress& progress = {});
 
-    /// Returns the noise that the last `add_until` had measured when it ended or was stopped.
+    /// Noise that the last `add_until` measured until it ended or was stopped.
     ReachedNoise noise_so_far() const { return noise_so_far_; }
 
-    /// `set`, and starts to take settings.spp samples more of each pixel and to develop them; returns while that goes
-    /// on. The next frame may be shot before this one is there: where the device has as many under way as it takes,
-    /// this waits for the oldest. `under_way`: kept by what works on the host until that has ended. Of a lens that
-    /// changes from frame to frame, a GPU finds the pupil near the last one. The second frame of one that does not
-    /// change any more begins a new picture, with the pupil of `set`.
+    /// Calls `set`, starts to take settings.spp more samples of each pixel and to develop them, and returns meanwhile.
+    /// The next frame may be shot before this one is complete; if the device has its maximum number of frames under
+    /// way, this waits for the oldest. `under_way`: kept alive by work on the host until that has ended. If the lens
+    /// changes from frame to frame, a GPU searches for the pupil near the last one. The second frame without a change
+    /// begins a new picture, with the pupil of `set`.
     std::shared_ptr<const LiveFrame> shoot(const Assembly& scene, const Camera& camera, const RenderSettings& settings,
                                            ToneCurve curve, const KeepGoing& keep_going = {},
                                            std::shared_ptr<void> under_way = {});
 
-    /// All that was collected, developed with the camera's exposure time, and the layers of the settings; waits for
-    /// frames under way. Throws InputError where there is nothing, and Cancelled where another thread stops it
-    /// meanwhile. `most_layer_samples`: layers that lack samples get no more than these.
+    /// Picture of all samples so far, developed with the camera's exposure time, with the layers of the settings; waits
+    /// for frames under way. Throws InputError if there are no samples, and Cancelled if another thread stops it
+    /// meanwhile. `most_layer_samples`: largest number of samples up to which layers are completed.
     Image picture(const KeepGoing& keep_going = {}, std::int64_t most_layer_samples = kAllSamples);
 
-    /// What some samples of a region's pixels collect, apart from this picture, which stays as it is: those with
-    /// numbers from `first`, at most kSamplesPerSum of them. On a CPU, such sums of all regions and samples, added in
-    /// the order of the samples, have the same bits as the picture that takes them all at once. `counts`: how many of
-    /// the samples each pixel of the region takes, row by row; empty: all of them. Throws InputError, and Cancelled.
+    /// Accumulates some samples of a region's pixels, apart from this picture, which is unchanged: those with indices
+    /// from `first`, at most kSamplesPerSum of them. On a CPU, such sums of all regions and samples, added in the order
+    /// of the samples, have the same bits as the picture that takes them all at once. `counts`: number of the samples
+    /// that each pixel of the region takes, row by row; empty: all of them. Throws InputError and Cancelled.
     RegionSums expose_region(const FilmRegion& region, std::int64_t first, int count,
                              const std::vector<std::uint32_t>& counts = {}, const Progress& progress = {});
 
-    /// The same of the layers: what these samples see first. Throws as `expose_region`.
+    /// expose_region for the layers: the first surfaces of these samples. Throws as `expose_region`.
     std::vector<LayerSum> see_region(const FilmRegion& region, std::int64_t first, int count,
                                      const Progress& progress = {});
 
-    /// What light that is traced apart from the samples of pixels brings to the whole film, for so many samples of each
-    /// pixel: a film for each such light of the picture, also for 0 samples. The sums are of integers, and so the same
-    /// in any order. Throws as `expose_region`.
+    /// Accumulates the light that is traced apart from the samples of pixels, on the whole film, for `count` samples of
+    /// each pixel: a film for each such light of the picture, also for 0 samples. The sums are of integers, and so the
+    /// same in any order. Throws as `expose_region`.
     std::vector<SplatFilm> expose_splats(std::int64_t first, int count, const Progress& progress = {});
 
-    /// The picture that `picture` would be if this session had collected all of `film`. Throws InputError where it is
-    /// no film of this picture, and Cancelled.
+    /// The picture that `picture` would return if this session had accumulated all of `film`. Throws InputError if the
+    /// film does not fit this picture, and Cancelled.
     Image picture_of(const CollectedFilm& film, const KeepGoing& keep_going = {});
 
-    /// The sample counts of the film that is set. Waits for frames under way.
+    /// Sample counts of the current film. Waits for frames under way.
     SampleCounts sample_counts(const KeepGoing& keep_going = {});
 
-    /// Ends what is under way, from any thread: frames and other threads' calls throw Cancelled. No sample is begun any
-    /// more, so that it takes the time of one.
+    /// Ends all work under way, from any thread: frames and other threads' calls throw Cancelled. No further sample
+    /// begins, so that this takes the time of one sample.
     void cancel(Collected collected = Collected::keep);
 
 protected:
-    /// What this call itself has asked to stop, and takes back at its end. As a bool: whether anybody has.
+    /// Stop that this call has requested, and withdraws at its end. As a bool: true if any thread has requested a stop.
     class OwnStop {
     public:
         explicit OwnStop(Session& session) : session_(session) {}
@@ -136,39 +137,40 @@ protected:
         std::atomic<bool> raised_{false};
     };
 
-    // What a device does. But for the three of the stop, they are called in turn, with fewer frames under way than
-    // frames_in_flight().
+    // Implemented by a device. Except for the three functions of the stop, calls run one after the other, with fewer
+    // frames under way than frames_in_flight().
 
-    /// Makes ready what follows. Scene, camera and settings are valid, and the film is given up. `start`: how its pupil
-    /// may be found. Throws Cancelled where the stop, which `keep_going` may ask for, has left something undone.
+    /// Prepares the samples that follow. Scene, camera and settings are valid, and the film is discarded. `start`:
+    /// method of the pupil search. Throws Cancelled if a stop, which `keep_going` may request, has left something
+    /// undone.
     virtual void prepare(const Assembly& scene, const Camera& camera, const RenderSettings& settings, PupilStart start,
                          const KeepGoing& keep_going, OwnStop& stop) = 0;
-    /// Whether the pupil is the same as that of a new session.
+    /// True if the pupil is the same as that of a new session.
     virtual bool has_pupil_anew() const { return true; }
-    /// An empty film, and nothing counted.
+    /// Clears the film and all counts.
     virtual void clear() = 0;
-    /// Takes samples of the pixels, or fewer of some where it is stopped. `traces_lights`: and the light that is traced
-    /// apart and belongs to the range. `done` counts the samples, at least about.
+    /// Takes samples of the pixels, fewer of some if it is stopped. `traces_lights`: also takes the light that is
+    /// traced apart and belongs to the range. `done` counts the samples, at least approximately.
     virtual void take(const SampleRange& range, const PixelCounts& counts, bool traces_lights,
                       std::atomic<std::int64_t>& done, OwnStop& stop) = 0;
-    /// Starts to take samples, and to develop what is there then.
+    /// Starts to take samples, and to develop the film after them.
     virtual std::shared_ptr<LiveFrame> start(const std::vector<SampleRange>& ranges, ToneCurve curve,
                                              std::shared_ptr<void> under_way) = 0;
     virtual Image develop() = 0;
-    virtual std::vector<float> develop_traced() = 0;  ///< traced_exposure
-    virtual double least_lamp_share() const { return 1; }  ///< least_lamp_share of the picture
-    /// developed_besides of a film whose samples were taken while the settings asked for it.
+    virtual std::vector<float> develop_traced() = 0;  ///< see traced_exposure
+    virtual double least_lamp_share() const { return 1; }  ///< see least_lamp_share in traced_lights.hpp
+    /// developed_besides of a film whose samples were taken while the settings requested it.
     virtual std::vector<LayerImage> develop_besides() = 0;
-    /// Samples of a region apart from the film. `counts`: of the region's pixels.
+    /// Takes samples of a region apart from the film. `counts`: of the region's pixels.
     virtual RegionSums take_region(const FilmRegion& region, const SampleRange& range, const PixelCounts& counts,
                                    std::atomic<std::int64_t>& done, OwnStop& stop) = 0;
-    /// Light that is traced apart from samples of pixels, and apart from the film.
+    /// Takes the light that is traced apart from samples of pixels, apart from the film.
     virtual std::vector<SplatFilm> take_splats(const SampleRange& range, OwnStop& stop) = 0;
-    /// Adds what the samples of a region's pixels see first to `sums`, row by row; ends early where it is stopped.
-    /// `done` counts them.
+    /// Adds the first surfaces of samples of a region's pixels to `sums`, row by row; ends early if it is stopped.
+    /// `done` counts the samples.
     virtual void see_layers(const FilmRegion& region, const SampleRange& range, std::vector<LayerSum>& sums,
                             std::atomic<std::int64_t>& done, OwnStop& stop) = 0;
-    /// The surface in the middle ray of each pixel; ends early where it is stopped.
+    /// Finds the surface on the ray of each pixel's centre; ends early if it is stopped.
     virtual void see_middle_surfaces(std::vector<MiddleSurface>& film, OwnStop& stop) = 0;
     virtual std::vector<std::int64_t> count_samples() = 0;
     /// The camera in the placed scene, with arrays on the host.
@@ -179,12 +181,12 @@ protected:
     virtual PlacedCamera placed_camera() const = 0;
     virtual std::size_t frames_in_flight() const = 0;
 
-    /// May be called from any thread. A stop stands until it was lowered as often as it was raised.
+    /// May be called from any thread. A stop lasts until it was lowered as often as it was raised.
     virtual void raise_stop() noexcept = 0;
     virtual void lower_stop() noexcept = 0;
     virtual bool is_stopped() const = 0;
 
-    /// f() of a film on which all is collected. Throws as `picture`.
+    /// Calls f() once all samples are complete. Throws as `picture`.
     template <class F>
     auto of_all_collected(const KeepGoing& keep_going, F&& f) -> decltype(f()) {
         const Turn turn(mutex_, keep_going);
@@ -197,10 +199,13 @@ protected:
     const Camera& camera() const { return camera_; }
     FilmRegion whole_film() const { return {0, 0, camera_.film.width, camera_.film.height}; }
     const RenderSettings& settings() const { return settings_; }
-    std::int64_t samples() const { return samples_; }  ///< of the pixel that has most, since the film was empty
+    std::int64_t samples() const {
+        return samples_;
+    }  ///< number for the pixel with the most, since the film was
+       ///< cleared
 
 private:
-    /// Held by one thread at a time.
+    /// Lock that one thread holds at a time.
     class Turn {
     public:
         Turn(std::timed_mutex& mutex, const KeepGoing& keep_going);
@@ -227,10 +232,10 @@ private:
     }
     void wait_for_oldest(const KeepGoing& keep_going);
 
-    /// Where nothing moves it does not matter when the shutter is open.
+    /// True if the exposures are at the same time, which matters only if something moves.
     bool is_same_exposure(const Assembly& scene, const Camera& camera) const;
 
-    /// Whether PixelSum::besides has what layers want.
+    /// True if PixelSum::besides holds the sums that these layers need.
     bool has_sums_for(LayerSet wanted) const;
 
     bool is_same_picture(const Assembly& scene, const Camera& camera, const RenderSettings& settings) const;
@@ -250,24 +255,25 @@ private:
 
     bool lacks_layers(std::int64_t most) const;
 
-    /// Brings the layers that are wanted up to the samples of the picture. Where it is stopped they begin anew.
+    /// Completes the requested layers up to the samples of the picture. If it is stopped, they start from scratch.
     void see_what_is_missing(std::atomic<std::int64_t>& done, OwnStop& stop, std::int64_t most = kAllSamples);
 
-    /// `besides`, `counts`: functions that make these of the same film.
+    /// `besides`, `counts`: functions that return the arrays of developed_besides and the sample counts, for the same
+    /// film.
     template <class Besides, class Counts>
     void add_layers(Image& image, const LayerFilm& layers, Besides&& besides, Counts&& counts);
 
-    /// work(range, stop) on the samples of a part of the picture, with nothing else under way.
+    /// Calls work(range, stop) for the samples of a part of the picture, with nothing else under way.
     template <class Work>
     void take_part(std::int64_t first, int count, const Progress& progress, const std::atomic<std::int64_t>& done,
                    std::size_t pixels, Work&& work);
 
-    /// How long the layers that samples see take for a sample of each pixel; 0 where none is wanted.
+    /// Seconds that kSampledLayers take for one sample of each pixel; 0 if no such layer is requested.
     double seconds_of_layers(OwnStop& stop);
 
     ReachedNoise take_until(const NoiseGoal& goal, std::atomic<double>& share, OwnStop& stop);
 
-    /// f(range) for the ranges of so many samples more.
+    /// Calls f(range) for the ranges of `spp` more samples.
     template <class F>
     void expose(std::int64_t spp, F&& f) {
         try {
@@ -286,18 +292,18 @@ private:
 
     std::timed_mutex mutex_;
     SceneChecks checks_;
-    bool ready_ = false;  ///< for what follows:
+    bool ready_ = false;  ///< true if the following members are set:
     Assembly scene_;
     Camera camera_;
     RenderSettings settings_;
-    std::int64_t samples_ = 0;  ///< of the pixel that has most: the place in the random sequence
-    std::int64_t mean_samples_ = 0;  ///< of all pixels, rounded up
-    bool is_blank_ = true;  ///< no sample was begun
+    std::int64_t samples_ = 0;  ///< number for the pixel with the most: position in the random sequence
+    std::int64_t mean_samples_ = 0;  ///< mean over all pixels, rounded up
+    bool is_blank_ = true;  ///< true until the first sample begins
     LayerFilm layer_film_;
     ReachedNoise noise_so_far_;
-    std::int64_t layer_samples_ = 0;  ///< of mean_samples_, those that layer_film_.sums holds
-    double setup_seconds_ = 0, exposing_seconds_ = 0;  ///< of the picture
-    std::deque<std::shared_ptr<const LiveFrame>> frames_;  ///< under way
+    std::int64_t layer_samples_ = 0;  ///< number of samples that layer_film_.sums holds
+    double setup_seconds_ = 0, exposing_seconds_ = 0;  ///< for the current picture
+    std::deque<std::shared_ptr<const LiveFrame>> frames_;  ///< frames under way
 };
 
 }  // namespace REALCAM_NAMESPACE

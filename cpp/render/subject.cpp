@@ -67,7 +67,7 @@ public:
         }
     }
 
-    static constexpr std::size_t kLeastSubject = 4;  // triangles: a stray one in a hollow object is no subject
+    static constexpr std::size_t kLeastSubject = 4;  // triangles: a stray triangle in a hollow object is no subject
     std::vector<Part> all;
 
 private:
@@ -98,8 +98,9 @@ bool lies_within(const BoundingBox& inner, const BoundingBox& outer, double leav
     return std::ranges::all_of(low, is_inside) && std::ranges::all_of(high, is_inside);
 }
 
-/// Returns true for a part that may surround a subject and touch it: it is flat, as a floor or a wall, or has fewer
-/// triangles than the subject, as the backdrop of a studio. Any other part must stay away, as a sky does (stay_away).
+/// Returns true for a part that may surround a subject and touch it: it is flat, like a floor or a wall, or has no more
+/// triangles than the subject, like the backdrop of a studio. Any other part must keep its distance, like a sky
+/// (stay_away).
 bool is_simple(const Part& part, std::size_t subject_triangles) {
     constexpr double kFlat = 0.05;
     const auto size = coordinates(part.box.size());

@@ -6,7 +6,7 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// The subject of a scene is the scene without its surroundings. The default view shows it.
+/// Subject of a scene: the scene without its surroundings. The default view shows it.
 ///
 /// A scene consists of parts: triangles that share vertices, or whole instances if there are too many triangles to test
 /// each (kMostTrianglesAsked). Two rules remove parts until neither applies:

@@ -15,7 +15,7 @@
 namespace realcam {
 namespace {
 
-/// Samples of a light for each pixel that its light covers and each sample of that pixel.
+/// Samples of a light per pixel that its light covers and per sample of that pixel.
 constexpr double kSamplesPerPixel = 6;
 constexpr std::int32_t kMostOften = 2, kLeastOften = 64;  ///< limits for pixel_samples_
 constexpr int kMostHalvings = 12;
@@ -65,7 +65,7 @@ TracedLights::TracedLights(const SceneView& scene, const CameraView& camera, con
     std::vector<std::size_t> seen;
     for (std::size_t k = 0; k < groups.size(); ++k)
         if (found[k]) seen.push_back(k);
-    // The lights that cover most of the film come first; there are no more turns than this number of lights.
+    // Sorted by the area of the film that they cover; lights beyond the largest number of turns are dropped.
     std::stable_sort(seen.begin(), seen.end(),
                      [&](std::size_t a, std::size_t b) { return found[a]->pixels > found[b]->pixels; });
     seen.resize(std::min<std::size_t>(seen.size(), std::size_t{1} << kMostHalvings));

@@ -39,12 +39,12 @@ private:
 TracedLights traced_lights(const SceneView& scene, const CameraView& camera, const CameraSetup& setup,
                            LightTracing tracing, const PupilTracer& tracer);
 
-/// The smallest fraction of a pixel's footprint that a lamp in view fills. Returns 1 if lamps are traced, or no lamp is
-/// in view.
+/// Smallest fraction of a pixel's footprint that a lamp in view fills. Returns 1 if lamps are traced, or no lamp is in
+/// view.
 double least_lamp_share(const SceneView& scene, const CameraView& camera, const CameraSetup& setup,
                         LightTracing tracing);
 
-/// All light of a picture that is traced apart from the samples of its pixels: at most kMostSplats.
+/// All films of light that is traced apart from the samples of the pixels: at most kMostSplats.
 std::vector<GhostView> splatted_lights(const CameraSetup& setup, const TracedLights& lights);
 
 }  // namespace REALCAM_NAMESPACE

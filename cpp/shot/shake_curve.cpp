@@ -101,7 +101,7 @@ private:
 
     const std::string& path_;
     std::size_t line_ = 0;
-    std::vector<std::size_t> columns_;  ///< as indices into kColumns
+    std::vector<std::size_t> columns_;  ///< indices into kColumns
 };
 
 }  // namespace

@@ -15,7 +15,7 @@ enum class Syntax {
     text,
     number,             ///< 0.5, 1/125
     number_or_auto,
-    distance_or_auto,   ///< also inf
+    distance_or_auto,   ///< a number, inf or auto
     whole,
     whole_or_auto,
     number_or_file,

@@ -17,7 +17,7 @@ namespace realcam::shot {
 
 /// Source of the number of samples.
 enum class Sampling {
-    unsaid,    ///< not specified: kUnsaidGoal
+    unsaid,    ///< the user has not specified it: kUnsaidGoal
     counted,   ///< settings.spp
     by_noise,  ///< spp is "auto"
 };

@@ -35,7 +35,7 @@ public:
 private:
     void add_objects() {
         DistinctNames names(scene_);
-        std::map<std::pair<std::string, double>, Assembly> files;  // each is read once
+        std::map<std::pair<std::string, double>, Assembly> files;  // each file is read once
         for (const ObjectRequest& wanted : request_.objects) {
             const auto [file, is_new] = files.try_emplace({wanted.file, wanted.scale});
             if (is_new) file->second = io::read_scene(wanted.file, {wanted.scale, {}, keep_going_}, readers_.texture);
@@ -127,7 +127,7 @@ private:
     const SceneRequest& request_;
     const PictureReaders& readers_;
     const KeepGoing& keep_going_;
-    std::set<const MaterialRequest*> used_;  // by objects
+    std::set<const MaterialRequest*> used_;  // materials of objects
     std::map<std::pair<std::string, io::TextureUse>, Texture> textures_;
 };
 
