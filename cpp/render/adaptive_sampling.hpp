@@ -69,8 +69,7 @@ private:
         bool is_finished = false;
         double mean = 0;
         double doublings = 0;
-        double square = 0, square_before = 0;  ///< mean squares of the changes by the last doubling and by the one
-                                               ///< before
+        double square = 0, square_before = 0;  ///< mean square change by the last doubling and by the one before
         double doubled_to = 0;  ///< samples after the last doubling
         double traced = 0;  ///< variance of the light that was traced; infinite until it is measured
 

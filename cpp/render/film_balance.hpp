@@ -9,8 +9,8 @@ namespace REALCAM_NAMESPACE {
 // Control variates for noise of a pixel that does not come from the scene. By chance, more samples of a pixel pass the
 // lens than of its neighbour. A sample with a wavelength has a weight above one in some channels of the film and below
 // one in others, and samples of neighbouring pixels count, too (dispersed_rays.hpp), so that a pixel has more of one
-// colour than its neighbour even in a uniformly white picture. Both are known without the scene: PixelSum::passed
-// counts the samples that pass, and PixelSum::besides holds the excess, which is the sum that the samples would bring
+// colour than its neighbour even in a uniformly white picture. Both are known without the scene. PixelSum::passed
+// counts the samples that pass. The additional sums of PixelSum hold the excess: the sum that the samples would bring
 // if everything they see were white, less the number of those that pass. The mean over the surrounding pixels is the
 // effect of the lens. The deviation of a pixel from that mean is chance, and is removed from its light when the film is
 // developed.
@@ -23,8 +23,7 @@ struct FilmBalance {
     REALCAM_HD bool any() const { return passes || wavelengths; }
 };
 
-/// True if PixelSum::besides accumulates the excess: samples have wavelengths, and no layer uses besides for its own
-/// sums.
+/// True if pixels accumulate the excess: samples have wavelengths, and no layer needs the additional sums of PixelSum.
 inline bool balances_wavelengths(const RenderSettings& settings) {
     return settings.effects.have_wavelengths() && !settings.layers.has(Layer::variance) &&
            !settings.layers.has_any(kHalfLayers);

@@ -114,7 +114,7 @@ REALCAM_HD inline void gather_ghosts(const SceneView& view, const CameraView& ca
     PassedPower<N> passed;
     pass_ghost_way<lens_kind, has_wavelengths>(ghosts, block.way, film.rays, variable, passed);
     CameraRays<N> camera_rays;
-    // A sample is scaled as if its pixel received all samples of the film, each of which goes to one pixel.
+    // A sample lands on one of width * height pixels, and takes this path with the given probability.
     const float scale = static_cast<float>(camera.width) * static_cast<float>(camera.height) / block.way.probability;
     REALCAM_LANES
     for (int i = 0; i < N; ++i) {

@@ -51,8 +51,7 @@ struct GhostFilmView {
     const GhostSum* sums = nullptr;  ///< values for all pixels, film by film; null: no light
     int films = 1;
     double units_per_lux = 1;
-    const unsigned long long* blocks = nullptr;  ///< number of blocks, of kGhostBlock samples of the whole film, in
-                                                 ///< each film
+    const unsigned long long* blocks = nullptr;  ///< blocks in each film, of kGhostBlock samples of the whole film
     int width = 0, height = 0;  ///< pixels
 
     /// Irradiance of a pixel. Ghosts are smoothed by one pixel (a binomial filter of five by five), which loses no

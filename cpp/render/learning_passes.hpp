@@ -7,7 +7,7 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Divides a range into passes, after each of which pixels learn. The knowledge of a sample must not depend on the
+/// Divides a range into passes. Pixels learn after each pass. The knowledge of a sample must not depend on the
 /// distribution of samples over threads, and therefore follows from its index alone. Each pass has its own random
 /// numbers: samples of one sequence keep their distance from each other, so that those of the first ones would predict
 /// where later ones are missing.

@@ -39,10 +39,8 @@ struct PathResults {
 template <int N>
 struct SharedResults {
     ColorLanes<N> irradiance[kSharedWavelengths - 1];
-    ColorLanes<N> white[kSharedWavelengths - 1];  ///< contributions if the scene were white: the number of samples that
-                                                  ///< they count for
-    Lanes<std::int32_t, N> away[kSharedWavelengths - 1];  ///< offset from the sample's own pixel in the sums; 0: no
-                                                          ///< contribution
+    ColorLanes<N> white[kSharedWavelengths - 1];  ///< sums for a white scene, in units of samples
+    Lanes<std::int32_t, N> away[kSharedWavelengths - 1];  ///< offset from the sample's own pixel; 0: no contribution
 };
 struct NothingShared {};
 struct NoExcess {};

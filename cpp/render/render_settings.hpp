@@ -25,7 +25,7 @@ inline constexpr EffectChoice kAutomaticEffects = [] {
     return effects;
 }();
 
-inline constexpr int kMostBounces = 64;  ///< after so many bounces, mirrors that reflect 95% leave 4% of the light
+inline constexpr int kMostBounces = 64;  ///< after 64 mirrors that reflect 95%, 4% of the light is left
 
 /// Settings of a picture, common to the command line, shot files, Python, and all kinds of sessions.
 struct RenderSettings {

@@ -247,9 +247,7 @@ bool Session::is_same_exposure(const Assembly& scene, const Camera& camera) cons
 
 bool Session::has_sums_for(LayerSet wanted) const {
     const LayerSet had = settings_.layers;
-    if (had.has_any(kHalfLayers) != wanted.has_any(kHalfLayers))
-        return false;  // these layers also switch off light
-                                                                                // tracing
+    if (had.has_any(kHalfLayers) != wanted.has_any(kHalfLayers)) return false;  // these also disable light tracing
     if (had.has(Layer::variance) == wanted.has(Layer::variance)) return true;
     // Squares that are no longer requested do no harm, unless the excess of wavelengths needs their memory.
     return had.has(Layer::variance) && !settings_.effects.have_wavelengths();

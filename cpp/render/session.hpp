@@ -235,7 +235,7 @@ private:
     /// True if the exposures are at the same time, which matters only if something moves.
     bool is_same_exposure(const Assembly& scene, const Camera& camera) const;
 
-    /// True if PixelSum::besides holds the sums that these layers need.
+    /// True if the additional sums of PixelSum are those that these layers need.
     bool has_sums_for(LayerSet wanted) const;
 
     bool is_same_picture(const Assembly& scene, const Camera& camera, const RenderSettings& settings) const;

@@ -64,8 +64,7 @@ REALCAM_INLINE float exposure_weight(const CameraView& camera, std::int32_t row,
 template <int N>
 struct GhostSamples {
     Lanes<std::uint32_t, N> number;
-    Lanes<float, N> place, variable;  ///< position among the wavelength cells, and dispersion variable of the
-                                      ///< wavelength
+    Lanes<float, N> place, variable;  ///< wavelength's position among the cells, and dispersion variable
     Lanes<float, N> time;
     LightPick lights[N];
     Vec3Lanes<float, N> from;  ///< unit, towards the light from the front vertex, in the lens's axes

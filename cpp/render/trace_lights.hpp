@@ -5,9 +5,9 @@
 namespace REALCAM_NAMESPACE {
 
 // Images of lights by light tracing: from a point on a light through a point at which its light enters the lens, to the
-// point of the film that it reaches. A lamp out of focus covers a large disc of the film, each point of which sees it
-// in a small part of the pupil only: samples of pixels seldom hit the lamp, samples from the lamp always light the
-// disc.
+// point of the film that it reaches. A lamp out of focus covers a large disc of the film, but each point of the disc
+// sees it in a small part of the pupil only: samples of pixels seldom hit the lamp, samples from the lamp always light
+// the disc.
 
 namespace trace_lights_detail {
 

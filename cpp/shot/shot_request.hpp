@@ -60,8 +60,7 @@ struct ShotRequest {
     std::vector<CameraKey> keys;
     std::vector<std::string> key_places;  ///< position of each key in the file, for messages
     Shake shake;
-    std::optional<double> iso_follows_s;  ///< for a film: time over which the ISO number that follows the meter is
-                                          ///< smoothed
+    std::optional<double> iso_follows_s;  ///< for a film whose ISO number follows the meter: smoothing time
     CameraModel model = CameraModel::full_lens;
     std::optional<double> exposure_time_s;
     double iso = 100;
