@@ -65,8 +65,7 @@ REALCAM_INLINE void number_shadow_ray(const PathState<N>& path, int place, int n
     }
 }
 
-/// Scatters the path of a GPU's thread. Shadow rays are traced as soon as they are set, because a thread has room for
-/// one.
+/// Scatters the path of a GPU's thread, which has room for one shadow ray: each is traced as soon as it has been set.
 template <SceneKind scene_kind, class SceneT, class Probe>
 REALCAM_INLINE void scatter_one(const SceneView& view, const PathSettings& settings, const SampleBlock<1>& block,
                                 int bounce, const Surfaces<1>& surfaces, SceneT&& scene, Probe&& probe,
@@ -102,7 +101,7 @@ REALCAM_INLINE void scatter_many(const SceneView& view, const PathSettings& sett
     std::int32_t darkens[N];  // surfaces that show only shadows
     for (int k = 0; k < kLightSampleCount; ++k) {
         REALCAM_LANES
-        for (int i = 0; i < N; ++i) shadow[k].rays.active[i] = 0;  // unused lanes, too
+        for (int i = 0; i < N; ++i) shadow[k].rays.active[i] = 0;  // unused slots, too
         for (int i = 0; i < path.count; ++i) number_shadow_ray<scene_kind>(path, i, k, shadow[k].rays);
     }
     if constexpr (scene_kind == SceneKind::plain)

@@ -24,7 +24,7 @@ struct GlossySurfaces {
         set(place, is_glossy[place] ? glossy_surface(point) : GlossySurface{});
         if (!is_glossy[place]) others.set(place, point);
     }
-    /// Fills an unused lane with the values of a lane in use.
+    /// Fills an unused slot with the values of a slot in use.
     REALCAM_INLINE void copy(int from, int to) {
         position.set(to, position[from]);
         geometric_normal.set(to, geometric_normal[from]);

@@ -188,7 +188,7 @@ REALCAM_INLINE void pick_lights(const SceneView& scene, const LightKindsLanes<N>
                                 const SurfacesT& surfaces, const PathState<N>& path, const PathNumbers<N>& u,
                                 const Seeds& seed, PickedLights<N>& picked) {
     const int places = whole_vectors<N>(path.count);
-    for (int i = 0; i < places; ++i) picked.source[i] = Source::none;  // unused lanes, too
+    for (int i = 0; i < places; ++i) picked.source[i] = Source::none;  // unused slots, too
     LightChoices<N> local;
     if (number == 0 && scene.light_node_count > 0) choose_local_lights(scene, kinds, surfaces, path, u, seed, local);
     for (int i = 0; i < path.count; ++i) {

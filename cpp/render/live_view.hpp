@@ -25,8 +25,8 @@ public:
     /// scene.
     Session& collected() const;
 
-    /// Picture of all accumulated samples, with the layers of `settings`. Otherwise `settings` and `camera` are those
-    /// of the last frame. Throws as collected.
+    /// Picture of all accumulated samples, with the layers of `settings`. The other settings and the camera must be
+    /// those of the last frame. Throws as collected.
     Image picture(const Camera& camera, const RenderSettings& settings, const KeepGoing& keep_going = {}) const;
 
     /// Cancels all frames under way; may be called from any thread. The next frame begins a new picture.

@@ -85,7 +85,7 @@ REALCAM_INLINE void end_at_image(const SceneView& view, const PathSettings& sett
 }  // namespace meet_surfaces_detail
 
 /// Adds the light of hit emitters and of the environment, and sets the surface points from which paths continue.
-/// Continuing paths move to the first lanes.
+/// Continuing paths move to the first slots.
 template <SceneKind scene_kind, int N, class SurfacesT>
 REALCAM_INLINE void meet_surfaces(const SceneView& view, const CameraView& camera, const PathSettings& settings,
                                   const SampleBlock<N>& block, int bounce, const Hits<N>& hits, PathState<N>& path,

@@ -52,10 +52,10 @@ struct PathResultsWith : PathResults<N> {
 };
 
 /// Paths on their way from the film into the scene: the next ray of each, and the state of the path up to it. At each
-/// surface the paths that continue move to the first lanes.
+/// surface the paths that continue move to the first slots.
 template <int N>
 struct PathState {
-    int count = N;  ///< lanes in use; some of their paths may have ended since
+    int count = N;  ///< slots in use; some of their paths may have ended since
     SceneRays<N> rays;
     ColorLanes<N> throughput;  ///< irradiance on the film per unit of radiance along the ray
     Lanes<float, N> weight;  ///< initial throughput of the path
@@ -71,9 +71,9 @@ struct PathState {
         for (int i = 0; i < N; ++i) lane_[i] = i;
     }
 
-    /// Number of lanes in use: count or, on a GPU, the constant 1.
+    /// Number of slots in use: count or, on a GPU, the constant 1.
     REALCAM_INLINE int places() const { return N > 1 ? count : 1; }
-    /// Lane of the block whose sample a path belongs to.
+    /// Lane of the block, and so the sample, to which the path in a slot belongs.
     REALCAM_INLINE int lane(int place) const {
         if constexpr (N > 1) return lane_[place];
         return 0;
@@ -86,7 +86,7 @@ struct PathState {
         receiver_alpha[place] = lobe.alpha;
         receiver_share[place] = lobe.share;
     }
-    /// Moves the state that a path still needs once it has reached a surface.
+    /// Moves the state that a path still needs once it has reached a surface to another slot.
     template <SceneKind scene_kind>
     REALCAM_INLINE void move(int from, int to) {
         if constexpr (N > 1) {

@@ -12,8 +12,8 @@ struct SampleRange {
     std::uint32_t seed, first, count;
 };
 
-/// Number of samples that a picture on a CPU adds up at a time, beginning with the first, so that parts of this size
-/// that are exposed apart give the same sums.
+/// Number of samples that a picture on a CPU adds up at a time, beginning with the first. Parts of this size that are
+/// exposed apart therefore give the same sums.
 inline constexpr std::uint32_t kSamplesPerSum = 256;
 
 /// Number of samples of a range that each pixel takes: the first ones, up to its count.
