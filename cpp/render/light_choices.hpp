@@ -49,7 +49,7 @@ private:
 template <int N, class Receivers>
 REALCAM_INLINE void choose_lights(const SceneView& scene, const Receivers& receiver, const float (&u)[N],
                                   const std::uint32_t (&seed)[N], int places, LightChoices<N>& chosen) {
-    // By vectors, because each takes as many steps as its deepest light.
+    // One vector at a time, because each takes as many steps as its deepest light.
     constexpr int kWidth = whole_vectors<N>(1);
     const LightNode* const nodes = scene.light_nodes;
     for (int begin = 0; begin < places; begin += kWidth) {

@@ -12,7 +12,7 @@ namespace realcam {
 namespace {
 
 constexpr int kBlock = PupilTracer::kBlock;
-/// With fewer, the extent of the hits is too uncertain.
+/// Least number of hits that determine the extent of the entry.
 constexpr int kEnoughHits = 32;
 constexpr int kMostRounds = 10;
 
@@ -110,7 +110,7 @@ std::optional<FoundLight> LightEntries::of(const LightGroup& group) const {
     const float sine = hypotenuse(light.from.x, light.from.y);
     const Vec2f away = sine > 0 ? Vec2f{light.from.x / sine, light.from.y / sine} : Vec2f{1, 0};
     light.along = {-light.from.z * away.x, -light.from.z * away.y, sine};
-    // A front point nearer to the light may see it within the field even if the front's centre does not.
+    // A point of the front that is nearer to the light may see it within the field even if the front's centre does not.
     Vec3f nearest = middle;
     if (light.kind != TracedLightKind::sun) {
         nearest = (1.0f / static_cast<float>(places.size())) * middle;

@@ -14,8 +14,8 @@ namespace {
 /// Largest fraction of a pixel's samples that hit a traced lamp. If more hit it, samples of pixels have less noise than
 /// samples from the lamp would.
 constexpr double kLargestShare = 0.8;
-/// Depth up to which an emitter continues another one, as a multiple of the radius that a pixel sees. Surfaces are thus
-/// one up to a slope of 76 degrees to the view direction, and a wall behind a lamp is separate from it.
+/// Depth up to which an emitter continues another one, as a multiple of the radius that a pixel sees. Surfaces up to a
+/// slope of 76 degrees to the view direction are therefore one emitter, and a wall behind a lamp is separate from it.
 constexpr double kDepth = 4;
 
 /// Region that the samples of one pixel cover at a distance: the blur disc, swept over the pixel. In metres.

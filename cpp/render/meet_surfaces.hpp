@@ -49,7 +49,7 @@ REALCAM_INLINE float depth_at(const CameraView& camera, Vec3f position, float ti
     return depth_from(camera, position);
 }
 
-/// Beyond the dimensions of all random numbers.
+/// Salt for the footprint's random bits, beyond the dimensions of all random numbers.
 inline constexpr std::uint32_t kFootprintSalt = 0x40000;
 
 /// The footprint of a ray from the film.

@@ -26,8 +26,7 @@ public:
             from_scene_[k] = camera_detail::scene_from_camera(pose_at(camera, times_[k])).inverse();
     }
 
-    /// Position in the axes of the camera at `when`, for a point that is at `place` in the scene in the middle of the
-    /// exposure.
+    /// Position in the axes of the camera at `when`, for a point that lies at `place` in the scene in mid-exposure.
     Vec3d point(Vec3d place, std::uint32_t instance, When when) {
         return from_scene_[when].point(moved(place, instance, when));
     }

@@ -199,10 +199,7 @@ protected:
     const Camera& camera() const { return camera_; }
     FilmRegion whole_film() const { return {0, 0, camera_.film.width, camera_.film.height}; }
     const RenderSettings& settings() const { return settings_; }
-    std::int64_t samples() const {
-        return samples_;
-    }  ///< number for the pixel with the most, since the film was
-       ///< cleared
+    std::int64_t samples() const { return samples_; }  ///< largest number per pixel since the film was cleared
 
 private:
     /// Lock that one thread holds at a time.

@@ -21,7 +21,7 @@ inline constexpr std::uint32_t entry = 0, place = 1, time = 2;
 /// Point on a light, as seen from one entry point.
 struct TracedPlace {
     LightSample sample;  ///< irradiance over the density of the point
-    float traced = 0;  ///< traced_samples, without the entry's cosine; 0: only samples from the light find it
+    float traced = 0;  ///< traced_samples without the entry's cosine; unused unless is_met
     bool is_met = false;  ///< true if samples of pixels can hit it
 };
 
