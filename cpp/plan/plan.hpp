@@ -39,7 +39,7 @@ struct PlanDecision {
 struct Plan {
     CameraModel model = CameraModel::full_lens;  ///< the cheapest whose picture matches that of the full lens
     EffectChoice effects;
-    int max_bounces = 1;  ///< light bounces in the scene
+    int max_bounces = 1;  ///< largest number of bounces of light in the scene
     std::vector<PlanDecision> decisions;
 };
 

@@ -62,7 +62,7 @@ inline void plan_bounces(Session& session, const Assembly& scene, Camera camera,
     }
     const double threshold = settings.thresholds.codes;
     camera.film = with_long_side(camera.film, kLongSide);
-    // A pinhole camera gives the same answer faster, if the lens has an axis.
+    // A pinhole camera shows the differences faster, if the lens has an axis.
     if (const LensSystem on_axis = centred(camera.lens); on_axis.is_rotational()) {
         camera.lens = on_axis;
         camera.model = CameraModel::pinhole;

@@ -150,7 +150,8 @@ double AdaptiveSampling::decay_of(std::size_t half) const {
             numbers += 3 * near.pixels;
         }
     if (!(last > 0) || !(before > 0)) return 1;
-    // The ratio less two standard deviations of its logarithm, for mean squares over this many values.
+    // The estimate less two standard deviations: those of the logarithm of a ratio of mean squares over this many
+    // values.
     return std::clamp(std::log2(before / last) - 2 * std::numbers::log2e * 2 / std::sqrt(numbers), 1.0, kMostDecay);
 }
 
