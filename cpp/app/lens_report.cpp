@@ -224,7 +224,7 @@ std::string lens_as_text(const LensSystem& lens) {
             line("  at " + number_text(meridian.azimuth_deg, 4) + " degrees from x", mm(meridian.focal_length));
     line("back focal distance", mm(data.back_focal_distance));
     line("front focal distance", mm(data.front_focal_distance));
-    // The f-number of the ring, followed by the working f-number if a focusing group has moved.
+    // The f-number at infinity, as on the ring, and that of the focused lens if a focusing group has moved.
     const std::string f_number = number_text(f_number_at_infinity(lens)), focused = number_text(data.f_number);
     line("f-number", std::string(7, ' ') + "f/" + f_number + (f_number == focused ? "" : ", as focused f/" + focused));
     line("T-stop", std::string(7, ' ') + t_stop_text(lens));
