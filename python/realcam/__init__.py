@@ -229,7 +229,7 @@ __all__ = [
 
 
 def __getattr__(name: str) -> Any:
-    """rc.analysis is loaded when it is first used: it brings matplotlib, which takes longer than all the rest."""
+    """Imports rc.analysis on first use: it loads matplotlib, which takes longer than all other imports together."""
     if name == "analysis":
         from importlib import import_module
 

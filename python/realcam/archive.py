@@ -18,7 +18,7 @@ from ._core import InputError
 from .files import write_whole
 
 # The end of the file, stored as the comment of the zip archive: the owner, and SHA-256 of all bytes before the digest.
-# The checksums of zipfile cover the members alone, so a damaged directory would still load.
+# The checksums of zipfile cover only the members, so a damaged directory would still load.
 _OWNER_LENGTH, _DIGEST_LENGTH = 64, 64
 
 
@@ -49,7 +49,7 @@ def read_archive(
     """Description and arrays of an archive.
 
     limit_bytes: the largest permitted size of the unpacked content. digest: the expected one, if it is known. Raises
-    InputError if the file is missing, is no regular file, is damaged, too large, or belongs to another owner.
+    InputError if the file is missing, not a regular file, damaged, too large, or belongs to another owner.
     """
     content = read_regular(path, limit_bytes + (1 << 20))
     unsigned, found = content[:-_DIGEST_LENGTH], digest_of(content)
@@ -63,7 +63,7 @@ def read_archive(
         with zipfile.ZipFile(io.BytesIO(content)) as archive:
             if sum(member.file_size for member in archive.infolist()) > limit_bytes + (1 << 20):
                 raise InputError(f"{path}: this file holds more than the {limit_bytes} bytes that are expected")
-        # A header may state any shape; its array is not touched before as many bytes were read.
+        # A header may state any shape: numpy allocates its array, but touches the memory only as bytes are read.
         with np.load(io.BytesIO(content), allow_pickle=False) as members:
             arrays = {name: members[name] for name in members.files}
         if any(array.dtype.kind not in "biuf" for array in arrays.values()):
@@ -76,7 +76,7 @@ def read_archive(
 
 
 def owner_in_file(path: str | os.PathLike[str]) -> str | None:
-    """The owner that the last bytes of an archive name, or None if the file is no complete archive.
+    """Returns the owner stored at the end of an archive, or None if the file is not a complete archive.
 
     The checksum is not verified. Raises OSError.
     """

@@ -1,6 +1,7 @@
-"""Words about arguments: signatures as Python writes types, and one sentence where an argument is of the wrong type.
+"""Error messages for wrong arguments: signatures in Python's types, and one sentence on the argument at fault.
 
-The extension comes here while it is loaded, and where a call does not fit its function: others cost nothing.
+The extension calls this module to clean its docstrings while it is loaded, and when a call does not match any
+signature; valid calls pay nothing.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 NUMBERS = ("no", "one", "two", "three", "four", "five", "six")
-# What pybind11 calls a type, and what Python's users call it.
+# pybind11's spellings of types (patterns), and the spellings shown to users.
 SPELLINGS = (
     (r"typing\.SupportsFloat \| typing\.SupportsIndex", "float"),
     (r"typing\.SupportsInt \| typing\.SupportsIndex", "int"),
@@ -29,7 +30,7 @@ FIXED_SIZE = re.compile(r'(?:typing\.)?Annotated\[(?:Sequence|list)\[(\w+)\], "?
 
 
 def cleaned(doc: str) -> str:
-    """A docstring of pybind11 with a signature that a person can read."""
+    """Returns a docstring of pybind11 with its signature in readable Python types."""
     signature, *rest = doc.split("\n")
     for pattern, spelling in SPELLINGS:
         signature = re.sub(pattern, spelling, signature)
@@ -38,7 +39,7 @@ def cleaned(doc: str) -> str:
 
 
 def complaint(doc: str, arguments: tuple[Any, ...], named: dict[str, Any]) -> str:
-    """What is wrong with the arguments of a call that does not fit the signature in the docstring."""
+    """Returns the error message for a call whose arguments do not match the signature in the docstring."""
     function = _definition(doc.split("\n")[0])
     own = function.args.args[0].annotation if function.args.args and function.args.args[0].arg == "self" else None
     name = f"{ast.unparse(own)}()" if own and function.name == "__init__" else f"{function.name}()"
@@ -48,7 +49,7 @@ def complaint(doc: str, arguments: tuple[Any, ...], named: dict[str, Any]) -> st
         return problem
     bound = inspect.Signature(list(parameters)).bind(*arguments, **named).arguments
     if function.name == "__init__":
-        del bound["self"]  # it has no value yet that could be written
+        del bound["self"]  # not constructed yet, so it has no repr
     annotations = {p.name: p.annotation for p in parameters}
     for check in (_misfit, _out_of_range):
         for what, value in bound.items():
@@ -59,7 +60,7 @@ def complaint(doc: str, arguments: tuple[Any, ...], named: dict[str, Any]) -> st
 
 
 def _definition(signature: str) -> ast.FunctionDef:
-    # Defaults are written as their repr, which need not be Python; and getters have no name.
+    # Default values appear as their repr, which may not be valid Python, and property getters have no name.
     text = re.sub(r"<[^<>]*>", "None", signature)
     tree = ast.parse(f"def {'property' if text.startswith('(') else ''}{text}: ...")
     node = tree.body[0]
@@ -88,10 +89,10 @@ def _counted(count: int) -> str:
 
 
 def _text(value: Any) -> str:
-    """Short: realcam's own objects are."""
+    """Returns a short repr of a value. Reprs of realcam's own objects are short already."""
     try:
         return repr(value) if type(value).__module__.startswith("realcam") else reprlib.repr(value)
-    except ValueError:  # Python writes no whole number of thousands of digits
+    except ValueError:  # Python refuses to print integers of thousands of digits
         return f"one of the type {type(value).__name__}"
 
 
@@ -120,7 +121,7 @@ def _misfit_of_names(
 
 
 def _misfit(annotation: ast.expr | None, value: Any) -> str | None:
-    """What is wanted where a value is of another type; None where it fits."""
+    """Returns the description of the expected type if a value does not match the annotation; None if it does."""
     if isinstance(annotation, ast.BinOp):
         wanted = [_misfit(side, value) for side in (annotation.left, annotation.right)]
         return f"{wanted[0]} or {wanted[1]}" if wanted[0] and wanted[1] else None
@@ -140,7 +141,7 @@ def _misfit(annotation: ast.expr | None, value: Any) -> str | None:
 def _misfit_of_items(annotation: ast.Subscript, value: Any) -> str | None:
     outer = ast.unparse(annotation.value)
     items = annotation.slice.elts if isinstance(annotation.slice, ast.Tuple) else [annotation.slice]
-    if outer in ("Optional", "Union"):  # as pybind11 before version 3 writes them
+    if outer in ("Optional", "Union"):  # spelling of pybind11 before version 3
         options = [*items, ast.Constant(None)] if outer == "Optional" else items
         wanted = [_misfit(option, value) for option in options]
         return None if None in wanted else " or ".join(map(str, wanted))
@@ -156,7 +157,7 @@ def _misfit_of_items(annotation: ast.Subscript, value: Any) -> str | None:
 
 
 class _Misfit:
-    """What fits no type."""
+    """A value that matches no type, for which _misfit returns the description of every type."""
 
 
 def _listed(value: Any) -> list[Any] | None:
@@ -205,7 +206,7 @@ SCALARS: dict[str, tuple[str, Callable[[Any], bool]]] = {
 
 
 def _out_of_range(annotation: ast.expr | None, value: Any) -> str | None:
-    """The same for whole numbers that are none of C++."""
+    """Returns the permitted range if an int argument exceeds the 32 bits of C++'s int; None if it fits."""
     limit = 2**31
     values = _listed(value) or [value]
     wanted = annotation is not None and re.search(r"\bint\b", ast.unparse(annotation))

@@ -1,4 +1,4 @@
-"""Focusing as a camera with dual pixels does: by the disparity of the light from both halves of its pupil."""
+"""Phase-detection autofocus with dual pixels: by the disparity of the images of the exit pupil's two halves."""
 
 from __future__ import annotations
 
@@ -13,20 +13,20 @@ from .session import Session
 
 Array = NDArray[np.float64]
 
-LUMINANCE = np.array([0.2126, 0.7152, 0.0722])  # of linear Rec. 709
-TRACED_MODELS = ("full", "full_double", "polynomial")  # which have the aberrations of the lens
+LUMINANCE = np.array([0.2126, 0.7152, 0.0722])  # weights for linear Rec. 709
+TRACED_MODELS = ("full", "full_double", "polynomial")  # camera models with the aberrations of the lens
 MOST_STEPS = 12
-MOST_MAGNIFICATION = 0.9  # of lenses that do not say how near they can be focused
-LEAST_CORRELATION = 0.2  # of two pictures of noise it is some hundredths
+MOST_MAGNIFICATION = 0.9  # focus limit of lenses whose file states none
+LEAST_CORRELATION = 0.2  # two images of pure noise correlate by some hundredths
 
 
 @dataclass(frozen=True)
 class Autofocus:
-    """How a camera has found its focus.
+    """Result of autofocus().
 
-    camera: focused. focus_distances_m, disparities_px: of each step, where it was focused, and by how many columns the
-    light of the right half of the pupil lay to the right of that of the left one, less what it is in focus: more than 0
-    where the scene is farther away.
+    camera: the focused camera. focus_distances_m, disparities_px: focus distance and disparity at each step. The
+    disparity is the shift, in columns to the right, of the right pupil half's image against the left one's, less its
+    value in focus; it is positive if the scene is farther away than the focus distance.
     """
 
     camera: Camera
@@ -45,14 +45,15 @@ def autofocus(
     seed: int = 0,
     device: str = "auto",
 ) -> Autofocus:
-    """Focuses a camera on what it sees in a window of its picture, by dual pixels alone: depths are not looked at.
+    """Focuses a camera on the content of a window of its picture, by dual pixels alone, without the depth layer.
 
-    at: column and row of the middle of the window; None: of the picture. window_px: its columns and rows; None: a
-    quarter of the picture's. tolerance_px: disparity at which it ends. spp: samples of a pixel, 1 to 256.
-    The lens is moved by what the disparity means to first order, and the step is corrected by the next disparity.
-    Aberrations leave a disparity in focus, for which rays through the lens are the calibration (docs/dual-pixels.md).
-    Effects are left out. Raises InputError, also where the window has no contrast across its
-    columns, or nothing at a distance to which the lens can be focused.
+    at: column and row of the window's centre; None: the centre of the picture. window_px: width and height of the
+    window; None: a quarter of the picture's. tolerance_px: disparity at which the search ends. spp: samples per pixel
+    and step, 1 to 256.
+    Each step moves the lens by the first-order defocus of the disparity; a secant estimate corrects later steps.
+    Aberrations cause a disparity even in focus; it is calibrated with rays through the lens (docs/dual-pixels.md).
+    Effects are off. Raises InputError, also if the window has no horizontal contrast or shows nothing within the
+    focus range of the lens.
     """
     columns, rows = camera.film.resolution
     middle = at or (columns / 2, rows / 2)
@@ -82,7 +83,7 @@ def autofocus(
                 "with one depth in it, or more samples are wanted)"
             )
         if len(disparities) > 1 and disparity != disparities[-2]:
-            # What the last step has done, within reason: at first the images may be matched wrongly.
+            # Secant slope of the last step, clamped because the first images may be matched wrongly.
             per_mm = (disparities[-2] - disparity) / (extension - extensions[-2])
             factor = float(np.clip(-1 / (per_mm * _defocus_mm_per_px(camera)), 0.25, 2)) if per_mm < 0 else 1.0
         focused = _refocused(camera, extension - factor * disparity * _defocus_mm_per_px(camera))
@@ -101,7 +102,10 @@ def _first(middle: float, size: int, of: int) -> int:
 
 
 def _disparity_px(session: Session, region: tuple[int, int, int, int], spp: int) -> float:
-    """By how much the right half's picture lies to the right, from the largest correlation of both."""
+    """Shift of the right pupil half's image against the left one's, in columns to the right, by cross-correlation.
+
+    Raises InputError if the correlation is below LEAST_CORRELATION.
+    """
     sums = session.expose(region, 0, spp).pixels
     assert sums is not None
     right = sums["besides"] @ LUMINANCE
@@ -125,14 +129,17 @@ def _disparity_px(session: Session, region: tuple[int, int, int, int], spp: int)
 
 
 def _correlation(one: Array, other: Array) -> float:
-    """Of all pixels, -1 to 1; that of even light is 0."""
+    """Normalised correlation of two images after subtraction of their row means, -1 to 1; 0 if one is uniform."""
     a, b = one - one.mean(axis=1, keepdims=True), other - other.mean(axis=1, keepdims=True)
     norm = math.sqrt(float((a * a).sum() * (b * b).sum()))
     return float((a * b).sum()) / norm if norm > 0 else 0.0
 
 
 def _disparity_in_focus_px(camera: Camera) -> float:
-    """Of a point on the axis in the plane in focus, by the centroids of rays through both halves of the exit pupil."""
+    """Disparity, in columns, of the axial point in the plane in focus, from ray centroids of the exit pupil's halves.
+
+    Returns 0 for camera models without aberrations and for focus at infinity.
+    """
     lens = camera.lens
     if camera.model not in TRACED_MODELS or math.isinf(lens.focus_distance_m):
         return 0.0
@@ -149,42 +156,42 @@ def _disparity_in_focus_px(camera: Camera) -> float:
     is_right = at_film / (film_z - data.exit_pupil_position_mm) > slope
     if is_right.all() or not is_right.any():
         return 0.0
-    # Columns go against x of the lens.
+    # The column index increases towards -x of the lens frame.
     disparity_mm = at_film[~is_right].mean() - at_film[is_right].mean()
     return float(disparity_mm * camera.film.resolution[0] / camera.film.width_mm)
 
 
 def _defocus_mm_per_px(camera: Camera) -> float:
-    """How far before the film the image lies for a disparity of a column, to first order.
+    """Distance of the image in front of the film per column of disparity, in mm, to first order.
 
-    The centroid of half a disc of radius r is 4 r / (3 pi) from its middle, so that light of both halves of the exit
-    pupil comes from points 8 r / (3 pi) apart.
+    The centroid of half a disc of radius r is 4 r / (3 pi) from the disc's centre, so the centroids of the exit pupil's
+    halves are 8 r / (3 pi) apart.
     """
     data = camera.lens.first_order()
     distance = abs(camera.lens.film_position_mm - data.exit_pupil_position_mm)
     slope = 8 / (3 * math.pi) * 0.5 * data.exit_pupil_diameter_mm / distance if math.isfinite(distance) else math.nan
     if not slope > 0 or not math.isfinite(slope):
-        slope = 8 / (3 * math.pi) * 0.5 / data.f_number  # of a pupil at infinity
+        slope = 8 / (3 * math.pi) * 0.5 / data.f_number  # exit pupil at infinity
     return camera.film.width_mm / camera.film.resolution[0] / slope
 
 
 def _between_foci_mm(lens: Lens) -> float:
-    """From the front focal point to the back one."""
+    """Distance from the front focal point to the rear one, in mm."""
     data = lens.first_order()
     back = lens.film_position_mm - lens.film_distance_mm + data.back_focal_distance_mm
     return float(back - data.front_focal_distance_mm)
 
 
 def _square_mm2(lens: Lens) -> float:
-    """Front times rear focal length, n' f^2."""
+    """Product of the front and the rear focal length, n' f^2, in mm^2."""
     data = lens.first_order()
     return float(data.image_index * data.effective_focal_length_mm**2)
 
 
 def _extension_mm(camera: Camera) -> float:
-    """From the back focal point to the film, for which object and film are as far apart as the focus says.
+    """Distance from the rear focal point to the film, in mm, for the camera's focus distance.
 
-    By Newton's x x' = n' f^2; of the two solutions that of the smaller image.
+    By Newton's x x' = n' f^2; of its two solutions the one with the smaller image.
     """
     lens = camera.lens
     if math.isinf(lens.focus_distance_m):
@@ -194,7 +201,7 @@ def _extension_mm(camera: Camera) -> float:
 
 
 def _refocused(camera: Camera, extension_mm: float) -> Camera:
-    """Focused on what has its image so far behind the back focal point; at an end of the lens's range, there."""
+    """Focuses on the object whose image lies extension_mm behind the rear focal point, clamped to the focus range."""
     lens, focal = camera.lens, camera.lens.first_order().effective_focal_length_mm
     if extension_mm <= 0:
         return camera.replace(lens=lens.focused(math.inf))

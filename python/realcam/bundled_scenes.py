@@ -1,4 +1,4 @@
-"""The scenes that come with realcam, each with the shot that photographs it, by their names."""
+"""The scenes bundled with realcam, each with a shot file of the same name."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ SCENE_SUFFIXES = (".gltf", ".glb", ".obj", ".ply")
 
 @cache
 def scenes_folder() -> Path:
-    """Beside the package where it is installed, in the repository where it is not."""
+    """Folder of the bundled scenes: in the installed package, or in the repository. Raises InputError if missing."""
     package = Path(__file__).resolve().parent
     for folder in (package / "scenes", package.parents[1] / "scenes"):
         if (folder / "demo.toml").is_file():
@@ -29,10 +29,10 @@ def shot_names() -> list[str]:
 
 
 def bundled_file(path: str | os.PathLike[str], suffixes: Sequence[str]) -> str | os.PathLike[str]:
-    """The file of a bundled shot or scene that is given by its name; any other path as it is.
+    """Returns the file of a bundled shot or scene given by its name; returns any other path unchanged.
 
-    A file or folder of this name in the current folder comes first. Raises InputError for a name that nearly is one of
-    a bundled shot.
+    A file or folder of this name in the current folder takes precedence. Raises InputError for a name that resembles
+    a bundled shot's.
     """
     if not isinstance(path, (str, bytes, os.PathLike)):
         return path
@@ -55,7 +55,7 @@ def _load(*arguments: Any, **named: Any) -> Scene:
         arguments = (bundled_file(arguments[0], SCENE_SUFFIXES), *arguments[1:])
     elif "path" in named:
         named["path"] = bundled_file(named["path"], SCENE_SUFFIXES)
-    return _read_scene(*arguments, **named)  # which explains arguments that it does not take
+    return _read_scene(*arguments, **named)  # reports invalid arguments
 
 
 def _signature(path: str | os.PathLike[str], *, scale: float = 1.0, objects: Sequence[str] = []) -> Scene:

@@ -1,7 +1,7 @@
-"""The words of a command line as people write them: numbers with units, US spellings, options of other programs.
+"""Normalises command lines as people write them: numbers with units, US spellings, options of other programs.
 
-They become the words that the parsers of the commands in Python and in C++ know. The parsers report everything that is
-not understood here.
+The result is in the words of the commands' parsers in Python and C++, which report everything that is not understood
+here.
 """
 
 from __future__ import annotations
@@ -42,11 +42,11 @@ _ANGLES_DEG = dict.fromkeys(("deg", "degree", "degrees", "°"), "1")
 
 
 def _in(unit: str, sizes: Mapping[str, str]) -> dict[str, Decimal]:
-    """Sizes of units in another one of them."""
+    """Returns the sizes of all units, measured in one of them."""
     return {name: Decimal(size) / Decimal(sizes[unit]) for name, size in sizes.items()}
 
 
-# By the placeholder of an option's value in its help, which names the unit of a bare number.
+# Keyed by the placeholder of an option's value in its help, which names the unit of a bare number.
 _UNITS: dict[str, dict[str, Decimal]] = {
     "METRES": _in("m", _LENGTHS_M),
     "X,Y,Z": _in("m", _LENGTHS_M),
@@ -69,13 +69,15 @@ _PREFIXES = {"F_NUMBER": r"f\s*[/:]?|1:", "ISO": "iso"}
 _NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:e[+-]?\d{1,3})?"
 
 
-# Between numbers: commas, the "x" of sizes, and the minus of ranges, but not that of an exponent.
+# Separators between numbers: commas, the "x" of sizes, and the dash of ranges, but not the minus of an exponent.
 _SEPARATOR = r"(\s*[,x×]\s*(?=[-+.\d])|(?<=[\w.])(?<!\de)\s*-\s*(?=[\d.f]))"
 
 
 def plain_number(text: str, kind: str) -> str:
-    """A number without its unit, or several with ",", "x" or "-" between them: "50cm" of METRES as "0.5", "1/125 s" of
-    TIME as "1/125", "f/4" of F_NUMBER as "4". A unit at the end holds for all of them. Any other text remains as it is.
+    """Strips the unit from a number, or from several with ",", "x" or "-" between them.
+
+    kind: the placeholder. "50cm" of METRES becomes "0.5", "1/125 s" of TIME "1/125", "f/4" of F_NUMBER "4". A unit at
+    the end applies to all numbers. Any other text is returned unchanged.
     """
     if len(text) > 200:
         return text
@@ -95,7 +97,7 @@ def plain_number(text: str, kind: str) -> str:
 
 
 def _without_units(words: Sequence[str], sizes: Mapping[str, Decimal]) -> list[str]:
-    """Empty where the words have no units, or others."""
+    """Returns the numbers in the base unit; an empty list unless all are numbers with known units."""
     pattern = rf"({_NUMBER})((?:/{_NUMBER})?)\s*([^\d\s.]\S*)?"
     numbers = [found for word in words if (found := re.fullmatch(pattern, word, re.IGNORECASE))]
     if len(numbers) < len(words) or not numbers[-1][3]:
@@ -108,7 +110,7 @@ def _without_units(words: Sequence[str], sizes: Mapping[str, Decimal]) -> list[s
 
 
 def _scaled(number: str, size: Decimal) -> str:
-    """In decimal arithmetic, so that 50cm is 0.5 to the last digit."""
+    """Multiplies in decimal arithmetic, so that 50cm becomes exactly 0.5."""
     return f"{(Decimal(number) * size).normalize():f}"
 
 
@@ -119,7 +121,7 @@ _AMERICAN = {
 
 
 def spelled(word: str, known: Iterable[str]) -> str:
-    """The known word that differs from this one in American or British spelling alone; else the word itself."""
+    """Returns the known word that differs only in American or British spelling; otherwise the word itself."""
     names = list(known)
     return word if word in names else next((name for name in names if _american(name) == _american(word)), word)
 
@@ -130,7 +132,7 @@ def _american(word: str) -> str:
     return word
 
 
-# What other programs and photographers call an option; the first that a command has is meant.
+# Option names of other programs and of photographers, with realcam's; the first one that a command has is suggested.
 _OTHER_NAMES = {
     **dict.fromkeys(("--aperture", "--f-stop", "--fstop", "--fnumber"), ("--f-number",)),
     **dict.fromkeys(("--samples", "--num-samples", "--sample-count"), ("--spp", "--copies", "--max-spp")),
@@ -151,13 +153,13 @@ _READ = {
     "LENS": (".toml", ".zmx", ".seq", ".len", ".dat", ".json", ".roa"),
     "FILM": (".exr",),
     "RECIPE": (".toml",),
-}  # by the placeholder of an argument
+}  # keyed by the placeholder of an argument
 
 
 @dataclass(frozen=True)
 class Grammar:
-    """What a command takes. name: as typed, "realcam render". options: the placeholders of their values by their names;
-    empty for one without a value. arguments: their placeholders. takes_more: the last of them may be repeated."""
+    """Options and arguments of a command. name: as typed, "realcam render". options: placeholder of the value by option
+    name; empty for a flag. arguments: placeholders in order. takes_more: the last argument may be repeated."""
 
     name: str
     options: Mapping[str, str]
@@ -166,15 +168,15 @@ class Grammar:
 
 
 def understood(words: Sequence[str], grammar: Grammar) -> list[str]:
-    """The words behind a command as its parser knows them: plain numbers, its own options, files of bundled scenes.
+    """Translates the words of a command for its parser: plain numbers, its own options, files of bundled scenes.
 
-    Raises InputError, naming what was meant, for options of other programs, an output without -o and swapped arguments.
+    Raises InputError with a suggestion for options of other programs, an output without -o and swapped arguments.
     """
     result: list[str] = []
     arguments: list[str] = []
-    values: list[tuple[str, str]] = []  # with the names of their options
+    values: list[tuple[str, str]] = []  # (option, value)
     unknown: list[str] = []
-    option = ""  # the one whose value comes next
+    option = ""  # takes the next word as its value
     for i, word in enumerate(words):
         if option and word not in grammar.options:
             result.append(_plain_value(option, word, grammar))
@@ -206,13 +208,13 @@ def understood(words: Sequence[str], grammar: Grammar) -> list[str]:
         for own in _OTHER_NAMES.get(name, ()):
             if own in grammar.options:
                 raise _mistake(f"unknown option {name}", own, grammar)
-    if not unknown:  # which the parser reports first
+    if not unknown:  # the parser reports unknown options first
         _check_arguments(arguments, [value for name, value in values if name in ("-o", "--output")], grammar)
     return result
 
 
 def understood_in_cpp(words: Sequence[str]) -> list[str]:
-    """The same for the name of a command in C++ and the words behind it."""
+    """Applies understood() to a command line that begins with the name of a command in C++."""
     for names, _, options in _core._listed_commands():
         if words[: len(names)] == names:
             grammar = Grammar(
@@ -225,12 +227,12 @@ def understood_in_cpp(words: Sequence[str]) -> list[str]:
 
 
 def _plain_value(option: str, text: str, grammar: Grammar) -> str:
-    kinds = {"--f-number": "F_NUMBER", "--resolution": "PIXELS"}  # whose placeholders others have, too
+    kinds = {"--f-number": "F_NUMBER", "--resolution": "PIXELS"}  # placeholders that options of other kinds share
     return plain_number(text, kinds.get(option, grammar.options.get(option, "")))
 
 
 def _placeholder(index: int, grammar: Grammar) -> str:
-    """Of an argument; empty for one too many."""
+    """Placeholder of the argument at an index; empty if the command takes fewer arguments."""
     last = len(grammar.arguments) - 1
     return grammar.arguments[min(index, last)] if last >= 0 and (index <= last or grammar.takes_more) else ""
 
@@ -264,4 +266,4 @@ def _suffix(word: str) -> str:
 
 def _mistake(what: str, meant: str, grammar: Grammar) -> InputError:
     text = f'{what} (did you mean "{meant}"?) ({grammar.name} --help lists the options)'
-    return InputError(text.encode(errors="replace").decode())  # words may be no UTF-8
+    return InputError(text.encode(errors="replace").decode())  # words may be invalid UTF-8

@@ -1,4 +1,4 @@
-"""The plug-in for GPUs, which realcam[cuda] brings as a package of its own."""
+"""The CUDA plug-in, a separate package that the extra realcam[cuda] installs."""
 
 from __future__ import annotations
 
@@ -8,5 +8,5 @@ from realcam_command import installed_file
 
 
 def path_of_plugin() -> bytes:
-    """The path of the library; empty: the package is not installed."""
+    """Returns the path of the library; empty if the package is not installed."""
     return os.fsencode(installed_file("realcam_cuda13", "librealcam_cuda13.so"))

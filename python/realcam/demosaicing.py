@@ -1,4 +1,4 @@
-"""Colours for each pixel of a mosaic, by colour-demosaicing from the extra realcam[raw]."""
+"""Demosaicing, by colour-demosaicing from the extra realcam[raw]."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ import numpy as np
 from ._core import InputError
 
 METHODS = ("menon", "malvar", "bilinear")
-# Pixels by which a mosaic is continued beyond its edges, mirrored at its last pixels, so that the order of the filters
-# goes on. The library repeats the last pixels, which puts numbers of one filter in the place of another's.
+# Pixels by which a mosaic is extended beyond its edges, mirrored about its last pixels so that the filter pattern
+# continues. The library itself repeats the last pixels, which puts values of one filter where another's belong.
 MARGIN = 8
 
 
 def demosaiced(mosaic: np.ndarray, pattern: str, method: str) -> np.ndarray:
-    """(H, W, 3) float32 of a (H, W) mosaic, which is best balanced to white. Raises InputError."""
+    """Demosaics a (H, W) mosaic, best white-balanced beforehand, to (H, W, 3) float32. Raises InputError."""
     if method not in METHODS:
         raise InputError(f"unknown demosaicing {method!r:.60}; {', '.join(METHODS)} is wanted")
     if min(mosaic.shape) < 2:
@@ -28,15 +28,15 @@ def demosaiced(mosaic: np.ndarray, pattern: str, method: str) -> np.ndarray:
 
 
 def check_is_installed() -> None:
-    """Raises InputError."""
+    """Raises InputError if colour-demosaicing is not installed."""
     _functions()
 
 
 def _functions() -> dict[str, Any]:
-    """By the names of METHODS."""
+    """Returns the library's functions, keyed by METHODS. Raises InputError if it is not installed."""
     try:
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # of packages that colour-science would like to have
+            warnings.simplefilter("ignore")  # colour-science warns of missing optional packages
             from colour_demosaicing.bayer import (
                 demosaicing_CFA_Bayer_bilinear,
                 demosaicing_CFA_Bayer_Malvar2004,

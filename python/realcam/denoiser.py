@@ -10,7 +10,7 @@ from realcam_command import denoiser_library
 from . import _core
 from ._core import InputError
 
-GUIDES = ("albedo", "normal", "traced_light")  #: the layers that it goes by, and what is kept out of it
+GUIDES = ("albedo", "normal", "traced_light")  #: two guide layers, and the light that is not denoised
 
 
 def is_installed() -> bool:
@@ -18,12 +18,15 @@ def is_installed() -> bool:
 
 
 def opened(device: str = "auto") -> _core._Denoiser:
-    """A denoiser, for one thread. device: as Image.denoised has it. Raises InputError, which says what to install."""
+    """Opens a denoiser for use by one thread. device: as in Image.denoised. Raises InputError if not installed."""
     return _core._Denoiser(device, 0, denoiser_library())
 
 
 def denoised(pixels: np.ndarray, layers: Mapping[str, np.ndarray], device: str) -> tuple[np.ndarray, str]:
-    """(H, W, 3) float32 exposure without noise, and the denoiser's name and version. Raises InputError, DeviceError."""
+    """Returns the denoised (H, W, 3) float32 exposure, and the denoiser's name and version.
+
+    Raises InputError, DeviceError.
+    """
     if not all(name in layers for name in GUIDES):
         raise InputError(
             f"the denoiser wants the layers {', '.join(GUIDES)}; render(..., layers={list(GUIDES)}) brings them"
@@ -42,12 +45,16 @@ def without_noise(
     fast: bool = False,
     progress: Callable[[float], bool] | None = None,
 ) -> np.ndarray:
-    """(H, W, 3) exposure. The light that was traced from lights stays as it is: its noise is fine grain on the discs of
-    lamps, which the network takes for detail and spreads. Raises Cancelled where progress, which is called
-    meanwhile, returns False."""
+    """Returns the denoised (H, W, 3) exposure.
+
+    traced_light (lamps, ghosts, starbursts by light tracing) is not denoised: its noise is fine grain on the discs of
+    lamps, which the network takes for detail and spreads. Raises Cancelled if `progress`, which is called meanwhile,
+    returns False.
+    """
     rest = np.maximum(pixels - traced_light, np.float32(0))
     result: np.ndarray = denoiser.denoised(rest, albedo, normal, fast, progress)
-    # Where lamps outshine the rest, a part of it is their light too, and its noise is not seen.
+    # If light-traced lamps dominate a pixel, part of its path-traced light is theirs, too, and its noise is
+    # invisible: such pixels keep it undenoised.
     share = traced_light / np.maximum(traced_light + result, np.float32(1e-30))
     result += share * (rest - result) + traced_light
     return result

@@ -14,24 +14,24 @@ from ._core import InputError, __version__
 from .files import write_whole
 from .short_text import ShortText
 
-# EXIF's LightSource. Any other light has no number.
+# EXIF LightSource codes. Other illuminants have no code of their own.
 LIGHT_SOURCES = {"": 21, "D65": 21, "D50": 23, "A": 17, "FL2": 14}
 OTHER_LIGHT_SOURCE = 255
 CFA, LINEAR_RAW = 32803, 34892  # PhotometricInterpretation
 # IEC 61966-2-1.
 SRGB_FROM_XYZ = (3.2404542, -1.5371385, -0.4985314, -0.969266, 1.8760108, 0.041556, 0.0556434, -0.2040259, 1.0572252)
-# Of the film's exposure that saturates a sensor, middle grey is this share of what it is on screen (ISO 12232): white,
-# in pictures 0.018 iso lux seconds, is reached at 1 / 1.404 of the 78 / iso lux seconds that saturate.
+# Exposure that saturates a sensor, 78 / iso lux seconds (ISO 12232), over the exposure of display white,
+# 1 / (0.018 iso) lux seconds.
 SATURATION_OVER_WHITE = 0.018 * 78
 ASCII, BYTE, SHORT, LONG, RATIONAL, SRATIONAL = "s", "B", "H", "I", "2I", "2i"
 
 
 @dataclass(frozen=True, repr=False)
 class ColorFilters(ShortText):
-    """What a mosaic has where its pixels see through filters of red, green and blue.
+    """Colour data of a mosaic with red, green and blue filters.
 
-    array: of two rows of two pixels from the top left, as "RGGB". illuminant: named as in LIGHT_SOURCES, or another.
-    camera_from_xyz, d50_from_balanced: (3, 3), and as_shot_neutral: (3,), as RawImage has them.
+    array: filters of the 2 x 2 pixels at the top left, row by row, as "RGGB". illuminant: a key of LIGHT_SOURCES or
+    another name. camera_from_xyz, d50_from_balanced: (3, 3), and as_shot_neutral: (3,): see RawImage.
     """
 
     array: str
@@ -43,13 +43,13 @@ class ColorFilters(ShortText):
 
 @dataclass(frozen=True, repr=False)
 class Negative(ShortText):
-    """A mosaic, (H, W) uint16, with what raw developers need; filters: None where all pixels see alike."""
+    """A mosaic, (H, W) uint16, with the data that raw developers need. filters: None for a monochrome sensor."""
 
     mosaic: np.ndarray
     sensor: str
     exposure_time_s: float
     iso: float
-    extension: float  #: of the ISO above that of the largest gain, a factor; 1: none
+    extension: float  #: ISO over the ISO of the largest gain; 1 at or below it
     black_level_dn: float
     white_level_dn: int
     filters: ColorFilters | None
@@ -65,13 +65,13 @@ def write(raw: Negative, path: str | os.PathLike[str]) -> None:
     buffer = io.BytesIO()
     with tifffile.TiffWriter(buffer, byteorder="<") as file:
         file.write(
-            # Without filters as three equal colours: of one alone LibRaw makes a grey picture, and darktable 4.2 takes
-            # each pixel and its two neighbours for red, green and blue.
+            # A monochrome mosaic is written as three equal channels: LibRaw develops a single one as grey, but
+            # darktable 4.2 takes each pixel and its two neighbours for red, green and blue.
             raw.mosaic if raw.filters else np.repeat(raw.mosaic[..., None], 3, axis=2),
             photometric=CFA if raw.filters else LINEAR_RAW,
             planarconfig=None if raw.filters else "contig",
             software=f"realcam {__version__}",
-            # TIFF knows ASCII alone.
+            # TIFF text is ASCII only.
             description="\n".join(f"{name} = {value}" for name, value in raw.metadata.items())
             .encode("ascii", "replace")
             .decode(),
@@ -89,8 +89,8 @@ def write_array(array: np.ndarray, path: str | os.PathLike[str]) -> None:
 
 
 def _rationals(values: Any, signed: bool = False) -> tuple[int, ...]:
-    """Numerators and denominators of numbers, to a millionth, or to ten digits where they are small. What 32 bits
-    cannot hold becomes the largest that they can.
+    """Numerators and denominators of numbers, precise to 1e-9 below 2, to 1e-6 above, and less for large numbers.
+    Values beyond the range of 32 bits are clamped.
     """
     flat = []
     most = 2 ** (31 if signed else 32) - 1
@@ -130,7 +130,7 @@ def _tags(raw: Negative) -> list[tuple[int, str, int, Any]]:
         rational(50718, (1, 1)),  # DefaultScale
         (50719, LONG, 2, (0, 0)),  # DefaultCropOrigin
         (50720, LONG, 2, (width, height)),  # DefaultCropSize
-        # BaselineExposure, in stops: where white lies below saturation.
+        # BaselineExposure, in stops: saturation over display white.
         rational(50730, np.log2(SATURATION_OVER_WHITE * raw.extension), signed=True),
         (50829, LONG, 4, (0, 0, height, width)),  # ActiveArea
     ]
@@ -151,7 +151,7 @@ def _tags(raw: Negative) -> list[tuple[int, str, int, Any]]:
         ]
     else:
         tags += [
-            rational(50721, SRGB_FROM_XYZ, signed=True),  # ColorMatrix1: of D65's white equal colours
+            rational(50721, SRGB_FROM_XYZ, signed=True),  # ColorMatrix1: maps D65 white to equal channels
             rational(50728, (1, 1, 1)),  # AsShotNeutral
             (50778, SHORT, 1, LIGHT_SOURCES["D65"]),  # CalibrationIlluminant1
         ]

@@ -1,4 +1,4 @@
-"""Drawings of lenses, with matplotlib. What they show, as arrays: realcam.drawing."""
+"""Drawings of lenses, with matplotlib. realcam.drawing has their content as arrays."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ __all__ = ["draw_cross_section", "draw_states", "save_cross_section", "save_stat
 
 
 def save_cross_section(lens: Lens, path: str | os.PathLike[str], rays: int = 7, **options: Any) -> None:
-    """Writes Lens.draw, with the options of that, as .svg, .pdf, .png, .jpg, .tif or .webp.
+    """Writes the figure of Lens.draw, which takes the same options, as .svg, .pdf, .png, .jpg, .tif or .webp.
 
     Raises ImageFileError and InputError.
     """
@@ -47,7 +47,7 @@ def draw_cross_section(
     ghost: Lens | None = None,
     theme: str = "light",
 ) -> CrossSection:
-    """Draws a cross-section on axes of one's own, without insets, and returns the arrays behind it."""
+    """Draws a cross-section on existing axes, without insets, and returns its arrays. Options as for Lens.draw."""
     style = Style(theme_named(theme), radius_colours, marks)
     section = cross_section(
         lens,
@@ -62,7 +62,7 @@ def draw_cross_section(
     other = None if ghost is None else cross_section(ghost, plane=plane, rays=0)
     prepare_axes(axes, extent_of(section, style), style, plane)
     draw_section(section, axes, style, ghost=other)
-    # Titles are text, and a dollar sign in one begins no formula.
+    # A dollar sign in a title must not begin a formula.
     title = f"{lens.title or lens.name}   {data_of(lens, section)}"
     axes.set_title("".join(c for c in title if c.isprintable()), parse_math=False, color=style.theme.text)
     return section
@@ -81,7 +81,7 @@ def draw_states(
     theme: str = "light",
     width_px: int = 1600,
 ) -> Figure:
-    """Several lenses, or states of one, in rows of one scale with their films below each other.
+    """Draws several lenses, or states of one, as rows of the same scale with their films aligned.
 
     states: (name, lens) pairs, as states_of gives them. Raises InputError.
     """
@@ -96,7 +96,7 @@ def draw_states(
 
 
 def save_states(states: Sequence[tuple[str, Lens]], path: str | os.PathLike[str], **options: Any) -> None:
-    """Writes draw_states, with the options of that, as .svg, .pdf, .png, .jpg, .tif or .webp.
+    """Writes the figure of draw_states, which takes the same options, as .svg, .pdf, .png, .jpg, .tif or .webp.
 
     Raises ImageFileError and InputError.
     """
@@ -106,7 +106,7 @@ def save_states(states: Sequence[tuple[str, Lens]], path: str | os.PathLike[str]
 
 
 def states_of(lens: Lens) -> list[tuple[str, Lens]]:
-    """The zoom positions of a lens that has some; else infinity and its nearest focus, if its file names one."""
+    """Returns (title, lens) of each zoom position; of other lenses at infinity and at the nearest focus, if stated."""
     zoom: Any = lens if hasattr(lens, "zoom_positions") else None
     if zoom is not None and zoom.zoom_positions:
         return [(f"{lens.title or lens.name}, {name}", zoom.zoomed(name)) for name in zoom.zoom_positions]

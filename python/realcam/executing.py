@@ -1,4 +1,4 @@
-"""Tasks done by the processes of an executor, on this machine or on others."""
+"""Runs tasks in the processes of an executor, on this machine or on others."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from typing import TypeVar
 from ._core import InputError
 
 Task = TypeVar("Task", bound=Hashable)
-# Result of a task: an error message, or an empty string. Exceptions of this package do not pickle in every
+# Result of a task: an error message, or an empty string, because exceptions of this package do not pickle in every
 # executor.
 Outcome = str
 
-_TRIES = 3  # of a task with which processes are lost
+_TRIES = 3  # attempts at a task whose process is lost
 
 
 def do_all(
@@ -27,11 +27,12 @@ def do_all(
     place: str,
     noun: str,
 ) -> None:
-    """Gives an executor its tasks until all are done, here or elsewhere.
+    """Submits tasks to an executor until all are done, by this executor or by others.
 
-    wanted: the tasks that can be done now; None: all are done. submit: gives one to the executor. window: how many it
-    has at a time. report: called about once a second; what it raises ends the work. place, noun: for messages, the
-    folder and what a task is called. Raises InputError with what was wrong, and where processes are lost.
+    wanted: returns the tasks that can be done now, or None when all are done. submit: submits one task. window: the
+    largest number of tasks in flight. report: called about once a second; an exception from it ends the work. place,
+    noun: the folder and the word for a task, for messages. Raises InputError with the error of a task, or if a process
+    is lost.
     """
     given: dict[concurrent.futures.Future[Outcome], Task] = {}
     losses: dict[Task, int] = {}

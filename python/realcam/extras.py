@@ -1,4 +1,4 @@
-"""Packages that extras of the installation bring."""
+"""Optional packages, which extras of the installation provide."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from ._core import InputError
 
 
 def imported(package: str, extra: str) -> Any:
-    """Raises InputError, which names the extra, where the package is missing."""
+    """Imports an optional package. Raises InputError, which names the extra, if it is missing."""
     try:
         return import_module(package)
     except ImportError:

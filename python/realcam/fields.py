@@ -1,4 +1,4 @@
-"""Places in the field of a lens: by their height on the film, or by the angle of their light."""
+"""Field points of a lens: by their height on the film, or by their field angle."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ import numpy as np
 from ._core import InputError, Lens, RayStatus, Spot
 from .roots import root_between
 
-FieldPlace = float | tuple[float, float]  #: an angle in degrees, or a film point (x, y) in mm from the film's middle
+FieldPlace = float | tuple[float, float]  #: an angle in degrees, or a film point (x, y) in mm from the film's centre
 _LARGEST_STEP_DEG = 5.0
-_STEPS_INWARDS = 160  # of 5%: to 0.03% of the film
-_PROBES = np.column_stack([np.zeros(21), np.linspace(-1, 1, 21)])  # rays of the meridional plane, over the stop
+_STEPS_INWARDS = 160  # steps of 5%, down to 0.03% of the height
+_PROBES = np.column_stack([np.zeros(21), np.linspace(-1, 1, 21)])  # points of the stop in the meridional plane
 # Points of the stop, nearest to its centre first: the centre may be obstructed, and the edge vignetted.
 STOP_PROBES = np.array(
     [(0.0, 0.0), *((r * x, r * y) for r in (0.35, 0.7, 0.9) for x, y in ((0, 1), (1, 0), (0, -1), (-1, 0)))]
@@ -23,29 +23,29 @@ STOP_PROBES = np.array(
 
 
 def field_arguments(field: FieldPlace) -> dict[str, Any]:
-    """How Lens.spot and its like are told of a place in the field."""
+    """Keyword arguments that select a field point in Lens.spot and similar methods."""
     return {"film_mm": field} if isinstance(field, tuple) else {"field_deg": float(field)}
 
 
 def field_text(field: FieldPlace) -> str:
-    """For messages."""
+    """Text of a field point, for messages."""
     return f"the film point ({field[0]:.6g}, {field[1]:.6g}) mm" if isinstance(field, tuple) else f"{field:.6g} deg"
 
 
 @dataclass(frozen=True)
 class Field:
-    """A place in the field."""
+    """A field point."""
 
-    angle_deg: float  #: of the light before the lens, as Lens.spot takes it
-    film_height_mm: float  #: where the chief ray of the design wavelength meets the film
-    share: float | None  #: of the largest height that gets light, where it was chosen so
+    angle_deg: float  #: field angle in object space, as in Lens.spot
+    film_height_mm: float  #: height of the chief ray at the design wavelength
+    share: float | None  #: fraction of the largest illuminated height; None if chosen by angle
 
 
 def fields_at(lens: Lens, shares: Sequence[float], object_distance_m: float | None = None) -> tuple[Field, ...]:
-    """Places by their height on the film: shares of that of its corner, or of the last one that gets light.
+    """Field points at fractions of the film corner's height, or of the largest illuminated height if that is smaller.
 
     object_distance_m: object plane to front vertex; None: the plane in focus.
-    Raises InputError where no light passes the lens, or a share does not lie between -1 and 1.
+    Raises InputError if no light passes the lens, or if a fraction does not lie between -1 and 1.
     """
     if not all(-1 <= share <= 1 for share in shares):
         raise InputError("fields are shares of the film's corner: numbers from -1 to 1 are wanted")
@@ -64,9 +64,10 @@ def fields_at(lens: Lens, shares: Sequence[float], object_distance_m: float | No
 
 
 def fields_along(lens: Lens, shares: Sequence[float], axis: int) -> tuple[Field, ...]:
-    """Places along x (axis 0) or y (1) of the film of any lens: shares of half its side, as far as light comes.
+    """Field points along x (axis 0) or y (1) of the film, for lenses of any symmetry, at fractions of half its side.
 
-    Their angle is that of the chief ray with the z axis. Raises InputError where no light passes the lens.
+    A point without light is moved inwards until it has some. The angle is between the chief ray and the z axis. Raises
+    InputError if no light passes the lens.
     """
     if not all(-1 <= share <= 1 for share in shares):
         raise InputError("fields are shares of the film's side: numbers from -1 to 1 are wanted")
@@ -82,11 +83,11 @@ def fields_along(lens: Lens, shares: Sequence[float], axis: int) -> tuple[Field,
             except InputError:
                 rays = None
             if rays is not None and (rays.status == RayStatus.OK).any():
-                # The chief ray, or the one closest to it where the middle of the pupil is obstructed.
+                # The chief ray, or the ray closest to it if the centre of the pupil is obstructed.
                 closest = np.argmin(np.where(rays.status == RayStatus.OK, from_middle, np.inf))
                 way = rays.directions[closest]
                 angle = math.degrees(math.atan2(way[axis], way[2]))
-                fields.append(Field(round(angle, 9) + 0.0, height, share))  # an axis of -1e-23 is one of 0
+                fields.append(Field(round(angle, 9) + 0.0, height, share))  # turns -1e-23 and -0.0 on the axis into 0
                 break
             height *= 0.95
         else:
@@ -98,7 +99,7 @@ def fields_along(lens: Lens, shares: Sequence[float], axis: int) -> tuple[Field,
 
 
 def fields_of_angles(lens: Lens, angles_deg: Sequence[float], object_distance_m: float | None) -> tuple[Field, ...]:
-    """Places by the angle of their light before the lens. Raises InputError where none of it passes."""
+    """Field points by their angle in object space. Raises InputError if no light of an angle passes."""
     return tuple(
         Field(angle, _meridional_spot(lens, angle, object_distance_m, lens.wavelength_nm).chief_ray_mm[1], None)
         for angle in angles_deg
@@ -108,10 +109,10 @@ def fields_of_angles(lens: Lens, angles_deg: Sequence[float], object_distance_m:
 def angle_of_height(
     lens: Lens, height_mm: float, object_distance_m: float | None = None, wavelength_nm: float | None = None
 ) -> tuple[float, float]:
-    """The field angle, degrees, whose chief ray meets the film at a height, mm, and that height.
+    """Returns the field angle, degrees, whose chief ray reaches a height on the film, mm, and that height.
 
-    Where the light ends before that height: the largest angle from which a quarter as many rays pass as on the axis,
-    and its height. Raises InputError where no light passes the lens.
+    If the illuminated field ends below that height, returns the largest angle at which at least a quarter of the rays
+    that pass on the axis still pass, and its height. Raises InputError if no light passes the lens.
     """
     wavelength = lens.wavelength_nm if wavelength_nm is None else wavelength_nm
     least = 1

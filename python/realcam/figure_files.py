@@ -1,4 +1,4 @@
-"""Files of matplotlib's figures, drawings and pictures, with the same bytes each time, whole or not at all."""
+"""Files of matplotlib figures, vector and bitmap: reproducible bytes, written completely or not at all."""
 
 from __future__ import annotations
 
@@ -16,7 +16,8 @@ from . import files
 
 NOTEBOOK_DPI = 100
 _SETTINGS: Any = {"svg.fonttype": "none", "pdf.fonttype": 42}  # text stays text
-# By suffix, for Figure.savefig. Drawings have no date; pictures lose nothing, and those of JPEG nothing that is seen.
+# Keyed by suffix, for Figure.savefig. Vector files have no date, so that their bytes are reproducible; bitmaps are
+# lossless, and JPEG is visually so.
 _OPTIONS: dict[str, dict[str, Any]] = {
     ".svg": {"metadata": {"Date": None}},
     ".png": {},
@@ -30,22 +31,22 @@ FORMATS = tuple(_OPTIONS)
 
 
 class ShownFigure(Figure):
-    """A figure that a notebook shows as a cell's result, whether matplotlib's own display is set up there or not."""
+    """A figure that a notebook shows as a cell's result, even without matplotlib's inline display."""
 
     def _repr_png_(self) -> bytes:
         return figure_bytes(self, ".png", NOTEBOOK_DPI)
 
 
 def check_figure_target(path: str | os.PathLike[str]) -> Path:
-    """Raises ImageFileError where no figure can be written to this name."""
+    """Returns the path. Raises ImageFileError if no figure can be written to this name."""
     return files.check_target(path, FORMATS)
 
 
 def figure_bytes(
     figure: Figure, suffix: str, dpi: float = 160, salt: str = "realcam", crop: Bbox | None = None
 ) -> bytes:
-    """What a file of that suffix holds. salt: another one for each drawing of one page, where ids have to differ.
-    crop: the part that is kept, in inches; None is all."""
+    """Returns the content of a file of that suffix. salt: seed of the SVG ids, which must differ between drawings
+    on one page. crop: the part of the figure to keep, in inches; None: all."""
     kind = suffix.lower()
     for text in figure.findobj(Text):
         assert isinstance(text, Text)
@@ -64,12 +65,12 @@ def figure_bytes(
 
 
 def _without_controls(text: str) -> str:
-    """XML, and so SVG, has no spelling of most characters that cannot be printed."""
+    """Replaces unprintable characters by spaces: XML, and so SVG, cannot represent most of them."""
     return text if text.isprintable() else "".join(c if c.isprintable() or c == "\n" else " " for c in text)
 
 
 def save_figure(figure: Figure, path: str | os.PathLike[str], dpi: float = 160) -> None:
-    """Raises ImageFileError."""
+    """Writes a figure in the format of the path's suffix. Raises ImageFileError."""
     target = check_figure_target(path)
-    # Made in memory first, because matplotlib takes its time: a program that is ended meanwhile leaves nothing behind.
+    # Rendered in memory first: matplotlib takes long, and a program that is killed meanwhile leaves no file behind.
     files.write_whole(target, figure_bytes(figure, target.suffix, dpi))

@@ -1,4 +1,4 @@
-"""Files that appear under their name when they are whole."""
+"""Atomic file output: a file appears under its name only when it is complete."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from ._core import ImageFileError, InputError, _check_no_input
 
 
 def system_name(path: str | os.PathLike[str]) -> bytes:
-    """A path as the system spells it. Raises InputError where the system would take its beginning for the whole."""
+    """Returns a path as the bytes of the file system. Raises InputError for a null character, at which it would end."""
     name = os.fsencode(path)
     if b"\0" in name:
         raise InputError("a file name cannot hold a null character")
@@ -21,8 +21,11 @@ def system_name(path: str | os.PathLike[str]) -> bytes:
 
 
 def check_target(path: str | os.PathLike[str], suffixes: Sequence[str] = ()) -> Path:
-    """The path. Raises ImageFileError where no file of this name can be made or its suffix, in any case, is none of
-    these, and InputError where it is no name, or a file that the command has read."""
+    """Returns the path of an output file. Suffixes are compared without regard to case.
+
+    Raises ImageFileError if the file cannot be created or has another suffix, and InputError if the name is invalid or
+    is that of an input file of the command.
+    """
     system_name(path)
     if suffixes and Path(path).suffix.lower() not in suffixes:
         known = ", ".join(suffixes[:-1]) + (" or " if suffixes[1:] else "") + suffixes[-1]
@@ -36,7 +39,7 @@ def check_target(path: str | os.PathLike[str], suffixes: Sequence[str] = ()) -> 
 
 
 def check_targets(paths: Iterable[Path], *, outside: Path | None = None) -> set[Path]:
-    """The files that the paths lead to. Raises what check_target does, and InputError where one of them lies in the
+    """Returns the resolved paths of output files. Raises what check_target raises, and InputError if one lies in the
     folder `outside`, which the command reads."""
     followed = {check_target(path).resolve() for path in paths}
     for path in followed:
@@ -46,7 +49,7 @@ def check_targets(paths: Iterable[Path], *, outside: Path | None = None) -> set[
 
 
 def make_folder(path: Path) -> None:
-    """Makes a folder, and those above it, where they are missing. Raises ImageFileError."""
+    """Creates a folder and its missing parents. Raises ImageFileError."""
     try:
         path.mkdir(parents=True, exist_ok=True)
     except OSError as error:
@@ -56,17 +59,17 @@ def make_folder(path: Path) -> None:
 def write_whole(
     path: str | os.PathLike[str], content: bytes, *, replaces: bool = True, is_durable: bool = False
 ) -> bool:
-    """Writes a file through links, as a whole or not at all; one that is replaced keeps its mode.
+    """Writes a file completely or not at all, following symbolic links; a replaced file keeps its mode.
 
-    replaces: False where no file may be replaced; then a name that is taken is left as it is, and False is returned.
-    is_durable: the content is on the disk before the file has its name, so that a machine that loses power leaves no
-    empty file. Raises ImageFileError.
+    replaces: if False, an existing file is left unchanged, and False is returned. is_durable: syncs the content to disk
+    before the file gets its name, so that a power failure leaves no empty file. Raises ImageFileError.
     """
     check_target(path)
     with _errors_named(path):
         target = _followed(path)
         temporary = _temporary_beside(target)
-        # Not tempfile's, which are private: the system knows the umask, which a program can only ask for by setting it.
+        # Files of the module tempfile are private (mode 0600). open() applies the umask, which a program could only
+        # query by setting it.
         with temporary.open("xb") as file:
             try:
                 with suppress(FileNotFoundError):
@@ -88,14 +91,14 @@ def write_whole(
 
 
 def remove_leftovers(folder: Path) -> None:
-    """Removes what write_whole leaves in a folder, and in those below it, where its process is killed: files that
-    nobody has written to for a minute. What cannot be removed stays.
+    """Removes temporary files that a killed write_whole has left in a folder or below it: those that were not written
+    to for a minute. Files that cannot be removed stay.
     """
     leftovers = list(folder.rglob(f"{_TEMPORARY}*"))
     if not leftovers:
         return
     with suppress(OSError):
-        # Times are those of the file system, whose clock may be another machine's.
+        # The current time is taken from the file system, whose clock may be another machine's.
         with _temporary_beside(folder / "now").open("xb") as file:
             now = os.fstat(file.fileno()).st_mtime
         Path(file.name).unlink()
@@ -114,12 +117,12 @@ def _temporary_beside(target: Path) -> Path:
 
 
 def _take_name(temporary: Path, target: Path) -> None:
-    """Raises FileExistsError where the name is taken, also by a link that leads nowhere."""
+    """Renames without replacing. Raises FileExistsError if the name is taken, even by a dangling link."""
     try:
         os.link(temporary, target)
     except FileExistsError:
         raise
-    except OSError:  # a file system without links
+    except OSError:  # a file system without hard links
         target.touch(exist_ok=False)
         temporary.replace(target)
 
@@ -140,13 +143,13 @@ def _why_no_file(target: Path) -> str:
 
 
 def _followed(path: str | os.PathLike[str]) -> Path:
-    """What a path leads to through links, which need not exist."""
+    """Returns the target of a symbolic link, which need not exist; other paths are returned unchanged."""
     return Path(os.path.realpath(path)) if Path(path).is_symlink() else Path(path)
 
 
 @contextmanager
 def _errors_named(path: str | os.PathLike[str]) -> Iterator[None]:
-    """Errors of the system name the file as the user calls it, and not a temporary one."""
+    """Turns OSError into ImageFileError that names the user's path instead of the temporary file."""
     try:
         yield
     except OSError as error:

@@ -1,4 +1,4 @@
-"""Parts of a picture, which sessions on any number of machines have exposed."""
+"""Parts of a picture, exposed by sessions on any number of machines."""
 
 from __future__ import annotations
 
@@ -24,12 +24,12 @@ FORMAT = 3
 
 @dataclass(frozen=True, eq=False)
 class FilmPart:
-    """What some samples of a part of the film have collected: Session.expose makes it, Session.image_of adds it up.
+    """Sums over some samples of a region of the film: Session.expose returns them, Session.image_of adds them up.
 
-    region: column and row of its first pixel, width and height; None: the whole film, for light that is traced apart
-    from the samples of pixels. first: number of the first sample; spp: samples of each pixel from there on.
-    pixels, layers: (height, width), sums over the samples, with named fields; None: there are none. splats: for each
-    light that was traced apart, its sums in whole numbers. stats: seconds, and numbers of rays.
+    region: column and row of its first pixel, width and height; None: the whole film, for splatted light. first:
+    index of the first sample; spp: samples per pixel from there on. pixels, layers: (height, width) structured arrays
+    of sums over the samples; None: not collected. splats: fixed-point sums of each kind of splatted light (ghosts,
+    starbursts, lamps by light tracing). stats: seconds, and numbers of rays.
     """
 
     region: _Region | None
@@ -62,7 +62,7 @@ class FilmPart:
         set_checked_state(self, state, lambda made: made.packed())
 
     def __eq__(self, other: object) -> bool:
-        """Whether both have collected the same; what it cost does not count."""
+        """True if regions, samples and sums are equal; stats are not compared."""
         if not isinstance(other, FilmPart):
             return NotImplemented
         about, others = self._about(), other._about()
@@ -77,17 +77,17 @@ class FilmPart:
         return f"<realcam.FilmPart {where}, samples {self.first} to {self.first + self.spp}>"
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Writes the part, as a whole or not at all, also where the machine stops. Raises ImageFileError."""
+        """Writes the part completely or not at all, even on a power failure. Raises ImageFileError."""
         write_archive(path, self.packed())
 
     def packed(self, owner: str = "") -> bytes:
-        """The content of its file. owner: the identity of the job that it belongs to, if any."""
-        # Light that is traced apart leaves most pixels dark.
+        """Returns the content of its file. owner: identity of the job that the part belongs to, if any."""
+        # Splats compress well: they leave most pixels 0.
         return packed(self._about(), self._arrays(), owner=owner, is_compressed=bool(self.splats))
 
     @classmethod
     def load(cls, path: str | os.PathLike[str], *, owner: str = "", limit_bytes: int = 1 << 34) -> FilmPart:
-        """Reads a part that belongs to `owner` and is unpacked not larger than limit_bytes.
+        """Reads a part that belongs to `owner` and whose unpacked size is at most limit_bytes.
 
         Raises InputError if it is missing, damaged or not a part of a film.
         """
@@ -122,7 +122,8 @@ class FilmPart:
         }
 
     def _arrays(self) -> dict[str, np.ndarray]:
-        """Those of pixels and layers field by field. Squares are all 0 where no variance is wanted."""
+        """Arrays of the archive. Structured sums are stored field by field; the optional sums of PixelSum (variance,
+        dual pixels, control variates) are left out if all are 0."""
         arrays = {f"splats{i}": light["sums"] for i, light in enumerate(self.splats)}
         for name in ("pixels", "layers"):
             sums = getattr(self, name)
@@ -133,7 +134,7 @@ class FilmPart:
 
 
 def _joined(arrays: Mapping[str, np.ndarray], name: str, dtype: np.dtype[np.void]) -> np.ndarray | None:
-    """Joins the fields that _arrays has divided. Raises ValueError if one is missing, or of another shape or dtype."""
+    """Inverse of _arrays. Raises ValueError if a field is missing or has another shape or dtype."""
     found = {key.removeprefix(f"{name}."): array for key, array in arrays.items() if key.startswith(f"{name}.")}
     if not found:
         return None
@@ -169,7 +170,7 @@ def _is_splat(light: Any) -> bool:
 
 
 class CollectedFilm:
-    """The sum of parts of one film. Parts of later samples of a pixel are added later: sums depend on their order."""
+    """Sum of the parts of one film. Add parts in the order of their samples: floating-point sums depend on it."""
 
     def __init__(self, width: int, height: int) -> None:
         self.pixels = np.zeros((height, width), _core._PIXEL_SUM)
@@ -178,7 +179,7 @@ class CollectedFilm:
         self.stats: dict[str, float] = {}
 
     def add(self, part: FilmPart) -> None:
-        """Raises InputError for a part of another film."""
+        """Adds a part. Raises InputError for a part of another film."""
         if part.region is not None:
             column, row, width, height = part.region
             where = np.s_[row : row + height, column : column + width]
@@ -195,11 +196,11 @@ class CollectedFilm:
             self.stats[name] = self.stats.get(name, 0) + value
 
     def exposure(self, settings: RenderSettings, exposure_time_s: float) -> np.ndarray:
-        """(H, W, 3) float32, lux seconds. settings: with which the samples were taken."""
+        """(H, W, 3) float32, lux seconds. settings: those of the samples."""
         return _core._developed_exposure(self.pixels, self.splats, settings, exposure_time_s)
 
     def traced_exposure(self, exposure_time_s: float) -> np.ndarray:
-        """What of it was traced from the lights; (0, W, 3) where nothing was."""
+        """Exposure of the splatted light, (H, W, 3) lux seconds; (0, W, 3) if there are no splats."""
         return _core._traced_exposure(self.splats, exposure_time_s)
 
     def _add_splats(self, part: FilmPart) -> None:

@@ -1,4 +1,4 @@
-"""Optical flow: where what a picture shows is in the next one."""
+"""Optical flow: the motion of each pixel's object point from one picture to the next."""
 
 from __future__ import annotations
 
@@ -18,20 +18,20 @@ from .render import render
 Array = NDArray[np.float64]
 Rows = NDArray[np.int64]
 
-LAYERS = ("object_id", "position_middle", "depth_middle")  # what flow_between wants of pictures
+LAYERS = ("object_id", "position_middle", "depth_middle")  # layers that flow_between requires
 
-_FAR_M = 1e9  # as infinity: from there no camera's way is seen
+_FAR_M = 1e9  # stands for infinity: the parallax of camera motion is negligible there
 _MOST_TURNS = 20
-_FLO_UNKNOWN = 1e10  # what the format has where no flow is known
+_FLO_UNKNOWN = 1e10  # the format's value for unknown flow
 
 
 @dataclass(frozen=True, eq=False)
 class OpticalFlow:
-    """By how much what each pixel shows has moved in the next picture.
+    """Displacement of each pixel's object point in the next picture.
 
-    pixels: (H, W, 2) float32, columns to the right and rows down; NaN where the pixel shows nothing, and where the next
-    lens images no such point. visible: (H, W) bool, whether the next picture shows it: it lies within that picture, and
-    nothing hides it there. Raises InputError.
+    pixels: (H, W, 2) float32, columns to the right and rows down; NaN if no light of the scene reaches the pixel
+    centre, or if the next lens does not image the point. visible: (H, W) bool, true if the point lies within the next
+    picture and is not occluded there. Raises InputError.
     """
 
     pixels: NDArray[np.float32]
@@ -59,8 +59,8 @@ class OpticalFlow:
         return f"<realcam.OpticalFlow {width} x {height} pixels, {np.mean(self.visible):.0%} visible>"
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Writes .flo, the format of Middlebury's and Sintel's data: with the flow of what is hidden, too, and 1e10
-        where none is known. Raises ImageFileError.
+        """Writes .flo, the format of Middlebury's and Sintel's data, including the flow of occluded points; 1e10 marks
+        unknown flow. Raises ImageFileError.
         """
         check_target(path, (".flo",))
         height, width = self.visible.shape
@@ -71,14 +71,15 @@ class OpticalFlow:
 def optical_flow(
     scene: Scene, camera: Camera, next_camera: Camera, next_scene: Scene | None = None, *, device: str = "auto"
 ) -> OpticalFlow:
-    """Where what a camera's pixels show is in the picture of another camera, or of the same one later.
+    """Optical flow from a camera's picture to that of another camera, or of the same one later.
 
     flow = rc.optical_flow(scene, camera, camera.replace(shutter_opens_s=1 / 24))
 
-    Of the surface in the middle ray of each pixel (docs/layers.md), from the middle of the exposure of its row to the
-    middle of that of the row that shows it then. So it has the motion of camera and objects, and the distortion and
-    breathing of lenses. What lies at infinity moves as the camera turns. next_scene: where objects have moved without
-    keys in time, the scene then, with the same instances; None: the same scene. Raises InputError, DeviceError.
+    The flow is that of the surface hit by each pixel-centre ray (docs/layers.md), from the middle of its row's exposure
+    to the middle of the exposure of the row that shows it in the next picture. It includes the motion of camera and
+    objects, and the distortion and breathing of lenses. Points at infinity move with the camera's rotation. next_scene:
+    the scene of the next picture, with the same instances, if objects have moved without keys in time; None: the same
+    scene. Raises InputError, DeviceError.
     """
     first, second = (
         render(seen, taken_by, spp=1, max_bounces=0, layers=list(LAYERS), effects=(), device=device)
@@ -88,7 +89,7 @@ def optical_flow(
 
 
 def flow_between(first: Image, second: Image, scene: Scene, next_scene: Scene | None = None) -> OpticalFlow:
-    """optical_flow of two pictures that have LAYERS. Raises InputError."""
+    """Computes optical_flow from two rendered pictures that have LAYERS. Raises InputError."""
     then = next_scene or scene
     if [name for name, _ in then.instances] != [name for name, _ in scene.instances]:
         raise InputError("next_scene must have the instances of scene, by the same names and in the same order")
@@ -102,7 +103,7 @@ def flow_between(first: Image, second: Image, scene: Scene, next_scene: Scene | 
         points[is_far] = origins + _FAR_M * directions
     there = _placements(then, second.camera)
     in_objects = _carried(points, ids, row, np.linalg.inv(_placements(scene, first.camera)).astype(np.float64))
-    # The row says when a thing is seen then, and the time, in which row: until they agree.
+    # Rolling shutter: the row determines the time, and the time the row. Fixed-point iteration until both agree.
     seen_row, last = row.copy(), second.depth.shape[0] - 1
     points_then, to = np.empty_like(points), np.empty_like(middles)
     left = np.arange(len(row))
@@ -115,7 +116,8 @@ def flow_between(first: Image, second: Image, scene: Scene, next_scene: Scene | 
         left = left[has_moved]
         if len(left) == 0:
             break
-    # The middle ray is not quite the mean of a pixel's rays, by which points are projected: to both ends alike.
+    # project() uses the mean of a pixel's rays, which differs slightly from the pixel-centre ray; taking the difference
+    # of two projections cancels that.
     moved = to - first.camera.project(points)
     flow = np.full((*depth.shape, 2), np.nan, np.float32)
     visible = np.zeros(depth.shape, bool)
@@ -125,8 +127,8 @@ def flow_between(first: Image, second: Image, scene: Scene, next_scene: Scene | 
 
 
 def _placements(scene: Scene, camera: Camera) -> Array:
-    """(rows, instances, 4, 4): where instances are in the middle of each row's exposure; one row where that is all the
-    same."""
+    """(rows, instances, 4, 4): transforms of the instances in the middle of each row's exposure; a single row if they
+    are the same for all rows."""
     height = camera.film.resolution[1]
     rows = height if any(scene.motions) and camera.readout_time_s > 0 else 1
     middle_s = camera.shutter_opens_s + 0.5 * camera.exposure_time_s
@@ -137,17 +139,17 @@ def _placements(scene: Scene, camera: Camera) -> Array:
 
 
 def _carried(points: Array, ids: NDArray[np.uint32], rows: Rows, placements: Array) -> Array:
-    """Points with the matrices of their objects and rows; ids are those of the layer object_id."""
+    """Transforms points by the matrices of their objects and rows; ids: values of the layer object_id."""
     carried: Array = points.copy()
-    on = ids >= 2  # 0 is nothing, and 1 what stands still
+    on = ids >= 2  # 0: no object; 1: static geometry
     matrices = placements[rows[on] if len(placements) > 1 else 0, ids[on].astype(np.int64) - 2]
     carried[on] = np.einsum("nij,nj->ni", matrices[:, :3, :3], points[on]) + matrices[:, :3, 3]
     return carried
 
 
 def _is_seen(picture: Image, at: Array, points: Array, ids: NDArray[np.uint32]) -> NDArray[np.bool_]:
-    """Whether a picture shows points that are projected to `at`: whether one of the four pixels around shows the same
-    object, not nearer than the point. Surfaces bend, and float32 rounds, by less than a thousandth of the distance.
+    """True for points, projected to `at`, that a picture shows: one of the four pixels around shows the same object,
+    and not nearer than the point. The tolerance of 0.1% of the distance covers curved surfaces and float32 rounding.
     """
     height, width = picture.depth.shape
     with np.errstate(invalid="ignore"):
@@ -165,7 +167,7 @@ def _is_seen(picture: Image, at: Array, points: Array, ids: NDArray[np.uint32]) 
             nearest = np.fmin(nearest, shown)
             if 0 <= down <= 1 and 0 <= right <= 1:
                 farthest = np.fmax(farthest, shown)
-    # Where a slanted surface ends, it goes on beyond the middles of the last pixels that show it.
+    # A slanted surface extends beyond the centres of the last pixels that show it.
     slant = farthest - nearest
     wanted = np.linalg.norm(points[inside] - picture.camera.position, axis=1)
     seen[inside] = 0.999 * wanted <= farthest + slant

@@ -30,8 +30,8 @@ def save_gallery(
 ) -> None:
     """Writes cross-sections of lenses as .svg, .pdf, .png, .jpg, .tif or .webp.
 
-    lenses: the bundled ones, by name, if None. columns: of the grid; its rows follow. theme: light or dark.
-    titles: name, focal length in mm and f-number above each.
+    lenses: None: all bundled lenses, by name. columns: of the grid; the number of rows follows. theme: light or dark.
+    titles: whether name, focal length in mm and f-number stand above each drawing.
     Each drawing has its own scale. A film far behind the glass is left out, so that the glass is large enough to see.
     Raises ImageFileError for a name that cannot be written, InputError for no lenses, no columns or an
     unknown theme.
@@ -71,7 +71,7 @@ def _draw_cell(lens: Lens, axes: Axes, style: Style) -> None:
 
 def _write_title(lens: Lens, axes: Axes, style: Style) -> None:
     data = lens.first_order()
-    # Names are text, and a dollar sign in one begins no formula.
+    # A dollar sign in a name must not begin a formula.
     name = "".join(c for c in lens.name if c.isprintable())
     axes.set_title(
         f"{name}\n{data.effective_focal_length_mm:.4g} mm  f/{lens.f_number:.3g}",
@@ -82,7 +82,7 @@ def _write_title(lens: Lens, axes: Axes, style: Style) -> None:
 
 
 def _window(lens: Lens) -> tuple[float, float, float]:
-    """What a cell shows, in mm: the glass with a margin, and the film where it stands near enough."""
+    """Left, right and half height of a cell, in mm: the glass with a margin, and the film if it is close enough."""
     front, back = min(lens.vertices_mm), max(lens.vertices_mm)
     rim = max(surface.clear_semi_diameter_mm for surface in lens.surfaces)
     reach = max(back - front, 2 * rim)

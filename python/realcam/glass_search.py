@@ -1,4 +1,4 @@
-"""Glasses of the catalogue for a lens: those nearest to one, and those with which it becomes best."""
+"""Glass selection from the catalogue: the nearest glasses to a given one, and glass substitution in a lens."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _G, _F, _D, _C = 435.8343, 486.1327, 587.5618, 656.2725  # nm
 class GlassMatch:
     """A glass of the catalogue. partial_dispersion: (n_g - n_F) / (n_F - n_C).
 
-    distance: from the glass that was asked for; 1 is 0.01 of n_d, 1 of V_d, or 0.005 of the partial dispersion.
+    distance: from the requested glass; 1 is 0.01 of n_d, 1 of V_d, or 0.005 of the partial dispersion.
     """
 
     name: str
@@ -49,10 +49,10 @@ def _catalogue() -> tuple[tuple[str, tuple[float, float, float]], ...]:
 
 
 def nearest_glasses(glass: Glass | str, count: int = 5, *, makers: Sequence[str] | None = None) -> list[GlassMatch]:
-    """The glasses of the catalogue nearest by index, Abbe number and partial dispersion, the nearest first.
+    """The catalogue's glasses nearest in index, Abbe number and partial dispersion, the nearest first.
 
-    makers: whose glasses count, as they stand before the colon: ("schott", "ohara"); None: all. Prices are not known.
-    Raises InputError for a name that no catalogue has, and for a glass without dispersion.
+    makers: the makers to choose from, as named before the colon: ("schott", "ohara"); None: all. Prices are not
+    considered. Raises InputError for an unknown name, and for a glass without dispersion.
     """
     n, v, p = _numbers(Glass.named(glass) if isinstance(glass, str) else glass)
     if not math.isfinite(v):
@@ -67,7 +67,7 @@ def nearest_glasses(glass: Glass | str, count: int = 5, *, makers: Sequence[str]
 
 @dataclass(frozen=True)
 class GlassSearch:
-    """What came of a search for glasses. glasses: those that were changed, by surface. evaluations: looks at lenses."""
+    """Result of a glass search. glasses: the new glasses, by surface index. evaluations: number of evaluated lenses."""
 
     lens: Lens
     glasses: Mapping[int, str]
@@ -91,12 +91,12 @@ def with_better_glasses(
     progress: Callable[[int, float], bool | None] | None = None,
     answers_interrupt: bool = False,
 ) -> GlassSearch:
-    """Puts other glasses of the catalogue behind surfaces, one after the other, and optimises the lens with each.
+    """Substitutes glasses of the catalogue, one surface after the other, and optimises the lens with each candidate.
 
-    surfaces: whose glass may change; None: all glasses with dispersion. candidates: the nearest to the glass as it is,
-    of which the best is kept. makers: as for nearest_glasses. It ends when a round changes nothing, or after `rounds`.
-    most_steps: of each optimisation. progress, answers_interrupt: as for optimised. Raises InputError for surfaces
-    without such a glass.
+    surfaces: indices of the surfaces whose glass may change; None: all glasses with dispersion. candidates: the number
+    of nearest glasses that are tried for each surface; the best one is kept. makers: as for nearest_glasses. The search
+    ends when a round changes nothing, or after `rounds`. most_steps: of each optimisation. progress, answers_interrupt:
+    as for optimised. Raises InputError for surfaces without a dispersive glass behind them.
     """
     chosen = _glass_surfaces(lens, surfaces)
     state = _State(0, progress)
@@ -126,7 +126,7 @@ def with_better_glasses(
                             trial, variables, targets, most_steps=most_steps, samples=samples, progress=state
                         )
                     except (InputError, LensFileError):
-                        continue  # with this glass the lens cannot be focused, or is dark
+                        continue  # with this glass the lens cannot be focused, or passes no light
                     if found.merit < best.merit:
                         best, changed = found, True
                         glasses[surface] = match.name
@@ -142,13 +142,13 @@ def with_better_glasses(
 
 
 def _other_glasses(glass: Glass, count: int, makers: Sequence[str] | None) -> list[GlassMatch]:
-    """Without those that are the same glass by another name."""
+    """The nearest glasses, without equivalents of the glass under another name."""
     pool = nearest_glasses(glass, len(_catalogue()), makers=makers)
     return [match for match in pool if match.distance > 1e-3][:count]
 
 
 class _State:
-    """Counts the looks of all optimisations, and remembers that the caller wants an end."""
+    """Counts the evaluations of all optimisations, and remembers that the caller has stopped the search."""
 
     def __init__(self, looks: int, progress: Callable[[int, float], bool | None] | None) -> None:
         self.looks, self.progress, self.is_ended = looks, progress, False

@@ -19,17 +19,16 @@ from .settings import setting
 
 @dataclass(frozen=True, eq=False)
 class Image:
-    """What lies on the film after the exposure, without noise.
+    """A picture: the film's exposure, without sensor noise, and how it was taken.
 
     pixels: (H, W, 3) float32, exposure in lux seconds, linear Rec. 709, row 0 at the top.
-    depth: (H, W) float32, metres along the camera's axis from the film; inf where nothing was met. Mean over the
-    samples that met something, by their weight in the exposure.
-    layers: what was asked for by name (docs/layers.md), arrays of (H, W), (H, W, 2) or (H, W, 3), float32, and uint32
-    for ids and sample counts. object_names, material_names: by the ids in the layers; empty where these were not asked
-    for. settings: with which it was taken; what the effect "auto" has decided is in their place, and plan tells of it
-    (Plan.summary; empty: it was not asked). denoiser: what has changed the pixels since they were taken; empty:
-    nothing. spp: where the settings have "auto", the mean over the pixels. shortfall: a sentence where the noise is
-    larger than wanted.
+    depth: (H, W) float32, metres along the camera's axis from the film; inf where no sample hit a surface. Mean over
+    the samples that hit one, weighted by their contribution to the exposure.
+    layers: the requested layers by name (docs/layers.md), arrays of (H, W), (H, W, 2) or (H, W, 3), float32, and uint32
+    for ids and sample counts. object_names, material_names: indexed by the ids in the layers; empty without id layers.
+    settings: those of the render, with "auto" replaced by what was planned; plan: Plan.summary, empty if nothing was
+    planned. denoiser: name and version if the pixels were denoised, otherwise empty. spp: with the setting "auto" the
+    mean over the pixels. shortfall: a sentence if the noise exceeds its limit, otherwise empty.
     """
 
     pixels: np.ndarray
@@ -71,7 +70,7 @@ class Image:
         set_checked_state(self, state, type(self).metadata)
 
     def __eq__(self, other: object) -> bool:
-        """Whether pictures, cameras and settings are the same; what it cost to take them does not count."""
+        """True if pixels, layers, camera and metadata are equal; stats are not compared."""
         if not isinstance(other, Image):
             return NotImplemented
         mine, others = self._arrays(), other._arrays()
@@ -108,12 +107,12 @@ class Image:
         return _core.develop(self.pixels, self.camera.iso if iso is None else iso, tone)
 
     def denoised(self, *, device: str = "auto") -> Image:
-        """Without noise, as Intel's Open Image Denoise guesses it: a picture to look at, not to measure.
+        """Denoised by Intel's Open Image Denoise: a picture to look at, not to measure.
 
-        Wants the layers albedo, normal and traced_light, and the extra realcam[denoise] (docs/denoising.md). All but
-        the pixels stays as it is; the layers variance and dual_pixel_*, which describe the noise or have it, go.
-        device: "auto" (a GPU if the denoiser can use one), "cpu", "cuda" or "cuda:1". Raises InputError where one of
-        these is missing; DeviceError.
+        Needs the layers albedo, normal and traced_light, and the extra realcam[denoise] (docs/denoising.md). Only the
+        pixels change; the layers variance and dual_pixel_*, which describe or contain the noise, are dropped.
+        device: "auto" (a GPU if the denoiser can use one), "cpu", "cuda" or "cuda:1". Raises InputError if a layer or
+        the extra is missing; DeviceError.
         """
         pixels, name = denoiser.denoised(self.pixels, self.layers, device)
         noisy = ("variance", "dual_pixel_left", "dual_pixel_right")
@@ -125,15 +124,14 @@ class Image:
         metres, and all layers).
 
         Lens, f-number, focus, exposure time, ISO, seed and version are in the file's metadata. Raises ImageFileError;
-        no half-written file is left. An image does not know which files its scene was read from: one of the same name
-        is replaced, as any other.
+        no half-written file is left. Existing files are replaced, even those that the scene was read from.
         """
         if tone not in ("film", "linear"):
             raise InputError(f'unknown tone curve "{tone}"; film or linear is wanted')
         _core._write_picture(system_name(path), self, tone == "film")
 
     def metadata(self) -> dict[str, str]:
-        """Names ("realcam:...") and values of what is written into picture files."""
+        """Names ("realcam:...") and values of the metadata in picture files."""
         entries: dict[str, str] = _core._metadata(
             self.camera, self.settings, self.spp, self.seed, self.plan, self.denoiser
         )

@@ -1,4 +1,4 @@
-"""Picture files. What reads and writes them is the C++ code that the executable has."""
+"""Picture files, read and written by the same C++ code as in the executable."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ DEVELOPED = (".png", ".jpg", ".jpeg", ".tif", ".tiff", ".webp")
 
 
 def read_environment(path: str | os.PathLike[str], *, layer: str = "") -> np.ndarray:
-    """A latitude-longitude picture as (H, W, 3) float32, linear, row 0 up: what Scene.with_environment takes.
+    """Reads a latitude-longitude picture as (H, W, 3) float32, linear, row 0 at the zenith, for Scene.with_environment.
 
-    Values of EXR and HDR are cd/m^2; 8 and 16 bits are sRGB, with white as 1 cd/m^2. Colours of other primaries, as an
-    EXR or HDR names them, become those of Rec. 709. OpenEXR's environment maps (attribute envmap) have its directions,
-    and may be cube maps. layer: one of an EXR's layers, such as "albedo"; by default the channels R, G and B, or the
-    layer beauty or combined, or the only one. Negative values become 0, with a warning. Raises ImageFileError, also
-    where they are more than a twentieth of the light, or a value is none up to 1e20.
+    Values of EXR and HDR are cd/m^2; 8 and 16 bits are sRGB, with white as 1 cd/m^2. Colours in other primaries, if the
+    EXR or HDR states them, are converted to Rec. 709. OpenEXR environment maps (attribute envmap) follow OpenEXR's
+    orientation, and may be cube maps. layer: a layer of an EXR, such as "albedo"; by default the channels R, G and B,
+    or the layer beauty or combined, or the only one. Negative values become 0, with a warning. Raises ImageFileError,
+    also if negative values exceed a twentieth of the light, or if a value is not a number up to 1e20.
     """
     pixels, messages = _core._read_environment(system_name(path), layer)
     for message in messages:
@@ -30,8 +30,8 @@ def read_environment(path: str | os.PathLike[str], *, layer: str = "") -> np.nda
 
 
 def read_picture(path: str | os.PathLike[str]) -> np.ndarray:
-    """A picture as (H, W, 3) float32, linear Rec. 709, row 0 at the top. Codes of 8 and 16 bits are sRGB with white as
-    1; values of EXR and HDR stay as they are. Raises ImageFileError.
+    """Reads a picture as (H, W, 3) float32, linear Rec. 709, row 0 at the top. Values of 8 and 16 bits are sRGB with
+    white as 1; values of EXR and HDR are not scaled. Raises ImageFileError.
     """
     try:
         return read_environment(path)
@@ -45,8 +45,8 @@ def write_codes(codes: np.ndarray, path: str | os.PathLike[str], entries: Mappin
 
 
 def read_film(path: str | os.PathLike[str]) -> tuple[np.ndarray, dict[str, str]]:
-    """The film's exposure in an .exr of realcam's, (H, W, 3) float32 lux seconds, and the "realcam:..." entries of its
-    metadata. Raises ImageFileError.
+    """Reads the film's exposure from an .exr of realcam, (H, W, 3) float32 lux seconds, and the "realcam:..." entries
+    of its metadata. Raises ImageFileError.
     """
     exposure, entries = _core._read_film(system_name(path))
     return exposure, dict(entries)

@@ -23,35 +23,35 @@ Doubles = NDArray[np.float64]
 Floats = NDArray[np.float32]
 Points = tuple[Doubles, Doubles]
 
-FLIPS = {"none": (1, 1), "horizontal": (1, -1), "vertical": (-1, 1), "both": (-1, -1)}  # steps along rows and columns
+FLIPS = {"none": (1, 1), "horizontal": (1, -1), "vertical": (-1, 1), "both": (-1, -1)}  # steps over rows and columns
 PROJECTIONS = ("tangent", "angle")
 WAVELENGTHS_NM = (440.0, 480.0, 520.0, 560.0, 600.0, 640.0)
-_WIDEST_TANGENT_DEG = 70.0  # between lenses that keep lines straight, up to 63 degrees, and fisheyes, from 78 on
-_LARGEST_BLUR = 511  # pixels from the chief ray
-_LARGEST_LOSS = 0.25  # share of the light that may land farther away
-_LARGEST_DIRECT_ARRAY = 131  # points across; the time of the direct sum rises with the fourth power
+_WIDEST_TANGENT_DEG = 70.0  # rectilinear lenses reach 63 degrees, fisheyes begin at 78
+_LARGEST_BLUR = 511  # kernel radius about the chief ray, in pixels
+_LARGEST_LOSS = 0.25  # fraction of the light that may land farther away
+_LARGEST_DIRECT_ARRAY = 131  # points across; the time of the direct sum grows with the fourth power
 _LARGEST_DIRECT_SPOT = 20.0  # wavelengths x f-number
-_DIFFRACTION_TAIL = 16.0  # wavelengths x f-number, beyond which 1.3% of Airy's light falls
+_DIFFRACTION_TAIL = 16.0  # wavelengths x f-number; 1.3% of an Airy pattern's light falls outside
 _TILE = 512  # pixels
 _SHOWN_PSF = 65  # points across
 
 
 @dataclass(frozen=True, repr=False)
 class ImageSimulation(ShortText):
-    """A flat picture as a lens images it.
+    """Result of image_simulation(): a flat picture as imaged by a lens.
 
     pixels: (H, W, 3) float32, film exposure in linear Rec. 709, where the picture's white on the axis is 1; row 0 at
-      the top. The image is upright, as a developed picture; `flip` applies.
+      the top. The image is upright, as a developed picture, unless flipped by `flip`.
     x_mm: (W,), y_mm: (H,), film coordinates of the pixel centres: x to the right, y up, as in the developed image.
-    illumination: (H, W) float32, light of an even white object relative to the film's centre; 0 where the lens has no
-      light.
-    psfs: (Y, X, S, S, 3) float32, point spread functions at the nodes of a grid over the whole film: share of the light
-      per um^2 in the channels R, G and B, row 0 at the top, without `flip`. Those without light are 0.
-    psf_x_mm: (X,), psf_y_mm: (Y,), film coordinates of the nodes; rows from the top. psf_pitch_um: between points.
+    illumination: (H, W) float32, illuminance from a uniform white object relative to the film's centre; 0 where no
+      light arrives.
+    psfs: (Y, X, S, S, 3) float32, point spread functions at the nodes of a grid over the whole film: fraction of the
+      light per um^2 in the channels R, G and B, row 0 at the top, without `flip`. Nodes without light are 0.
+    psf_x_mm: (X,), psf_y_mm: (Y,), film coordinates of the nodes; rows from the top. psf_pitch_um: sample spacing.
     height_deg: angle that the picture's height spans, seen from the entrance pupil.
     projection: "tangent" for a flat object, or "angle" for a picture in which distances from the centre are field
       angles.
-    wavelengths_nm: (N,); weights: (N, 3), share of each wavelength in the channels R, G and B.
+    wavelengths_nm: (N,); weights: (N, 3), weight of each wavelength in the channels R, G and B.
     """
 
     pixels: Floats
@@ -73,7 +73,7 @@ class ImageSimulation(ShortText):
         return _codes(self.pixels)
 
     def psf_sheet(self, height: int) -> NDArray[np.uint8]:
-        """(height, W, 3) uint8 sRGB: the grid of point spread functions, each relative to its own peak."""
+        """(height, W, 3) uint8 sRGB: the grid of point spread functions, each normalised to its own peak."""
         rows, columns, size = self.psfs.shape[:3]
         peaks = np.maximum(self.psfs.max(axis=(2, 3, 4), keepdims=True), 1e-30)
         framed = np.zeros((rows, columns, size + 1, size + 1, 3), np.float32)
@@ -119,22 +119,24 @@ def image_simulation(
     """Images a flat picture through a lens: blur, distortion, lateral colour, falloff and diffraction.
 
     picture: a file, or an array (h, w, 3) or (h, w): uint8 or uint16 are sRGB codes, floats are linear Rec. 709 with
-      white as 1. Its centre lies where the film's centre looks, its plane across the axis; around it is black.
+      white as 1. Its centre is the object point of the film's centre, its plane is perpendicular to the axis, and its
+      surroundings are black.
     height_deg: angle of the picture's height, seen from the entrance pupil. height_m: its height in metres, for an
-      object at a finite distance. None of both: the largest that the film shows whole, by the scale at its centre.
-    projection: "tangent" for a flat object, "angle" for distances from the centre that are field angles, which has no
-      end at 90 degrees. None: "tangent" while the film's corners look up to 70 degrees away from the axis.
+      object at a finite distance. Without either: the largest height at which the whole picture fits the film, by the
+      scale at the film's centre.
+    projection: "tangent" for a flat object, "angle" for distances from the centre that are field angles, which may
+      exceed 90 degrees. None: "tangent" if the film's corners look at most 70 degrees off axis.
     object_distance_m: object plane to front vertex, inf allowed; None is the plane in focus.
-    resolution: (width, height) of the film in pixels; None: the picture's, or as many as pixel_um allows on the film.
-    pixel_um: None: the largest with which the resolution fits on the film.
+    resolution: (width, height) of the film in pixels; None: the picture's, or as many as fit the film at pixel_um.
+    pixel_um: pixel pitch; None: the largest at which the resolution fits on the film.
     crop: (left, top, width, height) in pixels of the film, before `flip`: the part that is computed.
     flip: "horizontal", "vertical" or "both" mirrors the result; "both" is the image as it lies on the film.
-    falloff: False leaves out relative illumination, but not the end of the light.
+    falloff: False omits relative illumination, but points without light stay black.
     psf_grid: (X, Y), nodes over the film at which point spread functions are computed; they are interpolated between.
     wavelengths_nm: None: 440 to 640 in steps of 40, or the design wavelength alone for a lens that is not made for
-      visible light. Each stands for the part of the film's sensitivity to white (D65) that is nearest to it.
-    progress: called with the share done, 0 to 1.
-    Raises InputError where the arguments contradict each other, no light reaches the film's centre, or more than a
+      visible light. Each represents the part of the film's sensitivity to white (D65) that is nearest to it.
+    progress: called with the fraction done, 0 to 1.
+    Raises InputError if the arguments contradict each other, if no light reaches the film's centre, or if more than a
     quarter of the light of a point lands farther than 511 pixels away; ImageFileError for a file that cannot be read.
     """
     source = _linear(picture)
@@ -159,7 +161,7 @@ def image_simulation(
     kernels = _Kernels(light, (int(psf_grid[0]), int(psf_grid[1])), film, lambda share: report(0.5 * share))
 
     def source_points(u: Doubles, v: Doubles, channel: int) -> Points:
-        """Indices of the picture, (row, column), that the lens images to film points; nan where there are none."""
+        """Picture positions (row, column) that the lens images to film points; nan if a point has no object point."""
         x, y = (light.object_points(-u, v, channel, kind) - centre[:, None, None]) * (source.shape[0] / extent)
         return 0.5 * source.shape[0] - 0.5 - y, 0.5 * source.shape[1] - 0.5 + x
 
@@ -216,7 +218,7 @@ class _Film:
 
 @dataclass(frozen=True)
 class _Tile:
-    """Columns x0 to x1 and rows y0 to y1 of the film, without the last ones, in a cell (column, row) of the grid."""
+    """Columns x0 to x1 and rows y0 to y1 of the film (ends exclusive), within a cell (column, row) of the PSF grid."""
 
     cell: tuple[int, int]
     x0: int
@@ -226,10 +228,10 @@ class _Tile:
 
 
 class _FieldLight:
-    """What a lens does to object points, over its film: where they lie, how bright they appear, their colours' shifts.
+    """Imaging properties over the film: directions of the object points, relative illumination and lateral colour.
 
-    Film points are (x, y) in mm in the film's own frame, which the developed image shows turned by 180 degrees. An
-    object point is named by the film point at which its chief ray of the design wavelength ends.
+    Film points are (x, y) in mm in the film's own frame, which the developed image shows rotated by 180 degrees. An
+    object point is identified by the film point of its chief ray at the design wavelength.
     """
 
     def __init__(
@@ -244,20 +246,20 @@ class _FieldLight:
         self.brightness = self.light((0.0, 0.0))
         if not self.brightness > 0 or np.isnan(self.direction((0.0, 0.0))).any():
             raise InputError(f'no light of lens "{lens.name}" reaches the middle of the film')
-        for nm in wavelengths:  # raises where a glass is not known
+        for nm in wavelengths:  # raises if a glass has no data at the wavelength
             self.chief_ray_mm((0.0, 0.0), float(nm))
         if lens.is_rotational:
             self._sample_radius()
         else:
             self._sample_film()
-        # Directions of a few film points out to the corners; those without light are nan.
+        # Field angles of film points along both diagonals, for the largest illuminated one.
         shares = np.linspace(-1, 1, 21)
         corners = np.abs(self.angles(np.outer(half_mm[0], shares), np.outer([half_mm[1], -half_mm[1]], shares), 1))
         lit = self.illumination(np.outer(half_mm[0], shares), np.outer([half_mm[1], -half_mm[1]], shares)) > 0
         self.corner_deg = float(np.degrees(np.max(np.hypot(*corners)[lit])))
 
     def direction(self, point: tuple[float, float]) -> Doubles:
-        """(2,): direction of the object point, as its angle to the axis in radians along x and y; nan: no light."""
+        """(2,): direction of the object point, as its angle to the axis in radians along x and y; nan without light."""
         try:
             rays = self.lens.aim(STOP_PROBES, film_mm=point, object_distance_m=self.distance_m)
         except InputError:
@@ -268,9 +270,9 @@ class _FieldLight:
         (x, y, z), way = rays.origins_mm[passing[0]], rays.directions[passing[0]]
         if math.isinf(self.distance_m):
             across, along = -way[:2], float(way[2])
-        elif way[2] <= 0:  # it does not come from the object plane
+        elif way[2] <= 0:  # the ray does not come from the object plane
             return np.full(2, np.nan)
-        else:  # where the ray meets the object plane, seen from the entrance pupil
+        else:  # the intersection with the object plane, seen from the entrance pupil
             across = np.array([x, y]) - (1e3 * self.distance_m + z) / way[2] * way[:2]
             along = 1e3 * self.from_pupil_m
         radius = float(np.hypot(*across))
@@ -278,15 +280,15 @@ class _FieldLight:
         return angles
 
     def light(self, point: tuple[float, float]) -> float:
-        """Illuminance at a film point by an even object of luminance 1; 0 where no light arrives."""
+        """Illuminance at a film point from a uniform object of luminance 1; 0 if no light arrives."""
         try:
             return float(self.lens.film_pupil(point).irradiance)
         except InputError:
             return 0.0
 
     def shifts(self, point: tuple[float, float]) -> Doubles:
-        """(N, 2), mm: chief rays of the wavelengths on the film, relative to that of the design wavelength; nan where
-        the point has no light."""
+        """(N, 2), mm: film points of the wavelengths' chief rays, relative to the design wavelength's; nan without
+        light."""
         if len(self.wavelengths) == 1 and self.wavelengths[0] == self.lens.wavelength_nm:
             return np.zeros((1, 2))
         if np.isnan(self.direction(point)).any():
@@ -298,27 +300,27 @@ class _FieldLight:
         return np.array(ends) - point
 
     def chief_ray_mm(self, point: tuple[float, float], nm: float) -> tuple[float, float]:
-        """Raises InputError where no light arrives."""
+        """Film point of the chief ray at a wavelength. Raises InputError if no light arrives."""
         try:
             return self.lens.spot(
                 film_mm=point, wavelength_nm=nm, object_distance_m=self.distance_m, pupil=[[0.0, 0.0]]
             ).chief_ray_mm
-        except InputError:  # the middle of the stop is obstructed or vignetted
+        except InputError:  # the centre of the stop is obstructed or vignetted
             return self.bundle(point, nm, spokes=8, nodes=2).chief_ray_mm
 
     def bundle(self, point: tuple[float, float], nm: float, **size: int) -> RayBundle:
         return self.lens.bundle(film_mm=point, wavelength_nm=nm, object_distance_m=self.distance_m, **size)
 
     def _sample(self, point: tuple[float, float]) -> Doubles:
-        """(7,): angles of the object points that the channels R, G and B image to a film point, and its light."""
+        """(7,): angles (x, y) of the object points that are imaged to a film point in R, G and B; its illumination."""
         by_channel = self.weights.T @ np.nan_to_num(self.shifts(point))
         points = [(point[0] - float(dx), point[1] - float(dy)) for dx, dy in by_channel]
-        found = {p: self.direction(p) for p in set(points)}  # one where the channels see one wavelength
+        found = {p: self.direction(p) for p in set(points)}  # evaluated once if channels share a point
         angles = [found[p] for p in points]
         return np.array([*np.concatenate(angles), self.light(point) / self.brightness])
 
     def _sample_radius(self) -> None:
-        """A lens of revolution: functions of the distance from the axis."""
+        """Tables for rotationally symmetric lenses: functions of the distance from the axis."""
         reach = float(np.hypot(*self.half_mm))
         radii = np.linspace(0, reach, 97)
         values = np.array([self._sample((0.0, float(r))) for r in radii])
@@ -338,7 +340,7 @@ class _FieldLight:
         self._light_table = np.where(dense <= end, bright, 0.0)
 
     def _end_of_light(self, radii: Doubles, light: Doubles) -> float:
-        """Radius at which the light ends, by bisection between the samples; beyond the last one where it does not."""
+        """Radius of the illuminated field, by bisection between the samples; inf if all samples have light."""
         dark = np.flatnonzero(~(light > 0))
         if not dark.size:
             return math.inf
@@ -349,11 +351,11 @@ class _FieldLight:
         return low
 
     def _sample_film(self) -> None:
-        """Any lens: functions of both film coordinates, on a grid that is refined by splines."""
+        """Tables for lenses without rotational symmetry: functions of x and y on the film, refined by splines."""
         x, y = (half * np.linspace(-1, 1, n) for half, n in zip(self.half_mm, (17, 11), strict=True))
         values = np.array([[self._sample((float(a), float(b))) for a in x] for b in y])
         has = np.isfinite(values[..., :6]).all(axis=2)
-        if not has.all():  # beyond the end of the light, angles go on as a polynomial
+        if not has.all():  # extrapolates angles beyond the illuminated field by a polynomial
             powers = np.meshgrid(x / x[-1], y / y[-1])
             terms = np.stack([powers[0] ** i * powers[1] ** k for i in range(4) for k in range(4)], axis=-1)
             values[~has, :6] = terms[~has] @ np.linalg.lstsq(terms[has], values[has, :6], rcond=None)[0]
@@ -373,7 +375,7 @@ class _FieldLight:
         return found
 
     def angles(self, x: Doubles, y: Doubles, channel: int) -> Doubles:
-        """(2, ...): what `direction` returns, of the object points that a channel images to film points."""
+        """(2, ...): directions, as in `direction`, of the object points that a channel images to film points."""
         x, y = np.broadcast_arrays(x, y)
         if not self.lens.is_rotational:
             return np.stack([self._on_film(x, y, 2 * channel), self._on_film(x, y, 2 * channel + 1)])
@@ -382,7 +384,7 @@ class _FieldLight:
         return np.stack([x * ratio, y * ratio])
 
     def illumination(self, x: Doubles, y: Doubles) -> Doubles:
-        """Light of an even white object at film points, relative to the film's centre."""
+        """Illuminance at film points from a uniform white object, relative to the film's centre."""
         if not self.lens.is_rotational:
             return np.maximum(self._on_film(x, y, 6), 0)
         light: Doubles = np.interp(np.hypot(x, y), self._radii, self._light_table)
@@ -399,8 +401,8 @@ class _FieldLight:
         return points
 
     def centre(self, projection: str, pitch_mm: float) -> tuple[Doubles, Doubles]:
-        """The object point at which the film's centre looks, (2,), and how far one pixel to the right and one down
-        moves it, (2,), in tangents or radians."""
+        """The object point of the film's centre, (2,), and its displacement per pixel to the right and down, (2,), in
+        tangents or radians."""
         step = np.array([0.0, 1.0, -1.0, 0.0, 0.0]) * 4 * pitch_mm
         points = self.object_points(step, step[[0, 3, 3, 1, 2]], 1, projection)
         moves = (np.hypot(*(points[:, k] - points[:, k + 1])) / 8 for k in (1, 3))
@@ -408,7 +410,7 @@ class _FieldLight:
 
 
 class _Kernels:
-    """Point spread functions of the channels in pixels, at the nodes of a grid over the film, upright as developed."""
+    """Pixel kernels of the channels' point spread functions at the nodes of a film grid, upright as developed."""
 
     def __init__(
         self, light: _FieldLight, grid: tuple[int, int], film: _Film, report: Callable[[float], object]
@@ -416,7 +418,7 @@ class _Kernels:
         self.light, self.film, self.pitch_um, self.grid = light, film, 1e3 * film.pitch_mm, grid
         self.x, self.y = (half * np.linspace(-1, 1, n) for half, n in zip(light.half_mm, grid, strict=True))
         lens = light.lens
-        # A lens of revolution with a round stop is its own mirror image: a quarter of the film is enough.
+        # A rotationally symmetric lens with a circular stop is symmetric about x and y: a quarter of the film suffices.
         self.is_symmetric = lens.is_rotational and lens.iris_blades == 0
         names = sorted({self._name(float(x), float(y)) for x in self.x for y in self.y})
         made: dict[tuple[float, float], tuple[Floats, Floats, float]] = {}
@@ -425,7 +427,7 @@ class _Kernels:
             if found is not None:
                 made[point] = found
             report((k + 1) / len(names))
-        if not made:  # the nodes all lie beyond the end of the light
+        if not made:  # all nodes lie outside the illuminated field
             found = self._node((0.0, 0.0))
             assert found is not None
             made[0.0, 0.0] = found
@@ -438,8 +440,8 @@ class _Kernels:
         return (abs(x), abs(y)) if self.is_symmetric else (x, y)
 
     def _node(self, point: tuple[float, float]) -> tuple[Floats, Floats, float] | None:
-        """The channels' kernels in pixels, (3, s, s), and finer, (3, S, S), with the finer pitch in um; None where no
-        light arrives. Both have the sum 1."""
+        """Kernels of the channels at pixel pitch, (3, s, s), and at a finer pitch, (3, S, S), and that pitch in um.
+        Kernels sum to 1. Returns None if no light arrives."""
         light = self.light
         shifts = light.shifts(point)
         if np.isnan(shifts).any():
@@ -448,7 +450,7 @@ class _Kernels:
             bundles = [light.bundle(point, float(nm), spokes=32, nodes=6) for nm in light.wavelengths]
         except InputError:
             return None
-        # Colours within a channel are apart by what is left of lateral colour.
+        # Largest displacement of a wavelength from its channel's mean: lateral colour within a channel.
         apart = 1e3 * np.abs(shifts[:, None] - light.weights.T @ shifts)[np.abs(light.weights) > 0.01].max(initial=0.0)
         details = [1e-3 * b.wavelength_nm / b.index / np.ptp(b.edge_slopes.reshape(-1, 2), axis=0) for b in bundles]
         reach = max(_reach_um(bundle) for bundle in bundles) + apart
@@ -489,7 +491,7 @@ class _Kernels:
         return coarse.astype(np.float32), fine.astype(np.float32), step
 
     def node(self, column: int, row: int) -> tuple[Floats, Floats, float] | None:
-        """That of a node, upright as developed: columns from the left, rows from the top."""
+        """_node() of a node, upright as developed: columns from the left, rows from the top."""
         x, y = float(-self.x[column]), float(self.y[row])
         found = self._made.get(self._name(x, y))
         if found is None or not self.is_symmetric:
@@ -498,7 +500,7 @@ class _Kernels:
         return found[0][:, ::down, ::across], found[1][:, ::down, ::across], found[2]
 
     def kernel(self, column: int, row: int, channel: int) -> Floats:
-        """(2 radius + 1, 2 radius + 1), sum 1. A node without light has that of the nearest one that has some."""
+        """(2 radius + 1, 2 radius + 1), sum 1. A node without light uses the kernel of the nearest node with light."""
         nodes = [(c, r) for r in range(self.grid[1]) for c in range(self.grid[0]) if self.node(c, r) is not None]
         nearest = min(nodes, key=lambda n: (n[0] - column) ** 2 + (n[1] - row) ** 2, default=None)
         found = self.node(*nearest) if nearest else self._made[0.0, 0.0]
@@ -507,7 +509,7 @@ class _Kernels:
         return np.pad(kernel, self.radius - kernel.shape[0] // 2)
 
     def convolved(self, wide: Floats, channel: int, tile: _Tile) -> Floats:
-        """A tile's light, of the tile's shape. wide: the tile with a border of `radius` pixels."""
+        """A tile, blurred by interpolated kernels. wide: the sharp tile with a border of `radius` pixels."""
         (column, row), rows, columns = tile.cell, tile.y1 - tile.y0, tile.x1 - tile.x0
         along_x = (np.arange(tile.x0, tile.x1) + 0.5) / self.film.width * (self.grid[0] - 1) - column
         along_y = (np.arange(tile.y0, tile.y1) + 0.5) / self.film.height * (self.grid[1] - 1) - row
@@ -524,7 +526,7 @@ class _Kernels:
         return light
 
     def shown(self) -> tuple[Floats, Doubles, Doubles, float]:
-        """psfs, psf_x_mm, psf_y_mm and psf_pitch_um of the result."""
+        """Returns psfs, psf_x_mm, psf_y_mm and psf_pitch_um of ImageSimulation."""
         pitch = self._window_um / _SHOWN_PSF
         psfs = np.zeros((self.grid[1], self.grid[0], _SHOWN_PSF, _SHOWN_PSF, 3), np.float32)
         away = (np.arange(_SHOWN_PSF) - _SHOWN_PSF // 2) * pitch
@@ -540,7 +542,7 @@ class _Kernels:
 
 
 def _reach_um(bundle: RayBundle, share: float = 0.999) -> float:
-    """Distance from the chief ray within which a share of the light lands; a few rays may go far astray."""
+    """Distance from the chief ray within which a fraction of the light lands; below 1, because of stray outliers."""
     away = np.hypot(*(bundle.points_mm - bundle.chief_ray_mm).T)
     order = np.argsort(away)
     inside = np.cumsum(bundle.energy[order])
@@ -548,8 +550,8 @@ def _reach_um(bundle: RayBundle, share: float = 0.999) -> float:
 
 
 def _diffracted(values: Doubles, details: Doubles) -> Doubles:
-    """The light of rays, spread as the round aperture of their cone does. details: wavelength x f-number along x and
-    y, in points of the array."""
+    """Convolves a geometric spot with the diffraction of a circular aperture. details: wavelength x f-number along x
+    and y, in samples of the array."""
     shape = [next_fast_len(2 * n, real=True) for n in values.shape]
     across, down = np.fft.rfftfreq(shape[1]) * details[0], np.fft.fftfreq(shape[0]) * details[1]
     nu = np.minimum(np.hypot(down[:, None], across), 1)
@@ -561,7 +563,7 @@ def _diffracted(values: Doubles, details: Doubles) -> Doubles:
 def _warped(
     source: Floats, film: _Film, tile: _Tile, border: int, source_points: Callable[[Doubles, Doubles], Points]
 ) -> Floats:
-    """The mean of the picture over the part of it that each pixel of a tile and of its border sees."""
+    """Resamples the picture for a tile and its border: each pixel is the mean over its footprint in the picture."""
     u = film.u(tile.x0 - border, tile.x1 + border)[None, :]
     v = film.v(tile.y0 - border, tile.y1 + border)[:, None]
     down, across = source_points(u, v)
@@ -578,7 +580,7 @@ def _warped(
 
 
 def _interpolated(source: Floats, down: Doubles, across: Doubles) -> Floats:
-    """Bilinear; 0 outside. Only the part of the picture that is needed is looked at."""
+    """Bilinear interpolation; 0 outside the picture."""
     ends = []
     for at, n in ((down, source.shape[0]), (across, source.shape[1])):
         np.clip(at, -9, n + 9, out=at)
@@ -592,7 +594,7 @@ def _interpolated(source: Floats, down: Doubles, across: Doubles) -> Floats:
 
 
 def _tiles(film: _Film, crop: tuple[int, int, int, int], grid: tuple[int, int], largest: int) -> Iterator[_Tile]:
-    """Tiles of a part of the film, each within one cell of the grid."""
+    """Tiles of the crop, each within one cell of the PSF grid."""
 
     def parts(first: int, count: int, size: int, nodes: int) -> list[tuple[int, int, int]]:
         found = []
@@ -610,7 +612,7 @@ def _tiles(film: _Film, crop: tuple[int, int, int, int], grid: tuple[int, int], 
 
 
 def _linear(picture: ArrayLike | str | os.PathLike[str]) -> Floats:
-    """(h, w, 3) float32, linear."""
+    """Returns a picture as (h, w, 3) float32, linear. Raises InputError, ImageFileError."""
     if isinstance(picture, (str, os.PathLike)):
         return np.asarray(image_file.read_picture(picture), np.float32)
     array = np.asarray(picture)
@@ -630,7 +632,7 @@ def _linear(picture: ArrayLike | str | os.PathLike[str]) -> Floats:
 
 
 def _codes(linear: Floats) -> NDArray[np.uint8]:
-    """sRGB of linear values: develop renders 10 / ISO lux seconds as middle grey, which is 18% of white."""
+    """8-bit sRGB of linear values. develop() renders 10 / ISO lux seconds as middle grey, which is 18% of white."""
     codes: NDArray[np.uint8] = develop(linear * np.float32(10 / 100 / 0.18), 100, "linear")
     return codes
 
@@ -665,7 +667,7 @@ def _checked_crop(crop: Sequence[int] | None, film: _Film) -> tuple[int, int, in
 
 
 def _bands(lens: Lens, wavelengths_nm: ArrayLike | None) -> tuple[Doubles, Doubles]:
-    """Wavelengths, (N,), and their shares in the channels, (N, 3), whose columns have the sum 1."""
+    """Wavelengths, (N,), and their weights in the channels, (N, 3), each column with the sum 1."""
     if wavelengths_nm is None:
         is_visible = WAVELENGTHS_NM[0] < lens.wavelength_nm < WAVELENGTHS_NM[-1]
         wavelengths_nm = WAVELENGTHS_NM if is_visible else lens.wavelength_nm
@@ -679,7 +681,7 @@ def _bands(lens: Lens, wavelengths_nm: ArrayLike | None) -> tuple[Doubles, Doubl
 
 
 def _distance_in_focus(lens: Lens) -> float:
-    """Object plane to front vertex of the plane in focus, m."""
+    """Distance from the plane in focus to the front vertex, m."""
     return float(lens.focus_distance_m - 1e-3 * lens.film_frame[3, 2])
 
 
@@ -704,7 +706,7 @@ def _projection(projection: str | None, light: _FieldLight, height_m: float | No
 
 
 def _object_height(light: _FieldLight, kind: str, height_deg: float | None, height_m: float | None) -> float | None:
-    """The picture's height in tangents or radians; None where it is not given."""
+    """The picture's height in tangents or radians; None if neither height is specified."""
     if height_m is not None:
         if height_deg is not None:
             raise InputError("height_deg and height_m exclude each other")

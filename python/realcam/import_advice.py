@@ -1,4 +1,4 @@
-"""What to do where the extension cannot be loaded."""
+"""Advice for a failed import of the extension."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import re
 
 
 def advised(error: ImportError) -> ImportError:
-    """The same error in a sentence that says what to do, where one is known."""
+    """Returns the error with a message that says what to do, if a remedy is known; otherwise unchanged."""
     text = str(error)
     if re.search(r"version `(GLIBC|GLIBCXX|CXXABI)_[\d.]+' not found", text):
         has = " ".join(platform.libc_ver()) or "another C library"

@@ -1,4 +1,4 @@
-"""Results as JSON can say them."""
+"""Conversion of results to JSON."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def json_text(value: Any) -> str:
 
 
 def json_value(value: Any) -> Any:
-    """Numbers that are not finite become None, as in the executable's JSON; a lens is its name."""
+    """Converts a value for json.dumps. Non-finite numbers become None, as in the executable; lenses become names."""
     if isinstance(value, Lens):
         return value.name
     if dataclasses.is_dataclass(value) and not isinstance(value, type):

@@ -1,4 +1,4 @@
-"""Shorthands for surfaces that are not refracting ones."""
+"""Shorthands for stops and mirrors."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def Mirror(  # noqa: N802
     inner_semi_diameter_mm: float = 0.0,
     coating: str | Coating = "unknown",
 ) -> Surface:
-    """A mirror: light goes back, and thicknesses after it are negative until the next mirror."""
+    """A mirror. Thicknesses after it are negative until the next mirror."""
     return Surface(
         type="mirror",
         radius_of_curvature_mm=radius_of_curvature_mm,

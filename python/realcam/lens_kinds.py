@@ -1,4 +1,4 @@
-"""Kinds of lenses, as people choose them."""
+"""Classification of lenses as photographers choose them."""
 
 from __future__ import annotations
 
@@ -7,10 +7,10 @@ import re
 
 from ._core import Lens
 
-# Angles of view over the diagonal, below which a lens is of this kind.
+# Upper limits of the diagonal angle of view of each kind, degrees.
 _BY_ANGLE = (("long", 30.0), ("normal", 56.0), ("wide angle", 100.0), ("very wide angle", math.inf))
 _PHONE_DIAGONAL_MM = 12.0
-# A number of four digits that is no part of a patent's number, and no page.
+# A year of four digits that is not part of a patent number or a page range.
 _YEAR = re.compile(r"(?<![\d,/.-])(?:1[89]|20)\d\d(?!\d|,\d|-\d)")
 KINDS = ("zoom", "mirror lens", "anamorphic", "phone", *(kind for kind, _ in _BY_ANGLE))
 
@@ -35,6 +35,6 @@ def is_anamorphic(lens: Lens) -> bool:
 
 
 def year_of(source: str) -> int | None:
-    """The first year that a lens's source names: that of the patent or of the book."""
+    """The first year in a lens's source citation, of the patent or book; None without one."""
     found = _YEAR.search(source)
     return int(found[0]) if found else None

@@ -1,4 +1,4 @@
-"""A lens as tables of text: its prescription, and its figures."""
+"""Text tables of a lens: its prescription, and its first-order and photographic data."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def number(value: float, digits: int = 4) -> str:
 
 
 def prescription(lens: Lens) -> Iterator[tuple[str, ...]]:
-    """A row of each surface, for the columns of PRESCRIPTION. The last thickness is the distance to the film."""
+    """One row per surface, with the columns of PRESCRIPTION. The last thickness is the distance to the film."""
     for index, surface in enumerate(lens.surfaces):
         kind = "" if surface.type == "refracting" else surface.type
         if surface.aspheric_coefficients or surface.conic:
@@ -45,7 +45,7 @@ def _radius(radius_mm: float) -> str:
 
 
 def _glass(surface: Surface) -> str:
-    """The name of the glass behind a surface with its index, or the index and Abbe number that the file gives."""
+    """Name and index of the glass behind a surface, or the index and Abbe number stated in the lens file."""
     label = surface.material.label.strip("[]()")
     if not label or label[0].isdigit():
         return label
@@ -53,7 +53,7 @@ def _glass(surface: Surface) -> str:
 
 
 def first_order(lens: Lens) -> Iterator[tuple[str, str]]:
-    """Names and figures of the lens as it is focused and stopped down. Raises InputError where no light passes."""
+    """(name, value) pairs of the lens at its current focus and stop. Raises InputError if no light passes."""
     data, photo = lens.first_order(), photographic_figures(lens)
     angle = photo.angle_of_view_deg
     width, height = lens.film_mm

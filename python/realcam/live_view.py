@@ -1,4 +1,4 @@
-"""Pictures of a camera that changes with every frame."""
+"""Interactive rendering of a camera that changes with every frame."""
 
 from __future__ import annotations
 
@@ -20,17 +20,16 @@ if TYPE_CHECKING:
 
 
 class LiveView:
-    """A scene before a camera that changes with every frame, on one device: "auto" (a GPU if there is one), "cpu",
-    "cuda" or "cuda:1".
+    """Renders a scene with a camera that changes with every frame, on one device: "auto" (a GPU if there is one),
+    "cpu", "cuda" or "cuda:1".
 
-    Only what changed is prepared again; samples are collected for as long as scene, lens, film and pose of the camera
-    stay the same. On a GPU they begin once more with the second frame after the lens has changed. Frames are taken one
-    behind the other without waiting: up to three are under way on a GPU, one on the CPU. Not for two threads at once,
-    but for cancel().
+    Only changed data is prepared again; samples accumulate while the scene and the camera's lens, film and pose stay
+    the same. On a GPU the accumulation restarts at the second frame after a change of the lens. Frames are pipelined:
+    up to three are in flight on a GPU, one on the CPU. Not thread-safe, except for cancel().
 
-    settings, also by their names, are those of render, but that effects are none and max_bounces is 1 unless they are
-    named: planning ("auto") takes longer than a frame, and rc.plan says what it would choose. Layers are image()'s, not
-    frames'. Raises InputError; DeviceError where the device is not there.
+    settings, also as keywords, are those of render, but the defaults are no effects and max_bounces 1: planning
+    ("auto") takes longer than a frame, and rc.plan says what it would choose. Only image() has layers. Raises
+    InputError; DeviceError if the device does not exist.
     """
 
     def __init__(
@@ -53,11 +52,11 @@ class LiveView:
         tone: str = "film",
         **changes: Unpack[_SettingWords],
     ) -> LiveFrame:
-        """Starts to take spp more samples of each pixel, 1 unless it is named here.
+        """Starts a frame with spp more samples per pixel, by default 1.
 
-        They are developed with the camera's exposure time and ISO and a tone curve (see Image.developed).
-        settings, also by their names: of this frame, in place of the view's. Returns a LiveFrame at once, or when the
-        oldest of those under way is there. Raises KeyboardInterrupt on Ctrl-C.
+        The frame is developed with the camera's exposure time and ISO and a tone curve (see Image.developed).
+        settings, also as keywords: of this frame, in place of the view's. Returns a LiveFrame at once, or, if too many
+        are in flight, when the oldest is done. Raises KeyboardInterrupt on Ctrl-C.
         """
         now = settings_of(settings, {"spp": 1, **changes, "layers": ()}, self.settings)
         frame = self._core.shoot(camera, now, tone)
@@ -65,23 +64,24 @@ class LiveView:
         return frame
 
     def show(self, scene: Scene) -> None:
-        """Another scene for the frames to come.
+        """Sets the scene of the following frames.
 
-        Made for every frame: of one that comes from the last by moved(), only the places are copied. Raises InputError.
+        Cheap enough for every frame if the scene is made by moved() from the last one: only the instances' transforms
+        are copied. Raises InputError.
         """
         self._core.show(scene)
 
     def picture(self) -> tuple[DeviceArray | NDArray[np.float32], DeviceArray | NDArray[np.float32]]:
-        """All that was collected up to the last frame, as two arrays of float32.
+        """The picture accumulated up to the last frame, as two arrays of float32.
 
-        Exposure (H, W, 3) in lux seconds and depth (H, W) in metres, as Image has them: DeviceArrays in the memory of
-        the GPU; of a view on the CPU numpy arrays. Waits for the frames under way. Raises InputError before the first
-        frame, Cancelled where another thread stops them meanwhile, and KeyboardInterrupt on Ctrl-C.
+        Exposure (H, W, 3) in lux seconds and depth (H, W) in metres, as in Image: DeviceArrays in GPU memory, or numpy
+        arrays for a view on the CPU. Waits for the frames in flight. Raises InputError before the first frame,
+        Cancelled if another thread cancels them meanwhile, and KeyboardInterrupt on Ctrl-C.
         """
         return self._core.picture()
 
     def image(self, layers: str | Iterable[str] = ()) -> Image:
-        """The same as Session.image returns it, with these layers. Raises what picture raises."""
+        """picture() as an Image, with these layers. Raises what picture raises."""
         if self._last is None:
             raise InputError("there is no picture yet; shoot() takes one")
         camera, settings = self._last
@@ -90,8 +90,8 @@ class LiveView:
         return Image(**picture, camera=camera, seed=settings.seed, settings=settings)
 
     def cancel(self) -> None:
-        """Gives up all frames under way within some milliseconds, from any thread.
+        """Cancels all frames in flight within some milliseconds, from any thread.
 
-        Their codes raise Cancelled, and the next frame begins a new picture.
+        LiveFrame.codes of these frames raises Cancelled, and the next frame begins a new picture.
         """
         self._core.cancel()

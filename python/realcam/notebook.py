@@ -1,4 +1,4 @@
-"""What notebooks show of lenses, point spread functions, pictures and plans, and Lens.draw."""
+"""Notebook representations of lenses, point spread functions, pictures and plans; Lens.draw."""
 
 from __future__ import annotations
 
@@ -39,18 +39,17 @@ def draw(
     theme: str = "light",
     width_px: int = 1600,
 ) -> Figure:
-    """The meridional section with rays, as a figure of matplotlib that a notebook shows; the film is on the right.
+    """Draws the meridional section with rays as a matplotlib figure, which notebooks show; the film is on the right.
 
-    plane, rays, rays_from, fields, fields_deg, wavelengths_nm, object_distance_m: as realcam.drawing.cross_section
-      takes them.
-    radius_colours: faces in blue where the radius of curvature is positive, in red where it is negative.
+    plane, rays, rays_from, fields, fields_deg, wavelengths_nm, object_distance_m: see realcam.drawing.cross_section.
+    radius_colours: draws faces of positive radius of curvature in blue, of negative in red.
     marks: entrance and exit pupil (EP, XP), principal planes (H, H'), focal points (F, F').
-    insets: the rays of each field where they meet the film, magnified.
-    ghost: the lens in another state, of which the glass that stands elsewhere is drawn as outlines.
+    insets: the rays of each field at the film, magnified.
+    ghost: the lens in another state; its elements that have moved are drawn as outlines.
     theme: "light" or "dark". width_px: of the picture. realcam.draw.save_cross_section writes it to a file.
-    Raises InputError where no light passes the lens or what is asked makes no sense.
+    Raises InputError if no light passes the lens or an option is invalid.
     """
-    from .drawing.figure import Row, figure_of  # which load matplotlib
+    from .drawing.figure import Row, figure_of  # loads matplotlib
 
     style = Style(theme_named(theme), radius_colours, marks)
     section = cross_section(
@@ -65,12 +64,12 @@ def draw(
     )
     other = None if ghost is None else cross_section(ghost, plane=plane, rays=0)
     row = Row(self.title or self.name, data_of(self, section), section, other)
-    # Rays that were sent from one point of the film meet in it, whatever the lens does.
+    # Rays that start at one film point always meet there: insets would show nothing.
     return figure_of([row], style, width_px=width_px, insets=insets and rays_from == "object")
 
 
 def lens_png(lens: Lens) -> bytes | None:
-    """None, which leaves the lens's text, where it cannot be drawn, as no light passes it."""
+    """PNG of the lens; None if it cannot be drawn because no light passes, so that the notebook shows its text."""
     from .figure_files import NOTEBOOK_DPI, figure_bytes
 
     try:
@@ -80,8 +79,8 @@ def lens_png(lens: Lens) -> bytes | None:
 
 
 def psf_png(psf: PSF) -> bytes:
-    """Its light in decades."""
-    from .analysis import style  # which loads matplotlib
+    """PNG of a point spread function on a logarithmic scale."""
+    from .analysis import style  # loads matplotlib
     from .analysis.point_spread import plot_decades
     from .figure_files import NOTEBOOK_DPI, figure_bytes
 
@@ -92,7 +91,7 @@ def psf_png(psf: PSF) -> bytes:
 
 
 def picture_png(exposure: NDArray[np.float32], iso: float) -> bytes:
-    """Of (H, W, 3) lux seconds, developed, with fewer pixels where there are more than a page shows."""
+    """PNG of a developed exposure, (H, W, 3) lux seconds, reduced to at most LONGEST_SIDE_PX."""
     import matplotlib.image
 
     step = -(-max(exposure.shape) // LONGEST_SIDE_PX)
@@ -128,7 +127,7 @@ def table_html(rows: Iterable[Sequence[str]], head: Sequence[str] = ()) -> str:
     return f"<table>{top}<tbody>{body}</tbody></table>"
 
 
-# The classes are the extension's, whose file _core.pyi has the names that users call.
+# setattr because the classes belong to the extension; _core.pyi declares the public names.
 for _type, _name, _function in (
     (Lens, "draw", draw),
     (Lens, "_repr_png_", lens_png),

@@ -1,4 +1,4 @@
-"""Numbers as people write them, for the texts that commands print."""
+"""Number formatting for the output of commands."""
 
 from __future__ import annotations
 
@@ -8,15 +8,15 @@ from . import _core
 
 
 def number_text(value: float, digits: int = 4, infinite: str = "infinity") -> str:
-    """Significant digits, and all of the whole part: "0.00001", "50.36", "12 346". An exponent stands only for numbers
-    below a millionth and from 1e15 on."""
+    """Formats a number with significant digits, but never fewer than its integer part: "0.00001", "50.36", "12 346".
+    Exponents are used only below a millionth and from 1e15 on."""
     if math.isinf(value):
         return infinite if value > 0 else f"-{infinite}"
     return _core._number_text(value, digits)
 
 
 def percent_text(share: float, digits: int = 2, *, signed: bool = False) -> str:
-    """A share as "14%", "140%", or with its sign "+140%"."""
+    """Formats a fraction as "14%", "140%", or signed "+140%"."""
     plus = "+" if signed and share >= 0 else ""
     return f"{plus}{number_text(100 * share, digits)}%"
 
@@ -27,7 +27,7 @@ def counted(count: int, noun: str) -> str:
 
 
 def duration_text(seconds: float) -> str:
-    """A duration in its largest unit of which there are two or more: 95 seconds, 36 minutes."""
+    """Formats a duration in the largest unit that gives at least two: 95 seconds, 36 minutes."""
     for size, name in ((86400.0, "day"), (3600.0, "hour"), (60.0, "minute")):
         if seconds >= 2 * size:
             return counted(round(seconds / size), name)

@@ -1,6 +1,6 @@
-"""What the extension asks of the package OpenImageIO: numbers of files, and nothing of what they mean.
+"""Raw access to picture files through the package OpenImageIO, for the extension.
 
-cpp/bindings/openimageio_package.cpp calls this, and cpp/image_io knows what the numbers are.
+cpp/bindings/openimageio_package.cpp calls this module; cpp/image_io interprets the values.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ _opening = threading.Lock()
 
 
 def _text(get: Callable[[], str]) -> str:
-    """What `get` returns. OpenImageIO's texts quote the file, whose bytes may be no UTF-8."""
+    """Returns get(), even if it is invalid UTF-8: OpenImageIO's messages quote bytes of the file."""
     try:
         return get()
     except UnicodeDecodeError as error:
@@ -41,10 +41,10 @@ def _name_of(attribute: Any) -> str:
 
 
 def _opened(format: str, name: str) -> Any:
-    """The file, read as this format and no other. Raises ValueError, with what OpenImageIO says, where it is none.
+    """Opens a file as this format only. Raises ValueError with OpenImageIO's message if it has another format.
 
     OpenImageIO takes the format from the suffix and then tries all others, some of which crash on broken files. So the
-    file gets a link of the right suffix for as long as it is being opened.
+    file is opened through a temporary link with the right suffix.
     """
     wishes = oiio.ImageSpec()
     wishes.attribute("oiio:UnassociatedAlpha", 1)
@@ -67,16 +67,16 @@ def _channel_name(spec: Any, channel: int) -> str:
 
 
 class Decoder:
-    """A picture file whose headers are read. Raises ValueError, with what OpenImageIO says, where it is none."""
+    """A picture file with its headers read. Raises ValueError with OpenImageIO's message if it cannot be read."""
 
     def __init__(self, format: str, name: str) -> None:
         self._input = _opened(format, name)
-        self._opening = _text(self._input.geterror)  # of a broken header that it opened all the same
+        self._opening = _text(self._input.geterror)  # errors of a broken header that OpenImageIO has accepted
         self._specs: list[Any] = []
         most = _MOST_PARTS if format == "openexr" else 1  # WebP cannot go back
         while len(self._specs) < most and self._input.seek_subimage(len(self._specs), 0):
             self._specs.append(self._input.spec())
-        end = _text(self._input.geterror)  # that there is no further part
+        end = _text(self._input.geterror)  # the error that says that there is no further part
         if not self._specs:
             raise ValueError(self._opening + end)
 
@@ -107,7 +107,7 @@ class Decoder:
     def read(
         self, part: int, first: int, end: int, first_channel: int, end_channel: int, format: str
     ) -> tuple[np.ndarray | None, str]:
-        """Channels of rows of a part's data window, or None, and what OpenImageIO says."""
+        """Channels of rows of a part's data window, or None, and OpenImageIO's error message."""
         spec, channels = self._specs[part], (first_channel, end_channel)
         begin, below = spec.y + first, spec.y + end
         if spec.tile_width > 0:
@@ -119,7 +119,7 @@ class Decoder:
 
 
 class Encoder:
-    """A picture that is being written. Raises OSError, with the reason, where it cannot be."""
+    """A picture file that is being written. Raises OSError, with the reason, if it cannot be."""
 
     def __init__(
         self,
@@ -132,7 +132,7 @@ class Encoder:
     ) -> None:
         self._width = width
         self._numbers = [is_number for _, is_number in channels]
-        # Channels of several types are handed over in one, which holds the values of both.
+        # Channels of several types are passed in one type that holds the values of both: float64.
         type_name = "double" if any(self._numbers) else "float" if channels else "uint8"
         spec = oiio.ImageSpec(width, height, len(channels) or 3, type_name)
         if channels:
@@ -153,14 +153,14 @@ class Encoder:
         self._output = output
 
     def write(self, first: int, end: int, rows: memoryview) -> tuple[bool, str]:
-        """Rows of codes, or of four bytes for each channel."""
+        """Writes rows `first` to `end`: uint8, or float32 or uint32 per channel. Returns success and error message."""
         shape = (end - first, self._width, -1)
         pixels = np.frombuffer(rows, np.float32 if self._numbers else np.uint8).reshape(shape)
         if any(self._numbers):
             whole = np.frombuffer(rows, np.uint32).reshape(shape)
             if whole[..., self._numbers].max() > _LARGEST_NUMBER:
                 return False, f"a layer has numbers above {_LARGEST_NUMBER}"
-            # OpenImageIO takes 1 for the largest of whole numbers, and computes with 24 bits.
+            # OpenImageIO maps 1.0 to the largest integer, and computes with 24 bits.
             pixels = np.where(self._numbers, whole / float(2**32 - 1), pixels)
         return self._output.write_scanlines(first, end, 0, pixels), _text(self._output.geterror)
 

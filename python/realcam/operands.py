@@ -1,4 +1,4 @@
-"""What an optimisation asks of a lens besides small spots."""
+"""Operands of an optimisation in addition to small spots."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ BOUNDS = ("equal", "least", "most")
 
 @dataclass(frozen=True)
 class Operand:
-    """A number that is to have a value, or to stay on one side of it.
+    """A quantity with a target value or a one-sided bound.
 
     quantity: one of Lens.gradient's, or "centre_thickness_mm" or "edge_thickness_mm": from `surface` to the next, on
-      the axis, and at the larger of both rims. surface: its index, from 0.
+      the axis, or at the larger of the two rims. surface: its index, from 0.
     target: in the unit of the quantity. bound: "equal", "least" or "most".
-    weight: an error of 1 counts as so many mm of RMS radius of all spots.
+    weight: an error of 1 counts as `weight` mm of the RMS spot radius.
     field_deg, wavelength_nm, frequency_per_mm: as for Lens.gradient. A telecentric lens has a chief_ray_angle_deg of 0.
     """
 
@@ -38,7 +38,7 @@ class Operand:
     surface: int = 0
 
     def checked(self, lens: Lens) -> Operand:
-        """Raises InputError for an operand that makes no sense for the lens."""
+        """Returns the operand. Raises InputError if it is invalid for the lens."""
         if self.quantity not in (*OF_RAYS, *OF_GLASS):
             raise InputError(f'unknown operand "{self.quantity}"; one of {", ".join((*OF_RAYS, *OF_GLASS))} is wanted')
         if self.bound not in BOUNDS:
@@ -63,7 +63,7 @@ class Operand:
         return self.gradient_of(lens, [Variable.film_distance()], samples)[0]
 
     def gradient_of(self, lens: Lens, variables: Sequence[Variable], samples: int) -> tuple[float, Doubles]:
-        """The value, and its derivatives (V,) while the film stays at its distance from the last vertex."""
+        """The value, and its derivatives (V,) at constant distance from the last vertex to the film."""
         if self.quantity in OF_GLASS:
             return self._thickness_gradient(lens, variables)
         found = lens.gradient(
@@ -83,7 +83,7 @@ class Operand:
         return front.thickness_mm + back.sag_mm(rim) - front.sag_mm(rim)
 
     def _thickness_gradient(self, lens: Lens, variables: Sequence[Variable]) -> tuple[float, Doubles]:
-        """A sag is a closed form, of which differences of these steps are right to 1e-8."""
+        """Thickness and its derivatives (V,). Sag is a closed form: central differences are accurate to 1e-8."""
         pair = {i: lens.surfaces[i] for i in (self.surface, self.surface + 1)}
 
         def moved(variable: Variable, step: float) -> float:

@@ -1,4 +1,4 @@
-"""Least squares over the numbers of a lens: sharper spots, a focal length, other operands, within bounds."""
+"""Lens optimisation by bounded least squares: spot sizes, focal length and other operands."""
 
 from __future__ import annotations
 
@@ -17,20 +17,20 @@ from .variable import Variable, check_surface_exists, checked
 
 Progress = Callable[[int, float], bool | None]
 
-REACH = 0.005  # of differences, in steps of the variables
+REACH = 0.005  # half width of finite differences, in steps of the variables
 
 
 @dataclass(frozen=True)
 class Targets:
-    """What a lens is to become.
+    """Merit function of an optimisation.
 
-    fields_deg, field_weights: angles in the scene whose spots are to be small, and how much they count.
-    wavelengths_nm, wavelength_weights: colours, about one centroid, so that lateral colour counts, too, and how much
-    they count. None: the design wavelength; all alike.
-    object_distance_m: from the front vertex; None: the plane in focus. focal_length_mm: None: whatever comes.
-    focal_length_weight: an error of the focal length counts as so many times that radius of all spots.
-    refocuses: the film is where it is sharpest on the axis; else it stays.
-    operands: what else is wanted: MTF, distortion, angles, thicknesses, length.
+    fields_deg, field_weights: field angles whose spots are minimised, and their weights.
+    wavelengths_nm, wavelength_weights: wavelengths and their weights; spots are about the centroid of all wavelengths,
+    so that lateral colour counts. None: the design wavelength; equal weights.
+    object_distance_m: from the front vertex; None: the plane in focus. focal_length_mm: None: unconstrained.
+    focal_length_weight: an error of 1 mm in the focal length counts as this many mm of RMS spot radius.
+    refocuses: True keeps the film at the best axial focus; False keeps its distance.
+    operands: further operands: MTF, distortion, angles, thicknesses, length.
     """
 
     fields_deg: Sequence[float] = (0.0,)
@@ -46,9 +46,9 @@ class Targets:
 
 @dataclass(frozen=True)
 class Optimisation:
-    """What came of it. rms_spot_mm: weighted over all fields and colours; message: why it ended.
+    """Result of an optimisation. rms_spot_mm: weighted over all fields and wavelengths; message: why it ended.
 
-    merit: the sum of squares that was made small, mm^2: of the spots and of the operands.
+    merit: the minimised sum of squares of spots and operands, mm^2.
     """
 
     lens: Lens
@@ -71,17 +71,17 @@ def optimised(
     seed: int = 0,
     answers_interrupt: bool = False,
 ) -> Optimisation:
-    """Changes some numbers of a lens so that its spots become small (scipy's least_squares, trust region reflective).
+    """Optimises variables of a lens for small spots (scipy's least_squares, trust region reflective).
 
-    Derivatives are exact (Lens.gradient). They are differences for lenses that focus by a moving group. So they are for
-    near objects before lenses that are not of revolution, and for the film that follows such a lens.
+    Derivatives are exact (Lens.gradient), except for three cases that use finite differences: lenses that focus by a
+    moving group, near objects of lenses that are not rotationally symmetric, and refocusing of such lenses.
     most_steps: of the local search. samples: rings of rays in the pupil.
-    progress: called after each look with its number and the RMS spot in mm; the search ends where it returns False.
-    global_looks: looks at lenses all over the bounds, which must be finite, before the local search begins at the best
-    of them (scipy's differential_evolution, from `seed`).
+    progress: called after each evaluation with its count and the RMS spot in mm; returning False ends the search.
+    global_looks: number of evaluations of a global search within the bounds, which must be finite; the local search
+    starts from its best lens (scipy's differential_evolution, from `seed`).
     answers_interrupt: Ctrl-C ends the search with the best lens so far, in place of KeyboardInterrupt.
-    A lens that cannot be built (faces that cross, rims beyond their surface) is never stepped to. Raises InputError for
-    variables and targets that are none, and where the lens as it is cannot be judged.
+    Lenses that cannot be built (surfaces that intersect, rims beyond their surface) are never accepted. Raises
+    InputError for invalid variables and targets, and if the initial lens cannot be evaluated.
     """
     from scipy.optimize import least_squares  # slow to load, and no other part of the package needs it
 
@@ -95,7 +95,7 @@ def optimised(
             jac=search.jacobian,
             bounds=search.bounds(),
             max_nfev=most_steps,
-            # Sums of squares of micrometres in mm are small, whatever the slope is: it tells nothing of the end.
+            # No gtol: squared micrometres in mm^2 have a tiny gradient everywhere, so it does not indicate convergence.
             ftol=1e-9,
             xtol=1e-9,
             gtol=None,
@@ -138,7 +138,7 @@ class _Search:
         self.failed = 1e3 * (1 + float(np.abs(self.of_start).max()))
         if not np.isfinite(self.of_start).all():
             raise InputError(f'no light passes lens "{lens.name}" from one of the fields')
-        # The object point of a near field follows a lens that is not of revolution in ways that have no derivatives.
+        # Without rotational symmetry, a near object point moves when the lens changes; that has no exact derivatives.
         distance_m = lens.focus_distance_m if targets.object_distance_m is None else targets.object_distance_m
         self.is_exact = (
             (lens.is_rotational or math.isinf(distance_m))
@@ -147,7 +147,7 @@ class _Search:
         )
 
     def _has_chief_rays(self) -> bool:
-        """Derivatives of a field begin with its chief ray, which a secondary mirror blocks."""
+        """True if all chief rays pass: exact derivatives need them, and a secondary mirror may block them."""
         return all(
             self.lens.aim([[0.0, 0.0]], field, object_distance_m=self.targets.object_distance_m).status[0] == 0
             for field in (0.0, *self.targets.fields_deg)
@@ -172,7 +172,7 @@ class _Search:
         except (InputError, LensFileError):
             residuals = np.full_like(self.of_start, np.nan)
         if not np.isfinite(residuals).all():
-            # So bad that the step is taken back, and halved.
+            # A large residual makes least_squares reject and shorten the step.
             return np.full_like(self.of_start, self.failed)
         merit = float(residuals @ residuals)
         if merit < self.best_merit:
@@ -182,7 +182,7 @@ class _Search:
         return residuals
 
     def look_around(self, looks: int, seed: int) -> NDArray[np.float64]:
-        """Where the best lens of so many all over the bounds is, by differential evolution."""
+        """Returns the variables, in steps, of the best lens found by differential evolution within the bounds."""
         from scipy.optimize import differential_evolution
 
         lower, upper = self.bounds()
@@ -203,7 +203,7 @@ class _Search:
             polish=False,
             seed=seed,
         )
-        # The local search may not begin on a bound.
+        # The local search must not start on a bound.
         inside = 1e-6 * (upper - lower)
         return np.asarray(np.clip(found.x, lower + inside, upper - inside))
 
@@ -211,14 +211,14 @@ class _Search:
         return np.asarray(self._exact_jacobian(x) * self.steps) if self.is_exact else self._differences(x)
 
     def _film_follows(self, x: NDArray[np.float64], lens: Lens) -> NDArray[np.float64]:
-        """(V,): by how much the film's distance changes with each variable."""
+        """(V,): derivatives of the film distance by the variables, as the lens is refocused."""
         if not self.targets.refocuses:
             return np.zeros(len(x))
         if lens.is_rotational:
             return film_distance_by(lens, self.variables)
 
-        # The ray that the middle of the film sees changes with the lens, and has no derivatives. One-sided where a lens
-        # to one side cannot be built.
+        # Without rotational symmetry, the chief ray of the film's centre changes with the lens and has no exact
+        # derivatives: finite differences, one-sided if the lens on one side cannot be built.
         def moved(step: NDArray[np.float64]) -> float:
             try:
                 return self.lens_at(x + step).film_distance_mm - lens.film_distance_mm
@@ -234,7 +234,7 @@ class _Search:
         follows = self._film_follows(x, lens)
 
         def following(by: NDArray[np.float64]) -> NDArray[np.float64]:
-            """By the variables alone, while the film follows."""
+            """Total derivatives by the variables, including the motion of the film."""
             return np.asarray(by[..., :-1] + by[..., -1:] * follows)
 
         rows = []
@@ -268,8 +268,8 @@ class _Search:
         return np.concatenate(rows)
 
     def _differences(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Central differences: a focal length depends on curvatures so much more than a spot does that the error of
-        one-sided ones would hide the spot. One-sided where a lens to one side cannot be built."""
+        """Jacobian by central differences: focal length depends on curvatures so much more strongly than spots do that
+        the error of one-sided differences would hide the spots. One-sided if the lens on one side cannot be built."""
         columns = []
         for unit in np.eye(len(x)):
             looks = [(side, self.residuals(x + side * unit)) for side in (REACH, -REACH)]
@@ -288,7 +288,8 @@ class _Search:
         return float(np.sqrt(np.sum(residuals[: self.spot_count] ** 2)))
 
     def _judge(self, lens: Lens) -> NDArray[np.float64]:
-        """Ray errors in mm whose squares sum to the mean square spot radius, and the focal length's; nan: dark."""
+        """Residuals: ray errors in mm whose squares sum to the mean square spot radius, then those of the operands; nan
+        if no light of a field passes."""
         targets = self.targets
         parts = []
         for field, weight in zip(targets.fields_deg, self.field_weights, strict=True):
@@ -317,7 +318,7 @@ class _Search:
         share = np.where(passes, share, 0.0)
         share = share / share.sum()
         middle = share @ np.where(passes[:, None], at, 0.0)
-        # A lens does not become sharp by being dark: the fewer rays pass, the more their errors count.
+        # Weighted by the inverse fraction of passing rays, so that vignetting does not count as sharpness.
         errors = np.where(passes[:, None], at - middle, 0.0) * np.sqrt(share)[:, None]
         return np.asarray(errors.ravel() / math.sqrt(max(passes.mean(), 1e-9)))
 
@@ -328,7 +329,7 @@ def _shares(weights: Sequence[float] | None, count: int) -> NDArray[np.float64]:
 
 
 def _focuses_by_group(lens: Lens) -> bool:
-    """Whether anything but the film moves when it is focused."""
+    """True if focusing moves elements other than the film, or if the lens cannot be focused at infinity or nearby."""
     near = 20 * abs(lens.first_order().effective_focal_length_mm) / 1000
     try:
         return lens.focused(near).surfaces != lens.focused(math.inf).surfaces
@@ -366,5 +367,5 @@ def _check(lens: Lens, variables: list[Variable], targets: Targets) -> None:
     of_colours, colours = targets.wavelength_weights, targets.wavelengths_nm or [lens.wavelength_nm]
     if of_colours is not None and (len(of_colours) != len(colours) or not all(w > 0 for w in of_colours)):
         raise InputError(f"wavelength_weights must be {len(colours)} positive numbers, one for each wavelength")
-    # Refuses variables without an effect, as the conic of a plane.
+    # Raises for variables without an effect, such as the conic of a plane.
     lens._ray_derivatives(np.zeros((0, 3)), np.zeros((0, 3)), [v.as_tuple() for v in variables])

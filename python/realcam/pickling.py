@@ -1,7 +1,6 @@
-"""What pickles of realcam's objects name: how they are read again.
+"""Unpickling of realcam's objects.
 
-A pickle is input as any other: what it says goes through the checks of a new object, and what they refuse is an
-InputError.
+Pickles are untrusted input: their state passes the same checks as a new object, and invalid state raises InputError.
 """
 
 from __future__ import annotations
@@ -19,9 +18,9 @@ FORMAT = _core._STATE_FORMAT
 
 
 def restored(kind: str, state_format: int, version: str, state: Any) -> Any:
-    """The object that was pickled.
+    """Restores a pickled object.
 
-    Raises InputError where the state is damaged, or another version of realcam wrote it in another way.
+    Raises InputError if the state is damaged, or if it is in the format of another version of realcam.
     """
     made_by = version if isinstance(version, str) and len(version) <= 20 and version.isprintable() else "?"
     type_ = getattr(_core, kind, None) if isinstance(kind, str) else None
@@ -39,12 +38,12 @@ def restored(kind: str, state_format: int, version: str, state: Any) -> Any:
     except _core.RealcamError as error:
         why = str(error)
     except (RuntimeError, TypeError, ValueError, AttributeError, OverflowError):
-        pass  # pybind11's words about types of C++
+        pass  # messages about C++ types
     raise _core.InputError(f"this {kind} was pickled by realcam {made_by} and cannot be read: {why}")
 
 
 def name_static_functions() -> None:
-    """Makes functions as Lens.load ones of Python, which pickle by their names: executor.map(rc.Lens.load, paths)."""
+    """Makes static methods Python functions, which pickle by their names: executor.map(rc.Lens.load, paths)."""
 
     def named(function: Callable[..., Any], qualified_name: str) -> Callable[..., Any]:
         @functools.wraps(function)
@@ -61,7 +60,7 @@ def name_static_functions() -> None:
 
 
 def described(value: Any, buffers: list[np.ndarray]) -> Any:
-    """Describes a value as JSON, by the state that its pickle has. Its arrays are added to `buffers`, as bytes.
+    """Describes a value as JSON, by the state of its pickle. Its arrays are appended to `buffers`, as bytes.
 
     Bytes become {"text": Latin-1}, and an array {"array": [offset, rows, bytes of a row]}, with the offset in the
     concatenated buffers.
@@ -86,7 +85,7 @@ def described(value: Any, buffers: list[np.ndarray]) -> Any:
 
 
 def from_description(description: Any, buffer: np.ndarray, kind: str) -> Any:
-    """The value of this kind that was described; buffer: the concatenated buffers, uint8. Raises InputError."""
+    """Inverse of described(), for a value of this kind. buffer: the concatenated buffers, uint8. Raises InputError."""
 
     def state_of(item: Any) -> Any:
         if isinstance(item, list):
@@ -111,9 +110,9 @@ def from_description(description: Any, buffer: np.ndarray, kind: str) -> Any:
 
 
 def set_checked_state(value: Any, state: Any, check: Callable[[Any], object]) -> None:
-    """`__setstate__` of a frozen dataclass: its fields go through __init__ and `check`.
+    """Implements `__setstate__` of a frozen dataclass: validates the fields by __init__ and `check`.
 
-    Raises InputError. What is not a field (a cached property) is left out.
+    Raises InputError. State that is not a field, such as a cached property, is ignored.
     """
     names = {field.name for field in dataclasses.fields(value)}
     why = "it is damaged"
@@ -123,7 +122,7 @@ def set_checked_state(value: Any, state: Any, check: Callable[[Any], object]) ->
     except _core.RealcamError as error:
         why = str(error)
     except (TypeError, ValueError, AttributeError, LookupError):
-        pass  # Python's words about its arguments
+        pass  # messages about arguments of __init__
     else:
         vars(value).update(vars(made))
         return
@@ -131,6 +130,6 @@ def set_checked_state(value: Any, state: Any, check: Callable[[Any], object]) ->
 
 
 def same_arrays(one: Any, other: Any) -> bool:
-    """Whether two arrays have the same type, shape and numbers, NaN included."""
+    """True if two arrays have the same dtype, shape and values, with NaN equal to NaN."""
     a, b = np.asarray(one), np.asarray(other)
     return a.dtype == b.dtype and a.shape == b.shape and bool(np.array_equal(a, b, equal_nan=a.dtype.kind in "fc"))

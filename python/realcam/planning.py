@@ -1,4 +1,4 @@
-"""What a shot calls for."""
+"""Automatic choice of effects and camera model for a picture."""
 
 from __future__ import annotations
 
@@ -25,16 +25,15 @@ def plan(
     times: bool = False,
     **changes: Unpack[_SettingWords],
 ) -> Plan:
-    """Says which effects and which camera model a picture needs, and which it may do without, each with its size.
+    """Decides which effects and which camera model a picture needs, with the magnitude of each effect.
 
-    Sizes come from the lens's rays, from closed forms and from a small picture of the scene: in pixels of the film, or
-    in 8-bit codes of the developed picture. What is smaller than its threshold is left out.
-    settings, also by their names, as in plan(scene, camera, quality="draft"): those of render. Of the effects, what is
-    named is kept, with a "-" before it left out. A camera whose model is not "full" keeps it.
-    times: also measure what each effect adds to the picture's time on this device, which takes some tenths of a second
-    each.
+    Magnitudes come from rays through the lens, closed forms and a small picture of the scene: in pixels of the film, or
+    in 8-bit values of the developed picture. An effect below its threshold is left out.
+    settings, also as keywords, as in plan(scene, camera, quality="draft"): those of render. Effects that are named are
+    kept; those named with a "-" in front are left out. A camera model other than "full" is kept.
+    times: also measure the render time that each effect adds on this device, which takes some tenths of a second each.
 
-    Raises InputError; NothingToPlan, one of these, where the camera sees neither an object nor light;
+    Raises InputError; its subclass NothingToPlan if the camera sees neither an object nor light;
     SceneFileError, DeviceError; KeyboardInterrupt on Ctrl-C.
     """
     if "effects" in changes:
@@ -46,23 +45,23 @@ def plan(
 
 
 def _with_auto(effects: str | Iterable[str] | None) -> tuple[str, ...]:
-    """With all others left to the planner."""
+    """Adds "auto" in front of the named effects, which leaves all others to the planner."""
     is_list = isinstance(effects, Iterable) and not isinstance(effects, str)
     return ("auto", *effects) if is_list else ("auto",) if effects is None else ("auto", effects)  # type: ignore
 
 
 class Settled(NamedTuple):
-    """What a picture is taken with once "auto" is decided."""
+    """Camera and settings of a picture after "auto" is resolved."""
 
     camera: Camera
     settings: RenderSettings
-    summary: str  # Plan.summary; empty: nothing was left to decide
+    summary: str  # Plan.summary; empty if there was nothing to resolve
 
 
 def settled(scene: Scene, camera: Camera, settings: RenderSettings, device: str, stacklevel: int) -> Settled:
-    """Decides what is left to the planner.
+    """Resolves the settings "auto" by the planner.
 
-    Warns, `stacklevel` calls up, where there is nothing to plan; raises what plan raises else.
+    Warns, `stacklevel` calls up, if the camera sees nothing to plan for. Otherwise raises what plan raises.
     """
     return settled_film(scene, [camera], settings, device, stacklevel + 1)
 
@@ -70,7 +69,7 @@ def settled(scene: Scene, camera: Camera, settings: RenderSettings, device: str,
 def settled_film(
     scene: Scene, cameras: Sequence[Camera], settings: RenderSettings, device: str, stacklevel: int
 ) -> Settled:
-    """The same for frames of a film, given by their cameras, together. The camera is the first one."""
+    """Resolves "auto" once for all frames of a film. The returned camera is the first frame's."""
     camera, *others = cameras
     model, settings, summary, warning = _core._settle_film(scene, camera, others, settings, device)
     if warning:

@@ -1,4 +1,4 @@
-"""Progress on stderr; silent where that is no terminal."""
+"""Progress bars on stderr; silent if it is not a terminal."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, T
 
 @contextmanager
 def progress_bar(title: str, is_shown: bool = True) -> Iterator[Callable[[float], bool]]:
-    """A function to call with the share done, 0 to 1."""
+    """Yields a function to call with the fraction done, 0 to 1."""
     console = Console(stderr=True)
     columns = (TextColumn("{task.description}"), BarColumn(), TaskProgressColumn(), TimeRemainingColumn())
     with Progress(*columns, console=console, transient=True, disable=not (is_shown and console.is_terminal)) as bars:

@@ -1,4 +1,4 @@
-"""What a sensor makes of a film's exposure: a mosaic of whole numbers, and the way back to a picture."""
+"""Raw sensor images: the mosaic of digital numbers from a film's exposure, and its development."""
 
 from __future__ import annotations
 
@@ -18,17 +18,17 @@ from ._core import Film, InputError, Sensor
 from .image import Image
 from .pickling import set_checked_state
 
-# Exposure times, s, and ISO numbers that a camera takes.
+# Range of exposure times, s, and of ISO values.
 LEAST_DIAL, MOST_DIAL = 1e-37, 1e38
 
 
 @dataclass(frozen=True, eq=False)
 class RawImage:
-    """The numbers of a sensor, linear in light, and what is needed to make a picture of them.
+    """Raw digital numbers of a sensor, linear in light, with the data for their development.
 
-    mosaic: (H, W) uint16, one number for each pixel, row 0 at the top; sensor.color_filter_array says under which
-    filter. iso, exposure_time_s, temperature_c, seed, serial: as it was exposed. illuminant: of the picture, as
-    Image has it; empty: D65. pixel_pitch_um: of the sensor. image_metadata: of the picture on the film.
+    mosaic: (H, W) uint16, one digital number per pixel, row 0 at the top; sensor.color_filter_array states its filter.
+    iso, exposure_time_s, temperature_c, seed, serial: those of the exposure. illuminant: as in Image; empty: D65.
+    pixel_pitch_um: of the sensor. image_metadata: metadata of the exposed Image.
     """
 
     mosaic: np.ndarray
@@ -76,7 +76,7 @@ class RawImage:
 
     @property
     def color_filter_array(self) -> str:
-        """The filters of two rows of two pixels from the top left, as "RGGB"; "": none."""
+        """The filters of the 2 x 2 pixels at the top left, row by row, as "RGGB"; "" for a monochrome sensor."""
         return self.sensor.color_filter_array
 
     @cached_property
@@ -86,12 +86,12 @@ class RawImage:
 
     @property
     def black_level_dn(self) -> float:
-        """The number of no light."""
+        """The digital number without light."""
         return self.sensor.black_level_dn
 
     @property
     def white_level_dn(self) -> int:
-        """The number at which a pixel is full, or the converter's largest."""
+        """The digital number of a full pixel, or the converter's largest if that is smaller."""
         full = self.black_level_dn + self.gain_dn_per_e * self.sensor.full_well_e
         return int(min(full, 2**self.sensor.adc_bits - 1))
 
@@ -106,25 +106,25 @@ class RawImage:
 
     @property
     def as_shot_neutral(self) -> np.ndarray:
-        """(3,): what the red, green and blue filters see of the illuminant's white, the largest 1."""
+        """(3,): responses of red, green and blue pixels to the illuminant's white, normalised to a maximum of 1."""
         return self._color[0]
 
     @property
     def camera_from_xyz(self) -> np.ndarray:
-        """(3, 3): XYZ under the illuminant to the filters' numbers, such that white of Y = 1 is as_shot_neutral."""
+        """(3, 3): from XYZ under the illuminant to camera RGB; white of Y = 1 becomes as_shot_neutral."""
         return self._color[1]
 
     @property
     def d50_from_balanced(self) -> np.ndarray:
-        """(3, 3): the filters' numbers over as_shot_neutral to XYZ under D50 (DNG's ForwardMatrix)."""
+        """(3, 3): from white-balanced camera RGB to XYZ under D50 (DNG's ForwardMatrix)."""
         return self._color[3]
 
     def exposure(self, demosaic: str = "menon") -> np.ndarray:
-        """(H, W, 3) float32: the film's exposure as the numbers tell it, lux seconds, linear Rec. 709, noise included.
+        """(H, W, 3) float32: the film's exposure estimated from the mosaic, lux seconds, linear Rec. 709, with noise.
 
-        What is saturated in one filter is cut at the same white in all, so that highlights have no colour. demosaic:
-        "menon" (Menon 2007), "malvar" (2004) or "bilinear", by colour-demosaicing, which the extra realcam[raw] brings.
-        A sensor without filters gives the same in all channels. Noise may go below 0. Raises InputError.
+        All channels are clipped at the same white, so that saturated highlights are neutral. demosaic: "menon" (Menon
+        2007), "malvar" (2004) or "bilinear", by colour-demosaicing, which the extra realcam[raw] provides. A monochrome
+        sensor has equal channels. Noise may be negative. Raises InputError.
         """
         light = (self.mosaic.astype(np.float32) - np.float32(self.black_level_dn)) / np.float32(self.gain_dn_per_e)
         full = (self.white_level_dn - self.black_level_dn) / self.gain_dn_per_e
@@ -140,11 +140,11 @@ class RawImage:
         return result
 
     def developed(self, tone: str = "linear", iso: float | None = None, demosaic: str = "menon") -> np.ndarray:
-        """(H, W, 3) uint8 sRGB, as Image.developed gives it of the film.
+        """(H, W, 3) uint8 sRGB, as from Image.developed.
 
-        tone: "linear" (clipped at white, above which a sensor has half a stop) or "film", whose shoulder expects
-        brighter highlights than a sensor has. iso: None is that of the exposure; another one brightens. demosaic: as
-        exposure() has it. Raises InputError.
+        tone: "linear" (clipped at white, half a stop below saturation) or "film", whose shoulder expects brighter
+        highlights than a sensor records. iso: None is that of the exposure; another value scales the brightness.
+        demosaic: as for exposure(). Raises InputError.
         """
         return _core.develop(self.exposure(demosaic), self.iso if iso is None else iso, tone)
 
@@ -187,7 +187,7 @@ class RawImage:
         )
 
     def metadata(self) -> dict[str, str]:
-        """Names ("realcam:...") and values of what is written into files: the picture's, and the sensor's."""
+        """Names ("realcam:...") and values of the metadata in files: the picture's, and the sensor's."""
         entries = dict(self.image_metadata)
         entries["realcam:iso"] = f"{self.iso:.9g}"
         entries["realcam:sensor"] = self.sensor.name
@@ -247,7 +247,7 @@ def exposed_film(
     metadata: Mapping[str, str] | None = None,
     stacklevel: int = 2,
 ) -> RawImage:
-    """The same of an exposure, (H, W, 3) lux seconds, that came from a file. Raises InputError."""
+    """Sensor.expose for an exposure without an Image, (H, W, 3) lux seconds, as read from a file. Raises InputError."""
     if not LEAST_DIAL <= exposure_time_s <= MOST_DIAL:
         raise InputError(f"the exposure time must be a number of seconds from 1e-37 to 1e38, not {exposure_time_s:g}")
     if not LEAST_DIAL <= iso <= MOST_DIAL:
@@ -302,6 +302,6 @@ def exposed_film(
 
 
 def _exit_pupil_distance_mm(image: Image) -> float:
-    """The distance from the exit pupil, where chief rays come from, to the film, by first-order optics."""
+    """Distance from the exit pupil to the film, by first-order optics."""
     lens: Any = image.camera.lens
     return abs(float(lens.film_position_mm - lens.first_order().exit_pupil_position_mm))

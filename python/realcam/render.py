@@ -1,4 +1,4 @@
-"""Taking a picture."""
+"""Rendering a picture."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ ProgressCallback = Callable[[float], bool | None]
 
 
 def warn_of_no_light(scene: Scene) -> None:
-    """Where the caller's caller stands."""
+    """Warns of a scene without light. The warning names the line of the caller's caller."""
     if isinstance(scene, Scene) and not scene.has_light:
         warnings.warn(
             "the scene has no light, so that its picture is black; scene.with_daylight(camera), with_environment, "
@@ -47,18 +47,17 @@ def render(
     on_stop: str = "raise",
     **changes: Unpack[_SettingWords],
 ) -> Image:
-    """Photographs a scene: every sample is a ray from the film, through the lens, to the scene and its lights.
+    """Photographs a scene: every sample is a path from the film, through the lens, to the scene and its lights.
 
-    settings: samples, bounces, layers, effects, ...; these may be given by their names, too, as in
-    render(scene, camera, spp=256, max_bounces=4), where they go before the others. help(rc.RenderSettings) says what
-    each means.
+    settings: samples, bounces, layers, effects, ...; keywords override them, as in
+    render(scene, camera, spp=256, max_bounces=4). help(rc.RenderSettings) explains each.
     device: "auto" (a GPU if there is one), "cpu", "cuda" (all GPUs), "cuda:1" or "cuda:0,1".
-    progress: True for a bar on stderr, or a function that is called about 20 times a second with the share done,
-    0 to 1, and stops the render where it returns False. Warns of a scene without light.
-    on_stop: what becomes of a picture that progress has stopped: "raise" gives it up, with Cancelled; "keep" returns
-    the samples that were taken, if each pixel has some, and Image.shortfall says so.
+    progress: True for a bar on stderr, or a function that is called about 20 times a second with the fraction done,
+    0 to 1, and stops the render by returning False. Warns of a scene without light.
+    on_stop: handling of a render that progress has stopped: "raise" discards it and raises Cancelled; "keep" returns
+    the samples taken so far, if every pixel has at least one, and sets Image.shortfall.
 
-    Raises InputError, SceneFileError, DeviceError; Cancelled where progress stopped it; KeyboardInterrupt on Ctrl-C.
+    Raises InputError, SceneFileError, DeviceError; Cancelled if progress stopped it; KeyboardInterrupt on Ctrl-C.
     """
     if on_stop not in ("raise", "keep"):
         raise InputError(f'on_stop must be "raise" or "keep"; it is {on_stop!r:.60}')

@@ -1,4 +1,4 @@
-"""Cameras that are fixed to one another: a stereo pair, a ring of cameras, all that a vehicle bears."""
+"""Rigs of cameras that are fixed to one another: stereo pairs, camera rings, the cameras of a vehicle."""
 
 from __future__ import annotations
 
@@ -33,11 +33,11 @@ UNMOVED: Matrix = tuple(tuple(row) for row in np.eye(4).tolist())
 
 @dataclass(frozen=True)
 class RigCamera:
-    """A camera of a rig, and what becomes of the light on its film.
+    """A camera of a rig, with its sensor and filter.
 
-    camera: as it stands in the axes of the rig. sensor: what makes raw numbers of its film. spectral_filter: what lies
-    over that sensor, pairs of a wavelength in nm and a transmission from 0 to 1, linear between them and nothing beyond
-    them; (): none. Raises InputError.
+    camera: posed in the frame of the rig. sensor: makes raw images from the film's exposure. spectral_filter: filter on
+    that sensor, pairs of a wavelength in nm and a transmission from 0 to 1, interpolated linearly and 0 outside; ():
+    no filter. Raises InputError.
     """
 
     camera: Camera
@@ -56,7 +56,7 @@ class RigCamera:
         object.__setattr__(self, "spectral_filter", table)
         if table and self.sensor is None:
             raise InputError("spectral_filter: the camera has no sensor for which light could be filtered")
-        self.filtered_sensor  # noqa: B018 - raises for what is no filter
+        self.filtered_sensor  # noqa: B018 - raises for an invalid filter
 
     def __setstate__(self, state: Any) -> None:
         set_checked_state(self, state, hash)
@@ -68,19 +68,19 @@ class RigCamera:
 
     @property
     def filtered_sensor(self) -> Sensor | None:
-        """The sensor with the filter as a part of its cover glass."""
+        """The sensor with the filter multiplied into its cover glass."""
         if self.sensor is None or not self.spectral_filter:
             return self.sensor
         tables = [np.array(table) for table in (self.spectral_filter, self.sensor.cover_glass) if len(table)]
         knots = np.unique(np.concatenate([table[:, 0] for table in tables]))
-        if len(tables) > 1:  # between knots, the product of two lines is none
+        if len(tables) > 1:  # the product of two linear pieces is not linear: resample at 1 nm
             knots = np.unique(np.concatenate([knots, np.arange(knots[0], knots[-1])]))
         product = np.prod([np.interp(knots, table[:, 0], table[:, 1], left=0, right=0) for table in tables], axis=0)
         return self.sensor.replace(cover_glass=list(zip(knots.tolist(), product.tolist(), strict=True)))
 
     @property
     def filter_factor(self) -> float:
-        """What the filter lets through of what the sensor sees of white light (D65), 0 to 1. Raises InputError."""
+        """Ratio of the sensor's responses to white light (D65) with and without filter, 0 to 1. Raises InputError."""
         if self.sensor is None or self.filtered_sensor is None:
             return 1.0
         with_filter, without = (
@@ -96,9 +96,9 @@ class Rig:
     rig = rc.Rig.stereo(camera, baseline_m=0.12)
     images = rig.moved(scene_from_rig).render(scene)  # {"left": ..., "right": ...}
 
-    members: cameras as they stand in the axes of the rig, Camera or RigCamera. scene_from_rig: (4, 4), which puts the
-    rig into the scene: a rotation and a translation in metres. times_s: where the rig moves while shutters are open,
-    the times in s of as many matrices, (K, 4, 4). Raises InputError.
+    members: cameras, posed in the frame of the rig, Camera or RigCamera. scene_from_rig: (4, 4), pose of the rig in the
+    scene: a rotation and a translation in metres. times_s: for a rig that moves while shutters are open, the K times in
+    s of the matrices (K, 4, 4). Raises InputError.
     """
 
     members: Mapping[str, RigCamera]
@@ -132,10 +132,10 @@ class Rig:
 
     @classmethod
     def stereo(cls, camera: Camera, *, baseline_m: float, toe_in_deg: float = 0.0) -> Rig:
-        """Two of a camera, "left" and "right" of where it stands.
+        """A stereo rig of two copies of a camera, "left" and "right" of its position.
 
-        baseline_m: between the middles of their films. toe_in_deg: by which each is turned towards the other, about the
-        middle of its film. The axes of the rig are those of the camera: x right, y up, z backward. Raises InputError.
+        baseline_m: distance between the film centres. toe_in_deg: rotation of each camera towards the other, about its
+        film centre. The frame of the rig is the camera's: x right, y up, z backward. Raises InputError.
         """
         if not 0 < baseline_m < np.inf:
             raise InputError(f"baseline_m must be a positive number of metres, not {baseline_m!r:.20}")
@@ -151,7 +151,7 @@ class Rig:
 
     @property
     def cameras(self) -> dict[str, Camera]:
-        """The cameras as they stand in the scene."""
+        """The cameras, posed in the scene."""
         return {name: _placed(member.camera, self._poses, self.times_s) for name, member in self.members.items()}
 
     @property
@@ -160,11 +160,11 @@ class Rig:
         return poses
 
     def moved(self, scene_from_rig: ArrayLike, times_s: Sequence[float] = ()) -> Rig:
-        """The same rig elsewhere: scene_from_rig and times_s as the rig itself has them."""
+        """The rig in another pose or motion: scene_from_rig and times_s as for Rig."""
         return replace(self, scene_from_rig=scene_from_rig, times_s=tuple(times_s))
 
     def metered(self, scene: Scene, *, device: str = "auto") -> Rig:
-        """With the exposure time of each camera that brings its average to middle grey. Raises what render raises."""
+        """Sets each camera's exposure time so that its average is middle grey. Raises what render raises."""
         times = {name: camera.metered(scene, device=device).exposure_time_s for name, camera in self.cameras.items()}
         members = {
             name: replace(member, camera=member.camera.replace(exposure_time_s=times[name]))
@@ -175,9 +175,9 @@ class Rig:
     def shots(
         self, scene: Scene, settings: RenderSettings | None = None, **changes: Unpack[_SettingWords]
     ) -> dict[str, Shot]:
-        """What each camera photographs, for rc.Job say. Settings are those of rc.render.
+        """One shot per camera, for example for rc.Job. Settings are those of rc.render.
 
-        Each has random numbers of its own: equal noise in two pictures would be taken for something that both see.
+        Each shot has its own seed: identical noise in two pictures would be matched like scene detail.
         """
         wanted = settings_of(settings, changes)
         return {
@@ -193,18 +193,18 @@ class Rig:
         device: str = "auto",
         **changes: Unpack[_SettingWords],
     ) -> dict[str, Image]:
-        """The pictures of all cameras by their names, as rc.render takes each.
+        """Renders the pictures of all cameras, by their names, as rc.render does.
 
-        The scene is prepared once: its hierarchy serves all cameras, and later pictures too, as long as it stays the
-        same. Raises what rc.render raises.
+        The scene is prepared once: its acceleration structure serves all cameras, and later pictures of the same scene.
+        Raises what rc.render raises.
         """
         return {name: shot.render(device=device) for name, shot in self.shots(scene, settings, **changes).items()}
 
     def expose(self, images: Mapping[str, Image], *, seed: int = 0) -> dict[str, RawImage]:
-        """What the sensors make of such pictures, for the cameras that have one: Sensor.expose with their filters.
+        """Raw images of rendered pictures, for the cameras that have a sensor: Sensor.expose with their filters.
 
-        A filter leaves the gain as the camera's ISO sets it without one, so that the ISO of the raw numbers is lower by
-        filter_factor. seed: of the noise. Each sensor has another fixed pattern. Raises InputError.
+        A filter does not change the gain that the camera's ISO sets, so the ISO of the raw image is lower by
+        filter_factor. seed: of the noise. Each sensor has its own fixed-pattern noise. Raises InputError.
         """
         raws = {}
         for number, (name, member) in enumerate(self.members.items()):
@@ -215,10 +215,10 @@ class Rig:
         return raws
 
     def relative_pose(self, of: str, seen_from: str) -> tuple[Array, Array]:
-        """(R, t): R @ point + t takes points from the axes of one camera to those of another.
+        """(R, t): R @ point + t transforms points from the frame of `seen_from` to the frame of `of`.
 
-        As cv2.stereoCalibrate has them for relative_pose("right", "left"): axes x right, y down, z forward, from the
-        middle of the entrance pupil, metres. Raises InputError.
+        relative_pose("right", "left") is cv2.stereoCalibrate's R and T: axes x right, y down, z forward, origin at the
+        centre of the entrance pupil, metres. Raises InputError.
         """
         pose, from_pose = (self._member(name).camera.world_to_camera for name in (of, seen_from))
         return relative_pose(pose, from_pose)
@@ -229,9 +229,9 @@ class Rig:
         return self.members[name]
 
     def calibration(self, fits: Iterable[CameraModelFit] = ()) -> dict[str, Any]:
-        """Intrinsics and poses of all cameras as json.dump takes them (docs/rigs.md).
+        """Intrinsics and poses of all cameras, for json.dump (docs/rigs.md).
 
-        fits: from rc.fit_camera_model, each of one of rig.cameras. Raises InputError, also for a rig that moves.
+        fits: results of rc.fit_camera_model for rig.cameras. Raises InputError, also for a moving rig.
         """
         if self.times_s:
             raise InputError("a rig that moves has no one pose; moved(matrix) stops it")
@@ -251,17 +251,17 @@ class Rig:
     def save_colmap(
         self, folder: str | os.PathLike[str], places: Mapping[str, ArrayLike], model: str = "opencv5"
     ) -> None:
-        """Writes a text model of COLMAP's with rig and frames, for pictures that the rig takes at some places.
+        """Writes a COLMAP text model with rig and frames, for pictures that the rig takes at several poses.
 
-        places: scene_from_rig by the name that each camera's picture from there has, in a folder named as the camera.
-        model: the camera model that is fitted to each camera. Raises InputError, ImageFileError.
+        places: scene_from_rig by image name; each camera's images lie in a folder with the camera's name.
+        model: the camera model to fit to each camera. Raises InputError, ImageFileError.
         """
         save_colmap_of_rig(folder, {name: self.moved(place).cameras for name, place in places.items()}, model)
 
     def save_colmap_rig(self, path: str | os.PathLike[str]) -> None:
-        """Writes COLMAP's rig_config.json, whose pictures stand in a folder for each camera, named as it is.
+        """Writes COLMAP's rig_config.json, for pictures in one folder per camera, named after the camera.
 
-        The first camera is the one to which the poses of the others are relative. Raises InputError, ImageFileError.
+        The first camera is the reference of the other poses. Raises InputError, ImageFileError.
         """
         from scipy.spatial.transform import Rotation  # slow to load
 
@@ -288,8 +288,8 @@ def _rigid(matrices: ArrayLike, times: int) -> Array:
     if poses.shape != ((times, 4, 4) if times else (4, 4)) or not np.isfinite(poses).all():
         wanted = f"{times} matrices, one for each of times_s," if times else "a (4, 4) matrix"
         raise InputError(f"scene_from_rig must be {wanted} of finite numbers")
-    turns = np.clip(poses[..., :3, :3], -2, 2)  # products of larger ones, which turn nothing, might overflow
-    # Of what a user writes with seven digits.
+    turns = np.clip(poses[..., :3, :3], -2, 2)  # products of larger elements, which no rotation has, might overflow
+    # The tolerance admits rotations written with seven digits.
     is_turn = np.allclose(turns @ np.swapaxes(turns, -1, -2), np.eye(3), atol=1e-6) and (np.linalg.det(turns) > 0).all()
     if not is_turn or not np.allclose(poses[..., 3, :], (0, 0, 0, 1), rtol=0, atol=1e-12):
         raise InputError("scene_from_rig must rotate and move alone: a rig is neither scaled nor mirrored")
@@ -302,7 +302,7 @@ def _nested(poses: Array) -> Any:
 
 
 def _pose_of(camera: Camera) -> Array:
-    """(4, 4): from the axes of a camera (x right, y up, z backward, the middle of its film) to the scene."""
+    """(4, 4): from the frame of a camera (x right, y up, z backward, origin at the film centre) to the scene."""
     pose = np.eye(4)
     backward = np.subtract(camera.position, camera.look_at)
     right = np.cross(camera.up, backward)
@@ -314,7 +314,7 @@ def _pose_of(camera: Camera) -> Array:
 
 
 def _placed(camera: Camera, poses: Array, times_s: tuple[float, ...]) -> Camera:
-    """A camera of the rig where the rig's poses put it."""
+    """Transforms a camera of the rig into the scene by the rig's poses."""
 
     def at(
         pose: Array, position: Sequence[float], look_at: Sequence[float], up: Sequence[float]

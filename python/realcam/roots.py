@@ -1,4 +1,4 @@
-"""Where a function of one number changes its sign."""
+"""One-dimensional root finding."""
 
 from __future__ import annotations
 
@@ -9,20 +9,20 @@ from collections.abc import Callable
 def root_between(
     function: Callable[[float], float], low: float, high: float, at_low: float, at_high: float, tolerance: float
 ) -> float:
-    """A root between two places whose values have opposite signs, to `tolerance` in the argument.
+    """Returns a root between two arguments whose values have opposite signs, to `tolerance` in the argument.
 
-    Regula falsi in the Illinois form (M. Dowell and P. Jarratt, BIT 11, 168, 1971): the value of an end that stays
-    twice is halved, so that the bracket shrinks from both sides. `at_high` may be nan, and so may values on that side,
-    where the function has none: then the bracket is halved, and what is found may be the place where it ends. What is
-    returned is a place at which the function has a value.
+    Regula falsi in the Illinois form (M. Dowell and P. Jarratt, BIT 11, 168, 1971): the value of an end that is
+    retained twice is halved, so that the bracket shrinks from both sides. `at_high`, and values on that side, may be
+    nan outside the function's domain: then the bracket is bisected, and the result may be the end of the domain. The
+    function is defined at the returned argument.
     """
-    stayed = 0  # 1: low has stayed, -1: high
+    stayed = 0  # 1: low was retained in the last step, -1: high
     for _ in range(200):
         if abs(high - low) <= tolerance or at_low == 0:
             return low
         share = 0.5 if math.isnan(at_high) else at_low / (at_low - at_high)
         middle = low + share * (high - low)
-        if middle in (low, high):  # the root is an end, to the last digit
+        if middle in (low, high):  # an end is the root to machine precision
             return high if abs(at_high) < abs(at_low) else low
         value = function(middle)
         if value == 0:

@@ -1,4 +1,4 @@
-"""A picture that collects samples while it is shown."""
+"""Progressive rendering: a picture that accumulates samples."""
 
 from __future__ import annotations
 
@@ -25,11 +25,11 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class ReachedNoise:
-    """What has become of a picture that was to have little noise.
+    """Result of rendering to a noise limit.
 
-    noise: of the noisiest tile, in the measure that was asked for. is_reached: also false where lamps may be missing,
-    because only samples of pixels look for them, and few would meet them. spp_wanted: of the noisiest pixels, for what
-    was wanted. shortfall: a sentence where it was not reached.
+    noise: of the noisiest tile, in the requested measure. is_reached: False if the limit was missed, and also if lamps
+    may be missing because only paths from the film sample them and few would hit them. spp_wanted: samples that the
+    noisiest pixels need for the limit. shortfall: a sentence if the limit was not reached.
     """
 
     noise: float
@@ -39,18 +39,18 @@ class ReachedNoise:
 
 
 class Session:
-    """One picture on a device, which collects samples for as long as scene and camera stay the same.
+    """One picture on a device, which accumulates samples while scene and camera stay the same.
 
     session = rc.Session(scene, camera)
     while not good_enough(session.image()):
         session.add(16)
 
-    settings, also by their names, as in Session(scene, camera, max_bounces=4), and device are those of render; add()
-    after add() takes the samples that one render of as many would take. Effects "auto" are planned for each new
-    picture, anew where set() brings another scene or another view, which takes some hundredths of a second: for
-    pictures that change all the time, name them.
-    Threads take turns, and cancel() ends the turn of another. Raises InputError, SceneFileError and DeviceError; after
-    one of these the picture begins anew. Warns of a scene without light.
+    settings, also as keywords, as in Session(scene, camera, max_bounces=4), and device are those of render. Repeated
+    calls of add() take the same samples as one render of their total. Effects "auto" are planned for each new picture,
+    and again if set() changes the scene or the view, which takes some hundredths of a second: name the effects for
+    pictures that change all the time.
+    Calls from several threads are serialised, and cancel() ends the running one. Raises InputError, SceneFileError and
+    DeviceError, after which the picture starts from scratch. Warns of a scene without light.
     """
 
     def __init__(
@@ -63,7 +63,7 @@ class Session:
         **changes: Unpack[_SettingWords],
     ) -> None:
         self._asked_settings, self._asked_camera, self._device = settings_of(settings, changes), camera, device
-        self._settled = self._plan(scene, camera)  # raises for what is no scene or camera
+        self._settled = self._plan(scene, camera)  # raises if scene or camera have the wrong type
         self._core = _core._Session(scene, self._settled.camera, self._settled.settings, device)
         warn_of_no_light(scene)
         warn_of_effects(camera, self._settled.settings)
@@ -78,35 +78,35 @@ class Session:
 
     @property
     def camera(self) -> Camera:
-        """The camera that was set last. Its model is the one that was planned, where the effects are "auto"."""
+        """The camera that was set last, with the planned model if the effects are "auto"."""
         return self._core.camera
 
     @property
     def settings(self) -> RenderSettings:
-        """Those that the picture has: its effects are named, or planned."""
+        """The picture's settings, with "auto" replaced by what was planned."""
         return self._settled.settings
 
     effects = setting("effects")
 
     @property
     def device(self) -> str:
-        """What it computes with, for people: as RenderStats.device."""
+        """Readable name of the device, as in RenderStats.device."""
         return self._core.device
 
     def set(
         self, *, scene: Scene | None = None, camera: Camera | None = None, settings: RenderSettings | None = None
     ) -> None:
-        """Another scene, camera or settings; None keeps what was set last.
+        """Changes the scene, camera or settings; None keeps the last one.
 
-        Only what changed is prepared again: of a scene from moved(), the places; of a camera with the same lens and
-        film, its pose. Each begins a new picture. Another exposure time or ISO only develops the samples anew. Raises
-        KeyboardInterrupt on Ctrl-C.
+        Only changed data is prepared again: of a scene from moved(), the instances' transforms; of a camera with the
+        same lens and film, its pose. A change begins a new picture, except that another exposure time or ISO only
+        develops the samples again. Raises KeyboardInterrupt on Ctrl-C.
         """
         new_scene = self.scene if scene is None else scene
         asked = self._asked_camera if camera is None else camera
         wanted = self._asked_settings if settings is None else settings_of(settings, {})
         if ("auto" in wanted.effects or wanted.max_bounces == "auto") and isinstance(asked, Camera):
-            if asked.model == self.camera.model:  # made of self.camera: the model of it was planned
+            if asked.model == self.camera.model:  # derived from self.camera, whose model was planned
                 asked = asked.replace(model=self._asked_camera.model)
             if scene is None and settings is None:
                 now = self._settled_for(new_scene, asked)
@@ -122,7 +122,7 @@ class Session:
             warn_of_no_light(scene)
 
     def _settled_for(self, scene: Scene, asked: Camera) -> Settled:
-        """Planned anew, but where only the dials of the exposure were turned."""
+        """Plans again, unless only exposure time or ISO have changed."""
 
         def exposed_alike(camera: Camera) -> Camera:
             return camera.replace(exposure_time_s=asked.exposure_time_s, iso=asked.iso)
@@ -132,10 +132,10 @@ class Session:
         return self._settled._replace(camera=exposed_alike(self._settled.camera))
 
     def add(self, spp: int = 1) -> None:
-        """Takes spp samples more of each pixel, 1 to 16777216, and returns when they are there.
+        """Takes spp more samples per pixel, 1 to 16777216, and returns when they are done.
 
-        Raises Cancelled where another thread calls cancel(), and KeyboardInterrupt on Ctrl-C. Both keep what was taken
-        until then, so that pixels may differ in their number of samples; each is developed with its own.
+        Raises Cancelled if another thread calls cancel(), and KeyboardInterrupt on Ctrl-C. Both keep the samples taken
+        until then, so that pixels may differ in their sample counts; each is normalised by its own.
         """
         self._core.add(spp)
 
@@ -147,19 +147,19 @@ class Session:
         seconds: float | None = None,
         max_spp: int | None = None,
     ) -> ReachedNoise:
-        """Takes samples of the pixels that are noisier than wanted, until none is; the arguments are settings.
+        """Takes samples of pixels above the noise limit until no pixel exceeds it; the arguments are settings.
 
-        What is not said is as the session's settings have it. Raises what add raises.
+        Omitted arguments have the values of the session's settings. Raises what add raises.
         """
         words = {"noise": noise, "noise_codes": noise_codes, "seconds": seconds, "max_spp": max_spp}
         said: Any = {name: value for name, value in words.items() if value is not None}
         return ReachedNoise(**self._core.add_until(self._asked_settings.with_(spp="auto", **said)))
 
     def image(self) -> Image:
-        """What was collected, as render returns it; spp is the mean over the pixels, rounded.
+        """The accumulated picture, as render returns it; spp is the mean over the pixels, rounded.
 
-        Layers are those of all samples that were begun, also after a stop. A pixel without a sample is black, at
-        depth inf. Raises InputError where there is no sample yet.
+        Layers include all samples that were begun, even after a cancellation. A pixel without a sample is black, at
+        depth inf. Raises InputError before the first sample.
         """
         picture = self._core.picture() | {"spp": round(float(self.samples.mean()))}
         settings = self.settings
@@ -168,12 +168,12 @@ class Session:
     def expose(
         self, region: _Region, first: int = 0, spp: int = 256, counts: NDArray[np.uint32] | None = None
     ) -> FilmPart:
-        """What some samples of a region of the film collect, apart from the picture of this session, which stays.
+        """Renders some samples of a region of the film, independently of this session's picture.
 
-        region: column and row of its first pixel, from the upper left corner, its width and its height. first, spp: the
-        samples with numbers from first on, at most 256. counts: (height, width), how many of them single pixels take.
-        Parts of all regions and samples make the picture (image_of), on whatever machines they were exposed. Where a
-        CPU took them in steps of 256 samples, it has the same bits as that of one session.
+        region: column and row of its first pixel, from the upper left corner, its width and its height. first, spp:
+        index of the first sample, and samples per pixel, at most 256. counts: (height, width), individual sample counts
+        of the pixels, up to spp. Parts of all regions and samples, from any machines, form the picture (image_of). If a
+        CPU took them in steps of 256 samples, it is bitwise equal to a single session's.
         Raises InputError, and what add raises.
         """
         found = self._core.expose_region(region, first, spp, counts)
@@ -183,19 +183,19 @@ class Session:
         return FilmPart(_region(region), first, spp, found["pixels"], layers, stats=found["stats"])
 
     def expose_layers(self, region: _Region, first: int = 0, spp: int = 256) -> FilmPart:
-        """The layers alone of what expose gives without counts. Raises what expose raises."""
+        """Only the layers of expose() without counts. Raises what expose raises."""
         return FilmPart(_region(region), first, spp, layers=self._core.see_region(region, first, spp))
 
     def expose_traced_light(self, first: int = 0, spp: int = 256) -> FilmPart:
-        """Ghosts and other light that is traced apart from the samples of pixels, as it belongs to so many of them.
+        """Ghosts and other light that is traced separately and splatted on the film, not sampled per pixel.
 
-        It falls on the whole film. A picture needs this of all of its samples, or of none where part.splats is empty,
-        which a part of 0 samples tells. Raises InputError, and what add raises.
+        It covers the whole film. A picture needs it for all of its samples, or not at all if part.splats is empty,
+        which a part of 0 samples already tells. Raises InputError, and what add raises.
         """
         return FilmPart(None, first, spp, splats=self._core.expose_splats(first, spp))
 
     def image_of(self, parts: Iterable[FilmPart]) -> Image:
-        """The picture that has all parts, and none twice; those of later samples of a pixel come later.
+        """The picture assembled from all parts, each given once, in the order of their samples.
 
         Raises InputError for parts of another picture.
         """
@@ -214,16 +214,16 @@ class Session:
 
     @property
     def has_sampled_layers(self) -> bool:
-        """Whether the settings want layers that are means over the samples, which parts then have."""
+        """True if a requested layer is a mean over the samples, so that parts contain layers."""
         return not _core._SAMPLED_LAYERS.isdisjoint(self.settings.layers)
 
     @property
     def samples(self) -> NDArray[np.int64]:
-        """(H, W) int64: the number of samples that each pixel has."""
+        """(H, W) int64: sample count of each pixel."""
         return self._core.samples
 
     def cancel(self) -> None:
-        """Ends what another thread does with this session, within the time of a sample: it raises Cancelled."""
+        """Cancels another thread's call on this session, within the time of a sample: that call raises Cancelled."""
         self._core.cancel()
 
 

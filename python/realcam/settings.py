@@ -1,4 +1,4 @@
-"""Settings of a picture, as one value and as keywords."""
+"""Render settings, as one value and as keywords."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from ._core import ArgumentError, RenderSettings
 def settings_of(
     settings: RenderSettings | None, changes: Mapping[str, Any], initial: RenderSettings | None = None
 ) -> RenderSettings:
-    """What a call means by `settings` (None: `initial`, or all as it is by default) and by keywords that change them.
+    """Merges `settings` (None: `initial`, or the defaults) with the keywords of a call, which override them.
 
     Raises InputError.
     """
@@ -24,5 +24,5 @@ def settings_of(
 
 
 def setting(name: str) -> Any:
-    """A property of a class: what its `settings` say."""
+    """Returns a property that reads an attribute of `self.settings`."""
     return property(attrgetter(f"settings.{name}"), doc=f"settings.{name}")

@@ -1,4 +1,4 @@
-"""Pictures on one labelled sheet, with matplotlib."""
+"""Contact sheets of labelled pictures, with matplotlib."""
 
 from __future__ import annotations
 
@@ -28,8 +28,8 @@ def save_sheet(
     tone: str = "film",
     theme: str = "light",
 ) -> None:
-    """Writes (label, image) pairs as .png, .jpg, .tif, .webp, .svg or .pdf, pixel by pixel where they are as wide as
-    each other.
+    """Writes (label, image) pairs as .png, .jpg, .tif, .webp, .svg or .pdf, without resampling if all images have the
+    same width.
 
     Raises ImageFileError, and InputError for no pictures, no columns or an unknown theme.
     """
@@ -43,14 +43,14 @@ def save_labelled(
     *,
     theme: str = "light",
 ) -> None:
-    """The same for pixels as matplotlib shows them, (rows, columns, 3)."""
+    """Writes a sheet of developed pixels, (rows, columns, 3). Otherwise like save_sheet()."""
     target = check_figure_target(path)
     if not pictures or columns < 1:
         raise InputError("a sheet needs at least one picture and one column")
     columns = min(columns, len(pictures))
     rows = math.ceil(len(pictures) / columns)
     width, height = (max(size) / DPI for size in zip(*(pixels.shape[1::-1] for _, pixels in pictures), strict=True))
-    letters = max(8, int(width * 72 / (0.6 * FONT_PT)))  # of average width
+    letters = max(8, int(width * 72 / (0.6 * FONT_PT)))  # per line, of average width
     labels = [_wrapped(label, letters) for label, _ in pictures]
     gap, line = 0.12, 0.1 + 1.3 * FONT_PT / 72 * (1 + max(label.count("\n") for label in labels))
     size = columns * (width + gap) + gap, rows * (height + line + gap) + gap
@@ -63,12 +63,12 @@ def save_labelled(
             axes = figure.add_axes((left / size[0], bottom / size[1], width / size[0], height / size[1]))
             axes.imshow(pixels, interpolation="nearest")
             axes.set_axis_off()
-            # Names of lenses are text, and a dollar sign in one begins no formula.
+            # A dollar sign in a lens name must not begin a formula.
             figure.text(left / size[0], (bottom - 0.06) / size[1], label, va="top", parse_math=False)
     save_figure(figure, target, dpi=DPI)
 
 
 def _wrapped(label: str, letters: int) -> str:
-    """In lines that end with a comma, as long as a phrase between commas is no longer than a line."""
+    """Wraps a label after commas; breaks within a phrase only if the phrase is longer than a line."""
     phrases = re.sub("(?<!,) ", "\N{NO-BREAK SPACE}", label)
     return "\n".join(textwrap.wrap(phrases, letters, break_on_hyphens=False))

@@ -1,4 +1,4 @@
-"""Texts of values that hold arrays, for terminals and notebooks."""
+"""Short reprs of values that hold arrays, for terminals and notebooks."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ import numpy as np
 
 
 class ShortText:
-    """A dataclass that is declared with repr=False: its text has the shapes of its arrays in place of their numbers."""
+    """Base of dataclasses declared with repr=False. The repr shows the shapes of arrays in place of their elements."""
 
     def __repr__(self) -> str:
-        fields = dataclasses.fields(self)  # type: ignore[arg-type]  # of a dataclass
+        fields = dataclasses.fields(self)  # type: ignore[arg-type]  # subclasses are dataclasses
         words = ", ".join(f"{field.name} {_short(getattr(self, field.name))}" for field in fields)
         package = ".".join(type(self).__module__.split(".")[:2]) if "." in type(self).__module__ else "realcam"
         return f"<{package}.{type(self).__name__} {words}>"

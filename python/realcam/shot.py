@@ -1,4 +1,4 @@
-"""Shot files: a scene, a camera and their light in one small TOML file (docs/shot-files.md)."""
+"""Shot files: a scene, a camera and lighting in one small TOML file (docs/shot-files.md)."""
 
 from __future__ import annotations
 
@@ -25,18 +25,18 @@ def is_shot_file(path: str | os.PathLike[str]) -> bool:
 
 
 def text_of_shot_of(scene: str) -> str:
-    """The text of a shot file that names a scene file alone."""
+    """Text of a minimal shot file, which only names a scene file."""
     return f"format = 1\nscene = {toml_value('scene', scene)}\n"
 
 
 def toml_value(name: str, value: Any) -> str:
-    """A value of a shot file as TOML. Raises InputError, with the name, for what no shot file holds."""
+    """Formats a value of a shot file as TOML. Raises InputError, with the name, for types without a TOML form."""
     if isinstance(value, os.PathLike):
         value = os.fsdecode(value)
     if isinstance(value, str):
         return json.dumps(value, ensure_ascii=False).replace(
             "\x7f", "\\u007f"
-        )  # JSON's strings are TOML's, but for this
+        )  # the only difference between JSON and TOML strings
     if isinstance(value, Mapping):
         return "{" + ", ".join(f"{toml_value(name, str(k))} = {toml_value(name, v)}" for k, v in value.items()) + "}"
     if isinstance(value, bool):
@@ -49,20 +49,20 @@ def toml_value(name: str, value: Any) -> str:
         items = value.tolist() if hasattr(value, "tolist") else value
         if isinstance(items, (list, tuple)):
             return "[" + ", ".join(toml_value(name, item) for item in items) + "]"
-        return toml_value(name, items)  # numpy's numbers
+        return toml_value(name, items)  # a numpy scalar
     raise InputError(f"{name} must be a value of a shot file (a number, a text or a list); it is {value!r:.60}")
 
 
 @dataclass(frozen=True)
 class Shot:
-    """What a shot file describes: `rc.Shot.load("demo.toml").render().save("demo.png")`.
+    """The content of a shot file: `rc.Shot.load("demo.toml").render().save("demo.png")`.
 
-    tone: "film" or "linear", the tone curve for Image.save. What the settings say can be asked of the shot, too:
-    shot.spp is shot.settings.spp.
-    keys: of the camera's rings and dials, which then go before what the camera itself says, and of cuts to other
-    lenses; `shake`: of a camera in the hand. `camera` is as the keys have it when its shutter opens, and does not
-    shake. iso_follows_s: in a film the ISO number follows the meter, smoothed over so many seconds; None: it does not.
-    Raises InputError where the camera cannot be as a key says.
+    tone: "film" or "linear", the tone curve for Image.save. Settings are also attributes of the shot: shot.spp is
+    shot.settings.spp.
+    keys: keyframes of focus, f-number and other lens and exposure settings, which override the camera's, and of cuts
+    to other lenses; `shake`: of a hand-held camera. `camera` is in the state of the keys when its shutter opens,
+    without shake. iso_follows_s: time in s over which the automatic ISO of a film is smoothed; None: fixed ISO.
+    Raises InputError if the camera cannot be in the state of a key.
     """
 
     scene: Scene
@@ -91,12 +91,12 @@ class Shot:
     def load(cls, path: str | os.PathLike[str] | Scene, *, device: str = "auto", **values: Any) -> Shot:
         """Reads a shot file and its scene, a scene file alone, or a bundled shot by its name: Shot.load("demo").
 
-        path may also be a Scene. Paths in a shot file are relative to it. A name is that of a bundled shot if no file
-        or folder here has it. What a shot leaves out is chosen as the command `realcam render` chooses it: `device`
-        meters the light where the file gives no exposure time.
+        path may also be a Scene. Paths in a shot file are relative to it. A name refers to a bundled shot unless the
+        current folder has a file or folder of that name. Defaults are those of the command `realcam render`: without an
+        exposure time, `device` meters the light.
         values: by the names of the keys of shot files (docs/shot-files.md), as in
-        Shot.load("demo", lens="tessar-50mm", f_number=5.6, focus_m=2); they take the place of those in the file, and of
-        those that they exclude, also in its tables [[key]]. lens may also be a Lens. Paths are relative to the current
+        Shot.load("demo", lens="tessar-50mm", f_number=5.6, focus_m=2); they replace those of the file, and those that
+        they exclude, also in its tables [[key]]. lens may also be a Lens. Paths in values are relative to the current
         folder. Raises InputError naming file, line and key, and what scene and lens raise.
         """
         return _read_shot(path, device, values, denoises=False)[0]
@@ -104,14 +104,14 @@ class Shot:
     def frames(
         self, numbers: Sequence[int], *, frames_per_second: float = 24.0, name: str = "frame", device: str = "auto"
     ) -> dict[str, Shot]:
-        """Frames of a film by their names, as "frame.0001": what moves is where it is at that time.
+        """Shots of the frames of a film, by their names, as "frame.0001", each at the time of its frame.
 
-        The shutter of frame 1 opens when that of the shot does, and those of the others so many frames later. Each
-        frame has a seed of its own, a hash of the shot's and of its number, so that the noise does not stand still.
-        Effects and bounces that are "auto" are planned for the first, the middle and the last frame and after each cut
-        to another lens together, because one that comes and goes would show. The plan and the meter, where the ISO
-        number follows it, work on `device`.
-        Raises InputError for numbers below 0 and for what the lens cannot do at a frame, and what plan raises.
+        The shutter of frame 1 opens at the same time as the shot's; frame n opens (n - 1) / frames_per_second later.
+        Each frame has its own seed, a hash of the shot's seed and the frame number, so that noise is not static.
+        Effects and bounces that are "auto" are planned once, from the first, middle and last frame and the frame after
+        each cut to another lens, because an effect that comes and goes would be visible. Planning, and metering for
+        automatic ISO, run on `device`.
+        Raises InputError for numbers below 0 and for frames at which the lens cannot be set, and what plan raises.
         """
         numbers = list(numbers)
         if not numbers or min(numbers) < 0 or not 0 < frames_per_second < math.inf:
@@ -138,8 +138,8 @@ class Shot:
         }
 
     def camera_at(self, time_s: float) -> Camera:
-        """The camera of a picture whose shutter opens at a time: with its rings and dials as the keys have them, and
-        with the shake of its exposure. Raises InputError where the lens cannot be so."""
+        """The camera for a picture whose shutter opens at a time: in the state of the keys, and with the shake of that
+        exposure. Raises InputError if the lens cannot be set that way."""
         return _core._camera_at(self.camera, self.keys, self.shake, time_s)
 
     def render(
@@ -150,7 +150,7 @@ class Shot:
         progress: bool | ProgressCallback = False,
         on_stop: str = "raise",
     ) -> Image:
-        """Takes the photograph: realcam.render with the shot's own settings, when its shutter opens.
+        """Renders the picture: realcam.render with the shot's settings, at the time its shutter opens.
 
         threads: None is settings.threads.
         """
@@ -160,7 +160,7 @@ class Shot:
 
 
 def shot_with_words(path: str | os.PathLike[str], words: Mapping[str, str], device: str) -> Shot:
-    """Shot.load with values in the words of the command line, by their keys, which messages call by their options."""
+    """Shot.load with values as texts of the command line, by their keys; messages name the command's options."""
     read, _ = _core._read_shot(bundled_file(path, (".toml",)), "", words, None, None, False, device)
     return Shot(**read)
 
@@ -168,7 +168,7 @@ def shot_with_words(path: str | os.PathLike[str], words: Mapping[str, str], devi
 def _read_shot(
     path: str | os.PathLike[str] | Scene, device: str, values: Mapping[str, Any], *, denoises: bool
 ) -> tuple[Shot, bool]:
-    """The shot, and whether nobody has said how many samples it has or how little noise."""
+    """Returns the shot, and True if neither samples nor a noise limit are specified."""
     scene = path if isinstance(path, Scene) else None
     lens = values.get("lens") if isinstance(values.get("lens"), Lens) else None
     changes = {name: value for name, value in values.items() if value is not None}
@@ -188,13 +188,13 @@ def photograph(
     progress: bool | ProgressCallback = False,
     **values: Any,
 ) -> Image:
-    """Takes a picture as the command `realcam render` does, and chooses what is left out:
+    """Takes a picture as the command `realcam render` does, with the same defaults:
 
     rc.photograph("scene.glb", lens="tessar-50mm", f_number=5.6, focus_m=2.5).save("picture.png")
 
     scene: a scene file, a shot file, the name of a bundled shot, or a Scene. values: as for Shot.load. denoise: True
-    takes the noise that is left away; None does so where spp is not given, the picture has missed the goal of its
-    noise, and the extra realcam[denoise] is installed; the command does the same for all files but .exr.
+    denoises the picture; None does so if spp is not specified, the picture has missed its noise limit, and the extra
+    realcam[denoise] is installed; the command does the same for all files but .exr.
     device and progress: those of render. Raises what Shot.load, render and Image.denoised raise.
     """
     shot, is_unsaid = _read_shot(scene, device, values, denoises=bool(denoise))

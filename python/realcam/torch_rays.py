@@ -1,4 +1,4 @@
-"""Rays for PyTorch: a lens as a differentiable function of its numbers and of the rays. Needs the package torch."""
+"""Differentiable ray tracing for PyTorch, by lens variables and rays. Needs the package torch."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ SETTABLE = ("curvature", "thickness", "conic", "aspheric", "index", "tilt", "dec
 
 
 def with_values(lens: Lens, variables: Sequence[Variable], values: Sequence[float]) -> Lens:
-    """The lens with its variables set. Raises InputError for lenses that cannot be."""
+    """Returns the lens with its variables set. Raises InputError if that lens cannot be built."""
     surfaces: dict[int, Surface] = {}
     for variable, value in zip(variables, values, strict=True):
         surface = surfaces.get(variable.surface, lens.surfaces[variable.surface])
@@ -37,13 +37,14 @@ def trace_with_torch(
     wavelength_nm: float | None = None,
     start: str = "film",
 ) -> tuple[torch.Tensor, torch.Tensor, torch.Tensor, torch.Tensor]:
-    """Lens.trace of the lens with `values` (V,) for its variables, as a function that torch.autograd differentiates.
+    """Lens.trace of the lens with `values` (V,) for its variables, differentiable by torch.autograd.
 
-    origins_mm, directions: (N, 3), lens frame, of the host. variables: curvatures, thicknesses, conics, aspheric
+    origins_mm, directions: (N, 3), lens frame, in host memory. variables: curvatures, thicknesses, conics, aspheric
     coefficients, indices, tilts and decentres.
     Returns origins, mm, and unit directions (N, 3), optical paths, mm (N,), in float64, and which rays pass (N,). Rays
-    that do not are zero and have no derivatives. Derivatives are by origins, directions and values; of these there are
-    no second ones. Raises InputError for what the lens has not, ImportError without torch.
+    that do not pass are zero and have no derivatives. First derivatives by origins, directions and values are
+    supported; second derivatives are not. Raises InputError for variables that the lens does not have, ImportError
+    without torch.
     """
     import torch
 

@@ -1,4 +1,4 @@
-"""One number of a lens that may change, or by which something is differentiated."""
+"""Variables of a lens, for optimisation and differentiation."""
 
 from __future__ import annotations
 
@@ -28,15 +28,15 @@ QUANTITIES = (*_OF_SURFACES, "film_distance")
 
 @dataclass(frozen=True)
 class Variable:
-    """One number of a lens that may change.
+    """A variable of a lens.
 
     quantity: "curvature" (1/mm), "thickness" (mm), "conic", "aspheric" (the coefficient of r^power, mm^(1-power)),
-      "index" (of the medium behind the surface, by the same at all wavelengths), "decentre" (mm) or "tilt" (degrees;
+      "index" (of the medium behind the surface, equally at all wavelengths), "decentre" (mm) or "tilt" (degrees;
       power 0, 1, 2: along or about x, y, z), "curvature_x" and "conic_x" (of toroids and biconics), "radial" (of
-      r^power), "xy" (of x^power y^power_y), "zernike" (term number power), "forbes" (a_power), or "film_distance" (of
-      no surface).
+      r^power), "xy" (of x^power y^power_y), "zernike" (term number power), "forbes" (a_power), or "film_distance"
+      (of no surface: last vertex to film, mm).
     surface: its index, from 0. lower, upper: bounds, in the same unit.
-    A surface that stands in its place is tilted and decentred alone; another as its `returns` says.
+    Tilting or decentring an untilted, centred surface moves it alone; for other surfaces their `returns` decides.
     """
 
     quantity: str
@@ -48,7 +48,7 @@ class Variable:
 
     @staticmethod
     def radius(surface: int, least_radius_mm: float = 0.0) -> Variable:
-        """The radius of curvature, of either sign and through the plane, but never smaller than this."""
+        """The curvature, of either sign and through zero, with a radius of at least least_radius_mm."""
         most = 1 / least_radius_mm if least_radius_mm > 0 else math.inf
         return Variable("curvature", surface, lower=-most, upper=most)
 
@@ -67,7 +67,7 @@ class Variable:
 
     @staticmethod
     def index(surface: int, lower: float = 1.0, upper: float = math.inf) -> Variable:
-        """The index of the medium behind this surface. In an optimisation it must be a Glass.constant."""
+        """The refractive index of the medium behind this surface. An optimisation requires a Glass.constant there."""
         return Variable("index", surface, lower=lower, upper=upper)
 
     @staticmethod
@@ -80,14 +80,14 @@ class Variable:
 
     @staticmethod
     def film_distance(lower_mm: float = -math.inf, upper_mm: float = math.inf) -> Variable:
-        """From the last vertex to the film."""
+        """The distance from the last vertex to the film."""
         return Variable("film_distance", -1, lower=lower_mm, upper=upper_mm)
 
     def as_tuple(self) -> tuple[str, int, int, int]:
         return self.quantity, self.surface, self.power, self.power_y
 
     def __str__(self) -> str:
-        """With the surface counted from 1, as in lens tables and messages."""
+        """Name of the variable, with the surface counted from 1 as in lens tables and messages."""
         if self.quantity == "film_distance":
             return "film distance"
         which = ""
@@ -134,7 +134,7 @@ class Variable:
         return surface.replace(aspheric_coefficients={**surface.aspheric_coefficients, self.power: value})
 
     def step(self, surface: Surface) -> float:
-        """A change that moves rays by some micrometres: what the search counts in."""
+        """Step that moves rays by some micrometres: the unit in which optimisations scale the variable."""
         rim = surface.clear_semi_diameter_mm
         sag = 1e-3  # mm at the rim
         if self.quantity == "curvature":
@@ -157,13 +157,13 @@ def _axis(name: str) -> int:
 
 
 def check_surface_exists(lens: Lens, surface: int) -> None:
-    """Raises InputError where the lens has no surface of this index."""
+    """Raises InputError if the lens has no surface of this index."""
     if not 0 <= surface < len(lens.surfaces):
         raise InputError(f"there is no surface {surface}; the lens has {len(lens.surfaces)}, counted from 0")
 
 
 def checked(lens: Lens, variables: Sequence[Variable]) -> list[Variable]:
-    """Raises InputError for variables that the lens has not, or that have no effect."""
+    """Returns the variables. Raises InputError if there are none, or for duplicates and unknown quantities."""
     if not variables:
         raise InputError("there is nothing to change: at least one Variable is wanted")
     if len({v.as_tuple() for v in variables}) < len(variables):

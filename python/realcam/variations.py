@@ -1,4 +1,4 @@
-"""One shot several times: at other apertures, with other lenses or at other zoom positions, with the same framing."""
+"""Variations of a shot: other apertures, lenses or zoom positions, with the same framing."""
 
 from __future__ import annotations
 
@@ -17,18 +17,18 @@ NAMES = ("f_number", "lens", "zoom")
 
 @dataclass(frozen=True)
 class Variation:
-    """label: what is varied, as it reads under a picture."""
+    """label: the varied value, as a caption."""
 
     label: str
     shot: Shot
 
 
 def variations(shot: Shot, name: str, values: Sequence[str]) -> list[Variation]:
-    """The shot with each of the values, as bright as it is itself.
+    """Returns the shot with each of the values, the exposure time scaled for equal brightness.
 
-    name: "f_number", with which the camera stays where it is; "lens" (names or files) or "zoom" (positions), with which
-    it comes nearer or goes away until the subject, which is what it is focused on, is as wide on the film as before.
-    Lenses keep the shot's f-number, or are wide open where that is slower. Raises InputError and what Lens.load raises.
+    name: "f_number", at an unchanged camera position; "lens" (names or files) or "zoom" (positions), for which the
+    camera moves along its axis until the subject in focus has the same width on the film as before. Lenses keep the
+    shot's f-number, or are wide open if that is slower. Raises InputError and what Lens.load raises.
     """
     if name not in NAMES:
         raise InputError(f'"{name:.40}" cannot be varied; {", ".join(NAMES[:-1])} or {NAMES[-1]} is wanted')
@@ -71,7 +71,7 @@ def _framed_alike(camera: Camera, lens: Lens) -> Camera:
     subject = eye + focus_m * ahead
     width_m = (focus_m - _behind_pupil_m(camera.lens)) * _half_width(camera)
     distance_m = focus_m
-    # Focusing changes the angle a little, and the distance with it.
+    # Fixed-point iteration: focusing changes the angle of view a little, and so the distance.
     for _ in range(4):
         framed = camera.replace(lens=lens.focused(distance_m))
         distance_m = width_m / _half_width(framed) + _behind_pupil_m(framed.lens)
@@ -79,7 +79,7 @@ def _framed_alike(camera: Camera, lens: Lens) -> Camera:
 
 
 def _half_width(camera: Camera) -> float:
-    """Of what is seen at a distance of 1 from the entrance pupil."""
+    """Half the horizontal field of view at a distance of 1 from the entrance pupil."""
     angle_deg = camera.field_of_view_deg.horizontal
     if angle_deg >= 170:
         raise InputError(f"{camera.lens.name} sees {angle_deg:.0f} degrees, too wide to frame the shot alike")
@@ -87,7 +87,7 @@ def _half_width(camera: Camera) -> float:
 
 
 def _behind_pupil_m(lens: Lens) -> float:
-    """From the entrance pupil to the film, from which focus distances count."""
+    """Distance from the entrance pupil to the film, m. Focus distances are measured from the film."""
     pupil_mm = lens.first_order().entrance_pupil_position_mm
     return 1e-3 * (lens.film_position_mm - pupil_mm) if math.isfinite(pupil_mm) else 0.0
 

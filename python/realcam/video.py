@@ -1,4 +1,4 @@
-"""Films of 8-bit pictures. The commands in C++ call check_film and write_film."""
+"""Video files of 8-bit pictures. The commands in C++ call check_film and write_film."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ from ._core import Cancelled, ImageFileError, InputError
 from .extras import imported
 from .files import check_target
 
-# Numbers of ITU-T H.273.
+# Code points of ITU-T H.273.
 _BT709, _SRGB = 1, 13
 
 
 def write_video(path: Path, frames: Iterable[np.ndarray], frames_per_second: float) -> None:
-    """Writes (H, W, 3) uint8 sRGB pictures of one size as H.264 in .mp4, as a whole or not at all.
+    """Writes (H, W, 3) uint8 sRGB pictures of one size as H.264 in .mp4, completely or not at all.
 
-    Each pair of rows and columns shares its colour, so a picture with an odd number of them shows its last one twice.
-    Raises InputError where PyAV is missing or sizes differ, and ImageFileError.
+    Chroma is subsampled 2 x 2, so the last row or column of pictures with odd sizes is repeated.
+    Raises InputError if PyAV is missing or sizes differ, and ImageFileError.
     """
     av = imported("av", "video")
     check_target(path)
@@ -39,27 +39,27 @@ def write_video(path: Path, frames: Iterable[np.ndarray], frames_per_second: flo
                 if size is None:
                     size = frame.shape
                     stream.height, stream.width = even.shape[:2]
-                    # Players would guess them by the size.
+                    # Without these tags, players guess the colour space from the size.
                     colours = stream.codec_context
                     colours.colorspace, colours.color_primaries, colours.color_trc = _BT709, _BT709, _SRGB
                 picture = av.VideoFrame.from_ndarray(even, format="rgb24")
                 container.mux(stream.encode(picture.reformat(format="yuv420p", dst_colorspace="ITU709")))
             container.mux(stream.encode())
         temporary.replace(path)
-    except OSError as error:  # as FFmpeg's errors are
+    except OSError as error:  # FFmpeg's errors derive from OSError
         raise ImageFileError(f"{path}: cannot be written: {error.strerror or error}") from None
     finally:
         temporary.unlink(missing_ok=True)
 
 
 def check_film(path: str) -> None:
-    """Raises InputError where PyAV is missing, and ImageFileError where the film could not be written."""
+    """Raises InputError if PyAV is missing, and ImageFileError if the film cannot be written."""
     imported("av", "video")
     check_target(path)
 
 
 def write_film(path: str, pictures: list[str], frames_per_second: float, keep_going: Callable[[], bool]) -> None:
-    """Writes the film of 8-bit pictures in files; see write_video. Raises Cancelled where keep_going() is False."""
+    """Writes a film from 8-bit picture files; see write_video. Raises Cancelled if keep_going() returns False."""
 
     def frames() -> Iterator[np.ndarray]:
         av = imported("av", "video")

@@ -1,4 +1,4 @@
-"""What accuracy costs: the same shot at many levels of simulation, each with its time and its error."""
+"""Cost of accuracy: render time and error of the same shot at many levels of simulation."""
 
 from .ladder import AccuracyCost, accuracy_cost
 from .measurements import Measured, Rung

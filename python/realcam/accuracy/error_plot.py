@@ -13,12 +13,12 @@ from ..analysis import style
 from ..analysis.fields import Doubles
 from .measurements import Rung
 
-# Lines are continued to so many times the time that was measured.
+# Factor by which lines are extrapolated beyond the longest measured time.
 CONTINUED = 16.0
 
 
 def draw_errors(figure: SubFigure, rungs: tuple[Rung, ...]) -> None:
-    """The recommended level stands in all plots, so that each other is seen beside it."""
+    """Draws one plot per group of levels. The recommended level is in every plot, for comparison."""
     groups = list(dict.fromkeys(rung.group for rung in rungs))
     rows = 2 if len(groups) > 3 else 1
     grid = figure.subplots(rows, -(-len(groups) // rows), sharex=True, sharey=True, squeeze=False)
@@ -44,13 +44,13 @@ def draw_errors(figure: SubFigure, rungs: tuple[Rung, ...]) -> None:
     grid[0, 0].set_xlim(right=end)
     grid[0, 0].plot([], [], ":", color=style.GREY, label="continued, as noise falls and bias stays")
     grid[0, 0].legend(loc="lower left")
-    # Last, because the places of names depend on the limits, which all plots share.
+    # Last, because the positions of names depend on the axis limits, which all plots share.
     for axes, _, shown in plots:
         _name_lines(axes, shown, end)
 
 
 def recommendation(rungs: tuple[Rung, ...], reason: str) -> str:
-    """What is recommended and why, with the errors that show it; empty where it was not measured."""
+    """Text on the recommended level, with the reason and the errors of all groups; empty if it was not measured."""
     best = next((rung for rung in rungs if rung.is_recommended), None)
     if best is None:
         return ""
@@ -79,7 +79,7 @@ def _draw_line(axes: Axes, rung: Rung, colour: str, end: float) -> None:
 
 
 def _name_lines(axes: Axes, rungs: list[Rung], end: float) -> None:
-    """Beside the axes, as high as the lines end, but far enough from each other."""
+    """Writes the names to the right of the axes, at the height of the lines' ends, without overlap."""
     low, high = axes.get_ylim()
     heights = np.log([rung.error_after(end) / low for rung in rungs]) / np.log(high / low)
     order = np.argsort(heights)
@@ -102,7 +102,7 @@ def _name_lines(axes: Axes, rungs: list[Rung], end: float) -> None:
 
 
 def _apart(places: Doubles, least: float) -> Doubles:
-    """Rising places, moved as little as a rising pass and a falling one do until all are so far from each other."""
+    """Spreads sorted positions to a distance of at least `least`, in one upward and one downward pass."""
     moved: Doubles = places.copy()
     for k in range(1, len(moved)):
         moved[k] = max(moved[k], moved[k - 1] + least)
@@ -113,7 +113,7 @@ def _apart(places: Doubles, least: float) -> Doubles:
 
 
 def _draw_frontier(axes: Axes, rungs: tuple[Rung, ...]) -> None:
-    """The least error that any of the lines has reached by then."""
+    """Draws the smallest error that any level has reached, over time."""
     lines = [np.log([(p.seconds, p.rmse) for p in rung.pictures]).T for rung in rungs]
     times = np.linspace(min(line[0, 0] for line in lines), max(line[0, -1] for line in lines), 400)
     errors = [np.interp(times, line[0], line[1], left=np.inf) for line in lines]

@@ -1,4 +1,4 @@
-"""How far one picture is from another, as people see them."""
+"""Perceived differences of pictures."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ Codes = NDArray[np.float64]
 
 
 def codes(image: Image) -> Codes:
-    """(H, W, 3): sRGB's 8-bit codes of the developed picture (linear tone curve), without rounding."""
+    """(H, W, 3): 8-bit sRGB values of the developed picture (linear tone curve), not rounded."""
     linear = np.clip(0.018 * image.camera.iso * image.pixels.astype(np.float64), 0, 1)
     encoded: Codes = np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
     return 255 * encoded

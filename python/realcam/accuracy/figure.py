@@ -1,4 +1,4 @@
-"""Error over time: the ladder as a drawing."""
+"""Figure of error over time for all levels of simulation."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ from .error_plot import draw_errors, recommendation
 from .measurements import Measurements
 from .report import tables_of
 
-MOST_CODES = 32.0  # white in the thumbnails
+MOST_CODES = 32.0  # difference that is white in the thumbnails
 
 
 def save_figure(cost: Measurements, path: str | os.PathLike[str]) -> None:
-    """Writes .svg, or .html with the table below; either holds all that it shows. Raises ImageFileError."""
+    """Writes .svg, or .html with tables; the file is self-contained. Raises ImageFileError."""
     target = files.check_target(path, (".svg", ".html"))
     if not cost.rungs:
         raise ImageFileError(f"{target}: there is nothing to draw: no level was measured")

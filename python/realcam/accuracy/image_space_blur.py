@@ -1,7 +1,7 @@
-"""Depth of field after the fact: a sharp picture is blurred by the circles of confusion of its depths.
+"""Depth of field as a post-process: blurs a sharp picture by the circles of confusion of its depths.
 
-What rendering through a lens is compared with (docs/accuracy.md). Both work in pixels on linear light, (H, W, 3), with
-the diameters of the circles, (H, W), and know nothing of what a sharp picture does not show.
+The methods that rendering through a lens is compared with (docs/accuracy.md). Both take linear light, (H, W, 3), and
+the circles' diameters in pixels, (H, W); neither can recover what is occluded in the sharp picture.
 """
 
 from __future__ import annotations
@@ -13,12 +13,12 @@ Picture = NDArray[np.float32]
 
 
 def gathered(picture: Picture, diameters: Picture, depth: Picture) -> Picture:
-    """Two passes of a one-dimensional filter, over rows and over columns.
+    """Separable gather filter: one pass over rows and one over columns.
 
     After T. Zhou, J. X. Chen and M. Pullen, "Accurate depth of field simulation in real time", Computer Graphics Forum
-    26 (2007). A pixel gathers from those whose circles reach it; of one that lies behind it no further than its own
-    circle reaches, so that what is sharp is not veiled by a blurred background. Weights are Gaussian, of an even disc's
-    variance.
+    26 (2007). A pixel gathers from pixels whose circles of confusion cover it; for pixels behind it, the radius is
+    limited to its own circle, so that a blurred background does not bleed over sharp objects. Weights are Gaussian,
+    with the variance of a uniform disc.
     """
     for axis in (0, 1):
         picture = _gathered_along(axis, picture, diameters, depth)
@@ -26,7 +26,7 @@ def gathered(picture: Picture, diameters: Picture, depth: Picture) -> Picture:
 
 
 def _gathered_along(axis: int, picture: Picture, diameters: Picture, depth: Picture) -> Picture:
-    # An even disc of diameter d has the variance d^2 / 16 along each axis; a third of a pixel is sharp.
+    # A uniform disc of diameter d has the variance d^2 / 16 along each axis; a sigma of a third of a pixel is sharp.
     sigma = np.maximum(diameters / 4, 0.33).astype(np.float32)
     total = np.zeros_like(picture)
     weights = np.zeros_like(depth)
@@ -43,7 +43,7 @@ def _gathered_along(axis: int, picture: Picture, diameters: Picture, depth: Pict
 
 
 def _overlap(length: int, offset: int, axis: int) -> tuple[tuple[slice, ...], tuple[slice, ...]]:
-    """Pixels, and those so far beside them."""
+    """Index pair of all pixels with a neighbour at `offset` along the axis, and of those neighbours."""
     here = slice(max(0, -offset), length - max(0, offset))
     there = slice(max(0, offset), length - max(0, -offset))
     whole = slice(None)
@@ -51,7 +51,7 @@ def _overlap(length: int, offset: int, axis: int) -> tuple[tuple[slice, ...], tu
 
 
 def diffused(picture: Picture, diameters: Picture) -> Picture:
-    """Light spreads like heat, where circles are small it is held back.
+    """Heat diffusion: light spreads with a conductivity given by the circles of confusion.
 
     After M. Kass, A. Lefohn and J. Owens, "Interactive depth of field using simulated diffusion on a GPU", Pixar
     (2006): one implicit step along the rows and one along the columns, each a tridiagonal system; between two pixels
@@ -65,7 +65,7 @@ def diffused(picture: Picture, diameters: Picture) -> Picture:
 
 
 def _step_along_rows(picture: NDArray[np.float64], variance: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Solves u - (k u')' = picture, whose answer to a point has the variance 2 k; by elimination, all rows at once."""
+    """Solves u - (k u')' = picture, with an impulse response of variance 2 k, by the Thomas algorithm on all rows."""
     conducts = 0.5 * np.minimum(variance[:, :-1], variance[:, 1:])
     left, right = np.pad(conducts, ((0, 0), (1, 0))), np.pad(conducts, ((0, 0), (0, 1)))
     middle = 1 + left + right

@@ -1,4 +1,4 @@
-"""A shot at all levels of simulation: times, errors, and what is missing."""
+"""Measures a shot at all levels of simulation: times, errors, and levels that are missing."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ from .rungs import Level, known_effects, levels_of, ways_to_sample
 
 
 class AccuracyCost(Measurements):
-    """Measurements, and the ways to look at them: `str` has them as tables."""
+    """Measurements with their presentations: `str` gives tables."""
 
     def __str__(self) -> str:
         return text_of(self)
 
     def json(self) -> str:
-        """All but the pictures."""
+        """JSON of everything except the pictures."""
 
         def plain(item: object) -> object:
             if isinstance(item, dict):
@@ -41,7 +41,7 @@ class AccuracyCost(Measurements):
 
     def figure(self, path: str | os.PathLike[str]) -> None:
         """Writes error over time as .svg, or as .html with the table. Raises ImageFileError."""
-        from .figure import save_figure  # brings matplotlib, which tables need not load
+        from .figure import save_figure  # loads matplotlib, which tables do not need
 
         save_figure(self, path)
 
@@ -62,12 +62,12 @@ def accuracy_cost(
     samplings: bool = True,
     progress: ProgressCallback | None = None,
 ) -> AccuracyCost:
-    """Takes a shot at all levels of simulation, from a blurred pinhole picture to every surface with all effects.
+    """Renders a shot at all levels of simulation, from a blurred pinhole picture to the full lens with all effects.
 
-    size: pixels of the longer side. max_spp: each level is taken with 1, 4, 16, ... samples up to these.
-    reference_spp: of the picture that they are compared with: every surface, with `effects`; None: those of which the
-    lens file says what they need. levels, samplings: whether to take the levels, and whether to compare ways to sample
-    the pupil. Ctrl-C ends it early; what was measured until then is returned, and what is missing.
+    size: pixels of the longer side. max_spp: each level is rendered with 1, 4, 16, ... samples up to this number.
+    reference_spp: samples of each of the two reference pictures, of the full lens with `effects`; effects None: all
+    effects whose data the lens file has. levels, samplings: measure the levels of simulation, and compare strategies of
+    pupil sampling. Ctrl-C ends the measurement early; the result then lists what is missing.
 
     Raises what render raises.
     """
@@ -123,7 +123,7 @@ def accuracy_cost(
 
 
 class Reference:
-    """Two pictures of so many samples each, whose mean the others are compared with; variance: of it, codes^2."""
+    """Reference of the errors: the mean of two pictures with spp samples each; variance: of the mean, codes^2."""
 
     def __init__(
         self,
@@ -134,7 +134,7 @@ class Reference:
         seed: int,
         settings: dict[str, object],
     ) -> None:
-        # Seeds of their own: the noise of what is compared is not to be in what it is compared with.
+        # Seeds differ from those of the levels, so that their noise is uncorrelated with the reference's.
         pair = [
             render(scene, camera, effects=effects, spp=spp, seed=seed + 1000 + k, **settings)  # type: ignore[arg-type]
             for k in range(2)
@@ -154,7 +154,7 @@ def _climb(
     seed: int,
     settings: dict[str, object],
 ) -> Rung:
-    level.image(scene, camera, spp=1, seed=seed, **settings)  # what is prepared once
+    level.image(scene, camera, spp=1, seed=seed, **settings)  # warm-up: caches that are built once do not count
     pictures = []
     spp = 1
     while True:
@@ -164,8 +164,8 @@ def _climb(
         if is_last or not level.is_stratified:
             second = codes(level.image(scene, camera, spp=spp, seed=seed + 1, **settings)[0])
             noise2 = mean_square(picture, second) / 2
-        # First samples of many seeds have textures as soft as a first sample has them, which is no fault of random
-        # numbers: their error is their noise.
+        # Unstratified levels average first samples, whose texture filter is as wide as that of one sample. That is not
+        # an error of the random numbers: only their noise counts.
         error2 = mean_square(picture, reference.codes) - reference.variance if level.is_stratified else noise2
         pictures.append(Measured(spp, seconds, math.sqrt(max(0.0, error2)), flip(reference.codes, picture)))
         if is_last:
@@ -173,7 +173,7 @@ def _climb(
         spp *= 4
     mean = (picture + second) / 2
     bias2 = mean_square(mean, reference.codes) - noise2 / 2 - reference.variance
-    # A mean square of so many numbers is itself uncertain; what is less than three times that may be noise.
+    # The mean square itself has a statistical error; a bias below three times that may be noise.
     if not level.is_stratified or bias2 < 3 * math.sqrt(2 / picture.size) * (noise2 + reference.variance):
         bias2 = 0.0
     stats = image.stats

@@ -1,4 +1,4 @@
-"""What was measured at the levels of simulation, as values."""
+"""Results of the measurements at the levels of simulation."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from .errors import Codes
 
 @dataclass(frozen=True)
 class Measured:
-    """A picture. rmse: in 8-bit codes, against the reference; flip: 0 to 1, None without flip-evaluator."""
+    """Time and error of a picture. rmse: against the reference, in 8-bit codes; flip: 0 to 1, None if not installed."""
 
     spp: int
     seconds: float
@@ -24,9 +24,9 @@ class Measured:
 class Rung:
     """One level of simulation.
 
-    bias_codes: what of the error is no noise, root mean square; noise_codes: of a picture of the most samples.
-    lens_share, scene_share, other_share: of the time. difference: (H, W) of the best picture to the reference, mean of
-    the channels' absolute differences, codes. group, is_recommended: as those of Level.
+    bias_codes: RMS error without noise; noise_codes: RMS noise of the picture with the most samples.
+    lens_share, scene_share, other_share: fractions of the time. difference: (H, W), mean absolute difference of the
+    channels between the best picture and the reference, codes. group, is_recommended: see Level.
     """
 
     name: str
@@ -44,13 +44,13 @@ class Rung:
     is_recommended: bool
 
     def error_after(self, seconds: float) -> float:
-        """The error after more time than was measured: noise falls with its square root, and bias stays."""
+        """Extrapolated error after a longer time: noise falls with the square root of the time, bias stays."""
         last = self.pictures[-1]
         noise2 = max(0.0, last.rmse**2 - self.bias_codes**2)
         return math.sqrt(min(self.bias_codes, last.rmse) ** 2 + noise2 * last.seconds / seconds)
 
     def seconds_to(self, rmse: float) -> float:
-        """Seconds until the error is so small, between the pictures on a logarithmic scale; inf: never."""
+        """Seconds until the error falls to `rmse`, interpolated logarithmically between the pictures; inf: never."""
         if self.bias_codes >= rmse:
             return math.inf
         last = None
@@ -69,11 +69,11 @@ class Rung:
 
 @dataclass(frozen=True)
 class Measurements:
-    """What the levels of simulation cost, and what ways there are to sample one of them.
+    """Measurements of the levels of simulation, and of the sampling strategies of the full lens.
 
-    rungs: of a reference with all effects; samplings: of the full lens without effects, against its own reference.
-    missing: those that were not measured, because it was interrupted, and impossible: those that cannot show what this
-    lens sees, or not on this device.
+    rungs: levels, against a reference with all effects; samplings: sampling strategies of the full lens without
+    effects, against their own reference. missing: names of levels not measured because of an interruption; impossible:
+    names of levels that cannot render this lens, or not on this device.
     """
 
     device: str

@@ -1,4 +1,4 @@
-"""The ladder as tables."""
+"""Tables of the measurements at all levels."""
 
 from __future__ import annotations
 
@@ -9,8 +9,7 @@ from .measurements import Measurements, Rung
 
 
 def goals_of(rungs: tuple[Rung, ...]) -> list[float]:
-    """Errors that the table says the time to, codes: of the best level at the most samples, and twice and four times
-    that."""
+    """Target errors of the table's time columns, codes: 4, 2 and 1 times the least error at the most samples."""
     if not rungs:
         return []
     best = min(rung.pictures[-1].rmse for rung in rungs)
@@ -18,7 +17,7 @@ def goals_of(rungs: tuple[Rung, ...]) -> list[float]:
 
 
 def tables_of(cost: Measurements) -> list[tuple[str, list[str], list[list[str]]]]:
-    """The title, the heads and the cells of each table."""
+    """Title, column heads and cells of each table."""
     return [
         (title, *_rows_of(rungs))
         for title, rungs in (("level", cost.rungs), ("every surface, sampled over", cost.samplings))
@@ -49,7 +48,7 @@ def _cells(rung: Rung, goals: list[float]) -> list[str]:
 
 
 def text_of(cost: Measurements) -> str:
-    """Markdown tables, with what was compared above, and what is missing below."""
+    """Markdown tables, preceded by a description of the comparison and followed by the missing levels."""
     noise = number_text(cost.reference_noise_codes, 2)
     lines = [
         f"{cost.size[0]} x {cost.size[1]} pixels on {cost.device}. Bias, noise (with the most samples) and errors in "
@@ -66,7 +65,7 @@ def text_of(cost: Measurements) -> str:
 
 
 def _markdown(heads: list[str], rows: list[list[str]]) -> list[str]:
-    # Here, because it takes a tenth of the time in which realcam is imported.
+    # Imported here because rich takes a tenth of realcam's import time.
     from rich.box import MARKDOWN
     from rich.console import Console
     from rich.table import Table

@@ -1,4 +1,4 @@
-"""The levels of simulation that are compared."""
+"""Levels of simulation and sampling strategies to compare."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ Blur = Callable[[Image], Picture]
 
 @dataclass(frozen=True)
 class Level:
-    """One way to take the picture.
+    """A level of simulation, or a sampling strategy.
 
-    model, effects, pupil_sampling, light_tracing: of render; blur: what is done to the picture afterwards;
-    is_stratified: else each sample has random numbers of its own, whatever the others of its pixel have.
-    group: of levels that are alike, which share a plot; is_recommended: what is taken where nobody chooses.
+    model, effects, pupil_sampling, light_tracing: as for render; blur: post-process of the picture; is_stratified:
+    False uses independent random numbers for each sample of a pixel. group: levels with the same group share a plot;
+    is_recommended: True for the default of render.
     """
 
     name: str
@@ -37,11 +37,11 @@ class Level:
     is_recommended: bool = False
 
     def image(self, scene: Scene, camera: Camera, spp: int, seed: int, **settings: object) -> tuple[Image, float]:
-        """The picture, and the seconds of its samples and of what is done to them."""
+        """Returns the picture, and the seconds of sampling and post-processing, without setup."""
         image = self._rendered(scene, camera, spp, seed, settings)
         seconds = image.stats.seconds - image.stats.setup_seconds
         if not self.is_stratified:
-            # The first samples of many seeds: each is random alone. They are the same work as many of one seed.
+            # The first samples of many seeds are independent. They take as long as as many samples of one seed.
             total = sum(self._rendered(scene, camera, 1, seed * spp + k, settings).pixels for k in range(spp))
             image = replace(image, pixels=np.asarray(total / spp, np.float32))
         if self.blur:
@@ -79,9 +79,9 @@ def _diffuse(image: Image) -> Picture:
 
 
 def known_effects(camera: Camera) -> tuple[str, ...]:
-    """Those of which the lens file says what they need: some want to know what covers the glass, and come last.
+    """Names of the optional effects whose data the lens file has; effects that need coatings come last.
 
-    What the film reflects is in no lens file.
+    Film reflection is excluded, because no lens file states the film's reflectance.
     """
     wanted = [effect for effect in effects() if not effect.is_on and effect.name != "film_reflection"]
     wanted.sort(key=lambda effect: effect.needs_coatings)
@@ -89,7 +89,7 @@ def known_effects(camera: Camera) -> tuple[str, ...]:
 
 
 def ways_to_sample() -> list[Level]:
-    """The same picture, every surface of the lens, by other samples."""
+    """Sampling strategies of the full lens, which all converge to the same picture."""
     random, others, outline = "random samples", "other pupils", "fitted outline"
     by_pixels = [
         Level("rear element, random", pupil_sampling="rear_element", is_stratified=False, group=random),
@@ -104,7 +104,7 @@ def ways_to_sample() -> list[Level]:
 
 
 def levels_of(scene: Scene, camera: Camera, effects: tuple[str, ...], **settings: object) -> list[Level]:
-    """The levels from the crudest to the best; the last has `effects`, which are those of the reference."""
+    """Levels from the crudest to the full lens with all `effects` of the reference, then the planned level."""
     levels = [
         Level("pinhole, gather filter", "pinhole", blur=_gather, group="blur of a sharp picture"),
         Level("pinhole, heat diffusion", "pinhole", blur=_diffuse, group="blur of a sharp picture"),

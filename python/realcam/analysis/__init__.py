@@ -4,16 +4,16 @@ import realcam as rc
 from matplotlib.figure import Figure
 
 lens = rc.Lens.load("double-gauss-50mm").stopped_down(4)
-fans = rc.analysis.ray_fan(lens)  # arrays, of the axis, 0.7 and all of the image height
+fans = rc.analysis.ray_fan(lens)  # arrays, at 0, 0.7 and 1 times the largest image height
 rc.analysis.plot_ray_fan(fans, Figure().add_subplot(), field=1)
 
-Of each subject there is a function that computes and one that plots on axes of matplotlib. By default fields go from
-the axis to the corner of the film. Colours are the F line, the design wavelength and the C line. The object is in the
-plane in focus of the lens as it stands.
+Each analysis has a function that computes and one that plots on matplotlib axes. By default fields go from the axis to
+the corner of the film, wavelengths are the F line, the design wavelength and the C line, and the object is in the
+plane in focus.
 """
 
 from ..figure_files import save_figure
-from . import notebook as notebook  # adds what notebooks show
+from . import notebook as notebook  # adds notebook representations
 from .bokeh import Bokeh, bokeh, plot_bokeh
 from .depth_over_focus import DepthOverFocus, depth_over_focus, plot_depth_over_focus
 from .distortion import (

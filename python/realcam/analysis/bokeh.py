@@ -1,4 +1,4 @@
-"""Bokeh: how points out of focus look on the film."""
+"""Bokeh: images of points out of focus."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ from .fields import Bundles, Doubles, three_fields, wavelengths_of
 @dataclass(frozen=True, repr=False)
 class Bokeh(ShortText):
     """fields_deg: (F,); object_distance_m: object plane to front vertex.
-    values_per_mm2: (F, W, N, N), light of each colour on the film, shares of it per mm^2, rows from the lowest y;
-    about the middle of what the design wavelength lights. pitch_mm: from one point to the next, of all pictures.
+    values_per_mm2: (F, W, N, N), fraction of each wavelength's light per mm^2 of the film, rows from the lowest y;
+    centred on the disc of the design wavelength. pitch_mm: sample spacing of all images.
     """
 
     fields_deg: Doubles
@@ -37,11 +37,11 @@ def bokeh(
     size: int = 96,
     rays: int = 200000,
 ) -> Bokeh:
-    """The picture of a point out of focus by rays alone, with the brightness that they bring.
+    """Images of a point out of focus by geometric ray density. Raises InputError if the point is in focus.
 
     object_distance_m: None is infinity for a lens that is focused nearer, and thirty focal lengths for one that is
-    focused on infinity. fields_deg: None is the axis, 0.7 and all of the image
-    height. wavelengths_nm: None is F line, design wavelength, C line.
+    focused on infinity. fields_deg: None is the axis, 0.7 and 1 times the largest image height. wavelengths_nm: None is
+    F line, design wavelength, C line.
     """
     distance = _out_of_focus_m(lens) if object_distance_m is None else object_distance_m
     source = Bundles(lens, distance)
@@ -71,7 +71,7 @@ def _out_of_focus_m(lens: Lens) -> float:
 
 
 def plot_bokeh(data: Bokeh, axes: Axes, field: int = 0) -> None:
-    """One disc in its colours, against the brightest place of its own."""
+    """Plots one disc in colour, normalised to its own peak (99.7th percentile)."""
     values = data.values_per_mm2[field]
     order = np.argsort(data.wavelengths_nm)[::-1]  # red first
     channels = [values[order[0]], values[order[len(order) // 2]], values[order[-1]]]

@@ -21,14 +21,14 @@ from .fields import Doubles, numbers_of
 
 @dataclass(frozen=True, repr=False)
 class DepthOverFocus(ShortText):
-    """What is sharp when a lens is focused at one distance after the other. Distances are from the film, in metres.
+    """Depth of field over the focus distance. Distances are from the film, in metres.
 
     focus_m: (D,); f_numbers: (N,), as engraved.
-    near_m, far_m: (N, D), by real rays. Both are nan where the lens cannot be focused, where no light passes, and where
-      aberrations alone blur more than the circle of confusion. far_m is inf where infinity is sharp.
-    formula_near_m, formula_far_m: (N, D), of a thin lens with the same focal length and f-number; nan where the lens
+    near_m, far_m: (N, D), by real rays. Both are nan if the lens cannot be focused, if no light passes, or if
+      aberrations alone blur more than the circle of confusion. far_m is inf if infinity is sharp.
+    formula_near_m, formula_far_m: (N, D), of a thin lens with the same focal length and f-number; nan if the lens
       cannot be focused.
-    blur_in_focus_mm: (N, D), as DepthOfField has it; nan where no light passes or the lens cannot be focused.
+    blur_in_focus_mm: (N, D), as in DepthOfField; nan if no light passes or the lens cannot be focused.
     circle_of_confusion_mm: the largest blur that counts as sharp.
     """
 
@@ -50,12 +50,12 @@ def depth_over_focus(
     samples: int = 21,
     circle_of_confusion_mm: float | None = None,
 ) -> DepthOverFocus:
-    """Depth of field at each aperture and distance, on the axis, as realcam.depth_of_field finds it.
+    """Depth of field at each aperture and focus distance, on the axis, as by realcam.depth_of_field.
 
-    f_numbers: None is that of the lens as it stands, and two and four stops more. focus_m: None is `samples` distances
-    in even ratios, from the nearest focus, or twelve focal lengths, to the hyperfocal distance of the widest aperture.
-    circle_of_confusion_mm: None is the film's diagonal / 1500. Raises InputError, also where the lens can be focused at
-    none of the distances.
+    f_numbers: None is the current f-number, and two and four stops more. focus_m: None is `samples` distances, spaced
+    geometrically, from the nearest focus or twelve focal lengths to the hyperfocal distance of the widest aperture.
+    circle_of_confusion_mm: None is the film's diagonal / 1500. Raises InputError, also if the lens cannot be focused at
+    any of the distances.
     """
     open_f_number = lens.f_number
     stops = open_f_number * np.array([1.0, 2.0, 4.0]) if f_numbers is None else numbers_of(f_numbers, "f_numbers")
@@ -72,7 +72,7 @@ def depth_over_focus(
         for d, place in enumerate(places):
             try:
                 focused = stopped.focused(float(place))
-            except InputError:  # nearer or farther than the lens can
+            except InputError:  # outside the focus range of the lens
                 continue
             real, formula = sharp_ranges(focused, circle)
             result[:4, n, d] = real.near_m, real.far_m, formula.near_m, formula.far_m
@@ -85,11 +85,11 @@ def depth_over_focus(
 
 
 def plot_depth_over_focus(data: DepthOverFocus, axes: Axes) -> None:
-    """Bands by real rays, and dashed lines by the formula; what is sharp to infinity ends at the top."""
+    """Plots bands by real rays and dashed lines by the formula; ranges up to infinity are cut at the top."""
     finite = data.formula_far_m[np.isfinite(data.formula_far_m)]
     top = 3 * float(max(data.focus_m.max(), np.median(finite) if len(finite) else 0.0))
     fine = np.geomspace(data.focus_m.min(), data.focus_m.max(), 400)
-    # From the smallest aperture, whose band is the widest, to the largest.
+    # From the smallest aperture, whose band is the widest, to the largest, so that no band is hidden.
     for n in np.argsort(-data.f_numbers):
         colour = style.field_colour(int(n))
         near, far = (np.minimum(_between(data.focus_m, edge[n], fine), 2 * top) for edge in (data.near_m, data.far_m))
@@ -113,7 +113,7 @@ def plot_depth_over_focus(data: DepthOverFocus, axes: Axes) -> None:
 
 
 def _label(data: DepthOverFocus, n: int) -> str:
-    """The aperture, and where and why it has no curve."""
+    """Legend text: the aperture, with the distances and reasons of gaps in its curve."""
     is_focused = ~np.isnan(data.formula_near_m[n])
     has_light = ~np.isnan(data.blur_in_focus_mm[n])
     gaps = {
@@ -130,7 +130,7 @@ def _label(data: DepthOverFocus, n: int) -> str:
 
 
 def _ranges(places_m: Doubles, is_in: NDArray[np.bool_]) -> str:
-    """The stretches of places in which all are in, as text."""
+    """Text of the intervals of consecutive distances for which is_in is True."""
     order = np.argsort(places_m)
     found = np.flatnonzero(is_in[order])
     stretches = np.split(places_m[order][found], np.flatnonzero(np.diff(found) > 1) + 1)
@@ -139,11 +139,11 @@ def _ranges(places_m: Doubles, is_in: NDArray[np.bool_]) -> str:
 
 
 def _between(focus_m: Doubles, edge_m: Doubles, fine_m: Doubles) -> Doubles:
-    """The edge of what is sharp between the distances that are known. Inverse distances are nearly straight over each
-    other, also where the edge goes beyond infinity."""
+    """Interpolates a limit of the sharp range between focus distances. Inverse distances are nearly linear in each
+    other, which also extrapolates the focus distance at which the limit reaches infinity."""
     order = np.argsort(-focus_m)
     places, inverse = 1 / focus_m[order], 1 / edge_m[order]
-    known = np.flatnonzero(inverse > 0)[:2]  # next to infinity
+    known = np.flatnonzero(inverse > 0)[:2]  # the two nearest to infinity
     if len(known) == 2:
         slope, start = np.polyfit(places[known], inverse[known], 1)
         inverse = np.where(inverse == 0, np.minimum(start + slope * places, 0), inverse)

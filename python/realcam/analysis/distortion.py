@@ -1,4 +1,4 @@
-"""Distortion: the chief ray's place on the film against the paraxial one."""
+"""Distortion: the chief ray's film height against the paraxial one."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ PROJECTIONS = ("tangent", "angle")
 @dataclass(frozen=True, repr=False)
 class Distortion(ShortText):
     """fields_deg: (F,); real_mm, paraxial_mm: (F,), heights of the chief ray on the film.
-    percent: (F,), 100 (real / paraxial - 1); on the axis its limit, 0.
-    projection: what the paraxial height is proportional to: "tangent" or "angle" (f-theta).
+    percent: (F,), 100 (real / paraxial - 1); 0, its limit, on the axis.
+    projection: the paraxial height is proportional to the "tangent" of the field angle or to the "angle" (f-theta).
     """
 
     fields_deg: Doubles
@@ -32,10 +32,10 @@ class Distortion(ShortText):
 
 @dataclass(frozen=True, repr=False)
 class DistortionGrid(ShortText):
-    """A plane grid of even squares across the axis, as it appears on the film.
+    """Image of a plane grid of squares perpendicular to the axis.
 
-    ideal_mm, real_mm: (N, N, 2), crossings of the grid's lines by the paraxial and by the real lens; real ones are nan
-    where the lens has no light.
+    ideal_mm, real_mm: (N, N, 2), film points of the grid's nodes by the paraxial and the real lens; real_mm is nan
+    where no light arrives.
     """
 
     ideal_mm: Doubles
@@ -53,12 +53,12 @@ def distortion(
     object_distance_m: float | None = None,
     bundles: Bundles | None = None,
 ) -> Distortion:
-    """Compares real chief rays with paraxial ones at the same plane: the film as it stands, or another one.
+    """Compares heights of real chief rays with paraxial ones, on the film or another plane.
 
-    film_distance_mm: last vertex to that plane; first_order().back_focal_distance_mm is the paraxial focus of infinity.
-    projection: None is "tangent" up to 60 degrees, and beyond "angle", because tangents end at 90. None of the others:
-    `samples` fields up to the corner of the film; the design wavelength; the plane in focus. Raises InputError for
-    "tangent" from 90 degrees on.
+    film_distance_mm: last vertex to that plane, None is the film; first_order().back_focal_distance_mm is the paraxial
+    focus of infinity. projection: None is "tangent" for fields up to 60 degrees, and "angle" for larger ones, because
+    tangents diverge at 90. Other defaults: `samples` fields up to the corner of the film; the design wavelength; the
+    plane in focus. Raises InputError for "tangent" from 90 degrees on.
     """
     source = bundles_of(lens, object_distance_m, bundles)
     fields = fields_of(lens, fields_deg, samples, source)
@@ -92,7 +92,7 @@ def _height_at(source: Bundles, field_deg: float, wavelength_nm: float, film_dis
 
 
 def paraxial_height_mm(source: Bundles, wavelength_nm: float, film_distance_mm: float) -> float:
-    """Height of the paraxial chief ray in that plane, for a field of tangent 1."""
+    """Height of the paraxial chief ray in a plane, per tangent of the field angle."""
     lens = source.lens
     sums = lens.seidel(45.0, wavelength_nm=wavelength_nm, object_distance_m=source.object_distance_m)
     return float(sums.chief_height_mm[-1] + film_distance_mm * sums.chief_slope[-1])
@@ -106,9 +106,9 @@ def distortion_grid(
     object_distance_m: float | None = None,
     bundles: Bundles | None = None,
 ) -> DistortionGrid:
-    """Lines that the paraxial lens would lay over the whole film, and where real chief rays bring them.
+    """A grid that covers the film in the paraxial image, and its image by real chief rays.
 
-    Raises InputError where the film's corner is at 80 degrees or more: no plane grid fills its picture.
+    Raises InputError if the film's corner is at 80 degrees or more: no plane grid fills the picture.
     """
     source = bundles_of(lens, object_distance_m, bundles)
     curve = distortion(lens, wavelength_nm=wavelength_nm, samples=15, bundles=source)

@@ -1,4 +1,4 @@
-"""Rays of one object point behind the lens, from where any plane is a straight line away."""
+"""Rays of one object point behind the lens, for propagation to any plane."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from .fields import Doubles
 
 @dataclass(frozen=True, repr=False)
 class ExitRays(ShortText):
-    """points_mm: (N, 2), on the film, from the axis; nan where no ray passes.
+    """points_mm: (N, 2), on the film, from the axis; nan for rays that do not pass.
     slopes: (N, 2), dx/dz and dy/dz behind the lens.
     cosines: (N, 2), direction cosines x and y.
     """
@@ -25,7 +25,7 @@ class ExitRays(ShortText):
     cosines: Doubles
 
     def at(self, defocus_mm: float) -> Doubles:
-        """(N, 2): on the plane that lies defocus_mm behind the film."""
+        """(N, 2): points on the plane defocus_mm behind the film."""
         moved: Doubles = self.points_mm + defocus_mm * self.slopes
         return moved
 
@@ -37,7 +37,7 @@ def exit_rays(
     wavelength_nm: float,
     object_distance_m: float | None = None,
 ) -> ExitRays:
-    """Rays through places of the stop, (N, 2) as shares of its radius, aimed at them through the real lens."""
+    """Rays through points of the stop, (N, 2) in units of its radius, found by real ray aiming."""
     spot = lens.spot(
         **field_arguments(field), wavelength_nm=wavelength_nm, object_distance_m=object_distance_m, pupil=pupil
     )
@@ -46,7 +46,7 @@ def exit_rays(
 
 
 def hexapolar(rings: int) -> Doubles:
-    """(N, 2): a middle place and rings of 6, 12, 18 ... out to the edge, all of one share of the stop's area."""
+    """(N, 2): hexapolar stop points, each for an equal area: the centre, and rings of 6, 12, 18, ... to the edge."""
     places = [np.zeros((1, 2))]
     for ring in range(1, rings + 1):
         angle = 2 * np.pi * np.arange(6 * ring) / (6 * ring)

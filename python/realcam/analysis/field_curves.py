@@ -1,4 +1,4 @@
-"""Astigmatic field curves: where close rays beside each chief ray come to a focus."""
+"""Astigmatic field curves: foci of rays close to each chief ray."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from .fields import Bundles, Doubles, light_of
 class FieldCurves(ShortText):
     """fields_deg: (F,); wavelengths_nm: (W,).
     tangential_mm, sagittal_mm: (W, F), foci of real rays close to the chief ray, along the axis, behind the film.
-    petzval_mm: (F,), Petzval's surface of the design wavelength, to third order; nan for an afocal lens, and from 90
+    petzval_mm: (F,), Petzval surface at the design wavelength, to third order; nan for afocal lenses, and from 90
       degrees on.
     """
 
@@ -38,7 +38,7 @@ def field_curves(
     object_distance_m: float | None = None,
     bundles: Bundles | None = None,
 ) -> FieldCurves:
-    """None: `samples` fields up to the corner of the film; the design wavelength; the plane in focus."""
+    """Computes field curves. Defaults: `samples` fields up to the film corner; design wavelength; plane in focus."""
     wanted = lens.wavelength_nm if wavelengths_nm is None else wavelengths_nm
     source, fields, colours = light_of(lens, fields_deg, wanted, object_distance_m, bundles, samples)
     light = [[source.chief(float(field), float(colour)) for field in fields] for colour in colours]
@@ -52,7 +52,7 @@ def field_curves(
 
 
 def _petzval_mm(source: Bundles, field_deg: float) -> float:
-    """The sag of Petzval's surface at the paraxial chief ray's height, from the paraxial focus."""
+    """Position of the Petzval surface behind the film, at the paraxial chief ray's height, mm."""
     lens = source.lens
     try:
         sums = lens.seidel(field_deg, object_distance_m=source.object_distance_m)
@@ -74,7 +74,7 @@ def plot_field_curves(curves: FieldCurves, axes: Axes) -> None:
     shown = np.concatenate([curves.tangential_mm.ravel(), curves.sagittal_mm.ravel()])
     low, high = min(np.nanmin(shown), 0.0), max(np.nanmax(shown), 0.0)
     margin = 0.15 * (high - low) or 1.0
-    axes.set_xlim(low - margin, high + margin)  # Petzval's surface may leave it
+    axes.set_xlim(low - margin, high + margin)  # the Petzval curve may be cut off
     axes.set_xlabel("focus behind the film / mm")
     axes.set_title("Field curves")
     axes.legend(loc="best")

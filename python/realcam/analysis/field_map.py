@@ -1,4 +1,4 @@
-"""Maps over the whole film: spots, wavefronts, contrast, light and distortion in both directions, of any lens."""
+"""Maps over the film, for any symmetry: spots, wavefronts, MTF, illumination and distortion."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ Point = tuple[float, float]
 
 @dataclass(frozen=True, repr=False)
 class FieldMap(ShortText):
-    """What the lens does at X x Y points of its film.
+    """A quantity at X x Y points of the film.
 
-    x_mm: (X,), y_mm: (Y,), from the film's middle. values: (Y, X), in `unit`; nan where no light arrives.
-    vectors_mm: (Y, X, 2), of "distortion": where the chief ray ends, from where a picture without distortion has it.
-    frequency_per_mm: of "mtf-x" and "mtf-y", periods per mm.
+    x_mm: (X,), y_mm: (Y,), from the film's centre. values: (Y, X), in `unit`; nan where no light arrives.
+    vectors_mm: (Y, X, 2), for "distortion": displacement of the chief ray's film point from the undistorted one.
+    frequency_per_mm: for "mtf-x" and "mtf-y", periods per mm.
     """
 
     quantity: str
@@ -89,10 +89,10 @@ def field_map(
 ) -> FieldMap:
     """A map of one of QUANTITIES over the film, whatever symmetry the lens has.
 
-    points: along x and y, up to the film's edges. frequency_per_mm: of mtf-x and mtf-y; None is 20 on a film of 43 mm,
-    and as fine in proportion on others. None of the others: the design wavelength; the plane in focus.
-    Distortion is against a perspective picture that agrees with the lens's own close to the film's middle, in both
-    directions: of an anamorphic lens, one that is squeezed as its first order says. Raises InputError.
+    points: number along x and y, up to the film's edges. frequency_per_mm: of mtf-x and mtf-y; None is 20 for a film
+    diagonal of 43 mm, scaled inversely for others. Other defaults: the design wavelength; the plane in focus.
+    Distortion is relative to the perspective picture that matches the lens's first order at the film's centre in both
+    directions; for an anamorphic lens that picture is squeezed. Raises InputError.
     """
     if quantity not in QUANTITIES:
         raise InputError(f'unknown quantity "{quantity}"; one of {", ".join(QUANTITIES)} is wanted')
@@ -121,14 +121,14 @@ def _or_nan(
 ) -> float:
     try:
         return value(source, point, nm, frequency)
-    except InputError:  # the light ends before the film's corner
+    except InputError:  # outside the illuminated field
         return np.nan
 
 
 def _tangents(lens: Lens, point: Point) -> Doubles:
-    """(2,): dx/dz and dy/dz, before the lens, of the chief ray of a film point; nan where there is none.
+    """(2,): dx/dz and dy/dz in object space of a film point's chief ray; nan without light.
 
-    The middle of the stop may be obstructed: rays of a point at infinity are parallel to its chief ray.
+    If the centre of the stop is obstructed, uses another ray: those of a point at infinity are parallel.
     """
     try:
         rays = lens.aim(STOP_PROBES, film_mm=point, object_distance_m=np.inf)
@@ -148,7 +148,7 @@ def _distortion(lens: Lens, x: Doubles, y: Doubles) -> Doubles:
         (_tangents(lens, (step * (1 - k), step * k)) - _tangents(lens, (-step * (1 - k), -step * k))) / (2 * step)
         for k in (0, 1)
     )
-    picture = np.linalg.inv(np.column_stack([by_x, by_y]))  # mm on the film for a change of the tangents
+    picture = np.linalg.inv(np.column_stack([by_x, by_y]))  # mm on the film per change of the tangents
     middle = _tangents(lens, (0.0, 0.0))
     places = np.stack(np.meshgrid(x, y), axis=-1)
     tangents = np.array([[_tangents(lens, (float(a), float(b))) for a in x] for b in y])
@@ -157,7 +157,7 @@ def _distortion(lens: Lens, x: Doubles, y: Doubles) -> Doubles:
 
 
 def plot_field_map(data: FieldMap, axes: Axes) -> None:
-    """Colours over the film as the lens throws the picture on it; of distortion, also the grid that is bent."""
+    """Plots the map in film coordinates (not upright), for distortion also the ideal and the distorted grid."""
     title = QUANTITIES[data.quantity].title
     if data.frequency_per_mm is not None:
         title += f" at {data.frequency_per_mm:.4g}/mm"

@@ -1,4 +1,4 @@
-"""Which fields, colours and frequencies a lens is looked at where the caller names none."""
+"""Ray bundles, and default fields, wavelengths and frequencies of analyses."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ LINE_F_NM, LINE_D_NM, LINE_C_NM = 486.1327, 587.5618, 656.2725
 
 
 class Bundles:
-    """The light of object points as rays, each traced once however many plots want it.
+    """Cache of the ray bundles of object points, so that several plots share them.
 
-    object_distance_m: object plane to front vertex; None is the plane in focus of the lens as it stands.
+    object_distance_m: object plane to front vertex; None is the plane in focus.
     """
 
     def __init__(self, lens: Lens, object_distance_m: float | None = None) -> None:
@@ -28,7 +28,7 @@ class Bundles:
         self._kept: dict[tuple[FieldPlace, float, int, int], RayBundle] = {}
 
     def at(self, field: FieldPlace, wavelength_nm: float, spokes: int = 32, nodes: int = 6) -> RayBundle:
-        """Raises InputError where no light passes."""
+        """Ray bundle of a field point. Raises InputError if no light passes."""
         key = (field, float(wavelength_nm), spokes, nodes)
         if key not in self._kept:
             self._kept[key] = self.lens.bundle(
@@ -41,17 +41,17 @@ class Bundles:
         return self._kept[key]
 
     def chief(self, field: FieldPlace, wavelength_nm: float) -> RayBundle:
-        """Few rays: enough for what is asked of the chief ray alone."""
+        """A small ray bundle, sufficient for chief-ray data."""
         return self.at(field, wavelength_nm, 8, 2)
 
     @cached_property
     def largest_field_deg(self) -> float:
-        """Where the chief ray lands in the film's corner, or nearly where the light ends if that is nearer."""
+        """Field angle of the film's corner, or slightly inside the edge of the illuminated field if that is smaller."""
         return _largest_field_deg(self.lens, self)
 
 
 def bundles_of(lens: Lens, object_distance_m: float | None, bundles: Bundles | None) -> Bundles:
-    """The caller's, or new ones. Raises InputError where the caller's are another lens's or another object's."""
+    """Returns the caller's bundles, or new ones. Raises InputError if they are of another lens or object distance."""
     if bundles is None:
         return Bundles(lens, object_distance_m)
     if bundles.lens != lens or (object_distance_m is not None and bundles.object_distance_m != object_distance_m):
@@ -60,8 +60,8 @@ def bundles_of(lens: Lens, object_distance_m: float | None, bundles: Bundles | N
 
 
 def wavelengths_of(lens: Lens, wavelengths_nm: ArrayLike | None) -> Doubles:
-    """(W,): as given, or the F line, the design wavelength and the C line; the design wavelength alone for a lens that
-    is not made for visible light."""
+    """(W,): the specified wavelengths; by default F line, design wavelength and C line, or only the design wavelength
+    if that is not between these lines."""
     if wavelengths_nm is not None:
         return numbers_of(wavelengths_nm, "wavelengths_nm")
     design = lens.wavelength_nm
@@ -77,21 +77,22 @@ def numbers_of(values: ArrayLike, what: str) -> Doubles:
 
 
 def fields_of(lens: Lens, fields_deg: ArrayLike | None, count: int, bundles: Bundles) -> Doubles:
-    """(F,): as given, or `count` angles from the axis to the corner of the film, at even steps of image height."""
+    """(F,): the specified angles; by default `count` from the axis to the film corner, equidistant in image height."""
     if fields_deg is not None:
         return numbers_of(fields_deg, "fields_deg")
     return field_angles_deg(lens, np.linspace(0, 1, count), bundles)
 
 
 def three_fields(lens: Lens, fields_deg: ArrayLike | None, bundles: Bundles) -> Doubles:
-    """(F,): as given, or the axis, 0.7 and all of the image height."""
+    """(F,): the specified angles; by default those of 0, 0.7 and 1 times the largest image height."""
     return field_angles_deg(lens, [0, 0.7, 1], bundles) if fields_deg is None else numbers_of(fields_deg, "fields_deg")
 
 
 def three_of(values: Sequence[float], middle: float | None = None) -> Doubles:
-    """Chooses the least, one middle and the largest of the values that a lens file states, sorted, each once.
+    """Selects the smallest, a middle and the largest of the values in a lens file, sorted and without duplicates.
 
-    middle: None is the value nearest to 0.7 of the largest or, where none lies between, 0.7 of the largest itself.
+    middle: None is the value nearest to 0.7 times the largest, or exactly 0.7 times the largest if there is no value in
+    between.
     """
     least, largest = min(values), max(values)
     between = [value for value in values if least < value < largest]
@@ -116,9 +117,9 @@ def light_of(
     bundles: Bundles | None,
     samples: int | None = None,
 ) -> tuple[Bundles, Doubles, Doubles]:
-    """What most subjects begin with: light, (F,) fields, (W,) wavelengths; the caller's or those of this module.
+    """Returns the inputs of most analyses: bundles, (F,) fields and (W,) wavelengths, specified or default.
 
-    samples: so many fields where the caller names none; None is the axis, 0.7 and all of the image height.
+    samples: number of default fields; None is 0, 0.7 and 1 times the largest image height.
     """
     source = bundles_of(lens, object_distance_m, bundles)
     fields = three_fields(lens, fields_deg, source) if samples is None else fields_of(lens, fields_deg, samples, source)
@@ -126,16 +127,16 @@ def light_of(
 
 
 def field_angles_deg(lens: Lens, shares: ArrayLike, bundles: Bundles | None = None) -> Doubles:
-    """(F,): angles at which the chief ray lands at shares of the largest image height.
+    """(F,): angles whose chief rays reach fractions of the largest image height.
 
-    That is half the diagonal of the film. If the lens's light ends nearer to the axis, it is a hundredth of the angle
-    short of the end, because at the very end the light is a sliver that few rays find.
+    The largest image height is half the film's diagonal. If the illuminated field is smaller, it is that of 0.99 times
+    the angle of its edge, because at the edge itself the pupil is a sliver that few rays find.
     """
     source = bundles or Bundles(lens)
     largest = source.largest_field_deg
     top = _height_mm(source, largest)
     shares_array = numbers_of(shares, "shares")
-    # The chief ray's height is a smooth function of the angle: a few of its values tell the rest.
+    # The chief ray's height is a smooth function of the angle: nine samples suffice for interpolation.
     angles = largest * np.linspace(0, 1, 9)
     heights = np.array([0.0 if a == 0 else _height_mm(source, a) for a in angles])
     found: Doubles = np.interp(shares_array * top, heights, angles)
@@ -143,9 +144,9 @@ def field_angles_deg(lens: Lens, shares: ArrayLike, bundles: Bundles | None = No
 
 
 def _height_mm(bundles: Bundles, field_deg: float) -> float:
-    """Height of the chief ray on the film; nan where no light comes."""
+    """Height of the chief ray on the film; nan if no light arrives."""
     try:
-        # The one ray tells that there is light, unless something blocks it: then a bundle has to look for some.
+        # The chief ray alone proves that there is light. If it is blocked, a whole bundle has to search.
         spot = bundles.lens.spot(field_deg, object_distance_m=bundles.object_distance_m, pupil=[[0.0, 0.0]])
         return math.hypot(*spot.chief_ray_mm)
     except InputError:
@@ -157,7 +158,7 @@ def _height_mm(bundles: Bundles, field_deg: float) -> float:
 
 
 def _largest_field_deg(lens: Lens, bundles: Bundles) -> float:
-    """Within a thousandth of the corner's image height, or a hundredth short of the angle at which the light ends."""
+    """Field angle of the corner within 0.1% of its height, or 0.99 times the angle at which the light ends."""
     corner = 0.5 * math.hypot(*lens.film_mm)
     if math.isnan(_height_mm(bundles, 0.0)):
         raise InputError(f'no light of the axis passes lens "{lens.name}"')
@@ -176,7 +177,7 @@ def _largest_field_deg(lens: Lens, bundles: Bundles) -> float:
         if high - low < 1e-3 * high:
             break
         if math.isnan(high_height):
-            # Nothing is known beyond yet: on along the line from the axis, or half way to where it is dark.
+            # No upper height yet: extrapolate linearly from the axis, or bisect towards the dark end.
             ahead = low * corner / low_height * 1.001 if low_height > 0 else math.inf
             guess = ahead if low < ahead < high else 0.5 * (low + high)
         else:
@@ -186,8 +187,8 @@ def _largest_field_deg(lens: Lens, bundles: Bundles) -> float:
 
 
 def default_frequencies_per_mm(lens: Lens) -> Doubles:
-    """(3,): 10, 20 and 40 periods per mm on a film with a diagonal of 43 mm, and as fine in proportion on others, in
-    round numbers."""
+    """(3,): 10, 20 and 40 periods per mm for a film diagonal of 43.27 mm, scaled inversely to other diagonals and
+    rounded."""
     scale = 43.27 / math.hypot(*lens.film_mm)
     return np.array([_round_number(f * scale) for f in (10.0, 20.0, 40.0)])
 
@@ -198,5 +199,5 @@ def _round_number(value: float) -> float:
 
 
 def texts_of(values: Sequence[float] | Doubles, unit: str) -> list[str]:
-    """Short words for legends."""
+    """Values with a unit, for legends."""
     return [f"{value:.4g}{'' if unit == '°' else ' '}{unit}" for value in values]

@@ -1,4 +1,4 @@
-"""The pupil as points of the film see it: its outline in direction cosines, and the light that it sends."""
+"""The exit pupil seen from film points: its outline in direction cosines, and relative illumination."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ from .fields import Bundles, Doubles, bundles_of, fields_of
 
 @dataclass(frozen=True, repr=False)
 class FilmPupils(ShortText):
-    """What the lens lets pass to points of the film, where the chief rays of F fields land.
+    """Vignetted pupils of the film points of F chief rays.
 
     fields_deg: (F,); film_mm: (F,), heights of the points.
-    outlines: F arrays (M, 2, 2), pieces of the edge of what passes, in direction cosines x and y of light on its way to
+    outlines: F arrays (M, 2, 2), segments of the pupil's outline, in direction cosines x and y of light travelling to
       the film.
-    solid_angle_sr: (F,), area in direction cosines: the integral of the cosine over the solid angle. The illuminance
-      of an even field of luminance L is L times that: what pictures are exposed by.
-    relative_illumination: (F,), over that on the axis.
+    solid_angle_sr: (F,), projected solid angle: area in direction cosines. The illuminance from a uniform field of
+      luminance L, which exposes pictures, is L times this.
+    relative_illumination: (F,), relative to the axis.
     """
 
     fields_deg: Doubles
@@ -42,9 +42,9 @@ def film_pupils(
     object_distance_m: float | None = None,
     bundles: Bundles | None = None,
 ) -> FilmPupils:
-    """By real rays from the film to the scene: the edges of what passes, along spokes about its middle.
+    """Pupils by real rays from the film to the scene: their edges along radial scan lines about the pupil's centre.
 
-    None: `samples` fields up to the corner of the film; the design wavelength. Coatings take no part.
+    Defaults: `samples` fields up to the corner of the film; the design wavelength. Coatings are ignored.
     """
     source = bundles_of(lens, object_distance_m, bundles)
     nm = lens.wavelength_nm if wavelength_nm is None else wavelength_nm
@@ -57,7 +57,7 @@ def film_pupils(
 
 
 def plot_relative_illumination(data: FilmPupils, axes: Axes) -> None:
-    """Over the field, beside the fourth power of the field's cosine."""
+    """Plots relative illumination over the field, with the cos^4 law for comparison."""
     axes.plot(data.fields_deg, 100 * data.relative_illumination, color=style.BLUE, label="lens")
     angle = np.radians(np.linspace(0, min(float(data.fields_deg.max()), 90.0), 61))
     axes.plot(np.degrees(angle), 100 * np.cos(angle) ** 4, ":", color=style.GREY, label="cos⁴")
@@ -70,7 +70,7 @@ def plot_relative_illumination(data: FilmPupils, axes: Axes) -> None:
 
 
 def plot_pupil_shapes(data: FilmPupils, axes: Axes) -> None:
-    """Outlines side by side, to one scale, as a lamp far out of focus shows them."""
+    """Plots the outlines side by side at one scale, as the shapes of defocused lamps."""
     from matplotlib.collections import LineCollection
 
     boxes = [(o.reshape(-1, 2).min(axis=0), o.reshape(-1, 2).max(axis=0)) for o in data.outlines]

@@ -1,4 +1,4 @@
-"""All plots by the names that the command line has for them."""
+"""All plots, by their names on the command line."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ from .zernike import ZernikeFit, plot_zernike_fit, zernike_fit
 
 @dataclass(frozen=True)
 class Asked:
-    """What a plot is asked for; None is the plot's own choice."""
+    """Parameters of a plot; None is the plot's default."""
 
     lens: Lens
     bundles: Bundles
@@ -65,7 +65,7 @@ class Asked:
 
     @property
     def curves(self) -> dict[str, Any]:
-        """What most functions have as arguments."""
+        """Keyword arguments of most analyses."""
         return {
             "fields_deg": self.fields_deg,
             "wavelengths_nm": self.wavelengths_nm,
@@ -80,8 +80,8 @@ class Asked:
 
 @dataclass(frozen=True)
 class Kind:
-    """help: one line. data: what compute makes. shape: rows and columns of axes that the data wants. plot: on all of
-    them."""
+    """A kind of plot. help: one line. data: type of compute's result. shape: rows and columns of axes for the data.
+    plot: plots the data on all axes."""
 
     help: str
     data: type
@@ -89,7 +89,7 @@ class Kind:
     shape: Callable[[Any], tuple[int, int]]
     plot: Callable[[Any, np.ndarray], None]
     square: bool = False
-    height: float = 1.0  #: of a figure, as a share of what `style.SIZES_IN` has
+    height: float = 1.0  #: of the figure, relative to `style.SIZES_IN`
 
 
 def _single(plot: Callable[[Any, Axes], None]) -> dict[str, Any]:
@@ -301,7 +301,7 @@ def plot_figure(
     width, height = style.SIZES_IN[size]
     height *= KINDS[kind].height
     rows, columns = KINDS[kind].shape(data)
-    if rows * columns > 1:  # each of several plots as large as it can be read at
+    if rows * columns > 1:  # several plots: each at least at a readable size
         width = max(width, (1.4 if size == "small" else 2.5) * columns + 0.8)
         each = (0.9 if KINDS[kind].square else 0.8) * width / columns
         height = each * rows + (0.5 if title else 0)

@@ -1,4 +1,4 @@
-"""Lateral colour: by how much the image is larger in one colour than in another."""
+"""Lateral colour: the difference of image heights between wavelengths."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ from .fields import Bundles, Doubles, light_of
 @dataclass(frozen=True, repr=False)
 class LateralColour(ShortText):
     """fields_deg: (F,); wavelengths_nm: (W,).
-    shift_mm: (W, F), height of the chief ray on the film less that of the design wavelength.
-    airy_radius_mm: (F,), along y, of the design wavelength.
+    shift_mm: (W, F), height of the chief ray on the film minus that at the design wavelength.
+    airy_radius_mm: (F,), along y, at the design wavelength.
     """
 
     fields_deg: Doubles
@@ -36,7 +36,7 @@ def lateral_colour(
     object_distance_m: float | None = None,
     bundles: Bundles | None = None,
 ) -> LateralColour:
-    """None: `samples` fields up to the corner of the film; F line, design wavelength, C line; the plane in focus."""
+    """Computes lateral colour. Defaults: `samples` fields up to the film corner; F line, design wavelength, C line."""
     source, fields, colours = light_of(lens, fields_deg, wavelengths_nm, object_distance_m, bundles, samples)
     design = [source.chief(float(field), lens.wavelength_nm) for field in fields]
     heights = np.array([[source.chief(float(f), float(c)).chief_ray_mm[1] for f in fields] for c in colours])

@@ -1,4 +1,4 @@
-"""Modulation transfer over frequency, over the field and through focus, with the diffraction limit."""
+"""Modulation transfer function over frequency, over the field and through focus, with the diffraction limit."""
 
 from __future__ import annotations
 
@@ -30,12 +30,12 @@ METHODS = ("diffraction", "geometric")
 
 @dataclass(frozen=True, repr=False)
 class Mtf(ShortText):
-    """Contrast, 0 to 1.
+    """MTF values, 0 to 1.
 
     fields_deg: (F,); frequencies_per_mm: (K,), periods per mm on the film; defocus_mm: (D,), planes behind the film.
-    tangential, sagittal: (D, F, K), of lines across y and across x.
-    limit_tangential, limit_sagittal: (F, K), of the same pupil, with its real f-number and vignetting, without
-      aberrations.
+    tangential, sagittal: (D, F, K), for patterns that vary along y and along x.
+    limit_tangential, limit_sagittal: (F, K), diffraction limit of the same pupil, with its real f-number and
+      vignetting. Ones for the method "geometric".
     method: "diffraction" or "geometric".
     """
 
@@ -63,13 +63,13 @@ def mtf(
     object_distance_m: float | None = None,
     bundles: Bundles | None = None,
 ) -> Mtf:
-    """MTF of all wavelengths together, by the autocorrelation of the pupil that real rays find, or by rays.
+    """Polychromatic MTF, by the autocorrelation of the pupil function from real rays, or by rays alone.
 
-    fields_deg: None is the axis, 0.7 and all of the image height. frequencies_per_mm: None is 10, 20 and 40 on a film
-    of 43 mm, and as fine in proportion on others. wavelengths_nm: None is F line, design wavelength, C line, in equal
-    shares. defocus_mm: (D,) planes behind the film. method: "diffraction", or "geometric": rays alone, as many as the
-    highest frequency asks for, right within 1e-4; nan where 200 000 rays do not tell the contrast within 0.01.
-    Raises InputError where no light passes.
+    fields_deg: None is 0, 0.7 and 1 times the largest image height. frequencies_per_mm: None is 10, 20 and 40 for a
+    film diagonal of 43 mm, scaled inversely for others. wavelengths_nm: None is F line, design wavelength, C line.
+    weights: None is equal weights. defocus_mm: (D,) planes behind the film. method: "diffraction", or "geometric": by
+    rays, as many as the highest frequency needs, to 1e-4; nan if 200 000 rays do not determine the contrast to 0.01.
+    Raises InputError if no light passes.
     """
     if method not in METHODS:
         raise InputError(f'unknown method "{method}"; diffraction or geometric is wanted')
@@ -88,7 +88,7 @@ def mtf(
     of_colour = by_waves if method == "diffraction" else _by_rays
     for f, field in enumerate(fields):
         light = [of_colour(source, float(field), float(colour), frequencies, planes) for colour in colours]
-        # Colours add about one place: lateral colour shows.
+        # All wavelengths refer to one film point, so that lateral colour counts.
         beside = np.array([one.chief_ray_mm - light[0].chief_ray_mm for one in light])[:, ::-1]
         turn = np.exp(-2j * np.pi * beside[:, :, None] * frequencies)
         result[:, :, f] = np.abs(sum(w * one.otf * t[:, None] for w, one, t in zip(share, light, turn, strict=True)))
@@ -114,7 +114,7 @@ def _shares(weights: ArrayLike | None, count: int) -> Doubles:
 
 
 def by_waves(source: Bundles, field: FieldPlace, colour: float, frequencies: Doubles, planes: Doubles) -> Transfer:
-    """With diffraction, by the autocorrelation of the pupil."""
+    """Diffraction MTF, by the autocorrelation of the pupil function."""
     pupil = pupil_function(source, field, colour)
     ways = [lines_of(pupil, tangential=tangential) for tangential in (True, False)]
     return Transfer(
@@ -125,16 +125,16 @@ def by_waves(source: Bundles, field: FieldPlace, colour: float, frequencies: Dou
 
 
 _SPOKES, _NODES, _MOST_DOUBLINGS = 32, 6, 5
-# Errors of the contrast: the goal, and the largest that is accepted where no more rays are taken.
+# Errors of the contrast: the goal, and the largest accepted one at the maximum number of rays.
 _WANTED_ERROR, _TOLD_ERROR = 1e-4, 1e-2
 
 
 def _by_rays(source: Bundles, field: float, colour: float, frequencies: Doubles, planes: Doubles) -> Transfer:
-    """As many rays as the frequencies ask for.
+    """Geometric MTF, with as many rays as the frequencies need.
 
-    A sum over M spokes is exact for waves of fewer than M periods around the light, one over n Gauss nodes for some n
-    periods along a spoke. So there are at least as many as the spot is periods wide, and twice as many each time until
-    the contrast stays as it is.
+    A sum over M radial scan lines is exact for fewer than M periods around the pupil, a sum over n Gauss nodes for
+    about n periods along a line. The initial counts follow from the periods across the spot; they are doubled until the
+    contrast converges.
     """
 
     def bundle(doublings: int) -> RayBundle:
@@ -156,16 +156,16 @@ def _by_rays(source: Bundles, field: float, colour: float, frequencies: Doubles,
 
 
 def _places(bundle: RayBundle, planes: Doubles, rays: slice) -> Doubles:
-    """(D, N, 2), mm from the chief ray."""
+    """(D, N, 2): points on the planes, mm from the chief ray's film point."""
     slopes = bundle.directions[rays, :2] / bundle.directions[rays, 2:]
     places: Doubles = bundle.points_mm[rays] - bundle.chief_ray_mm + planes[:, None, None] * slopes
     return places
 
 
 def _sum_of_rays(bundle: RayBundle, frequencies: Doubles, planes: Doubles) -> np.ndarray:
-    """(2, D, K), tangential and sagittal, about the chief ray."""
+    """(2, D, K): complex transfer function, tangential and sagittal, about the chief ray."""
     otf = np.zeros((2, len(planes), len(frequencies)), complex)
-    step = max(1, (1 << 21) // (len(planes) * len(frequencies)))  # rays at once: some 100 MB
+    step = max(1, (1 << 21) // (len(planes) * len(frequencies)))  # rays per batch: about 100 MB
     for first in range(0, len(bundle.energy), step):
         rays = slice(first, first + step)
         turns = 2 * np.pi * frequencies[:, None] * _places(bundle, planes, rays).transpose(2, 0, 1)[::-1, :, None, :]
@@ -184,7 +184,7 @@ def mtf_over_frequency(
     object_distance_m: float | None = None,
     bundles: Bundles | None = None,
 ) -> Mtf:
-    """highest_per_mm: None is two and a half times the highest of the default frequencies."""
+    """MTF from 0 to highest_per_mm; None is 2.5 times the highest default frequency. Otherwise like mtf()."""
     top = 2.5 * float(default_frequencies_per_mm(lens)[-1]) if highest_per_mm is None else highest_per_mm
     return mtf(
         lens,
@@ -208,7 +208,7 @@ def mtf_over_field(
     object_distance_m: float | None = None,
     bundles: Bundles | None = None,
 ) -> Mtf:
-    """At `samples` fields from the axis to the corner of the film."""
+    """MTF at `samples` fields from the axis to the corner of the film. Otherwise like mtf()."""
     source = bundles_of(lens, object_distance_m, bundles)
     fields = fields_of(lens, fields_deg, samples, source)
     return mtf(
@@ -234,8 +234,11 @@ def mtf_through_focus(
     object_distance_m: float | None = None,
     bundles: Bundles | None = None,
 ) -> Mtf:
-    """frequency_per_mm: None is the middle one of the default frequencies. defocus_mm: None is as far as the contrast
-    on the axis of a perfect lens is lost: f-number over the frequency to either side."""
+    """MTF of one frequency through focus. Otherwise like mtf().
+
+    frequency_per_mm: None is the middle default frequency. defocus_mm: None is f-number over frequency to either side,
+    where a perfect lens has lost its axial contrast.
+    """
     at = float(default_frequencies_per_mm(lens)[1]) if frequency_per_mm is None else frequency_per_mm
     planes = (
         np.linspace(-1, 1, samples) * lens.first_order().f_number / max(at, 1e-9)
@@ -264,7 +267,7 @@ def _finish(axes: Axes, title: str, data: Mtf) -> None:
 
 
 def plot_mtf_over_frequency(data: Mtf, axes: Axes) -> None:
-    """With the limit of diffraction on the first field."""
+    """Plots MTF over frequency, with the diffraction limit of the first field."""
     for f, label in enumerate(texts_of(data.fields_deg, "°")):
         axes.plot(data.frequencies_per_mm, data.tangential[0, f], color=style.field_colour(f), label=label)
         axes.plot(data.frequencies_per_mm, data.sagittal[0, f], "--", color=style.field_colour(f))
@@ -276,7 +279,7 @@ def plot_mtf_over_frequency(data: Mtf, axes: Axes) -> None:
 
 
 def plot_mtf_over_field(data: Mtf, axes: Axes) -> None:
-    """With the limits of diffraction of the pupil as the lens vignettes it, tangential."""
+    """Plots MTF over the field, with the tangential diffraction limit of the vignetted pupil."""
     for k, label in enumerate(texts_of(data.frequencies_per_mm, "/mm")):
         axes.plot(data.fields_deg, data.tangential[0, :, k], color=style.field_colour(k), label=label)
         axes.plot(data.fields_deg, data.sagittal[0, :, k], "--", color=style.field_colour(k))

@@ -1,4 +1,4 @@
-"""What notebooks show of the data of analyses: their plots."""
+"""Notebook representations of analysis results: their plots."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from .mtf import Mtf
 
 KIND_OF: dict[type, str] = {}
 for _name, _kind in KINDS.items():
-    KIND_OF.setdefault(_kind.data, _name)  # the first plot of several
+    KIND_OF.setdefault(_kind.data, _name)  # a type's first plot is its default
 
 
 def kind_of(data: Any) -> str:
-    """The plot of the data. MTF is shown along what it has most of: planes, fields or frequencies."""
+    """Name of the plot of a result. MTF is plotted through focus, over the field or over frequency, by its shape."""
     if isinstance(data, Mtf):
         planes, fields, frequencies = data.tangential.shape
         if planes > 1:

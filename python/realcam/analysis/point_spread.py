@@ -1,4 +1,4 @@
-"""Point spread functions side by side: rays alone, Fourier transform, direct sum."""
+"""Point spread functions by geometric rays, Fourier transform or direct sum, with plots."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ from .fields import Doubles, numbers_of
 
 @dataclass(frozen=True, repr=False)
 class PointSpread(ShortText):
-    """values: (size, size), share of the light per um^2, rows from the lowest y. centre_mm: of x_um = y_um = 0 on the
-    film. strehl: nan for the method "geometric"."""
+    """values: (size, size), fraction of the light per um^2, rows from the lowest y. centre_mm: film point of
+    x_um = y_um = 0. strehl: nan for the method "geometric"."""
 
     field_deg: float
     method: str
@@ -41,8 +41,8 @@ def point_spread(
     object_distance_m: float | None = None,
     film_mm: tuple[float, float] | None = None,
 ) -> PointSpread:
-    """By Lens.psf, about the centroid of the light. film_mm: a film point in place of the angle. None of the
-    others: the design wavelength; the plane in focus."""
+    """Lens.psf about the centroid. film_mm: film point in place of the field angle. Defaults: the design wavelength;
+    the plane in focus."""
     colours = None if wavelengths_nm is None else list(numbers_of(wavelengths_nm, "wavelengths_nm"))
     psf: PSF = lens.psf(
         field_deg,
@@ -60,12 +60,12 @@ def point_spread(
 
 
 def plot_point_spread(data: PointSpread, axes: Axes) -> None:
-    """In decades of the largest value."""
+    """Plots a point spread function in decades below its peak."""
     plot_decades(data, axes, f"{style.field_title(data.field_deg, data.film_mm)}, {data.method}")
 
 
 def plot_decades(data: PointSpread | PSF, axes: Axes, title: str) -> None:
-    """The light in decades of its largest value. title: what stands before the Strehl ratio, where there is one."""
+    """Plots values in decades below their peak. title: followed by the Strehl ratio, if known."""
     half = 0.5 * (data.x_um[1] - data.x_um[0])
     with np.errstate(divide="ignore"):
         decades = np.log10(data.values / data.values.max())

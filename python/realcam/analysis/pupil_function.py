@@ -1,4 +1,4 @@
-"""The pupil as waves see it: phase and amplitude over direction cosines, and optical transfer functions from them."""
+"""Pupil functions: phase and amplitude over direction cosines, and the optical transfer functions."""
 
 from __future__ import annotations
 
@@ -14,29 +14,29 @@ from ..fields import FieldPlace, field_text
 from ..short_text import ShortText
 from .fields import Bundles, Doubles
 
-# Degrees of the polynomials that are tried, with the spokes and nodes of the rays that they are fitted to.
+# Polynomial degrees in the order of trial, with the radial scan lines and nodes of the rays that they are fitted to.
 FITS = ((10, 32, 6), (14, 48, 9), (20, 72, 13))
-# A fit that is off by this much at its own rays is off by some 0.01 waves between them, as of a phone lens's aspheres.
+# A fit with this error at its rays may have an error of some 0.01 waves between them, as for aspheric phone lenses.
 GOOD_FIT_WAVES = 2e-4
 LINES = 28
-LINES_WITH_HOLE = 120  # lengths of lines have a kink where a line touches an inner edge
+LINES_WITH_HOLE = 120  # chord lengths have a kink where a line touches an inner edge
 
 
 class UnevenWavefrontError(InputError):
-    """No polynomial follows the wavefront: there is no transfer function, but that of rays alone."""
+    """No polynomial fits the wavefront, so only the geometric transfer function is available."""
 
 
 @dataclass(frozen=True, repr=False)
 class PupilFunction(ShortText):
-    """Amplitude and path over slopes (RayBundle.slopes), as polynomials of Chebyshev's in slopes scaled to -1 ... 1.
+    """Amplitude and path over RayBundle.slopes, as Chebyshev polynomials in slopes scaled to -1 ... 1.
 
-    phase, tilt, amplitude: (K, K), coefficients by powers of x and y: of the path in radians, of the change of the path
-      for each mm of defocus in radians, of the amplitude.
-    middle, half: (2,), of the scaling.
-    edge: (M, 2, 2), pieces of the pupil's outline, scaled.
+    phase, tilt, amplitude: (K, K), coefficients by degree in x and y: of the path in radians, of the path's change in
+      radians per mm of defocus, and of the amplitude.
+    middle, half: (2,), centre and half width of the slopes before scaling.
+    edge: (M, 2, 2), segments of the pupil's outline, scaled.
     waves_per_cosine: index over wavelength, 1/mm: a frequency divided by it is a shift in the pupil.
-    fit_error_waves: root mean square that the fitted path is off.
-    mirrored: whether the pupil is its own mirror image in x.
+    fit_error_waves: RMS error of the fitted path.
+    mirrored: True if the pupil is mirror-symmetric in x.
     """
 
     phase: Doubles
@@ -52,12 +52,12 @@ class PupilFunction(ShortText):
 
 
 def pupil_function(bundles: Bundles, field: FieldPlace, wavelength_nm: float) -> PupilFunction:
-    """Fits polynomials of the degree that the wavefront needs. Raises InputError where none follows it."""
+    """Fits polynomials of the least sufficient degree. Raises UnevenWavefrontError if the largest does not suffice."""
     for degree, spokes, nodes in FITS:
         fitted = fit_pupil(bundles.at(field, wavelength_nm, spokes, nodes), degree)
         if fitted.fit_error_waves < GOOD_FIT_WAVES:
             return fitted
-    # A tenth of a wave changes the contrast of what is left of so strong aberrations by less than can be seen.
+    # With aberrations that strong little contrast is left, and an error of 0.1 waves changes it invisibly.
     if fitted.fit_error_waves < 0.1:
         return fitted
     raise UnevenWavefrontError(
@@ -67,7 +67,7 @@ def pupil_function(bundles: Bundles, field: FieldPlace, wavelength_nm: float) ->
 
 
 def fit_pupil(bundle: RayBundle, degree: int) -> PupilFunction:
-    """By least squares over the rays. Of a pupil that is its own mirror image one half, and even powers of x, do."""
+    """Least-squares fit over the rays. Mirror-symmetric pupils use half of the rays, and even degrees in x."""
     count = len(bundle.energy) // 2 if bundle.mirrored else len(bundle.energy)
     corners = bundle.edge_slopes.reshape(-1, 2)
     low, high = corners.min(axis=0), corners.max(axis=0)
@@ -82,7 +82,7 @@ def fit_pupil(bundle: RayBundle, degree: int) -> PupilFunction:
     wanted = np.column_stack(
         [wave_number * bundle.path_mm[:count], wave_number * bundle.directions[:count, 2], bundle.amplitude[:count]]
     )
-    # By orthogonal factors (gelsy), which take less than half the time of singular values.
+    # gelsy (complete orthogonal factorisation) takes less than half the time of singular values.
     solution, *_ = scipy.linalg.lstsq(basis, wanted, cond=1e-10, lapack_driver="gelsy", check_finite=False)
     off = (basis @ solution[:, 0] - wanted[:, 0]) / (2 * np.pi)
     energy = bundle.energy[:count]
@@ -104,12 +104,12 @@ def fit_pupil(bundle: RayBundle, degree: int) -> PupilFunction:
 
 @dataclass(frozen=True, repr=False)
 class Lines(ShortText):
-    """Lines along one direction across a pupil, at the nodes of Chebyshev's second kind, where a round edge makes their
-    lengths smooth.
+    """Parallel chords of a pupil at Chebyshev nodes, at which the chord lengths of a round edge are smooth.
 
-    places: (L,), where they cross the other direction; weight: (L,), of each in an integral across them.
-    ends: (L, stretch, 2), between which places each lies in the pupil; nan where it does not.
-    even: whether each line is its own mirror image, and lies in the pupil in one piece.
+    along: the axis that the lines are parallel to, 0 (x) or 1 (y). places: (L,), coordinates on the other axis; weight:
+      (L,), quadrature weights across the lines.
+    ends: (L, interval, 2), ends of each line's intervals inside the pupil; nan if there are fewer.
+    even: True if each line is mirror-symmetric and has a single interval.
     """
 
     along: int
@@ -119,7 +119,7 @@ class Lines(ShortText):
     even: bool
 
     def overlaps(self, shifts: Doubles) -> Iterator[tuple[Doubles, Doubles]]:
-        """Middles and lengths, (F, L) each, of where the pupil overlaps itself shifted, for each pair of stretches."""
+        """Centres and lengths, (F, L) each, of the pupil's overlap with its shifted copy, per pair of intervals."""
         half = 0.5 * shifts[:, None]
         count = self.ends.shape[1]
         for a in range(count):
@@ -136,7 +136,7 @@ def lines_of(pupil: PupilFunction, *, tangential: bool) -> Lines:
     for count in (LINES, LINES_WITH_HOLE):
         turn = np.pi * (np.arange(count) + 0.5) / count
         weight = np.sin(turn) * np.pi / count
-        if pupil.mirrored and tangential:  # lines on one side stand for those on the other
+        if pupil.mirrored and tangential:  # lines on one side represent both sides
             turn, weight = turn[: count // 2], 2 * weight[: count // 2]
         ends = _ends(pupil.edge, np.cos(turn), along)
         if ends.shape[1] < 2:
@@ -145,8 +145,8 @@ def lines_of(pupil: PupilFunction, *, tangential: bool) -> Lines:
 
 
 def transfer_limit(pupil: PupilFunction, lines: Lines, frequencies_per_mm: Doubles) -> Doubles:
-    """(F,): the transfer function without aberrations and with an even amplitude: the share of the pupil on which it
-    overlaps itself, shifted by frequency x wavelength."""
+    """(F,): transfer function without aberrations and with uniform amplitude: the fraction of the pupil that overlaps
+    its copy, shifted by frequency x wavelength."""
     shifts = frequencies_per_mm / pupil.waves_per_cosine / pupil.half[lines.along]
     areas = [np.zeros(len(shifts)), np.zeros(1)]
     for area, by in zip(areas, (shifts, np.zeros(1)), strict=True):
@@ -159,18 +159,18 @@ def transfer_limit(pupil: PupilFunction, lines: Lines, frequencies_per_mm: Doubl
 def transfer(
     pupil: PupilFunction, lines: Lines, frequencies_per_mm: Doubles, defocus_mm: Doubles | None = None
 ) -> np.ndarray:
-    """(D, F), complex: the optical transfer function along the lines, relative to the chief ray's film point.
+    """(D, F): complex optical transfer function along the lines, relative to the chief ray's film point.
 
     The pupil's autocorrelation (H. H. Hopkins, Proc. Roy. Soc. A 231, 91, 1955): the mean of A(p + s/2) A(p - s/2)
-    exp(i (phase(p + s/2) - phase(p - s/2))) over the p at which both lie in the pupil, s = frequency x wavelength, over
-    that of A^2. On each line stand Gauss's nodes between the ends of the overlap.
+    exp(i (phase(p + s/2) - phase(p - s/2))) over the p for which both points lie in the pupil, s = frequency x
+    wavelength, divided by that of A^2. Each line is integrated by Gauss-Legendre nodes within the overlap.
     """
     planes = np.zeros(1) if defocus_mm is None else defocus_mm
     shifts = frequencies_per_mm / pupil.waves_per_cosine / pupil.half[lines.along]
-    # Polynomials along each line, (3, power, line).
+    # Polynomials along each line, (3, degree, line).
     tables = np.stack([pupil.phase, pupil.amplitude, pupil.tilt])
     if not planes.any():
-        tables = tables[:2]  # no plane asks for the change by defocus
+        tables = tables[:2]  # without defocus the tilt is not needed
     if lines.along == 0:
         tables = tables.swapaxes(1, 2)
     on_line = np.einsum("tij,li->tjl", tables, _chebyshev_table(lines.places, tables.shape[1] - 1))
@@ -180,27 +180,27 @@ def transfer(
 
 
 def _nodes(on_line: Doubles, shifts: Doubles, planes: Doubles) -> int:
-    """Gauss's rule follows a phase of z radians from its middle to either end with some z / 2 + 10 nodes."""
+    """Number of Gauss nodes: a phase of z radians from the centre to either end needs about z / 2 + 10."""
     slopes = _slope_table(on_line.shape[1] - 1)
     most = 0.0
     for plane in {planes.min(), planes.max()}:
         phase = on_line[0] + plane * on_line[2] if plane else on_line[0]
         most = max(most, float((slopes @ phase).std()))
-    # Three standard deviations of the slope: what is steeper is little of the pupil.
+    # Three standard deviations of the slope: only a small part of the pupil is steeper.
     wanted = 16 + 1.5 * most * float(shifts.max(initial=0.0))
     return next((count for count in (16, 20, 24, 32, 48, 72, 108) if count >= wanted), 160)
 
 
 @cache
 def _slope_table(degree: int) -> Doubles:
-    """(32, degree + 1): mean slopes of Chebyshev's polynomials between 33 places from -1 to 1."""
+    """(32, degree + 1): mean slopes of the Chebyshev polynomials between 33 points from -1 to 1."""
     places = np.linspace(-1, 1, 33)
     slopes: Doubles = np.diff(_chebyshev_table(places, degree), axis=0) / (places[1] - places[0])
     return slopes
 
 
 def _chebyshev_table(places: Doubles, degree: int) -> Doubles:
-    """(N, degree + 1): what numpy's chebvander gives, which takes several times as long for a few hundred places."""
+    """(N, degree + 1): as numpy's chebvander, which takes several times as long for a few hundred points."""
     table = np.empty((degree + 1, len(places)))
     table[0] = 1
     table[1] = places
@@ -217,7 +217,7 @@ def _gauss(nodes: int) -> tuple[Doubles, Doubles]:
 
 
 def _energy(on_line: Doubles, lines: Lines) -> float:
-    """The integral of the squared amplitude over the pupil."""
+    """Integral of the squared amplitude over the pupil."""
     node, weight = _gauss(16)
     total = 0.0
     for middle, length in lines.overlaps(np.zeros(1)):
@@ -227,7 +227,7 @@ def _energy(on_line: Doubles, lines: Lines) -> float:
 
 
 def _overlap(on_line: Doubles, lines: Lines, shifts: Doubles, planes: Doubles, nodes: int) -> np.ndarray:
-    """(D, F), complex: integrals over the overlap of the pupil with itself, shifted."""
+    """(D, F): complex integrals over the overlap of the pupil with its shifted copy."""
     node, weight = _gauss(nodes)
     if lines.even:  # the other half of a line has the same cosine, and the opposite sine
         node, weight = node[nodes // 2 :], 2 * weight[nodes // 2 :]
@@ -241,7 +241,7 @@ def _overlap(on_line: Doubles, lines: Lines, shifts: Doubles, planes: Doubles, n
         phase = back[0] - front[0]
         for d, plane in enumerate(planes):
             turn = phase + plane * (back[2] - front[2]) if plane else phase
-            # Two real functions take half the time of one of complex numbers.
+            # Cosine and sine of reals take half the time of a complex exponential.
             total.real[d] += np.sum(amplitude * np.cos(turn), axis=(1, 2))
             if not lines.even:
                 total.imag[d] += np.sum(amplitude * np.sin(turn), axis=(1, 2))
@@ -249,12 +249,12 @@ def _overlap(on_line: Doubles, lines: Lines, shifts: Doubles, planes: Doubles, n
 
 
 def _values(on_line: Doubles, place: Doubles) -> Doubles:
-    """(table, F, line, node): polynomials of each line at places on it, by Clenshaw's recurrence."""
+    """(table, F, line, node): polynomials of each line at points on it, by Clenshaw's recurrence."""
     coefficient = on_line[:, :, None, :, None]
     ahead, here, free = np.zeros((3, len(on_line), *place.shape))
     double = 2 * place
     for k in range(on_line.shape[1] - 1, 0, -1):
-        np.multiply(double, here, out=free)  # in place: new arrays would take as long as the sums
+        np.multiply(double, here, out=free)  # in place: allocating arrays would take as long as the sums
         free -= ahead
         free += coefficient[:, k]
         ahead, here, free = here, free, ahead
@@ -266,7 +266,7 @@ def _values(on_line: Doubles, place: Doubles) -> Doubles:
 
 
 def _ends(edge: Doubles, lines: Doubles, along: int) -> Doubles:
-    """(line, stretch, 2): between which places each line lies in the pupil; nan where it does not."""
+    """(line, interval, 2): ends of each line's intervals inside the pupil; nan if there are fewer."""
     across = 1 - along
     start, end = edge[:, 0], edge[:, 1]
     line, piece = np.nonzero((start[:, across] <= lines[:, None]) != (end[:, across] <= lines[:, None]))

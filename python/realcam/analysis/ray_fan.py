@@ -1,4 +1,4 @@
-"""Ray fans: where rays land, by where they cross the stop."""
+"""Ray fans: transverse ray aberrations over the stop."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ from .fields import Bundles, Doubles, light_of
 
 @dataclass(frozen=True, repr=False)
 class RayFan(ShortText):
-    """Transverse ray aberrations on the film, from where the chief ray of the design wavelength lands.
+    """Transverse ray aberrations on the film, relative to the chief ray at the design wavelength.
 
-    fields_deg: (F,); wavelengths_nm: (W,); pupil: (P,), shares of the stop's radius.
+    fields_deg: (F,); wavelengths_nm: (W,); pupil: (P,), in units of the stop's radius.
     tangential_mm: (F, W, P), along y, of rays through (0, pupil) of the stop.
     sagittal_mm: (F, W, P), along x, of rays through (pupil, 0).
-    nan where the lens lets no ray pass.
+    nan for rays that do not pass.
     """
 
     fields_deg: Doubles
@@ -41,7 +41,7 @@ def ray_fan(
     object_distance_m: float | None = None,
     bundles: Bundles | None = None,
 ) -> RayFan:
-    """Fans of real rays. None: the axis, 0.7 and all of the image height; F line, design wavelength, C line."""
+    """Fans of real rays. Defaults: 0, 0.7, 1 of the largest image height; F line, design wavelength, C line."""
     source, fields, colours = light_of(lens, fields_deg, wavelengths_nm, object_distance_m, bundles)
     pupil = np.linspace(-1, 1, samples)
     zero = np.zeros(samples)
@@ -56,7 +56,7 @@ def ray_fan(
 
 
 def plot_ray_fan(fan: RayFan, axes: Axes, field: int = 0, *, sagittal: bool = False) -> None:
-    """Draws the fan of one field, the number of its row, on the axes."""
+    """Plots the fan of one field, given by its index."""
     curves = 1e3 * (fan.sagittal_mm if sagittal else fan.tangential_mm)[field]
     for curve, (colour, label) in zip(curves, style.coloured(fan.wavelengths_nm), strict=True):
         axes.plot(fan.pupil, curve, color=colour, label=label)

@@ -1,4 +1,4 @@
-"""All of a lens: what it is, and its plots, as one file."""
+"""Complete report of a lens in one file: data and plots."""
 
 from __future__ import annotations
 
@@ -26,16 +26,16 @@ def save_report(
     object_distance_m: float | None = None,
     theme: str | None = None,
 ) -> None:
-    """Writes .pdf, or .html that holds all it shows.
+    """Writes a report as .pdf, or as self-contained .html.
 
-    It begins with the lens: drawing, figures, prescription and Seidel's sums. Pages of plots follow.
-    fields_deg: three; None is the axis, 0.7 and all of the image height. wavelengths_nm: None is F line, design
+    It begins with drawing, data, prescription and Seidel sums; pages of plots follow.
+    fields_deg: three; None is 0, 0.7 and 1 times the largest image height. wavelengths_nm: None is F line, design
     wavelength and C line. object_distance_m: object plane to front vertex; None is the plane in focus.
-    theme: "light" or "dark"; None is light paper, and a page that is as its reader has set the browser.
-    What a lens cannot have (a plane grid of a fisheye, say) has its reason in its place. A lens that is not of
-    revolution has sections in two planes, maps over the film, and spots, wavefronts and point spread functions at four
-    points of it; fields_deg is None.
-    Raises ImageFileError for the file, and InputError where no light passes.
+    theme: "light" or "dark"; None is light for .pdf, and the browser's setting for .html.
+    A plot that does not exist for the lens (the distortion grid of a fisheye, for example) is replaced by the reason. A
+    lens without rotational symmetry has sections in two planes, maps over the film, and spots, wavefronts and point
+    spread functions at four film points; fields_deg must be None.
+    Raises ImageFileError for the file, and InputError if no light passes.
     """
     target = files.check_target(path, (".pdf", ".html"))
     if theme is not None:

@@ -1,4 +1,4 @@
-"""What a report says in words and tables: the lens as it stands, its prescription, and Seidel's sums."""
+"""Texts and tables of a report: data of the lens in its current state, prescription, and Seidel sums."""
 
 from __future__ import annotations
 
@@ -11,12 +11,13 @@ from ..fields import FieldPlace
 from .fields import Bundles, Doubles
 from .seidel_bars import SYMBOLS, seidel_bars, seidel_table
 
-WIDEST_DEG = 60.0  # of the third order
+WIDEST_DEG = 60.0  # largest field of the Seidel sums
 
 
 @dataclass(frozen=True)
 class ReportFacts:
-    """columns: of the table; the first are the prescription's. rows: of each surface, and of the sums."""
+    """Texts of a report. columns: heads of the table, prescription_columns of the prescription, then Seidel sums. rows:
+    one per surface, and the sums."""
 
     title: str
     source: str
@@ -62,5 +63,5 @@ def facts_of(source: Bundles, fields: Sequence[FieldPlace], colours: Doubles) ->
 
 
 def printable(text: str) -> str:
-    """Titles are text from files: characters that do not print are left out."""
+    """Removes unprintable characters from a text read from a file."""
     return "".join(c for c in text if c.isprintable())

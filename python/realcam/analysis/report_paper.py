@@ -1,4 +1,4 @@
-"""A report as .pdf: the lens on the first page, and plots on the others."""
+"""Report as .pdf: the lens on the first page, plots on the others."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from .report_plots import PAGE_IN, ReportPlots
 from .style import GREY
 
 LEFT, RIGHT = 0.04, 0.96
-QUIET = 0.7  # of the ink of text that stays in the background
-# Inches of the columns, by what stands in them; those of Seidel's sums share the rest.
+QUIET = 0.7  # opacity of secondary text
+# Column widths of the prescription, inches; the columns of Seidel sums share the remaining width.
 PRESCRIPTION_IN = (0.25, 0.85, 0.72, 0.74, 1.05, 0.62)
 
 
 def pdf_of(facts: ReportFacts, plots: ReportPlots, theme: str) -> bytes:
-    """In the theme in force, which has this name."""
+    """Content of the .pdf. theme: name of the current theme."""
     from matplotlib.backends.backend_pdf import PdfPages
 
     content = io.BytesIO()
@@ -56,7 +56,7 @@ def _head(figure: Figure, title: str, subject: str) -> None:
 
 
 def _draw_figures(figure: Figure, figures: list[tuple[str, str]], top: float) -> float:
-    """In two columns. Returns where they end."""
+    """Writes the data in two columns. Returns their lower end."""
     half, line = -(-len(figures) // 2), 0.0125
     for index, (name, text) in enumerate(figures):
         column, row = divmod(index, half)
@@ -67,7 +67,7 @@ def _draw_figures(figure: Figure, figures: list[tuple[str, str]], top: float) ->
 
 
 def _draw_table(figure: Figure, facts: ReportFacts, top: float) -> None:
-    """Smaller where there are many surfaces, so that all are on the page."""
+    """Writes the prescription table, in smaller type if there are many surfaces, so that it fits the page."""
     bottom = 0.04
     line = min(0.0145, (top - bottom) / (len(facts.rows) + 2.5))
     size = min(6.5, 72 * PAGE_IN[1] * line / 1.45)
@@ -89,7 +89,7 @@ def _draw_table(figure: Figure, facts: ReportFacts, top: float) -> None:
 
 
 def _edges(facts: ReportFacts) -> list[float]:
-    """The columns' ends on the right, as shares of the page's width."""
+    """Right edges of the columns, as fractions of the page width."""
     widths = list(PRESCRIPTION_IN)
     sums = len(facts.columns) - facts.prescription_columns
     if sums:
@@ -110,6 +110,6 @@ def _draw_row(
 
 
 def _as_math(name: str) -> str:
-    """S_I as it is printed."""
+    """Typesets the index of a symbol such as S_I as mathtext."""
     letter, underscore, index = name.partition("_")
     return f"${letter}_\\mathrm{{{index}}}$" if underscore and len(letter) == 1 else name.replace("n_d", "$n_d$")

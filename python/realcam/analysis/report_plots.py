@@ -1,4 +1,4 @@
-"""The plots of a report: rays, contrast and colour, waves and light."""
+"""Plots of a report: rays, contrast and colour, waves and light."""
 
 from __future__ import annotations
 
@@ -47,20 +47,20 @@ SIDE = {"left": 0.085, "right": 0.975}
 
 
 class ReportPlots:
-    """The plots, on a figure for each subject, in the theme in force."""
+    """Plots of a rotationally symmetric lens, one figure per subject, in the current theme."""
 
     def __init__(self, source: Bundles, fields: Doubles, colours: Doubles) -> None:
         self.lens, self.source, self.fields, self.colours = source.lens, source, fields, colours
         self.mtf_method = "diffraction"
         self.common: dict[str, Any] = {"object_distance_m": source.object_distance_m, "bundles": source}
         self.three: dict[str, Any] = {**self.common, "fields_deg": fields, "wavelengths_nm": colours}
-        # One set of fields for all curves over the field.
+        # All curves over the field share one set of fields, and so the ray bundles.
         top = float(np.abs(fields).max())
         self.scan: Doubles = field_angles_deg(self.lens, np.linspace(0, 1, 51), source)
         if not math.isclose(self.scan[-1], top, rel_tol=1e-3):
             self.scan = np.linspace(0, top, 51)
         self.over_field: dict[str, Any] = {**self.common, "fields_deg": self.scan}
-        # These need chief rays alone, which cost little.
+        # Curves that need only chief rays are cheap, and get more fields.
         fine = np.interp(np.linspace(0, 50, 101), np.arange(51), self.scan)
         self.chief_rays: dict[str, Any] = {**self.common, "fields_deg": fine}
 
@@ -70,8 +70,8 @@ class ReportPlots:
         return [{"fields_deg": self.fields.tolist(), "object_distance_m": self.source.object_distance_m}]
 
     def pages(self) -> list[tuple[str, matplotlib.figure.Figure]]:
-        """Subjects and their figures, of PAGE_IN; what is above PLOTS_TOP is left to headings."""
-        # Titles keep their place: matplotlib would look for it around all ticks, which takes a sixth of the time.
+        """Subjects and their figures, of size PAGE_IN; the area above PLOTS_TOP is free for headings."""
+        # A fixed title position: matplotlib's placement around all ticks takes a sixth of the time.
         with matplotlib.rc_context({"axes.titley": 1.02}):
             pages = self._pages()
         for axes in (axes for _, page in pages for axes in page.axes):
@@ -139,7 +139,7 @@ class ReportPlots:
         )
         _try(
             figure,
-            grid[3, 0].subgridspec(1, 2, width_ratios=(0.45, 0.55), wspace=0)[1],  # beside names
+            grid[3, 0].subgridspec(1, 2, width_ratios=(0.45, 0.55), wspace=0)[1],  # leaves room for names
             lambda: zernike_fit(self.lens, float(self.fields[1]), samples=24, object_distance_m=distance),
             plot_zernike_fit,
         )
@@ -161,8 +161,8 @@ class ReportPlots:
         return seidel_bars(self.lens, min(float(np.abs(self.fields).max()), 60.0), **self.common)
 
     def _mtf(self, compute: Callable[..., Mtf], **given: Any) -> Mtf:
-        """MTF, by rays alone on all of the page where the wavefront of a field is too uneven for a transfer
-        function."""
+        """Diffraction MTF; from the first wavefront on that is too uneven for it, geometric MTF for this and later
+        plots."""
         try:
             return compute(self.lens, method=self.mtf_method, **given)
         except UnevenWavefrontError:
@@ -170,7 +170,7 @@ class ReportPlots:
             return compute(self.lens, method=self.mtf_method, **given)
 
     def _psf(self, field: FieldPlace) -> Any:
-        """The point spread function, by rays alone where waves would take seconds because the spot is wide."""
+        """Point spread function; geometric for wide spots, for which diffraction would take seconds."""
         bundle = self.source.at(field, self.lens.wavelength_nm)
         spot = float(np.ptp(bundle.points_mm, axis=0).max())
         detail = 1e-6 * bundle.wavelength_nm / float(np.ptp(bundle.edge_slopes.reshape(-1, 2), axis=0).max())
@@ -185,7 +185,7 @@ class ReportPlots:
 
 
 class FilmPlots(ReportPlots):
-    """Those of a lens without rotational symmetry: maps over the film, and what four of its points see."""
+    """Plots of a lens without rotational symmetry: maps over the film, and plots at four film points."""
 
     def __init__(self, source: Bundles, colours: Doubles) -> None:
         self.lens, self.source, self.colours = source.lens, source, colours
@@ -231,13 +231,13 @@ class FilmPlots(ReportPlots):
 def _try(
     figure: matplotlib.figure.Figure, place: Any, compute: Callable[[], Any], plot: Callable[[Any, Axes], None]
 ) -> None:
-    """What this lens cannot have has the reason in its place, and the rest is shown."""
+    """Adds a plot; if its computation raises InputError, writes the reason in its place."""
     axes = figure.add_subplot(place)
     try:
         plot(compute(), axes)
     except InputError as error:
         axes.set_axis_off()
-        # In lines of the place's width: matplotlib's own wrap is by the page. A letter is about half its size wide.
+        # Wrapped to the plot's width, because matplotlib wraps to the page. A letter's width is about half its size.
         width_in = axes.get_position().width * figure.get_size_inches()[0]
         letters = max(int(72 * width_in / (0.55 * matplotlib.rcParams["font.size"])), 12)
         reason = textwrap.fill(str(error), letters)

@@ -1,4 +1,4 @@
-"""A report as one page of HTML, which follows the reader's choice of a light or a dark page and prints on paper."""
+"""Report as one HTML page, which follows the browser's light or dark setting and has a print layout."""
 
 from __future__ import annotations
 
@@ -48,8 +48,8 @@ tbody tr:hover { background: var(--grid); }
 
 
 def page_of(facts: ReportFacts, plots: ReportPlots, theme: str | None) -> bytes:
-    """theme: None follows the browser's setting. Figures are those of the light theme, in force here, whose colours
-    become the page's variables."""
+    """Content of the page. theme: None follows the browser's setting. The light theme must be current: its colours in
+    the figures are replaced by the page's CSS variables."""
     with matplotlib.rc_context({"axes.grid": False}):
         drawing = "\n".join(
             inline_svg(plots.source.lens.draw(**options), f"lens{k or ''}") for k, options in enumerate(plots.drawings)

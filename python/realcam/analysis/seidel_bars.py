@@ -1,4 +1,4 @@
-"""Third-order aberrations surface by surface, as bars."""
+"""Third-order (Seidel) aberrations by surface, with a bar chart."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ NAMES = ("spherical", "coma", "astigmatism", "Petzval", "distortion", "axial col
 @dataclass(frozen=True, repr=False)
 class SeidelBars(ShortText):
     """names: of the 7 aberrations. surfaces: (S,), their indices in `lens.surfaces`, from 0.
-    sums_mm: (S, 7), Seidel's sums S_I to S_V and of colour C_I and C_II.
-    waves: (S, 7), coefficients of the wavefront at the edge of pupil and field: S_I / 8, S_II / 2, S_III / 2,
+    sums_mm: (S, 7), surface contributions to the Seidel sums S_I to S_V and the chromatic sums C_I and C_II.
+    waves: (S, 7), wavefront coefficients at the edge of pupil and field: S_I / 8, S_II / 2, S_III / 2,
       S_IV / 4, S_V / 2, C_I / 2, C_II over the wavelength.
     """
 
@@ -38,7 +38,7 @@ def seidel_bars(
     object_distance_m: float | None = None,
     bundles: Bundles | None = None,
 ) -> SeidelBars:
-    """None: the corner of the film, or 60 degrees where that is beyond; the plane in focus."""
+    """Computes Seidel sums. Defaults: the film's corner, but at most 60 degrees; the plane in focus."""
     source = bundles_of(lens, object_distance_m, bundles)
     field = min(float(field_angles_deg(lens, 1.0, source)[0]), 60.0) if field_deg is None else field_deg
     table = lens.seidel(field, object_distance_m=source.object_distance_m)
@@ -51,15 +51,15 @@ SYMBOLS = ("S_I", "S_II", "S_III", "S_IV", "S_V", "C_I", "C_II")
 
 
 def seidel_table(data: SeidelBars) -> list[tuple[str, ...]]:
-    """Seidel's sums in µm as text: a row of seven for each surface, and at the end their sums."""
+    """Seidel sums in µm as text: a row of seven for each surface, and a last row with their sums."""
     rows = np.concatenate([data.sums_mm, data.sums_mm.sum(axis=0)[None]])
-    # As many digits for all, so that columns can be compared at a glance.
+    # The same number of decimals for all, so that columns can be compared at a glance.
     digits = int(np.clip(4 - math.floor(math.log10(max(1e3 * float(np.abs(rows).max()), 1e-3))), 0, 4))
     return [tuple(f"{round(1e3 * value, digits) + 0.0:.{digits}f}" for value in row) for row in rows]
 
 
 def plot_seidel_bars(data: SeidelBars, axes: Axes) -> None:
-    """Groups of bars by surface, numbered from 1 as in lens tables and files, and their sum."""
+    """Plots bars grouped by surface, numbered from 1 as in lens tables and files, and their sum."""
     width = 0.8 / len(data.names)
     places = np.arange(len(data.surfaces) + 1)
     values = np.concatenate([data.waves, data.waves.sum(axis=0)[None]])

@@ -1,4 +1,4 @@
-"""Longitudinal spherical aberration by colour: where rays from the axis come back to it."""
+"""Longitudinal spherical aberration by wavelength."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ from .fields import Doubles, wavelengths_of
 
 @dataclass(frozen=True, repr=False)
 class LongitudinalAberration(ShortText):
-    """wavelengths_nm: (W,); pupil: (P,), heights in the stop as shares of its radius, from the axis.
-    focus_mm: (W, P), where the ray crosses the axis, behind the film; the first of each colour is the paraxial focus.
-      nan where no ray passes.
+    """wavelengths_nm: (W,); pupil: (P,), heights in the stop in units of its radius, from the axis.
+    focus_mm: (W, P), position of the ray's intersection with the axis, behind the film; the first per wavelength is the
+      paraxial focus. nan for rays that do not pass.
     """
 
     wavelengths_nm: Doubles
@@ -34,10 +34,10 @@ def longitudinal_aberration(
     samples: int = 33,
     object_distance_m: float | None = None,
 ) -> LongitudinalAberration:
-    """By real rays of the axis point. None: F line, design wavelength, C line; the plane in focus."""
+    """Computed with real rays of the axial point. Defaults: F line, design wavelength, C line; the plane in focus."""
     colours = wavelengths_of(lens, wavelengths_nm)
     pupil = np.linspace(0, 1, samples)
-    # Rays so close to the axis are paraxial within 1e-6 of their aberration; on the axis itself there is no crossing.
+    # At 1e-3 of the radius rays are paraxial within 1e-6 of the aberration; the axial ray itself has no intersection.
     heights = np.maximum(pupil, 1e-3)
     places = np.column_stack([np.zeros(samples), heights])
     focus = np.empty((len(colours), samples))

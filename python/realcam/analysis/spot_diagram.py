@@ -1,4 +1,4 @@
-"""Spot diagrams: where the rays of an object point land, by field, colour and focus."""
+"""Spot diagrams by field, wavelength and focus."""
 
 from __future__ import annotations
 
@@ -18,16 +18,16 @@ from .fields import Bundles, Doubles, bundles_of, film_points_of, light_of, numb
 
 @dataclass(frozen=True, repr=False)
 class SpotDiagram(ShortText):
-    """Spots of F fields, W colours and D planes.
+    """Spots of F fields, W wavelengths and D planes.
 
-    defocus_mm: (D,), of the planes, behind the film.
-    points_mm: (D, F, W, N, 2), x and y from where the chief ray of the design wavelength meets that plane; nan where no
-      ray passes.
-    centroid_mm: (D, F, 2), of all colours.
-    rms_radius_mm: (D, F), of all colours, about their centroid.
-    airy_radii_mm: (F, 2), along x and y: 1.22 times the design wavelength times the f-number that the light of the
-      field has in that direction.
-    film_mm: (F, 2), the fields where they are film points; then fields_deg is nan.
+    defocus_mm: (D,), distances of the planes behind the film.
+    points_mm: (D, F, W, N, 2), x and y relative to the chief ray at the design wavelength on that plane; nan for rays
+      that do not pass.
+    centroid_mm: (D, F, 2), of all wavelengths.
+    rms_radius_mm: (D, F), of all wavelengths, about their centroid.
+    airy_radii_mm: (F, 2), along x and y: 1.22 times the design wavelength times the field's working f-number in that
+      direction.
+    film_mm: (F, 2), fields specified as film points; then fields_deg is nan.
     """
 
     fields_deg: Doubles
@@ -51,11 +51,11 @@ def spot_diagram(
     object_distance_m: float | None = None,
     bundles: Bundles | None = None,
 ) -> SpotDiagram:
-    """Spots of rays in `rings` rings over the stop, on the film and on planes beside it.
+    """Spots of a hexapolar pattern with `rings` rings, on the film and on defocused planes.
 
-    film_mm: (F, 2), film points at which the chief rays end, in place of angles. defocus_mm: (D,), of the planes,
-    positive behind the film. None: the axis, 0.7 and all of the image height; F line,
-    design wavelength, C line. Raises InputError where no light passes.
+    film_mm: (F, 2), film points of the chief rays, in place of angles. defocus_mm: (D,), planes, positive behind the
+    film. Defaults: 0, 0.7 and 1 times the largest image height; F line, design wavelength, C line. Raises InputError if
+    no light passes.
     """
     angles: Doubles
     fields: list[FieldPlace]
@@ -91,7 +91,7 @@ def spot_diagram(
 
 
 def _chief_line(source: Bundles, field: FieldPlace) -> tuple[Doubles, Doubles]:
-    """Point on the film and dx/dz, dy/dz of the chief ray of the design wavelength, even where the lens blocks it."""
+    """Film point and slopes dx/dz, dy/dz of the chief ray at the design wavelength, even if it is blocked."""
     lens = source.lens
     step = 1e-3 * max(abs(lens.film_distance_mm), 1.0)
     here = np.array(source.chief(field, lens.wavelength_nm).chief_ray_mm)
@@ -107,8 +107,8 @@ def _chief_line(source: Bundles, field: FieldPlace) -> tuple[Doubles, Doubles]:
 
 
 def plot_spot_diagram(spots: SpotDiagram, axes: Axes, field: int = 0, plane: int = 0, half_mm: float = 0.0) -> None:
-    """Draws one spot: all colours, and the Airy disc's first dark ring. half_mm: half the side of the square shown;
-    0: as large as the spot."""
+    """Plots one spot: all wavelengths, and the first dark ring of the Airy disc. half_mm: half the side of the plotted
+    square; 0 fits the spot."""
     marks = ("o", "s", "^")
     for w, (colour, label) in enumerate(style.coloured(spots.wavelengths_nm)):
         at = 1e3 * spots.points_mm[plane, field, w]
@@ -142,11 +142,11 @@ def plot_spot_diagram(spots: SpotDiagram, axes: Axes, field: int = 0, plane: int
     place = None if spots.film_mm is None else spots.film_mm[field]
     radius_um = 1e3 * spots.rms_radius_mm[plane, field]
     title = f"{style.field_title(spots.fields_deg[field], place)}{beside}, RMS {radius_um:.3g} µm"
-    axes.set_title(title.replace("-", "−"))  # the minus sign of the axes' numbers
+    axes.set_title(title.replace("-", "−"))  # the same minus sign as on the axes
 
 
 def half_side_mm(spots: SpotDiagram, field: int | None = None) -> float:
-    """Half the side of a square about the centroid that holds the spots in all planes: of one field, or of all."""
+    """Half the side of a square about the centroid that contains the spots on all planes, of one field or of all."""
     chosen = slice(None) if field is None else slice(field, field + 1)
     away = spots.points_mm[:, chosen] - spots.centroid_mm[:, chosen, None, None]
     return 1.08 * max(float(np.nanmax(np.abs(away))), 1.3 * float(spots.airy_radii_mm[chosen].max()))

@@ -1,4 +1,4 @@
-"""How plots look: themes, and colours of wavelengths and fields."""
+"""Plot style: themes, and colours of wavelengths and fields."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ from ..figure_files import ShownFigure
 from .fields import texts_of
 
 SIZES_IN = {"small": (4.2, 3.0), "large": (8.0, 5.6)}
-# Colours that stand out from a white and from a dark page alike (a contrast of 3 and more to either).
+# Colours with a contrast of at least 3 to both the white and the dark page.
 BLUE, GREEN, RED = "#4a78d6", "#2f9a58", "#d9493c"
 FIELD_COLOURS = ("#4a78d6", "#c7791a", "#2f9a58", "#d9493c", "#9467bd", "#15939f", "#b0608f", "#80803a")
 GREY = "#808080"
 
 
 def wavelength_colours(wavelengths_nm: NDArray[np.float64]) -> list[str]:
-    """Colours from blue for the shortest to red for the longest, with green between them and for one alone."""
+    """Colours from blue (shortest) over green to red (longest); green for a single wavelength."""
     count = len(wavelengths_nm)
     order = np.argsort(np.argsort(wavelengths_nm))
     if count == 1:
@@ -43,7 +43,7 @@ def field_colour(number: int) -> str:
 
 @contextmanager
 def themed(theme: str = "light", font_size: float = 8.0) -> Iterator[None]:
-    """Figures that are made within have the theme's page, text and lines. Raises InputError for an unknown theme."""
+    """Context in which new figures have the theme's colours and lines. Raises InputError for an unknown theme."""
     colours = theme_named(theme)
     page, text = colours.page, colours.text
     settings: Any = {
@@ -79,7 +79,7 @@ def themed(theme: str = "light", font_size: float = 8.0) -> Iterator[None]:
 
 
 def text_colour() -> str:
-    """The text colour of the theme in force, for lines without a colour of their own."""
+    """Text colour of the current theme, for lines without a colour of their own."""
     return str(matplotlib.rcParams["text.color"])
 
 
@@ -92,19 +92,19 @@ def new_figure(width_in: float, height_in: float) -> matplotlib.figure.Figure:
 
 
 def coloured(wavelengths_nm: NDArray[np.float64]) -> list[tuple[str, str]]:
-    """For each wavelength its colour and what the legend calls it."""
+    """(colour, legend text) of each wavelength."""
     return list(zip(wavelength_colours(wavelengths_nm), texts_of(wavelengths_nm, "nm"), strict=True))
 
 
 def field_upwards(axes: Axes, fields_deg: NDArray[np.float64]) -> None:
-    """The y axis is the field, from the axis up, beside a line through 0."""
+    """Formats the y axis as field angle from 0 upwards, and draws the line x = 0."""
     zero_lines(axes, y=False)
     axes.set_ylim(0, max(float(fields_deg.max()), 1e-9))
     axes.set_ylabel("field / °")
 
 
 def field_title(field_deg: float, film_mm: Sequence[float] | NDArray[np.float64] | None) -> str:
-    """A field in a title: its angle, or its film point."""
+    """Text of a field for titles: its angle, or its film point."""
     return f"{field_deg:.3g}°" if film_mm is None else f"({film_mm[0]:.3g}, {film_mm[1]:.3g}) mm"
 
 
@@ -117,7 +117,7 @@ def zero_lines(axes: Axes, x: bool = True, y: bool = True) -> None:
 
 
 def legend_beside(axes: Axes, **options: Any) -> None:
-    """Where it covers no line."""
+    """Places the legend outside the axes, where it covers no curve."""
     axes.legend(**{"loc": "upper left", "bbox_to_anchor": (1.01, 1.0), **options})
 
 

@@ -1,4 +1,4 @@
-"""The wavefront over the pupil as a map."""
+"""Wavefront maps over the pupil."""
 
 from __future__ import annotations
 
@@ -15,8 +15,9 @@ from .fields import Doubles
 
 @dataclass(frozen=True, repr=False)
 class WavefrontMap(ShortText):
-    """map_waves: (N, N), rows from the lowest y of the stop, columns from the lowest x, over the square about the stop;
-    nan where no ray passes. Positive where the wavefront is ahead of the sphere about the chief ray's film point.
+    """map_waves: (N, N), rows from the lowest y of the stop, columns from the lowest x, over the stop's bounding
+    square; nan where no ray passes. Positive where the wavefront is ahead of the reference sphere about the chief ray's
+    film point.
     """
 
     field_deg: float
@@ -38,7 +39,7 @@ def wavefront_map(
     object_distance_m: float | None = None,
     film_mm: tuple[float, float] | None = None,
 ) -> WavefrontMap:
-    """remove, film_mm: as for Lens.wavefront. None of the others: the design wavelength; the plane in focus."""
+    """Map of Lens.wavefront. remove, film_mm: see there. Defaults: the design wavelength; the plane in focus."""
     front = lens.wavefront(
         field_deg,
         wavelength_nm=wavelength_nm,

@@ -1,4 +1,4 @@
-"""Zernike polynomials, orthonormal on the unit circle, in Noll's or the fringe order; and fits of them."""
+"""Zernike polynomials, orthonormal on the unit disc, in Noll or fringe order, and fits to wavefronts."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ _ORDINALS = ("", "secondary ", "tertiary ", "quaternary ")
 
 
 def name_of(n: int, m: int) -> str:
-    """What a polynomial is called; "n, m" where it has no name."""
+    """Name of a polynomial; "n, m" if it has no common one."""
     if (n, m) in _FIRST:
         return _FIRST[n, m]
-    # Those of the first and second power, tilt and defocus, come before coma and spherical aberration.
+    # Tilt (|m| = 1) precedes primary coma, piston and defocus (m = 0) precede primary spherical aberration.
     ordinal = (n - abs(m)) // 2 - max(2 - abs(m), 0)
     if abs(m) >= len(_FAMILIES) or ordinal >= len(_ORDINALS):
         return f"{n}, {m:+d}"
@@ -38,15 +38,15 @@ def name_of(n: int, m: int) -> str:
 
 
 def noll(j: int) -> tuple[int, int]:
-    """(n, m) of Noll's j from 1 on; m < 0: sine (R. J. Noll, J. Opt. Soc. Am. 66, 207, 1976)."""
+    """(n, m) of the Noll index j >= 1; m < 0: sine (R. J. Noll, J. Opt. Soc. Am. 66, 207, 1976)."""
     n = (math.isqrt(8 * j - 7) - 1) // 2
-    place = j - n * (n + 1) // 2 - 1  # among the n + 1 of this n
+    place = j - n * (n + 1) // 2 - 1  # position among the n + 1 terms of this n
     m = 1 + 2 * (place // 2) if n % 2 else 2 * ((place + 1) // 2)
     return n, m if j % 2 == 0 else -m
 
 
 def fringe(j: int) -> tuple[int, int]:
-    """(n, m) of the fringe order's j from 1 on: by (n + |m|) / 2, then from large m to small, cosine before sine."""
+    """(n, m) of the fringe index j >= 1: ordered by (n + |m|) / 2, then by falling |m|, cosine before sine."""
     group = math.isqrt(j - 1)
     place = j - 1 - group**2
     m = group - place // 2
@@ -54,7 +54,7 @@ def fringe(j: int) -> tuple[int, int]:
 
 
 def term(n: int, m: int, x: Doubles, y: Doubles) -> Doubles:
-    """The polynomial at places of the unit circle, with a mean square of 1 over it. Angles are from x towards y."""
+    """The polynomial at points of the unit disc, with a mean square of 1 over it. Angles are from x towards y."""
     radius2 = x * x + y * y
     k = (n - abs(m)) // 2
     radial = np.zeros_like(x)
@@ -69,13 +69,13 @@ def term(n: int, m: int, x: Doubles, y: Doubles) -> Doubles:
 
 @dataclass(frozen=True, repr=False)
 class ZernikeFit(ShortText):
-    """order: "noll" or "fringe"; indices: (K,), its j; nm: K pairs (n, m), m < 0 for sine; names: K words.
-    coefficients_waves: (K,), of polynomials that are orthonormal on the unit circle: over a pupil that fills the circle
-      the square of each is its share of the mean square. Fringe coefficients of programs whose polynomials are 1 at the
-      edge are larger by the root of (n + 1) (m = 0) or 2 (n + 1).
-    residual_waves: root mean square of what is left.
-    pupil: (N, 2); residuals_waves: (N,), nan where no ray passes.
-    field_deg: of the lens's wavefront; nan of a fit to numbers.
+    """order: "noll" or "fringe"; indices: (K,), j in that order; nm: K pairs (n, m), m < 0 for sine; names: K names.
+    coefficients_waves: (K,), of polynomials that are orthonormal on the unit disc: over a full circular pupil the
+      square of each is its contribution to the mean square. Fringe coefficients of programs whose polynomials are 1 at
+      the edge are larger by the root of (n + 1) (m = 0) or 2 (n + 1).
+    residual_waves: RMS of the residuals.
+    pupil: (N, 2); residuals_waves: (N,), nan for rays that do not pass.
+    field_deg: of the lens's wavefront; nan for a fit to given values.
     """
 
     order: str
@@ -89,7 +89,7 @@ class ZernikeFit(ShortText):
     field_deg: float = math.nan
 
     def at(self, pupil: ArrayLike) -> Doubles:
-        """(N,): the sum at places (N, 2)."""
+        """(N,): the fitted sum at points (N, 2)."""
         places = np.asarray(pupil, dtype=float)
         basis = [term(n, m, places[:, 0], places[:, 1]) for n, m in self.nm]
         value: Doubles = np.column_stack(basis) @ self.coefficients_waves
@@ -99,10 +99,10 @@ class ZernikeFit(ShortText):
 def fit_zernike(
     pupil: ArrayLike, opd_waves: ArrayLike, *, weights: ArrayLike | None = None, order: str = "noll", terms: int = 37
 ) -> ZernikeFit:
-    """Least squares over the places that have a value: over the real pupil, however much of the circle that is.
+    """Least-squares fit over the points with finite values, that is, over the real pupil, even if it is vignetted.
 
-    pupil: (N, 2), x and y; opd_waves: (N,), nan where there is none; weights: (N,), shares of the area.
-    Raises InputError for an unknown order, and where there are fewer places than terms.
+    pupil: (N, 2), x and y; opd_waves: (N,), nan if undefined; weights: (N,), fractions of the area.
+    Raises InputError for an unknown order, if there are fewer points than terms, or if terms are linearly dependent.
     """
     if order not in ORDERS:
         raise InputError(f'unknown order "{order}"; noll or fringe is wanted')
@@ -139,15 +139,14 @@ def zernike_fit(
     samples: int = 48,
     object_distance_m: float | None = None,
 ) -> ZernikeFit:
-    """The fit of a lens's wavefront over its real stop, whose radius is 1."""
+    """Fit of a lens's wavefront over its real stop, normalised to radius 1."""
     front = lens.wavefront(field_deg, wavelength_nm=wavelength_nm, object_distance_m=object_distance_m, samples=samples)
     fit = fit_zernike(front.pupil, front.opd_waves, weights=front.weights, order=order, terms=terms)
     return replace(fit, field_deg=field_deg)
 
 
 def plot_zernike_fit(fit: ZernikeFit, axes: Axes) -> None:
-    """Bars of the coefficients beside the polynomials' names, without piston; the largest, as many as there is room
-    for."""
+    """Plots named bars of the coefficients without piston; only the largest ones if space is short."""
     height_pt = 72 * axes.get_window_extent().height / axes.figure.dpi
     room = max(int(height_pt / (1.15 * style.tick_size_pt())), 1)
     size = np.abs(fit.coefficients_waves[1:])

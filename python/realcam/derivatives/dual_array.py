@@ -1,4 +1,4 @@
-"""Arrays of numbers with their derivatives: forward-mode differentiation of formulas of numpy."""
+"""Arrays of dual numbers: forward-mode differentiation of numpy expressions."""
 
 from __future__ import annotations
 
@@ -13,12 +13,13 @@ Doubles = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class DualArray:
-    """value: of any shape; by: the same shape and one axis more, of V variables. Shapes broadcast as numpy's do."""
+    """An array with derivatives. value: of any shape; by: of the same shape with one more axis, for V variables. Shapes
+    broadcast as in numpy."""
 
     value: Doubles
     by: Doubles
 
-    # What numpy would do with `array * dual` is not meant.
+    # Makes `array * dual` call __rmul__ instead of numpy's elementwise product with an object.
     __array_ufunc__ = None
 
     @staticmethod
@@ -34,11 +35,11 @@ class DualArray:
         return other if isinstance(other, DualArray) else DualArray.constant(other, self.count)
 
     def mapped(self, value: Doubles, slope: Doubles) -> DualArray:
-        """f of this, where f has this slope."""
+        """Applies a function, given its value and its slope at this value."""
         return DualArray(np.asarray(value), np.asarray(slope)[..., None] * self.by)
 
     def __getitem__(self, index: Any) -> DualArray:
-        """Of the axes of the value; an Ellipsis in it is not meant."""
+        """Indexes the axes of `value`. An Ellipsis is not supported."""
         return DualArray(np.asarray(self.value[index]), self.by[index])
 
     def __add__(self, other: Operand) -> DualArray:
@@ -78,7 +79,7 @@ class DualArray:
             return self.mapped(root, np.where(root > 0, 0.5 / root, 0.0))
 
     def sum(self, weights: Doubles) -> DualArray:
-        """Of the first axis, with weights (N,)."""
+        """Weighted sum over the first axis; weights: (N,)."""
         return DualArray(np.tensordot(weights, self.value, 1), np.tensordot(weights, self.by, 1))
 
 

@@ -1,4 +1,4 @@
-"""How far the exit pupil is from the film, for lenses of any kind: by rays close to a chief ray, with derivatives."""
+"""Exit-pupil distance of lenses without rotational symmetry, by parabasal rays, with derivatives."""
 
 from __future__ import annotations
 
@@ -11,17 +11,18 @@ from .._core import Lens
 from ..variable import Variable
 from .dual_array import Doubles, DualArray
 
-# Four neighbours to either side of a ray, for derivatives with an error of the fourth order of the step.
+# Five-point stencil of the first derivative, whose error is of fourth order in the step.
 OFFSETS = np.array([-2.0, -1.0, 1.0, 2.0])
 WEIGHTS = np.array([1.0, -8.0, 8.0, -1.0]) / 12
 
 
 class ChiefRayNeighbours:
-    """What rays close to a chief ray do, to first order, with derivatives by the variables of the lens.
+    """Parabasal rays about a chief ray: first-order transfer from the start to the stop and the film, with derivatives
+    by the variables of the lens.
 
-    A ray is four numbers at its start: the place along two axes across the chief ray, mm, and the direction along
-    them. start: (6,), origin and unit direction of the chief ray in front of the lens. across: (2, 3), those axes.
-    start_by: (4, V): how the chief ray's own four numbers follow the variables.
+    A ray has four coordinates at its start: position, mm, and direction along two axes perpendicular to the chief ray.
+    start: (6,), origin and unit direction of the chief ray in front of the lens. across: (2, 3), the two axes.
+    start_by: (4, V), derivatives of the chief ray's own coordinates by the variables.
     """
 
     def __init__(
@@ -39,7 +40,7 @@ class ChiefRayNeighbours:
         self._basis = np.zeros((6, 4))
         self._basis[:3, :2] = self._basis[3:, 2:] = across.T
         to_stop: dict[str, Any] = {"frame": "axis", "surface_count": lens.stop_index + 1, "rims": False}
-        # A thousandth of the stop's radius away, there the fifth derivative is far below rounding.
+        # Steps of a thousandth of the stop's radius, where the stencil's error is far below rounding.
         on_stop = (self._traced(start[None], **to_stop)[1][0] @ self._basis)[:2]
         reach = 1e-3 * lens.surfaces[lens.stop_index].clear_semi_diameter_mm
         self._steps = reach / np.linalg.norm(on_stop, axis=0)
@@ -48,31 +49,31 @@ class ChiefRayNeighbours:
         self.place, self.direction = film[:3], film[3:]
 
     def _traced(self, rays: Doubles, **options: Any) -> tuple[Doubles, Doubles]:
-        """Their derivatives by the variables, and by the rays."""
+        """Derivatives of rays by the variables, and by the rays' starts."""
         o, d = rays[:, :3], rays[:, 3:]
         return self._lens._ray_derivatives(
             o, d, self._variables, wavelength_nm=self._wavelength_nm, start="scene", **options
         )[2:]
 
     def _derivatives(self, rows: int, **options: Any) -> DualArray:
-        """(rows, 4): of the ray's numbers behind the lens, or on the stop, by the four at its start."""
+        """(rows, 4): derivatives of a ray's coordinates on the film, or on the stop, by its four at the start."""
         offsets = np.einsum("k,j,rj->jkr", OFFSETS, self._steps, self._basis).reshape(-1, 6)
         by, by_ray = self._traced(np.vstack([self._start[None], self._start + offsets]), **options)
         first = by_ray[:, :rows] @ self._basis
         weights = WEIGHTS / self._steps[:, None]
         of_neighbours = (4, len(OFFSETS), rows)
-        # The second derivatives: by start and variable, and by start and start.
+        # Second derivatives: by start and variable, and by start twice.
         mixed = np.einsum("jk,jkrv->rjv", weights, by[1:, :rows].reshape(*of_neighbours, -1))
         bend = np.einsum("ik,ikrj->rji", weights, first[1:].reshape(*of_neighbours, 4))
         return DualArray(first[0], mixed + bend @ self._start_by)
 
 
 def exit_pupil_distance(rays: ChiefRayNeighbours, origin: DualArray, direction: DualArray) -> DualArray:
-    """From the exit pupil on the chief ray to the film, mm along the ray, as the C++ function of that name.
+    """Distance from the exit pupil to the film along the chief ray, mm. Same as the C++ function of that name.
 
-    origin, direction: (3,), of the chief ray behind the lens, in the film's frame; the direction is optical. The
-    pupil is the image of the stop: with places q and optical directions p across the chief ray at the film, a ray meets
-    the stop in A q + B p, and the distance is the mean of the matrix -n A^-1 B over both meridians.
+    origin, direction: (3,), of the chief ray behind the lens, in the film's frame; directions are optical (times the
+    index). The pupil is the image of the stop: a ray with transverse position q and optical direction p at the film
+    meets the stop at A q + B p, and the distance is half the trace of -n A^-1 B, the mean of both meridians.
     """
     film, index = at_film(rays, origin, direction)
     by_film = _solved_right(rays.stop, film)
@@ -80,8 +81,8 @@ def exit_pupil_distance(rays: ChiefRayNeighbours, origin: DualArray, direction: 
 
 
 def at_film(rays: ChiefRayNeighbours, origin: DualArray, direction: DualArray) -> tuple[DualArray, DualArray]:
-    """(4, 4): places and optical directions across the chief ray at the film, by the four numbers of a ray at its
-    start, and the index behind the lens."""
+    """(4, 4): derivatives of transverse positions and optical directions at the film by the four coordinates of a ray
+    at its start; and the index behind the lens."""
     square = direction * direction
     index = (square[0] + square[1] + square[2]).sqrt()
     z = [direction[i] / index for i in range(3)]

@@ -1,7 +1,7 @@
-"""The rays of one object point that fill the real stop, with derivatives: the stop stays full while the lens changes.
+"""Ray bundle of one object point that fills the real stop, with derivatives at constant stop coordinates.
 
-A ray is aimed at its place on the stop. Where a number of the lens changes, so does the point that the ray has to cross
-in front of the lens: by the implicit function theorem, from the derivatives at the stop.
+Each ray is aimed at a fixed point of the stop. When a variable of the lens changes, the ray's start in front of the
+lens must follow; its derivative results from the derivatives at the stop by the implicit function theorem.
 """
 
 from __future__ import annotations
@@ -23,12 +23,12 @@ from .first_order import FirstOrderDuals, first_order_duals
 
 @dataclass(frozen=True)
 class FieldLight:
-    """Rays behind the lens, mm. The last of them is the chief ray.
+    """Rays behind the lens, mm. The last ray is the chief ray.
 
-    weights: (N - 1,), shares of the stop's area, 0 where a ray does not pass. pupil: (N, 2), places on the stop.
-    origins, directions: (N, 3), optical; paths: (N,). Of a field that is named by its angle, in a lens of revolution,
-    z counts from the last vertex, and first_order is known. Of others z counts from the film, in its frame, and
-    exit_pupil has the distance from the exit pupil to it.
+    weights: (N - 1,), fractions of the stop's area, 0 for rays that do not pass. pupil: (N, 2), points on the stop.
+    origins, directions: (N, 3), directions times the index; paths: (N,), optical. For field angles of rotationally
+    symmetric lenses, z is measured from the last vertex, and first_order is set. Otherwise z is measured from the film,
+    in its frame, and exit_pupil returns the distance from the exit pupil to the film.
     """
 
     field_deg: float
@@ -48,7 +48,7 @@ class FieldLight:
         return DualArray.constant(0.0, self.origins.count)
 
     def on_film(self) -> DualArray:
-        """(N, 2): where the rays meet the film, or its tangent plane in the middle."""
+        """(N, 2): intersections of the rays with the film, or with its tangent plane at the centre."""
         o, p = self.origins, self.directions
         way = (self.film_z - o[:, 2]) / p[:, 2]
         x, y = o[:, 0] + way * p[:, 0], o[:, 1] + way * p[:, 1]
@@ -66,7 +66,10 @@ def field_light(
     samples: int = 6,
     pattern: str = "hexapolar",
 ) -> FieldLight:
-    """Raises InputError where no light passes, or the middle of the stop is dark."""
+    """Traces the bundle of a field point with derivatives by the variables.
+
+    Raises InputError if no light passes, or if the chief ray is blocked.
+    """
     count = len(variables)
     named: dict[str, Any] = {
         "object_distance_m": object_distance_m,
@@ -105,7 +108,7 @@ def field_light(
     )
     at_stop_by = at_stop_by_ray[:, :2] @ start.by
     at_stop_by[..., 2:] += at_stop[:, :2]
-    # Of a ray that does not pass there is nothing to solve.
+    # Rays that do not pass have no derivatives, and keep nan.
     entry_by = np.full((len(pupil), 2, count), np.nan)
     good = np.isfinite(at_stop_by).all(axis=(1, 2))
     entry_by[good] = -np.linalg.solve(at_stop_by[good][..., :2], at_stop_by[good][..., 2:])
@@ -117,7 +120,7 @@ def field_light(
     directions = DualArray(numbers[:, 3:6], total[:, 3:6])
 
     def exit_pupil() -> DualArray:
-        chief_by = start.by[-1][:, :2]  # of its six numbers by the two that aim it
+        chief_by = start.by[-1][:, :2]  # its six coordinates by the two that aim it
         across = chief_by[:3].T
         moves = np.vstack([entry_by[-1], (across @ chief_by[3:]) @ entry_by[-1]])
         rays = ChiefRayNeighbours(lens, variables, wavelength_nm, value[-1], across, moves)
@@ -137,8 +140,8 @@ def field_light(
 
 
 def _start_from_a_fixed_point(aimed: AimedRays, is_finite: bool, count: int) -> tuple[DualArray, DualArray]:
-    """The same for an object point that stays where it is: (N, 6), whose first two derivatives are by the place along
-    two axes across the ray, mm, and (N,) paths."""
+    """Starts of rays from a fixed object point: (N, 6) origins and unit directions, and (N,) paths. The first two
+    derivatives are by the position along two axes perpendicular to the ray, mm."""
     o, d = aimed.origins_mm, aimed.directions
     good = aimed.status == 0
     x = np.cross(np.where(np.abs(d[:, 1:2]) < 0.9, [[0.0, 1.0, 0.0]], [[1.0, 0.0, 0.0]]), d)
@@ -148,7 +151,7 @@ def _start_from_a_fixed_point(aimed: AimedRays, is_finite: bool, count: int) -> 
     by[:, :3, 0], by[:, :3, 1] = x, y
     path = np.zeros(len(o))
     if is_finite:
-        # Where all rays come from: the point that is nearest to them.
+        # The object point: the point nearest to all rays.
         off = np.eye(3) - d[good, :, None] * d[good, None, :]
         point = np.linalg.solve(off.sum(0), np.einsum("nij,nj->i", off, o[good]))
         distance = np.linalg.norm(o - point, axis=1)
@@ -165,9 +168,9 @@ def _start(
     object_distance_m: float | None,
     count: int,
 ) -> tuple[DualArray, DualArray]:
-    """(N, 6) origins and unit directions in the plane of the entrance pupil's middle, as Lens.aim has them, and (N,)
-    their paths from the object less that of its middle. The first two derivatives are by the two coordinates in that
-    plane, mm."""
+    """Starts of rays of a field angle: (N, 6) origins and unit directions in the plane through the entrance pupil's
+    centre, as from Lens.aim, and (N,) paths from the object relative to the central ray's. The first two derivatives
+    are by the two coordinates in that plane, mm."""
     sine, cosine = math.sin(math.radians(field_deg)), math.cos(math.radians(field_deg))
 
     def widened(number: DualArray) -> DualArray:
@@ -189,7 +192,7 @@ def _start(
     ex, ey = DualArray(x, lanes[0]), DualArray(along, lanes[1])
     square = ex * ex + ey * ey
     root = (1.0 + square * inverse * inverse).sqrt()
-    # towards + inverse offset, of the length `root` because the offset is across.
+    # Direction (towards + inverse * offset) / root; `root` is its length because the offset is perpendicular.
     parts = [ex, ey * cosine, pupil - ey * sine]
     parts += [(ex * inverse) / root, (sine + ey * inverse * cosine) / root, (cosine - ey * inverse * sine) / root]
     start = DualArray(np.stack([p.value for p in parts], 1), np.stack([p.by for p in parts], 1))

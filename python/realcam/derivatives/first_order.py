@@ -1,4 +1,4 @@
-"""First-order data of centred lenses with their derivatives: paraxial rays in dual numbers."""
+"""First-order data of rotationally symmetric lenses with derivatives: paraxial rays in dual numbers."""
 
 from __future__ import annotations
 
@@ -14,8 +14,7 @@ from .dual_array import DualArray
 
 @dataclass(frozen=True)
 class FirstOrderDuals:
-    """As FirstOrder, each a number with its derivatives; paraxial_height_mm: on the film, for each tangent of the
-    chief ray's angle before the lens."""
+    """FirstOrder in dual numbers; paraxial_height_mm: height on the film per tangent of the field angle."""
 
     effective_focal_length_mm: DualArray
     back_focal_distance_mm: DualArray
@@ -34,7 +33,7 @@ def first_order_duals(lens: Lens, variables: Sequence[Variable], wavelength_nm: 
         raise InputError(
             "derivatives of first order need a centred lens of revolution; those of spots and wavefronts need none"
         )
-    lens.first_order(wavelength_nm)  # refuses what has none
+    lens.first_order(wavelength_nm)  # raises if the lens has no first-order data
     count = len(variables)
     surfaces = lens.surfaces
 
@@ -83,7 +82,7 @@ def first_order_duals(lens: Lens, variables: Sequence[Variable], wavelength_nm: 
     diameter = 2 * radius / level_at_stop
     chief_y, chief_u = traced(0, 1, stop, end)
     film = dual(lens.film_distance_mm, "film_distance", -1)
-    # The ray through the middle of the entrance pupil with the slope 1 there.
+    # The ray through the centre of the entrance pupil with the slope 1.
     at_end_y = -pupil * y + traced(0, 1, 0, end)[0]
     at_end_u = -pupil * u + inclined
     last_vertex = DualArray.constant(0.0, count)

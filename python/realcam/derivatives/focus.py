@@ -1,4 +1,4 @@
-"""How the film follows a lens that changes and is focused again."""
+"""Derivatives of the best-focus film distance."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from .field_light import field_light
 
 
 def film_distance_by(lens: Lens, variables: Sequence[Variable]) -> Doubles:
-    """(V,): derivatives of the film's distance of a lens that moves as a whole to focus, and is in focus.
+    """(V,): derivatives of the film distance of a focused lens that focuses by moving as a whole.
 
-    The film stands where the spot on the axis is smallest, z = -sum(x m) / sum(m^2) for rays x + m z. With a near
-    object z depends on the film too, from which the object's distance counts.
+    The film is at the smallest axial spot, z = -sum(x m) / sum(m^2) for rays x + m z. For a near object z depends on
+    the film, too, because the object distance is measured from it.
     """
     all_variables = [*variables, Variable.film_distance()]
     light = field_light(lens, all_variables, 0.0, lens.wavelength_nm, pattern="rings")

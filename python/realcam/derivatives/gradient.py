@@ -1,4 +1,4 @@
-"""Derivatives of what a lens does by the numbers that it is made of: Lens.gradient."""
+"""Derivatives of imaging quantities by the variables of a lens: Lens.gradient."""
 
 from __future__ import annotations
 
@@ -53,10 +53,10 @@ NEEDS_REVOLUTION = (
 
 @dataclass(frozen=True, repr=False)
 class Gradient(ShortText):
-    """A number and its derivatives.
+    """A quantity and its derivatives.
 
-    value: in the unit that `quantity` ends with. variables: V of them. by: (V,), for each unit of its variable (1/mm
-    for curvatures: times -1/radius^2 by the radius).
+    value: in the unit at the end of `quantity`. variables: V of them. by: (V,), per unit of the variable (1/mm for
+    curvatures; times -1/radius^2 for derivatives by the radius).
     """
 
     quantity: str
@@ -78,27 +78,28 @@ def gradient(
     remove: str | None = None,
     samples: int = 6,
 ) -> Gradient:
-    """The exact derivatives of a number by variables of the lens, by rays in dual numbers.
+    """Exact derivatives of a quantity by variables of the lens, by rays in dual numbers.
 
     quantity: "spot_mm" (RMS radius about the centroid), "wavefront_waves" (RMS), "mtf_tangential" and "mtf_sagittal"
       (of rays alone, at frequency_per_mm), "chief_ray_height_mm", "chief_ray_angle_deg" (to the film's normal),
       "distortion_percent" (against the paraxial height on the film), "length_mm" (front vertex to film), and of
       first_order(): effective_focal_length_mm, back_focal_distance_mm, front_focal_distance_mm, f_number,
       entrance_pupil_position_mm.
-    film_mm: names the field by the film point of its chief ray, as in Lens.spot. Tangential is then away from the
-      film's middle, and the object point stays where it is. So it does in lenses that are not of revolution. Those have
-      only spot_mm, wavefront_waves, the MTF, chief_ray_height_mm (its y on the film), length_mm, f_number and
+    film_mm: selects the field by the film point of its chief ray, as in Lens.spot. Tangential is then the direction
+      away from the film's centre, and the object point is fixed, as always in lenses without rotational symmetry. Those
+      only have spot_mm, wavefront_waves, the MTF, chief_ray_height_mm (its y on the film), length_mm, f_number and
       effective_focal_length_mm (means of both meridians).
     remove: None, "tilt" or "focus", of the wavefront. samples: hexapolar rings of rays.
-    The film stays at its distance from the last vertex, the stop keeps its size, and rays go on to fill it. What a rim
-    cuts off counts as if it stayed the same rays. Raises InputError for what the lens or its variables have not.
+    The film keeps its distance from the last vertex, and the stop its size; rays remain at their stop coordinates. The
+    set of vignetted rays is taken as constant. Raises InputError for quantities and variables that the lens does not
+    have.
     """
     if quantity not in QUANTITIES:
         raise InputError(f'unknown quantity "{quantity}"; one of {", ".join(QUANTITIES)} is wanted')
     listed = checked(self, variables)
     nm = self.wavelength_nm if wavelength_nm is None else wavelength_nm
     if quantity in (*FIRST_ORDER, "length_mm"):
-        # Refuses variables without an effect as rays do.
+        # Raises for variables without an effect, as ray tracing does.
         self._ray_derivatives(np.zeros((0, 3)), np.zeros((0, 3)), [v.as_tuple() for v in listed])
         number = _of_first_order(self, quantity, listed, nm)
     else:
@@ -160,7 +161,7 @@ def _of_light(
 
 
 def of_passing(light: FieldLight, number: DualArray) -> tuple[Doubles, DualArray]:
-    """Shares of the light, and the numbers of those rays of the bundle that pass."""
+    """Weights, normalised to the sum 1, and values of the bundle's rays that pass, without the chief ray."""
     passes = light.passes[:-1]
     share = light.weights[passes]
     return share / share.sum(), number[:-1][passes]
@@ -175,7 +176,7 @@ def spot_rms(light: FieldLight, at: DualArray) -> DualArray:
 
 
 def transfer(light: FieldLight, across: DualArray, frequency_per_mm: float) -> DualArray:
-    """|sum of exp(2 pi i f x)| over the rays."""
+    """Geometric MTF: |weighted sum of exp(2 pi i f x)| over the rays."""
     share, x = of_passing(light, across)
     phase = 2 * np.pi * frequency_per_mm * x
     real = phase.mapped(np.cos(phase.value), -np.sin(phase.value)).sum(share)
@@ -190,7 +191,7 @@ def chief_ray_angle_deg(light: FieldLight) -> DualArray:
 
 
 def wavefront_rms(light: FieldLight, wavelength_nm: float, remove: str | None) -> DualArray:
-    """As Lens.wavefront with the chief ray's point as the centre of its sphere and the real exit pupil."""
+    """RMS wavefront error in waves, as by Lens.wavefront with the reference sphere about the chief ray's film point."""
     if remove not in (None, "tilt", "focus"):
         raise InputError(f'cannot remove "{remove}"; tilt, focus or None is wanted')
     share, waves = of_passing(light, opd_waves(light, wavelength_nm))
@@ -200,7 +201,7 @@ def wavefront_rms(light: FieldLight, wavelength_nm: float, remove: str | None) -
         basis += [x, y]
     if remove == "focus":
         basis.append(x * x + y * y)
-    # What is left of a least-squares fit is linear in the numbers.
+    # The residual of a least-squares fit is linear in the fitted values, so it applies to derivatives, too.
     f = np.array(basis).T
     fit = np.linalg.solve(f.T @ (share[:, None] * f), f.T * share)
     left = DualArray(waves.value - f @ (fit @ waves.value), waves.by - f @ (fit @ waves.by))
@@ -208,7 +209,7 @@ def wavefront_rms(light: FieldLight, wavelength_nm: float, remove: str | None) -
 
 
 def opd_waves(light: FieldLight, wavelength_nm: float) -> DualArray:
-    """(N,) in waves, positive where the wavefront is ahead of the sphere."""
+    """(N,): optical path differences in waves, positive where the wavefront is ahead of the reference sphere."""
     o, p, film = light.origins, light.directions, light.film_z
     size = (p[:, 0] * p[:, 0] + p[:, 1] * p[:, 1] + p[:, 2] * p[:, 2]).sqrt()
     n = size[-1]

@@ -1,4 +1,4 @@
-"""First-order data of lenses of any kind, about the chief ray of the film's middle, with derivatives."""
+"""First-order data of lenses without rotational symmetry, about the film centre's chief ray, with derivatives."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ from .exit_pupil import ChiefRayNeighbours, at_film
 def focal_length_and_f_number(
     lens: Lens, variables: Sequence[Variable], wavelength_nm: float
 ) -> tuple[DualArray, DualArray]:
-    """The geometric means of both meridians, as Lens.first_order has them.
+    """Focal length and f-number, geometric means of both meridians, as in Lens.first_order.
 
-    Let rays beside the chief ray begin at places q across it and leave with optical directions C q. The singular values
-    of C are the index behind the lens over each focal length, so that their mean follows from the determinant of C. In
-    the same way the pupil's area follows from the stop's, by the determinant of the places on the stop. The chief ray
-    goes on to meet the middle of the stop and that of the film, from which its own derivatives follow.
-    Raises InputError for lenses of revolution that are moved before their film.
+    Rays parallel to the chief ray with transverse positions q leave with optical directions C q. The singular values
+    of C are the index behind the lens over each focal length, so their geometric mean follows from the determinant of
+    C. In the same way the entrance pupil's area follows from the stop's, by the determinant of the map to the stop. The
+    chief ray stays at the centres of stop and film, which determines its own derivatives.
+    Raises InputError for rotationally symmetric lenses that are shifted or tilted against the film.
     """
     chief = lens.aim([[0.0, 0.0]], film_mm=(0.0, 0.0), wavelength_nm=wavelength_nm)
     towards = chief.directions[0]
@@ -32,7 +32,7 @@ def focal_length_and_f_number(
     basis[:3, :2] = basis[3:, 2:] = across.T
 
     def traced(**options: object) -> tuple[Doubles, Doubles, Doubles]:
-        """The chief ray behind, its derivatives by the variables, and by its own four numbers at the start."""
+        """The traced chief ray, its derivatives by the variables, and by its four coordinates at the start."""
         _, numbers, by, by_ray = lens._ray_derivatives(
             chief.origins_mm,
             chief.directions,
@@ -46,7 +46,7 @@ def focal_length_and_f_number(
 
     _, stop_by, stop_by_start = traced(frame="axis", surface_count=lens.stop_index + 1)
     numbers, by, by_start = traced(frame="film")
-    # Where the ray meets the film, by its six numbers behind the lens.
+    # Derivatives of the film point by the ray's six coordinates behind the lens.
     slope, way = numbers[3:5] / numbers[5], -numbers[2] / numbers[5]
     on_film = np.hstack([np.eye(2), -slope[:, None], way * np.eye(2), -way * slope[:, None]])
     start_by = -np.linalg.solve(
@@ -66,7 +66,7 @@ def focal_length_and_f_number(
     first_order = lens.first_order(wavelength_nm)
     size = 1 / np.sqrt(abs(np.linalg.det(power.value)))
     if abs(size / abs(first_order.effective_focal_length_mm) - 1) > 1e-6:
-        # Lens.first_order takes the move back.
+        # Lens.first_order undoes the shift or tilt.
         raise InputError(
             "a lens that was shifted or tilted before its film has the focal length and f-number that it had before: "
             "differentiate it without the move"

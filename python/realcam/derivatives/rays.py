@@ -1,4 +1,4 @@
-"""Derivatives of rays, and of functions of them, by the numbers of a lens and by where the rays start."""
+"""Derivatives of rays, and of functions of rays, by the variables of a lens and by the rays' starts."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from .dual_array import Doubles
 
 @dataclass(frozen=True, repr=False)
 class RayDerivatives(ShortText):
-    """N rays after a lens, lens frame, and their derivatives by V variables. nan where a ray does not pass.
+    """N rays behind a lens, lens frame, and their derivatives by V variables. nan for rays that do not pass.
 
     status: (N,), RayStatus values. origins_mm, directions: (N, 3), on the last surface, unit. optical_path_mm: (N,).
-    origins_by, directions_by: (N, 3, V); optical_path_by: (N, V): by the variables, each in its unit.
-    origins_by_start, directions_by_start: (N, 3, 6); optical_path_by_start: (N, 6): by the origin, mm, and the
-      direction, as they were given.
+    origins_by, directions_by: (N, 3, V); optical_path_by: (N, V): by the variables, per their units.
+    origins_by_start, directions_by_start: (N, 3, 6); optical_path_by_start: (N, 6): by the input origin, mm, and the
+      input direction.
     """
 
     status: NDArray[np.int32]
@@ -47,7 +47,7 @@ def ray_derivatives(
 ) -> RayDerivatives:
     """Traces rays as Lens.trace does, with exact derivatives. origins_mm, directions: (N, 3), lens frame.
 
-    start: "film" or "scene". Raises InputError for wrong shapes, and for variables that the lens has not.
+    start: "film" or "scene". Raises InputError for wrong shapes, and for variables that the lens does not have.
     """
     status, numbers, by, by_start = lens._ray_derivatives(
         np.asarray(origins_mm, float),
@@ -60,7 +60,7 @@ def ray_derivatives(
     index = np.linalg.norm(optical, axis=1)[:, None]
     unit = optical / index
 
-    # A unit vector changes across itself.
+    # The derivative of a unit vector is perpendicular to it.
     across = (np.eye(3) - unit[:, :, None] * unit[:, None, :]) / index[:, :, None]
 
     return RayDerivatives(
@@ -79,10 +79,10 @@ def ray_derivatives(
 
 @dataclass(frozen=True, repr=False)
 class RayGradient(ShortText):
-    """The derivatives of one number that depends on N rays after a lens.
+    """Derivatives of a scalar function of N rays behind a lens.
 
-    by: (V,), by the variables, each in its unit. by_origins, by_directions: (N, 3), by the rays as they were given, the
-      origins in mm. Zeros for rays that do not pass.
+    by: (V,), by the variables, per their units. by_origins, by_directions: (N, 3), by the input rays, origins in mm.
+      Zero for rays that do not pass.
     """
 
     by: Doubles
@@ -102,13 +102,13 @@ def backpropagate_rays(
     wavelength_nm: float | None = None,
     start: str = "film",
 ) -> RayGradient:
-    """The gradient of any function of the rays that Lens.trace returns, by reverse-mode differentiation.
+    """Gradient of a scalar function of the rays that Lens.trace returns, by reverse-mode differentiation.
 
-    origins_mm, directions, wavelength_nm, start: the rays, as Lens.trace was given them.
+    origins_mm, directions, wavelength_nm, start: the input rays, as for Lens.trace.
     of_origins, of_directions: (N, 3), of_optical_paths: (N,): the function's derivatives by the origins, unit
-    directions and optical paths of the result; None: it does not depend on them. Those of rays that do not pass are not
-    read. All variables together take about as long as one: where one number depends on many rays, this is many times
-    faster than ray_derivatives. Raises InputError for wrong shapes, and for variables that the lens has not.
+    directions and optical paths of the result; None: it does not depend on them. Entries of rays that do not pass are
+    ignored. The time hardly depends on the number of variables: for a scalar function of many rays, this is many times
+    faster than ray_derivatives. Raises InputError for wrong shapes, and for variables that the lens does not have.
     """
     o, d = np.asarray(origins_mm, float), np.asarray(directions, float)
     by, by_origins, by_directions = lens._backpropagate_rays(

@@ -1,4 +1,4 @@
-"""Photographers' figures of a lens."""
+"""Photographic data of a lens."""
 
 from .comparison import FieldFigures, LensSummary, lens_summary
 from .depth import DepthOfField, SharpRange, blur_diameter_mm, depth_of_field

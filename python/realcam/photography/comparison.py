@@ -1,4 +1,4 @@
-"""Lenses side by side."""
+"""Comparison of lenses."""
 
 from __future__ import annotations
 
@@ -18,21 +18,21 @@ from .figures import PhotographicFigures, photographic_figures
 
 @dataclass(frozen=True, repr=False)
 class FieldFigures(ShortText):
-    """How sharp a lens is at one place in its field, in the plane in focus."""
+    """Sharpness at one field point, in the plane in focus."""
 
     field: Field
     rms_spot_radius_um: float  #: about the centroid, at the design wavelength
-    mtf_tangential: NDArray[np.float64] | None  #: with diffraction, at the frequencies asked for
+    mtf_tangential: NDArray[np.float64] | None  #: with diffraction, at the requested frequencies
     mtf_sagittal: NDArray[np.float64] | None
 
 
 @dataclass(frozen=True, repr=False)
 class LensSummary(ShortText):
-    """What two lenses are compared by."""
+    """Data of a lens for comparison with another."""
 
     lens: Lens
     figures: PhotographicFigures
-    length_mm: float  #: front vertex, or what stands before it, to film
+    length_mm: float  #: from the foremost vertex to the film
     element_count: int
     fields: tuple[FieldFigures, ...]
     mtf_frequencies_per_mm: tuple[float, ...]
@@ -45,10 +45,10 @@ def lens_summary(
     mtf_frequencies_per_mm: Sequence[float] = (),
     circle_of_confusion_mm: float | None = None,
 ) -> LensSummary:
-    """Photographers' figures and sharpness over the field.
+    """Photographic data and sharpness over the field.
 
-    shares: places as shares of the height of the film's corner, or of the image's edge. mtf_frequencies_per_mm: none
-    leaves the MTF out, which takes a second where aberrations are large. Raises InputError.
+    shares: field points as fractions of the film corner's height, or of the illuminated field's edge.
+    mtf_frequencies_per_mm: if empty, omits the MTF, which takes a second for large aberrations. Raises InputError.
     """
     frequencies = tuple(mtf_frequencies_per_mm)
     places = []

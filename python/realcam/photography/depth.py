@@ -1,4 +1,4 @@
-"""Depth of field and hyperfocal distance: by the rays of the real lens, and by the textbooks' formulas."""
+"""Depth of field and hyperfocal distance, by real rays and by textbook formulas."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ from .._core import InputError, Lens
 from ..roots import root_between
 from .formulas import ThinLens
 
-# Rays of the planes yz and xz that stand for equal areas of the stop. On its axis a lens of revolution is the same in
-# every plane; an anamorphic one has another focus in each of these two.
+# Stop points in the planes yz and xz, each representing an equal area of the stop. On the axis, rotationally symmetric
+# lenses are the same in every plane; anamorphic ones have a different focus in these two.
 _RADII = np.sqrt((np.arange(100) + 0.5) / 100)
 _LINE = np.concatenate([-_RADII[::-1], _RADII])
 _PUPIL = np.concatenate([np.column_stack([0 * _LINE, _LINE]), np.column_stack([_LINE, 0 * _LINE])])
-_TOLERANCE = 1e-7  # of a distance's inverse, relative to the depth of field
+_TOLERANCE = 1e-7  # tolerance of the inverse distance, relative to the depth of field
 
 
 @dataclass(frozen=True)
 class SharpRange:
-    """Object planes that are sharp, from the film. Both nan where none is; far_m is inf where infinity is sharp."""
+    """Range of sharp object distances from the film. Both nan if no distance is sharp; far_m is inf up to infinity."""
 
     near_m: float
     far_m: float
@@ -34,34 +34,34 @@ class SharpRange:
 
 @dataclass(frozen=True)
 class DepthOfField:
-    """What a lens shows sharply at its focus and stop. Distances are from the film."""
+    """Depth of field of a lens at its focus and stop. Distances are from the film."""
 
     circle_of_confusion_mm: float
     focus_distance_m: float
     blur_in_focus_mm: float  #: blur diameter of the plane in focus by real rays: aberrations alone
-    real: SharpRange  #: where the blur diameter by real rays is at most the circle of confusion
-    formula: SharpRange  #: of a thin lens with the same focal length and f-number at its front principal plane
-    real_hyperfocal_m: float  #: nearest focus at which infinity is sharp; nan where it never is
+    real: SharpRange  #: range with a blur diameter by real rays of at most the circle of confusion
+    formula: SharpRange  #: range of a thin lens at the front principal plane, with the same focal length and f-number
+    real_hyperfocal_m: float  #: nearest focus at which infinity is sharp; nan if there is none
     formula_hyperfocal_m: float  #: f^2 / (N c) + f from the principal plane
     approximate_depth_m: float  #: 2 N c (m + 1) / m^2, equation 8 of Liu and Hsu (2013); inf at infinity
 
 
 def blur_diameter_mm(lens: Lens, object_distance_m: float | None = None) -> float:
-    """Diameter of the even disc that has the second moment of the axial spot on the film: sqrt(8) times its RMS radius.
+    """Blur diameter of an axial point: of the uniform disc with the same second moment, sqrt(8) times the RMS radius.
 
-    Of a defocused lens without aberrations that is the disc itself. The diaphragm counts as round, of the same area.
-    object_distance_m: object plane to front vertex, inf allowed; None is the plane in focus. Raises InputError where no
-    ray passes.
+    For a defocused lens without aberrations, it is the diameter of the blur disc. The diaphragm is replaced by a circle
+    of the same area. object_distance_m: object plane to front vertex, inf allowed; None is the plane in focus. Raises
+    InputError if no ray passes.
     """
     spot = _round(lens).spot(0.0, object_distance_m=object_distance_m, pupil=_PUPIL)
     return math.sqrt(8) * spot.rms_radius_mm
 
 
 def depth_of_field(lens: Lens, circle_of_confusion_mm: float | None = None) -> DepthOfField:
-    """Depth of field and hyperfocal distance of a lens as it is focused and stopped down, on its axis.
+    """Depth of field and hyperfocal distance of a lens at its current focus and stop, on the axis.
 
-    circle_of_confusion_mm: the largest blur that counts as sharp; None is the film's diagonal / 1500. Real rays are
-    measured by blur_diameter_mm. Raises InputError where the lens has no focal length, or no light passes it.
+    circle_of_confusion_mm: the largest blur that counts as sharp; None is the film's diagonal / 1500. Blur of real rays
+    is blur_diameter_mm. Raises InputError if the lens has no focal length, or if no light passes it.
     """
     circle = math.hypot(*lens.film_mm) / 1500 if circle_of_confusion_mm is None else circle_of_confusion_mm
     if not (circle > 0 and math.isfinite(circle)):
@@ -81,7 +81,7 @@ def depth_of_field(lens: Lens, circle_of_confusion_mm: float | None = None) -> D
 
 
 def sharp_ranges(lens: Lens, circle_mm: float) -> tuple[SharpRange, SharpRange]:
-    """What blurs at most the circle of confusion: by real rays, and by the formula. Raises InputError."""
+    """Ranges whose blur is at most the circle of confusion, by real rays and by the formula. Raises InputError."""
     thin = ThinLens.of(lens)
     near, far = (distance + thin.film_from_principal_plane_mm for distance in thin.sharp_range_mm(circle_mm))
     return _real_range(lens, thin, circle_mm), SharpRange(near / 1000, far / 1000)
@@ -92,14 +92,14 @@ def _round(lens: Lens) -> Lens:
 
 
 def _real_range(lens: Lens, thin: ThinLens, circle: float) -> SharpRange:
-    """Blur is looked for over the inverse distance to the front vertex, in which it is nearly even on both sides."""
+    """Searches over the inverse distance to the front vertex, over which blur is nearly symmetric about the focus."""
     film = lens.film_position_mm / 1000
     none = SharpRange(math.nan, math.nan)
 
     def excess(inverse_m: float) -> float:
         try:
             return blur_diameter_mm(lens, math.inf if inverse_m == 0 else 1 / inverse_m) - circle
-        except InputError:  # so near that no ray passes
+        except InputError:  # too near for any ray to pass
             return math.nan
 
     in_focus = lens.focus_distance_m - film
@@ -114,9 +114,9 @@ def _real_range(lens: Lens, thin: ThinLens, circle: float) -> SharpRange:
 
 
 def _sharpest(excess: Callable[[float], float], centre: float, step: float) -> float | None:
-    """A place whose blur is small enough, if there is one near the plane in focus.
+    """Returns an inverse distance near the plane in focus with acceptable blur, or None.
 
-    A stopped-down lens is sharpest elsewhere than it was focused, as focus is set with the stop open.
+    Focus is set with the stop open, so a stopped-down lens may be sharpest elsewhere (focus shift).
     """
     places = [max(centre + k * step, 0.0) for k in (0, 1, -1, 2, -2, 3, -3, 4, -4, 6, -6, 8, -8)]
     blur = {place: excess(place) for place in places}
@@ -125,7 +125,7 @@ def _sharpest(excess: Callable[[float], float], centre: float, step: float) -> f
 
 
 def _edge(excess: Callable[[float], float], sharp: float, step: float) -> float:
-    """Where the blur becomes too large, going from a sharp place in steps."""
+    """Returns the inverse distance at which the blur becomes too large, stepping away from a sharp one."""
     low, at_low = sharp, excess(sharp)
     for _ in range(200):
         high = max(low + step, 0.0)
@@ -140,13 +140,13 @@ def _edge(excess: Callable[[float], float], sharp: float, step: float) -> float:
 
 
 def _real_hyperfocal(lens: Lens, thin: ThinLens, circle: float) -> float:
-    """Infinity's blur on the film as the lens is focused nearer and nearer."""
+    """Nearest focus distance, m, at which infinity is sharp by real rays; nan if there is none."""
 
     def excess(inverse_m: float) -> float:
         try:
             focused = lens.focused(math.inf if inverse_m == 0 else 1 / inverse_m)
             return blur_diameter_mm(focused, math.inf) - circle
-        except InputError:  # nearer than the lens can
+        except InputError:  # nearer than the focus range of the lens
             return math.nan
 
     at_infinity = excess(0.0)

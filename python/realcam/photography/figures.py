@@ -1,4 +1,4 @@
-"""What photographers ask of a lens: angle of view, breathing, speed, exposure."""
+"""Photographic data of a lens: angle of view, breathing, speed, exposure."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ from .._core import Camera, FieldOfView, InputError, Lens, RayStatus
 from .depth import DepthOfField, depth_of_field
 from .formulas import at_infinity
 
-_RADII = np.sqrt(np.linspace(0, 1, 2001))  # so that the edge of the light is met within 0.025%
+_RADII = np.sqrt(np.linspace(0, 1, 2001))  # finds the edge of the bundle within 0.025%
 
 
 @dataclass(frozen=True)
 class Breathing:
-    """How the angle of view changes with focus."""
+    """Focus breathing: the change of the angle of view with focus."""
 
     nearest_focus_m: float
-    is_assumed: bool  #: the lens file names no nearest focus: a magnification of 1/10 is taken
+    is_assumed: bool  #: True if the lens file states no nearest focus; a magnification of 1/10 is used
     at_infinity_deg: FieldOfView
     at_nearest_deg: FieldOfView
 
@@ -31,21 +31,21 @@ class Breathing:
 
 @dataclass(frozen=True)
 class ExposureValue:
-    """Exposure as photographers count it, in stops."""
+    """Exposure values, in stops."""
 
     exposure_time_s: float
     iso: float
     ev: float  #: log2(N^2 / t) with the engraved f-number
-    ev100: float  #: log2(N^2 / t * 100 / ISO): the light for which these settings are right, by the f-number
-    ev100_at_film: float  #: the same by the T-stop and the working f-number: with the lens's losses and its extension
+    ev100: float  #: log2(N^2 / t * 100 / ISO): the scene EV that these settings expose correctly, by the f-number
+    ev100_at_film: float  #: the same by T-stop and working f-number, which include losses and extension
 
 
 @dataclass(frozen=True)
 class PhotographicFigures:
-    """Figures of a lens as it is focused and stopped down."""
+    """Photographic data of a lens at its current focus and stop."""
 
     name: str
-    focal_length_mm: float  #: of this state
+    focal_length_mm: float  #: at the current focus
     focal_length_at_infinity_mm: float
     f_number: float  #: engraved: of the lens focused at infinity
     t_stop: float
@@ -55,7 +55,7 @@ class PhotographicFigures:
     magnification: float  #: image over object, positive; 0 at infinity
     angle_of_view_deg: FieldOfView  #: by real rays from the film's edges
     angle_of_view_by_formula_deg: FieldOfView  #: 2 atan(size / (2 f (1 + m)))
-    breathing: Breathing | None  #: None where the lens does not focus at infinity
+    breathing: Breathing | None  #: None if the lens cannot be focused at infinity or at its nearest focus
     depth_of_field: DepthOfField
     exposure: ExposureValue | None
 
@@ -63,15 +63,15 @@ class PhotographicFigures:
 def angle_of_view_deg(lens: Lens) -> FieldOfView:
     """Full angles over width, height and diagonal of the lens's film, by real rays from its edges, degrees.
 
-    Where the image is smaller than the film, the angle of what is lit.
+    If the image circle is smaller than the film, the angles of the illuminated part.
     """
     return Camera(lens).field_of_view_deg
 
 
 def breathing(lens: Lens, nearest_focus_m: float | None = None) -> Breathing:
-    """The angles of view at infinity and at the nearest focus: of the lens file, or where the magnification is 1/10.
+    """Angles of view at infinity and at the nearest focus, from the lens file or at a magnification of 1/10.
 
-    Raises InputError where the lens cannot be focused at one of them.
+    Raises InputError if the lens cannot be focused at one of them.
     """
     far = lens.focused(math.inf)
     nearest = lens.nearest_focus_m if nearest_focus_m is None else nearest_focus_m
@@ -97,7 +97,10 @@ def exposure_value(lens: Lens, exposure_time_s: float, iso: float = 100.0) -> Ex
 
 
 def working_f_number(lens: Lens) -> float:
-    """1 / (2 n' sin u') with the outermost ray from the plane in focus that passes the lens, on the axis."""
+    """1 / (2 n' sin u') of the outermost passing ray from the axial point of the plane in focus.
+
+    Raises InputError if no light passes.
+    """
     rays = lens.aim(np.column_stack([np.zeros_like(_RADII), _RADII]), 0.0)
     passing = rays.status == RayStatus.OK
     if not np.any(passing):
@@ -108,7 +111,7 @@ def working_f_number(lens: Lens) -> float:
 
 
 def magnification(lens: Lens) -> float:
-    """Image over object of the plane in focus, paraxial, as a positive number; 0 at infinity."""
+    """Paraxial magnification of the plane in focus, as a positive number; 0 at infinity."""
     data = lens.first_order()
     object_mm = 1000 * lens.focus_distance_m - lens.film_position_mm
     return abs(data.effective_focal_length_mm / (object_mm + data.front_focal_distance_mm))
@@ -121,7 +124,7 @@ def photographic_figures(
     exposure_time_s: float | None = None,
     iso: float = 100.0,
 ) -> PhotographicFigures:
-    """All of them. Arguments as depth_of_field and exposure_value take them. Raises InputError."""
+    """Returns all photographic data. Arguments as for depth_of_field and exposure_value. Raises InputError."""
     far, data = at_infinity(lens), lens.first_order()
     at_far = far.first_order()
     m = magnification(lens)

@@ -1,4 +1,4 @@
-"""The thin lens of the textbooks, in place of a real one."""
+"""Thin-lens approximation of a real lens."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from .._core import InputError, Lens
 
 @dataclass(frozen=True)
 class ThinLens:
-    """A lens without thickness at the front principal plane of a real one; the film is where the real one's is.
+    """A thin lens at the front principal plane of a real lens, with the film at the real film's position.
 
     Focal length and f-number are those of the lens focused at infinity, as engraved on it.
     """
@@ -18,11 +18,11 @@ class ThinLens:
     focal_length_mm: float
     f_number: float
     object_distance_mm: float  #: plane in focus to principal plane, inf allowed
-    film_from_principal_plane_mm: float  #: what a distance to the film is longer by
+    film_from_principal_plane_mm: float  #: distance from the film minus distance from the thin lens
 
     @staticmethod
     def of(lens: Lens) -> ThinLens:
-        """Raises InputError where the lens has no focal length or f-number."""
+        """Thin lens of a real one. Raises InputError if the lens has no positive focal length or no f-number."""
         data = at_infinity(lens).first_order()
         focal_length = data.effective_focal_length_mm
         if not (math.isfinite(focal_length) and focal_length > 0 and math.isfinite(data.f_number)):
@@ -38,7 +38,7 @@ class ThinLens:
         return self.focal_length_mm / (self.object_distance_mm - self.focal_length_mm)
 
     def hyperfocal_mm(self, circle_mm: float) -> float:
-        """Focused there, infinity has a blur of the circle of confusion: H = f^2 / (N c) + f."""
+        """Focus distance at which infinity is blurred by the circle of confusion: H = f^2 / (N c) + f."""
         f = self.focal_length_mm
         return f * f / (self.f_number * circle_mm) + f
 
@@ -60,12 +60,12 @@ class ThinLens:
         return 2 * self.f_number * circle_mm * (m + 1) / m**2 if m > 0 else math.inf
 
     def vergence_of_blur_per_mm(self, circle_mm: float) -> float:
-        """By how much the inverse of the object distance changes until the blur is the circle: about N c / f^2."""
+        """Change of the inverse object distance that blurs by the circle of confusion: about N c / f^2."""
         return self.f_number * circle_mm / (self.focal_length_mm * self.focal_length_mm)
 
 
 def at_infinity(lens: Lens) -> Lens:
-    """The lens focused at infinity; as it is, if it cannot be."""
+    """Returns the lens focused at infinity, or unchanged if that is not possible."""
     try:
         return lens.focused(math.inf)
     except InputError:
