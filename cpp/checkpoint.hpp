@@ -8,13 +8,14 @@
 
 namespace realcam {
 
-/// Asks the caller of a long task, some fifty times a second, whether to go on.
+/// Asks the caller of a long task, about fifty times a second, whether to go on.
 class Checkpoint {
 public:
-    /// No function: go on.
+    /// An empty function never stops the task.
     explicit Checkpoint(KeepGoing keep_going = {}) : keep_going_(std::move(keep_going)) {}
 
-    /// Reports work done; a unit is some nanoseconds to a microsecond. Throws Cancelled where the caller wants to stop.
+    /// Reports work done; a unit takes a few nanoseconds to a microsecond. Throws Cancelled if the caller wants to
+    /// stop.
     void pass(std::size_t work = 1);
 
 private:

@@ -4,23 +4,24 @@
 
 namespace realcam {
 
-/// Base of all errors that realcam raises. The message is one line for a person: what, where, and what is wanted.
+/// Base class of all errors of realcam. The message is one line for the user: what is wrong, where, and what is
+/// expected.
 class Error : public std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-/// A value that the caller gave does not make sense.
+/// Invalid value from the caller.
 class InputError : public Error {
     using Error::Error;
 };
 
-/// A lens prescription that cannot be built, or its file cannot be read.
+/// Lens prescription that cannot be built, or lens file that cannot be read.
 class LensFileError : public Error {
 public:
-    /// line and surface are 1-based; 0 where they do not apply.
+    /// `line` and `surface` are 1-based, and 0 if they do not apply.
     LensFileError(const std::string& message, std::string file = {}, int line = 0, int surface = 0);
 
-    std::string detail;  ///< the message without its place
+    std::string detail;  ///< the message without file, line and surface
     std::string file;
     int line;
     int surface;
@@ -29,23 +30,23 @@ private:
     static std::string place(const std::string& file, int line, int surface);
 };
 
-/// A scene that cannot be read, or that holds no geometry.
+/// Scene that cannot be read, or that contains no geometry.
 class SceneFileError : public Error {
     using Error::Error;
 };
 
-/// A picture that cannot be read or written.
+/// Picture that cannot be read or written.
 class ImageFileError : public Error {
     using Error::Error;
 };
 
-/// The caller asked long work to stop.
+/// The caller stopped a long task.
 class Cancelled : public Error {
 public:
     Cancelled() : Error("stopped") {}
 };
 
-/// A device or its library that fails.
+/// Failure of a device or of its library.
 class DeviceError : public Error {
     using Error::Error;
 };

@@ -3,8 +3,8 @@
 
 namespace realcam {
 
-/// Asked by long work at least every tenth of a second, on the thread that began it; where it returns false, the work
-/// ends by throwing Cancelled. Empty: nobody stops it.
+/// Called by long tasks at least every tenth of a second, on the thread that started them; if it returns false, the
+/// task ends by throwing Cancelled. Empty: the task is never stopped.
 using KeepGoing = std::function<bool()>;
 
 }  // namespace realcam

@@ -5,8 +5,8 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Writes a number as people do, with `digits` significant digits and the whole integer part: "0.00001", "50.36",
-/// "12 346", "infinity". Only numbers below a millionth and from 1e15 on have an exponent.
+/// Formats a number for display, with `digits` significant digits and the whole integer part: "0.00001", "50.36", "12
+/// 346", "infinity". Only numbers below a millionth and from 1e15 on have an exponent.
 std::string number_text(double value, int digits = 4);
 
 /// Rounds an estimate to `digits` significant digits.

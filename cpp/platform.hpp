@@ -1,5 +1,6 @@
 #pragma once
-// What the compiler and the chip decide. This is the one file of the core that looks at __CUDACC__.
+// Macros and functions that depend on the compiler and the processor. This is the only file of the core that tests
+// __CUDACC__.
 
 #include <bit>
 #include <cstdint>
@@ -20,8 +21,8 @@
 #define REALCAM_INLINE REALCAM_HD inline
 #endif
 
-// Large functions of which each kernel of a GPU has one copy, however often it calls them: its cache of instructions is
-// full, and a call takes less time than to wait for more code. REALCAM_GPU_CALL leaves a CPU's compiler the choice.
+// Large functions that a GPU kernel contains once, however often it calls them: its instruction cache is full, and a
+// call takes less time than waiting for more code. With REALCAM_GPU_CALL, a CPU's compiler decides about inlining.
 #if defined(__CUDACC__)
 #define REALCAM_ONE_COPY REALCAM_HD inline __noinline__
 #define REALCAM_GPU_CALL REALCAM_ONE_COPY
@@ -37,7 +38,7 @@
 #define REALCAM_LANES _Pragma("GCC ivdep")
 #endif
 
-// Written before a loop of a constant number of turns: arrays that it indexes can then live in registers.
+// Written before a loop with a constant number of iterations: arrays that it indexes can then live in registers.
 #if defined(__CUDA_ARCH__)
 #define REALCAM_UNROLL _Pragma("unroll")
 #define REALCAM_NO_UNROLL _Pragma("unroll 1")
@@ -61,11 +62,11 @@
 namespace REALCAM_NAMESPACE {
 
 // Square root and quotient, correctly rounded for arguments and results between 2^-100 and 2^100, on a GPU too. There
-// the built-in ones take care of all other numbers as well, with a test, a branch and a call: a sixth of the
-// instructions of a ray. These are the same steps without: an approximation, and a step of Newton on the residual.
-// Outside that range they are rough, and infinity becomes NaN.
+// the built-in ones handle all other numbers as well, with a test, a branch and a call: a sixth of the instructions of
+// a ray. These take the same steps without them: an approximation, and a Newton step on the residual. Outside that
+// range they are inaccurate, and infinity becomes NaN.
 
-/// 0 (on a GPU 2^-51) for negative numbers and NaN. The caller tests the argument itself.
+/// Returns the square root, or 0 (on a GPU 2^-51) for negative numbers and NaN. The caller tests the argument itself.
 REALCAM_INLINE float sqrt_or_zero(float v) {
 #if defined(__CUDA_ARCH__)
     v = fmaxf(v, 0x1p-101f);
@@ -115,14 +116,14 @@ REALCAM_INLINE unsigned count_bits(unsigned v) {
 #endif
 }
 
-/// Whether this is compiled for a GPU.
+/// True in code compiled for a GPU.
 #if defined(__CUDA_ARCH__)
 inline constexpr bool kIsDeviceCode = true;
 #else
 inline constexpr bool kIsDeviceCode = false;
 #endif
 
-/// Other threads of a GPU may do the same; of a CPU none.
+/// Sets bits of a word, which other threads may do at the same time on a GPU, but not on a CPU.
 REALCAM_INLINE void add_bits(unsigned* to, unsigned bits) {
 #if defined(__CUDA_ARCH__)
     atomicOr(to, bits);
@@ -131,7 +132,7 @@ REALCAM_INLINE void add_bits(unsigned* to, unsigned bits) {
 #endif
 }
 
-/// Memory that nobody writes while the kernel runs, 128 bits at a time.
+/// Loads from memory that nobody writes while the kernel runs, 128 bits at a time.
 template <class T>
 REALCAM_INLINE T load_constant(const T* from) {
     static_assert(sizeof(T) % 16 == 0 && alignof(T) == 16);
@@ -149,8 +150,8 @@ REALCAM_INLINE T load_constant(const T* from) {
 
 inline constexpr std::uint32_t kBitsOf32768 = 0x47000000u;
 
-/// 32768 + byte number `index` (from the lowest) of a word, exactly: one permutation of bytes instead of a shift, a
-/// mask and a conversion, which GPUs have few units for. `bits_of_32768` is what its name says.
+/// Returns 32768 + byte `index` (from the lowest) of a word, exactly: one permutation of bytes instead of a shift, a
+/// mask and a conversion, for which GPUs have few units. `bits_of_32768` is kBitsOf32768.
 REALCAM_INLINE float byte_above_32768(std::uint32_t word, unsigned index, std::uint32_t bits_of_32768) {
 #if defined(__CUDA_ARCH__)
     return __uint_as_float(__byte_perm(word, bits_of_32768, 0x7604u | index << 4));
@@ -161,7 +162,7 @@ REALCAM_INLINE float byte_above_32768(std::uint32_t word, unsigned index, std::u
 
 // Positive floats are ordered as their bits are. On integers, Hopper takes the largest of four in one instruction.
 
-/// The largest of three floats and 0, none of them NaN.
+/// Returns the largest of three floats and 0. The floats are not NaN.
 REALCAM_INLINE float largest_or_zero(float a, float b, float c) {
 #if defined(__CUDA_ARCH__)
     return __int_as_float(__vimax3_s32_relu(__float_as_int(a), __float_as_int(b), __float_as_int(c)));
@@ -171,7 +172,7 @@ REALCAM_INLINE float largest_or_zero(float a, float b, float c) {
 #endif
 }
 
-/// The smallest of four floats, none of them NaN. Where one is negative: any of the negative ones.
+/// Returns the smallest of four floats, which are not NaN; if some are negative, any of these.
 REALCAM_INLINE float smallest_if_positive(float a, float b, float c, float d) {
 #if defined(__CUDA_ARCH__)
     const int abc = __vimin3_s32(__float_as_int(a), __float_as_int(b), __float_as_int(c));
@@ -183,7 +184,7 @@ REALCAM_INLINE float smallest_if_positive(float a, float b, float c, float d) {
 #endif
 }
 
-/// The bits moved up by one, and the sign of v below them.
+/// Shifts the bits up by one and appends the sign of v.
 REALCAM_INLINE unsigned append_sign(unsigned bits, float v) {
 #if defined(__CUDA_ARCH__)
     return __funnelshift_l(__float_as_uint(v), bits, 1);

@@ -41,7 +41,7 @@ void balance(InnerNode& node) {
     std::vector<BinaryNode*> leaves;
     std::vector<InnerNode*> inner_nodes;
     collect(node, leaves, inner_nodes);
-    InnerNode** next = inner_nodes.data();  // the first is `node` itself
+    InnerNode** next = inner_nodes.data();  // the first one is `node`
     halves(leaves, next);
 }
 

@@ -9,22 +9,22 @@ namespace REALCAM_NAMESPACE {
 
 struct InnerNode;
 
-/// The box of something that a hierarchy is built over, by its number in the caller's list.
+/// Returns the bounding box of a primitive, given its index in the caller's list.
 using BoxOf = std::function<Box(std::uint32_t)>;
 
-/// A leaf of the binary tree is a BinaryNode by itself, and holds one triangle, or whatever else has a box.
+/// Node of the binary tree. A plain BinaryNode is a leaf and holds one primitive, such as a triangle or an instance.
 struct BinaryNode {
     Box box;
-    std::uint32_t triangles;  ///< below it; 1: a leaf
-    std::uint32_t triangle;  ///< a leaf's
-    InnerNode* parent;  ///< null: the root
+    std::uint32_t triangles;  ///< number in the subtree; 1 in a leaf
+    std::uint32_t triangle;  ///< in a leaf: index of its primitive in the caller's list
+    InnerNode* parent;  ///< null in the root
 
     bool is_leaf() const { return triangles == 1; }
     const InnerNode& inner() const;
     InnerNode& inner();
 };
 
-/// With room for what collapse.hpp finds out.
+/// Inner node, with the members that collapse.hpp fills in.
 struct InnerNode : BinaryNode {
     BinaryNode* child[2];
     float cost[kSlots - 1];
@@ -40,18 +40,19 @@ inline InnerNode& BinaryNode::inner() {
     return static_cast<InnerNode&>(*this);
 }
 
-/// In double, because 1e18 m squared is too much for float.
+/// Returns half of a box's surface area; in double, because boxes may be 1e18 m wide.
 inline double half_area(const Box& box) {
     const Vec3d size = static_cast<Vec3d>(box.upper) - static_cast<Vec3d>(box.lower);
     return size.x * size.y + size.y * size.z + size.z * size.x;
 }
 
-/// A binary tree over triangles, split where the surface area heuristic says (Embree's builder, on all threads).
-/// It has not been measured: what inner nodes have besides their children is open, and so are the parents.
+/// Binary BVH over triangles, split by the surface area heuristic (Embree's builder, on all threads). The boxes and
+/// indices of leaves and the children of inner nodes are set; measure() fills in the other boxes, the triangle counts
+/// and the parents.
 class BinaryTree {
 public:
-    /// Throws DeviceError (out of memory, for one), and Cancelled where `keep_going`, asked on any thread, returns
-    /// false. There is at least one triangle.
+    /// Needs at least one triangle. Throws DeviceError if Embree fails (out of memory, for example), and Cancelled if
+    /// `keep_going`, called on any thread, returns false.
     BinaryTree(std::size_t triangles, const BoxOf& box_of, const KeepGoing& keep_going);
     ~BinaryTree();
     BinaryTree(const BinaryTree&) = delete;
@@ -65,8 +66,8 @@ private:
     BinaryNode* root_;
 };
 
-/// Makes the tree below a node as flat as can be, ceil(log2(triangles)) levels, where splitting by area has made a
-/// chain of it: halves by number, along the axis of the largest extent. The nodes are used again.
+/// Rebuilds the subtree of a node with the least depth, ceil(log2(triangles)) levels, by median splits along the axis
+/// of the largest extent; for the chains that the surface area heuristic can produce. Reuses the nodes.
 void balance(InnerNode& node);
 
 }  // namespace REALCAM_NAMESPACE

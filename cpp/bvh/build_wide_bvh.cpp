@@ -14,16 +14,16 @@
 namespace realcam {
 namespace {
 
-/// Levels of wide nodes that follow the surface area heuristic. What lies below is halved by number, one level of
-/// halves a node at least, which is 28 levels for the largest scene.
+/// Number of levels of wide nodes built by the surface area heuristic. The levels below are built by median splits; a
+/// wide node takes up at least one level of them, so that they add at most 28 for the largest scene.
 constexpr int kLevelsByArea = 20;
 constexpr std::size_t kMostTriangles = std::size_t{1} << 28;
 static_assert(kLevelsByArea + 28 <= kMaxBvhDepth);
 
-/// Subtrees of fewer triangles are not worth a task.
+/// Least number of triangles for which a subtree gets its own task.
 constexpr std::uint32_t kTaskSize = 2048;
 
-/// Counts the wide nodes below and with `node`, so that each subtree knows its place beforehand.
+/// Counts the wide nodes of the subtree at `node`, so that the range of each subtree is known before it is written.
 void count_wide_nodes(InnerNode& node, int level) {
     if (level == kLevelsByArea) {
         balance(node);
@@ -51,7 +51,8 @@ class Writer {
 public:
     explicit Writer(WideNodes& bvh) : bvh_(bvh) {}
 
-    /// Writes a node with the children given, and what lies below.
+    /// Writes a wide node with these children, and its subtree. `first_below` and `first_triangle`: first indices of
+    /// the nodes below it and of its triangles.
     void write(const WideChildren& children, std::uint32_t index, std::uint32_t first_below,
                std::uint32_t first_triangle) {
         Box boxes[kSlots] = {};

@@ -9,20 +9,21 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// The nodes of a hierarchy over anything that has a box, in the order of their depth-first ranges: a node's children
-/// come after itself.
+/// Nodes of a wide BVH over primitives with bounding boxes, in depth-first ranges: children come after their parent.
 struct WideNodes {
     std::vector<WideNode> nodes;       ///< at least one
-    std::vector<std::uint32_t> order;  ///< numbers in the caller's list, as the leaves lie one after the other
+    std::vector<std::uint32_t> order;  ///< indices in the caller's list, in the order of the leaves
 };
 
-/// Boxes by the caller's number. Otherwise as build_wide_bvh.
+/// Builds a wide BVH over `count` primitives with the boxes that `box_of` returns; see build_wide_bvh for threads,
+/// cancellation and Embree's errors.
 WideNodes build_wide_nodes(std::size_t count, const BoxOf& box_of, const KeepGoing& keep_going = {});
 
-/// Makes the nodes those of other boxes, given by their place in the order of leaves; on all threads.
+/// Recomputes the boxes of all nodes from new leaf boxes, on all threads. `box_of_leaf` takes a position in the order
+/// of the leaves.
 void refit(std::vector<WideNode>& nodes, const BoxOf& box_of_leaf);
 
-/// Owns a hierarchy of triangles.
+/// Wide BVH over triangles, with its memory.
 struct WideBvh {
     struct Corners {
         std::uint32_t vertices[3];
@@ -30,19 +31,19 @@ struct WideBvh {
 
     std::vector<WideNode> nodes;
     std::vector<BvhTriangle> triangles;
-    std::vector<Corners> corners;  ///< of each of `triangles`, among the positions: for refit
+    std::vector<Corners> corners;  ///< vertex indices of each of `triangles`, for refit
 
     WideBvhView view() const { return {nodes.data(), triangles.data()}; }
 };
 
-/// A hierarchy over triangles, by the surface area heuristic, on all threads of the calling arena. Positions are
-/// finite, their size between 1e-15 and 1e18 or 0. Throws DeviceError where Embree fails (out of memory, for one), or
-/// for more than 2^28 triangles; and Cancelled where `keep_going`, asked on any thread, returns false.
+/// Builds a wide BVH over triangles by the surface area heuristic, on all threads of the calling arena. Positions are
+/// finite; their magnitude is 0 or between 1e-15 and 1e18. Throws DeviceError if Embree fails (out of memory, for
+/// example) or for more than 2^28 triangles, and Cancelled if `keep_going`, called on any thread, returns false.
 WideBvh build_wide_bvh(std::span<const Vec3f> positions, std::span<const Triangle> triangles,
                        const KeepGoing& keep_going = {});
 
-/// Moves the triangles to new positions of the same vertices, on all threads. The result is as right as that of a new
-/// build, and as fast as long as neighbours stay neighbours.
+/// Refits the BVH to new positions of the same vertices, on all threads. Hits are as exact as after a new build, and
+/// traversal is as fast as long as neighbouring triangles stay neighbours.
 void refit(WideBvh& bvh, std::span<const Vec3f> positions);
 
 }  // namespace REALCAM_NAMESPACE

@@ -5,7 +5,7 @@
 namespace realcam {
 namespace {
 
-/// Levels of the tree whose halves are worth a task each.
+/// Number of upper levels whose two subtrees are processed as parallel tasks.
 constexpr int kParallelLevels = 12;
 
 template <class Visit>
@@ -22,11 +22,11 @@ void bottom_up(BinaryNode& node, int level, const Visit& visit) {
 }
 
 struct Planner {
-    double per_area;  ///< costs are in units of the whole scene's area
+    double per_area;  ///< inverse half area of the root, which is the unit of all costs
 
     float area_of(const BinaryNode& node) const { return static_cast<float>(half_area(node.box) * per_area); }
 
-    /// The least cost of the triangles below a node as at most `roots` children of some wide node.
+    /// Returns the least cost of a subtree that occupies at most `roots` child slots of a wide node.
     float cost(const BinaryNode& node, unsigned roots) const {
         return node.is_leaf() ? kTriangleCost * area_of(node) : node.inner().cost[roots - 1];
     }
@@ -56,7 +56,7 @@ struct Planner {
         for (unsigned roots = 2; roots < kSlots; ++roots) {
             const bool split = split_cost[roots] < node.cost[roots - 2];
             node.cost[roots - 1] = split ? split_cost[roots] : node.cost[roots - 2];
-            if (!split) node.left_share[roots - 2] = 0;  // one root fewer
+            if (!split) node.left_share[roots - 2] = 0;  // 0: decided as for one root fewer
         }
     }
 };

@@ -23,7 +23,7 @@ REALCAM_INLINE Box box_of(const BvhTriangle& t) {
     return box;
 }
 
-/// The smallest bfloat16 number that is not below v > 0, as the upper half of a float's bits. Not below 2^-126.
+/// Returns the smallest bfloat16 number >= v > 0, as the upper half of a float's bits; at least 2^-126.
 REALCAM_INLINE std::uint32_t bfloat16_above(double v) {
     const float near = static_cast<float>(v < 1.2e-38 ? 1.2e-38 : v);
     std::uint32_t bits = (std::bit_cast<std::uint32_t>(near) + 0xffffu) & 0xffff0000u;
@@ -32,8 +32,9 @@ REALCAM_INLINE std::uint32_t bfloat16_above(double v) {
     return bits;
 }
 
-/// Planes of one axis: quantised outwards, exactly. Differences of floats are multiples of the smaller one's last
-/// digit, so origin + byte * step has at most 41 binary digits, and double arithmetic does not round.
+/// Quantises the box planes of one axis outwards and returns the bits of the step. The results are exact: differences
+/// of floats are multiples of the smaller one's last digit, so origin + byte * step has at most 41 binary digits, and
+/// double arithmetic does not round.
 REALCAM_HD inline std::uint32_t quantise_axis(const float (&lower)[kSlots], const float (&upper)[kSlots],
                                               unsigned used_slots, float& origin, std::uint32_t (&lower_bytes)[2],
                                               std::uint32_t (&upper_bytes)[2]) {
@@ -54,7 +55,7 @@ REALCAM_HD inline std::uint32_t quantise_axis(const float (&lower)[kSlots], cons
 
     lower_bytes[0] = lower_bytes[1] = upper_bytes[0] = upper_bytes[1] = 0;
     for (unsigned s = 0; s < kSlots; ++s) {
-        unsigned low = 255, high = 0;  // of an empty slot
+        unsigned low = 255, high = 0;  // inverted planes of an empty slot
         if (used_slots >> s & 1u) {
             const double l = lower[s], u = upper[s];
             low = step > 0 ? static_cast<unsigned>((l - from) / step) : 0;
@@ -70,8 +71,8 @@ REALCAM_HD inline std::uint32_t quantise_axis(const float (&lower)[kSlots], cons
     return step_bits;
 }
 
-/// Writes a node's origin, steps and planes: those of each slot in `used_slots` hold its box. What the node contains is
-/// left as it is.
+/// Writes a node's origin, steps and planes for the boxes of the slots in `used_slots`. Leaves the node's content
+/// unchanged.
 REALCAM_HD inline void quantise_boxes(WideNode& node, const Box (&boxes)[kSlots], unsigned used_slots) {
     float lower[kSlots], upper[kSlots];
     std::uint32_t step[3];

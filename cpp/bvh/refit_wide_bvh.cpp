@@ -7,10 +7,10 @@
 namespace realcam {
 namespace {
 
-/// Levels of nodes whose children are worth a task each.
+/// Number of upper levels whose children are refitted as parallel tasks.
 constexpr int kParallelLevels = 3;
 
-/// Boxes of a node's slots, from the leaves up; the node's own is returned.
+/// Refits a subtree from the leaves up and returns its bounding box.
 Box refit_node(std::vector<WideNode>& nodes, const BoxOf& box_of_leaf, std::uint32_t index, int level) {
     WideNode& node = nodes[index];
     Box boxes[kSlots] = {};

@@ -6,12 +6,13 @@
 namespace realcam {
 namespace {
 
-// One in sixty of the nodes gets all but a few percent of what moving every node would; the rest would cost more time
-// than the whole tree.
+// Moving one in sixty nodes achieves all but a few percent of the gain of moving every node, which would take longer
+// than building the tree.
 constexpr std::size_t kTrianglesForEach = 32;
 constexpr std::size_t kMostMoved = 1 << 15;
 constexpr int kRounds = 3;
-/// Nodes looked at for the place of one: thirty are usual. A bound for scenes where everything overlaps.
+/// Limit on the nodes visited in search of one insertion point: thirty are usual, but in some scenes everything
+/// overlaps.
 constexpr int kMostVisited = 512;
 
 Box both(Box a, const Box& b) {
@@ -23,7 +24,7 @@ bool smaller(const BinaryNode* a, const BinaryNode* b) {
     return half_area(a->box) < half_area(b->box);
 }
 
-/// Boxes and counts from a node to the root.
+/// Recomputes boxes and triangle counts from a node up to the root.
 void measure_upwards(InnerNode* node) {
     for (; node; node = node->parent) {
         node->box = both(node->child[0]->box, node->child[1]->box);
@@ -41,7 +42,8 @@ public:
     }
 
 private:
-    /// A node's children are smaller than itself, so the largest are found from above.
+    /// Finds the `count` nodes with the largest boxes. A node's box is at least as large as those of its children, so
+    /// that a search from the root finds them in order.
     void find_largest(std::size_t count) {
         largest_.clear();
         std::vector<BinaryNode*> heap = {&root_};
@@ -58,7 +60,8 @@ private:
         }
     }
 
-    /// The parent goes with the node, and the sibling takes its place.
+    /// Removes a node together with its parent, which the sibling replaces, and inserts both where the boxes grow
+    /// least.
     void move(BinaryNode& node) {
         InnerNode* parent = node.parent;
         if (!parent || !parent->parent) return;  // the root stays the root
@@ -85,8 +88,8 @@ private:
         by->parent = above;
     }
 
-    /// The node beside which `node` adds the least area; `known` costs `known_cost`. Best first: what lies below a node
-    /// costs at least what its ancestors grow by, and a parent as large as `node`.
+    /// Returns the new sibling for `node` that adds the least area; `known` would add `known_cost`. Best-first search:
+    /// below a node the cost is at least what its ancestors grow by, plus the area of `node` for the new parent.
     BinaryNode* best_place(const BinaryNode& node, BinaryNode* known, double known_cost) {
         const double own = half_area(node.box);
         BinaryNode* best = known;

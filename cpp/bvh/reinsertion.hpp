@@ -3,9 +3,10 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Takes the largest subtrees out, one by one, and puts each back where it makes the tree's boxes grow least (Bittner,
-/// Hapala and Havran, "Fast Insertion-Based Optimization of Bounding Volume Hierarchies", 2013). Splitting from above
-/// cannot separate a table from what stands on it; this does. For a tree that has been measured, which it stays.
+/// Removes the largest subtrees one by one and reinserts each where the tree's boxes grow least (Bittner, Hapala and
+/// Havran, "Fast Insertion-Based Optimization of Bounding Volume Hierarchies", 2013). Top-down splits cannot separate a
+/// table from the objects on it; reinsertion can. The tree must have been processed by measure(), whose results are
+/// kept up to date.
 void reinsert_largest(BinaryNode& root);
 
 }  // namespace REALCAM_NAMESPACE

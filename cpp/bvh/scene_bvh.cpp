@@ -18,8 +18,8 @@ Box box_of(const RenderSpaceMesh& mesh) {
     return box;
 }
 
-/// The box of a box's corners where an instance puts them. It is widened, because transforming a ray into the object's
-/// frame rounds its coordinates: hits on the very surface of the box must not be lost.
+/// Returns the bounding box of an object's box transformed by an instance. It is widened, because transforming a ray
+/// into the object's frame rounds its coordinates: hits on the surface of the box must not be lost.
 Box placed_box(const Box& box, const Affine<float>& render_from_object) {
     constexpr float kRoundings = 0x1p-20f, kInfinity = std::numeric_limits<float>::infinity();
     Box placed = {{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
@@ -39,7 +39,7 @@ Box instance_box(const SceneBvh& bvh, const RenderSpaceScene& scene, std::uint32
     const InstanceView& instance = scene.instances()[number];
     const Box& own = bvh.object_boxes[instance.object];
     Box box = placed_box(own, instance.render_from_object);
-    // Between two keys every point goes along a line, which does not leave the box of both.
+    // Between two keys every point moves along a line, which stays within the bounding box of both ends.
     for (std::int32_t k = 0; k < instance.key_count; ++k)
         grow(box, placed_box(own, scene.keys()[static_cast<std::size_t>(instance.first_key + k)]));
     return box;

@@ -3,19 +3,20 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// A ray as the boxes of a node are tested with, all eight at once.
+/// Ray in the form that tests the eight boxes of a node at once.
 ///
-/// The test must find the box of every triangle that meets_triangle would accept, or light leaks through edges. It sees
-/// corners displaced by up to 6 roundings of their distance from the ray's origin (measured along the largest axis).
-/// The parameter of a plane, converted back to a place on the axis, is off by up to 7. All boxes of a node are
-/// therefore made larger by 16 roundings of the distance of its farthest corner, and no other tolerance is needed.
+/// The test must find the box of every triangle that meets_triangle would accept, or light leaks through edges.
+/// meets_triangle sees vertices displaced by up to 6 roundings of their distance from the ray's origin (along the
+/// dominant axis). The parameter of a plane, converted back to a coordinate, is off by up to 7 roundings. All boxes of
+/// a node are therefore enlarged by 16 roundings of the distance of its farthest corner, and no other tolerance is
+/// needed.
 struct SlabRay {
-    Vec3f origin, per_axis;  ///< ray parameter for each unit along the axis
-    unsigned near_first, near_second, near_third;  ///< slots on the near side, of the dominant axis first
+    Vec3f origin, per_axis;  ///< ray parameter per unit length along each axis
+    unsigned near_first, near_second, near_third;  ///< masks of the slots on the near side, dominant axis first
     bool down_x, down_y, down_z;
-    std::uint32_t bits_of_32768;  ///< hidden from the compiler: an instruction has room for one constant
+    std::uint32_t bits_of_32768;  ///< kBitsOf32768, hidden from the compiler: an instruction has room for one constant
 
-    /// The components have a modulus in [0, 4), the largest of at least 1.
+    /// The direction's components have a magnitude in [0, 4), the largest of at least 1.
     REALCAM_INLINE SlabRay(Vec3f from, Vec3f direction) : origin(from) {
         down_x = direction.x < 0;
         down_y = direction.y < 0;
@@ -34,13 +35,13 @@ struct SlabRay {
         near_third = near_x ^ near_y ^ near_z ^ near_first ^ near_second;
     }
 
-    /// A bit for each slot whose box the ray meets at a parameter in [0, far]. Bits of empty slots mean nothing.
-    /// `is_short`: with half of the code, and some instructions more.
+    /// Returns a mask of the slots whose boxes the ray intersects at a parameter in [0, far]. Bits of empty slots are
+    /// undefined. `is_short`: half the code size, for a few more instructions.
     template <bool is_short>
     REALCAM_INLINE unsigned slots_met(const WideNode& node, float far) const {
         const Vec3f to = node.origin - origin;
-        // The reach is 18 times 255 steps: once the farthest plane, and 17 times, which 2^-20 makes 2^-8 of a step, for
-        // the two roundings of 32768 steps.
+        // The reach is 18 * 255 steps: 255 steps for the farthest plane, and 17 * 255 steps, which 2^-20 reduces to
+        // 2^-8 of a step, for the two roundings of 32768 steps.
         const float reach = std::bit_cast<float>(node.step_z_reach << 16);
         const float slack =
             0x1p-20f * (std::fmax(std::fmax(std::fabs(to.x), std::fabs(to.y)), std::fabs(to.z)) + reach);
@@ -71,7 +72,7 @@ struct SlabRay {
         return ~missed & 0xffu;
     }
 
-    /// The slot, as a bit, that comes first along the ray. `slots` is not 0.
+    /// Returns the bit of the slot that comes first along the ray. `slots` is not 0.
     REALCAM_INLINE unsigned nearest(unsigned slots) const {
         slots = slots & near_first ? slots & near_first : slots;
         slots = slots & near_second ? slots & near_second : slots;
@@ -79,7 +80,7 @@ struct SlabRay {
     }
 
 private:
-    /// The planes of one axis as ray parameters.
+    /// Box planes of one axis as ray parameters.
     struct Axis {
         float step, near_start, far_start;
 
@@ -92,7 +93,7 @@ private:
         REALCAM_INLINE float far(float plane) const { return std::fma(plane, step, far_start); }
     };
 
-    /// The planes of half of a node's slots, on the near and on the far side.
+    /// Near and far planes of half of a node's slots.
     struct FourSlots {
         std::uint32_t near_x, near_y, near_z, far_x, far_y, far_z;
     };
@@ -106,10 +107,10 @@ private:
         return byte_above_32768(planes, i, bits_of_32768);
     }
 
-    /// A component of less than 2^-40 of the largest is raised to it: that moves the ray by less than a rounding, and
-    /// no plane is at infinity, or at 0 times infinity.
+    /// Returns the reciprocal of a component whose magnitude is raised to at least 2^-40 (the largest component is at
+    /// least 1): that moves the ray by less than a rounding, and no plane is at infinity, or at 0 times infinity.
     REALCAM_INLINE static float reciprocal(float component) {
-        // The sign of -0 is that of its bool above.
+        // -0 counts as positive, as in down_x, down_y and down_z.
         const float least = component < 0 ? -0x1p-40f : 0x1p-40f;
         return quotient(1.0f, std::fabs(component) < 0x1p-40f ? least : component);
     }

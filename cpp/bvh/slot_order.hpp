@@ -3,9 +3,9 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Puts children into slots so that the slot's number says where in the node a child lies (see WideNode), and a ray
-/// finds the near ones first. It takes the pair that fits best, then the best of those left. `slot_of` gets a slot for
-/// each child.
+/// Assigns children to slots so that the slot's index tells where in the node a child lies (see WideNode), and a ray
+/// finds near children first. Greedy: takes the best pair of a child and a slot, then the best of the remaining ones.
+/// `slot_of` receives the slot of each child.
 inline void order_slots(const Box* boxes, unsigned count, unsigned (&slot_of)[kSlots]) {
     Vec3d centre[kSlots], middle = {0, 0, 0};
     for (unsigned c = 0; c < count; ++c) {

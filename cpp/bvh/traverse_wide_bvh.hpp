@@ -5,21 +5,21 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Slots of one node that a ray meets and has not entered yet.
+/// Child slots of a node that the ray intersects and has not entered yet.
 struct PendingSlots {
     std::uint32_t first_child;
-    std::uint32_t slots;  ///< bits 0 to 7: to be entered; bits 8 to 15: all that hold nodes
+    std::uint32_t slots;  ///< bits 0 to 7: slots to enter; bits 8 to 15: all slots that hold nodes
 };
 
-/// Where a ray has still to go; each level of the hierarchy puts at most one entry here. Not a part of Traversal: an
-/// array with a running index lies in memory on a GPU, and would draw the whole ray after it.
+/// Traversal stack; each level of the BVH pushes at most one entry. It is not a member of Traversal: an array with a
+/// dynamic index is placed in memory on a GPU, and so would be the whole ray around it.
 using TraversalStack = PendingSlots[kMaxBvhDepth];
 
-/// A ray on its way through the hierarchy. It can be left after each step, so that a GPU's lanes whose rays have ended
-/// can take new ones before the longest of the warp has.
+/// Traversal state of a ray. It can be suspended after each step, so that a GPU's lanes whose rays have ended can take
+/// new ones before the longest ray of the warp ends.
 ///
-/// For `any`, it ends at the first triangle that is found. A ray with a number that is not finite (`far` may be
-/// infinite), or without a direction of normal floating-point size, meets nothing.
+/// With `any`, traversal ends at the first triangle found. A ray hits nothing if one of its numbers is not finite
+/// (`far` may be infinite) or if the largest component of its direction is zero or subnormal.
 class Traversal {
 public:
     REALCAM_INLINE Traversal(Vec3f origin, Vec3f direction, float far, bool any)
@@ -27,7 +27,8 @@ public:
 
     REALCAM_INLINE bool active() const { return ((pending_.slots & 0xffu) | triangles_) != 0; }
 
-    /// One node, unless triangles of the last one are left, and up to kTrianglesPerStep triangles. The ray is active.
+    /// Enters one node, unless triangles of the last one are pending, and tests up to kTrianglesPerStep triangles. The
+    /// ray must be active.
     template <class SceneRay>
     REALCAM_INLINE void step(const WideBvhView& bvh, TraversalStack& stack, const SceneRay& scene_ray) {
         if (!triangles_) enter_node<false>(bvh.nodes, stack);
@@ -37,7 +38,7 @@ public:
             pending_ = stack[--waiting_];
     }
 
-    /// After the last step. No hit: kNoTriangle, and `far` as the distance.
+    /// Returns the result after the last step: without a hit, kNoTriangle at the distance `far`.
     REALCAM_INLINE Hit hit(float far) const {
         if (hit_.triangle == kNoTriangle) return {far, kNoTriangle, 0, 0};
         Hit hit = hit_;
@@ -46,7 +47,7 @@ public:
     }
 
 protected:
-    /// Nodes with more are rare, and the other lanes would wait.
+    /// Most triangles tested per step: nodes with more are rare, and the other lanes would wait.
     static constexpr int kTrianglesPerStep = 2;
 
     REALCAM_INLINE static std::uint32_t exponent_of(float size) {
@@ -54,7 +55,8 @@ protected:
         return exponent < 253u ? exponent : 253u;
     }
 
-    /// A power of two makes the largest component 1 to 2 (4 at the end of the range), so that nothing overflows.
+    /// Scales the direction by a power of two, so that its largest component is 1 to 2 (4 at the end of the range) and
+    /// nothing overflows.
     REALCAM_INLINE Traversal(Vec3f origin, Vec3f direction, float far, bool any, std::uint32_t exponent)
         : any_(any),
           scale_(std::bit_cast<float>((254u - exponent) << 23)),
@@ -65,7 +67,8 @@ protected:
         if (!(sum - sum == 0) || exponent == 0 || !(hit_.distance > 0)) pending_.slots = 0;
     }
 
-    /// The ray in another frame, as far as it goes by now, before its first step there. What waits keeps waiting.
+    /// Transforms the ray into another frame and keeps its hit and its end so far; called before its first step there.
+    /// Stack entries are kept.
     REALCAM_INLINE void turn_to(Vec3f origin, Vec3f direction) {
         const Hit so_far = hit_;
         const int waiting = waiting_;
@@ -77,7 +80,8 @@ protected:
         waiting_ = waiting;
     }
 
-    /// Up to kTrianglesPerStep of the last node; for `any`, until the first hit. Whether there was one.
+    /// Tests up to kTrianglesPerStep triangles of the last node; with `any`, only until the first hit. Returns true if
+    /// there was a hit.
     template <class SceneRay>
     REALCAM_INLINE bool meet_triangles(const BvhTriangle* triangles, std::uint32_t instance,
                                        const SceneRay& scene_ray) {
@@ -102,7 +106,8 @@ protected:
         return met;
     }
 
-    /// Goes to the next node in order, and leaves in `pending_` and `triangles_` what the ray meets there.
+    /// Enters the next node in order along the ray, and stores its intersected children and triangles in `pending_` and
+    /// `triangles_`.
     template <bool is_short>
     REALCAM_INLINE void enter_node(const WideNode* nodes, PendingSlots* stack) {
         const unsigned slot = slabs_.nearest(pending_.slots & 0xffu);
@@ -118,7 +123,7 @@ protected:
         triangles_ = triple_bits(met) & content_;
     }
 
-    /// Each of the lower eight bits three times, as the triangles of a node lie.
+    /// Repeats each of the lower eight bits three times, which is the layout of the triangle bits in WideNode::content.
     REALCAM_INLINE static unsigned triple_bits(unsigned slots) {
         slots = (slots | slots << 8) & 0x00f00fu;
         slots = (slots | slots << 4) & 0x0c30c3u;
@@ -130,13 +135,15 @@ protected:
     float scale_;
     SlabRay slabs_;
     ShearedRay sheared_;
-    Hit hit_;  ///< the ray's end, until there is one
+    Hit hit_;  ///< its distance is the ray's end as long as there is no hit
     PendingSlots pending_ = {0, 0x0101u};
-    std::uint32_t triangles_ = 0, content_ = 0, first_triangle_ = 0;  ///< of the last node
+    /// Triangles of the last node yet to be tested, as bits of its content, and its content and first triangle.
+    std::uint32_t triangles_ = 0, content_ = 0, first_triangle_ = 0;
     int waiting_ = 0;
 };
 
-/// Of both kinds of rays, because a kernel with a traversal for each is slower (docs/decisions/gpu-kernel.md).
+/// Serves closest-hit and any-hit rays, because a kernel with a traversal for each is slower
+/// (docs/decisions/gpu-kernel.md).
 template <class SceneRay>
 REALCAM_ONE_COPY Hit traverse(const WideBvhView& bvh, Vec3f origin, Vec3f direction, float far, bool any,
                               SceneRay scene_ray) {
@@ -146,15 +153,16 @@ REALCAM_ONE_COPY Hit traverse(const WideBvhView& bvh, Vec3f origin, Vec3f direct
     return ray.hit(far);
 }
 
-/// The nearest triangle at a distance in [0, far), in lengths of the direction, which need not be 1. Barycentrics as
-/// Embree's: of the second and third corner. No hit: kNoTriangle, and `far` as the distance.
+/// Returns the nearest hit at a distance in [0, far), in units of the direction's length, which need not be 1.
+/// Barycentric coordinates are those of the second and third vertex, as in Embree. Without a hit: kNoTriangle at the
+/// distance `far`.
 template <class SceneRay = PlainSceneRay>
 REALCAM_HD inline Hit closest_hit(const WideBvhView& bvh, Vec3f origin, Vec3f direction, float far,
                                   const SceneRay& scene_ray = {}) {
     return traverse(bvh, origin, direction, far, false, scene_ray);
 }
 
-/// Whether there is a triangle at a distance in [0, far), in lengths of the direction.
+/// True if there is a hit at a distance in [0, far), in units of the direction's length.
 template <class SceneRay = PlainSceneRay>
 REALCAM_HD inline bool any_hit(const WideBvhView& bvh, Vec3f origin, Vec3f direction, float far,
                                const SceneRay& scene_ray = {}) {

@@ -4,26 +4,27 @@
 
 namespace REALCAM_NAMESPACE {
 
-// Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection", JCGT 2013: corners are moved and sheared so that the
-// ray is the z axis. The signs of three edge functions say on which side of an edge it passes. A corner's sheared place
-// depends on the corner and the ray alone, so the triangles at an edge agree, if the signs are right.
+// Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection", JCGT 2013: vertices are translated and sheared so
+// that the ray is the z axis. The signs of three edge functions tell on which side of an edge it passes. A sheared
+// vertex depends on the vertex and the ray alone, so the triangles at an edge agree if the signs are right.
 
-/// a b - c d with the right sign, and 0 only if it is 0, as long as nothing underflows (Jeannerod, Louvet and Muller,
-/// "Further analysis of Kahan's algorithm for the accurate computation of 2x2 determinants", 2013: the error is at most
-/// 1.5 units in the last place). So there is no edge case to be repeated in double precision, as the paper does.
+/// Returns a b - c d with the right sign, and 0 only if it is 0, as long as nothing underflows (Jeannerod, Louvet and
+/// Muller, "Further analysis of Kahan's algorithm for the accurate computation of 2x2 determinants", 2013: the error is
+/// at most 1.5 units in the last place). The paper's fallback to double precision for edge cases is therefore not
+/// needed.
 REALCAM_INLINE float difference_of_products(float a, float b, float c, float d) {
     const float cd = c * d;
     return std::fma(a, b, -cd) + std::fma(-c, d, cd);
 }
 
-/// What all triangles need of a ray.
+/// Ray constants shared by all triangle tests.
 struct ShearedRay {
     Vec3f origin;
-    float slope_x, slope_y;  ///< of the two lesser axes along the dominant one
+    float slope_x, slope_y;  ///< slopes of the two minor axes along the dominant one
     float per_z;  ///< ray parameter along the dominant axis
     int dominant;
 
-    /// The components have a modulus in [0, 4), the largest of at least 1.
+    /// The direction's components have a magnitude in [0, 4), the largest of at least 1.
     REALCAM_INLINE ShearedRay(Vec3f from, Vec3f direction) : origin(from) {
         const float x = std::fabs(direction.x), y = std::fabs(direction.y), z = std::fabs(direction.z);
         dominant = x > y ? (x > z ? 0 : 2) : (y > z ? 1 : 2);
@@ -33,7 +34,8 @@ struct ShearedRay {
         slope_y = d.y * per_z;
     }
 
-    /// Explicitly fused, so that no compiler treats one corner differently from another.
+    /// Returns a vertex in the sheared frame. Explicitly fused, so that no compiler treats one vertex differently from
+    /// another.
     REALCAM_INLINE Vec3f sheared(Vec3f corner) const {
         const Vec3f p = dominant_last(corner - origin);
         return {std::fma(-slope_x, p.z, p.x), std::fma(-slope_y, p.z, p.y), p.z};
@@ -45,16 +47,16 @@ private:
     }
 };
 
-/// Whether the ray meets the triangle, from either side, at a parameter in [0, hit.distance). If so, `hit` says where.
+/// True if the ray hits the triangle, from either side, at a parameter in [0, hit.distance); then sets `hit`.
 REALCAM_INLINE bool meets_triangle(const ShearedRay& ray, const BvhTriangle& triangle, Hit& hit) {
     const Vec3f a = ray.sheared(triangle.a), b = ray.sheared(triangle.b), c = ray.sheared(triangle.c);
     const float u = difference_of_products(c.x, b.y, c.y, b.x);
     const float v = difference_of_products(a.x, c.y, a.y, c.x);
     const float w = difference_of_products(b.x, a.y, b.y, a.x);
     const bool some_left = u < 0 || v < 0 || w < 0, some_right = u > 0 || v > 0 || w > 0;
-    if (some_left == some_right) return false;  // outside, or seen from its edge
-    // No product of a coordinate with an edge function: in a scene of 1e18 m it would overflow. Twice the area, there
-    // 2^126 at most, still has an inverse that is a normal number.
+    if (some_left == some_right) return false;  // outside, or edge-on
+    // A product of a coordinate and an edge function would overflow in a scene of 1e18 m. Twice the area, at most 2^126
+    // there, still has a reciprocal that is a normal number.
     const float share = quotient(1.0f, u + v + w);
     const float u_share = u * share, v_share = v * share, w_share = w * share;
     const float t = (u_share * a.z + v_share * b.z + w_share * c.z) * ray.per_z;

@@ -5,27 +5,27 @@
 
 namespace REALCAM_NAMESPACE {
 
-// A hierarchy of boxes with up to eight children to a node, and boxes of one byte to a plane (Ylitie, Karras and Laine,
-// "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs", HPG 2017). Two things differ from the
-// paper. Steps are bfloat16 numbers instead of powers of two, which makes them three tenths smaller on average. Every
-// slot has three bits for its triangles, so the box test has to find only the mask of the slots that a ray meets.
+// BVH with up to eight children per node and box planes of one byte (Ylitie, Karras and Laine, "Efficient Incoherent
+// Ray Traversal on GPUs Through Compressed Wide BVHs", HPG 2017). Two things differ from the paper. Steps are bfloat16
+// numbers instead of powers of two, which makes them three tenths smaller on average. Every slot has three bits for its
+// triangles, so the box test only has to find the mask of the slots that a ray intersects.
 
 inline constexpr unsigned kSlots = 8;
 inline constexpr unsigned kTrianglesPerSlot = 3;
 
-/// Nodes on the way from the root to the deepest, at most: what a traversal's stack must hold. The builder keeps to it.
+/// Greatest depth in nodes, which a traversal's stack must hold; the builder guarantees it.
 inline constexpr unsigned kMaxBvhDepth = 48;
 
-/// Eight slots, each with a node, up to three triangles, or nothing. Bit 0 of a slot's number is set if its box lies
-/// towards +x of the others, bit 1 for +y, bit 2 for +z, as far as there is room.
+/// Node with eight slots; a slot holds a child node or up to three triangles, or is empty. Bit 0 of a slot's index is
+/// set if its box lies towards +x of the others, bit 1 for +y, bit 2 for +z, as far as the other children allow.
 struct alignas(16) WideNode {
     Vec3f origin;
     std::uint32_t steps_xy;  ///< two bfloat16 numbers, x in the upper half
-    std::uint32_t step_z_reach;  ///< likewise the step of z, and 18 * 255 times the largest step
-    std::uint32_t first_child;  ///< the node in the first slot that holds one; the others follow in the order of slots
-    std::uint32_t first_triangle;  ///< likewise
-    std::uint32_t content;  ///< bits 3 s to 3 s + 2: triangles in slot s; bit 24 + s: it holds a node
-    std::uint32_t lower[3][2];  ///< for each axis a byte for each slot: the plane at origin + byte * step
+    std::uint32_t step_z_reach;  ///< two bfloat16 numbers: the step of z, and 18 * 255 times the largest step
+    std::uint32_t first_child;  ///< the node in the first slot that holds one; other child nodes follow in slot order
+    std::uint32_t first_triangle;  ///< the first triangle; others follow in slot order
+    std::uint32_t content;  ///< bits 3 s to 3 s + 2: triangles in slot s; bit 24 + s: slot s holds a node
+    std::uint32_t lower[3][2];  ///< for each axis one byte per slot: the plane at origin + byte * step
     std::uint32_t upper[3][2];
 };
 static_assert(sizeof(WideNode) == 80);
@@ -40,21 +40,21 @@ struct alignas(16) BvhTriangle {
 };
 static_assert(sizeof(BvhTriangle) == 48);
 
-/// What a traversal reads: node 0 is the root.
+/// Non-owning view for traversal; node 0 is the root.
 struct WideBvhView {
     const WideNode* nodes;
     const BvhTriangle* triangles;
 };
 
-/// The transform of an instance, with its object's own hierarchy.
+/// Leaf of the BVH over the instances: an instance's transform and the BVH of its object.
 struct alignas(16) BvhInstance {
     InverseAffine<float> object_from_render;
     WideBvhView object;
-    std::uint32_t index;  ///< in the scene's list
-    std::uint32_t moves;  ///< not 0: while the shutter is open, and the transform is that of its begin
+    std::uint32_t index;  ///< in the scene's list of instances
+    std::uint32_t moves;  ///< not 0 if it moves while the shutter is open; the transform is then that at shutter open
 };
 
-/// Static geometry's triangles, and a hierarchy over objects: its slots hold instances instead of triangles.
+/// BVH of the static geometry, and a BVH over the instances: its slots hold instances instead of triangles.
 struct SceneBvhView {
     WideBvhView static_geometry;
     const WideNode* nodes;

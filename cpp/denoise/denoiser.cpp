@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t kPixelBytes = 3 * sizeof(float);
 
-/// A handle that its library releases.
+/// Owning handle, released through its library.
 template <class Handle>
 class Owned {
 public:
@@ -34,10 +34,11 @@ private:
     void (*release_)(Handle);
 };
 
-/// The network sees as much around a pixel; of smaller pictures it makes other light.
+/// Least width and height in pixels: the network reads a neighbourhood of this size, and changes the light of smaller
+/// pictures.
 constexpr int kLeastSide = 16;
 
-/// Three floats per pixel for a size, in which pixels beyond the picture have what its edge has.
+/// Crops a picture of three floats per pixel to a size, or extends it by repeating its edge pixels.
 std::vector<float> resized(const float* values, int width, int height, int to_width, int to_height) {
     std::vector<float> result;
     result.reserve(3 * static_cast<std::size_t>(to_width) * static_cast<std::size_t>(to_height));
@@ -50,7 +51,7 @@ std::vector<float> resized(const float* values, int width, int height, int to_wi
     return result;
 }
 
-/// The GPU of a device's name; none where the CPU is meant.
+/// Returns the ordinal of the GPU that a device name stands for, or std::nullopt for the CPU.
 std::optional<int> gpu_of(const oidn::Library& library, const std::string& device) {
     if (device == "cpu") return std::nullopt;
     int ordinal = 0;
@@ -69,7 +70,7 @@ struct Denoiser::Parts {
           device(new_device(), library.release_device) {
         if (!gpu) {
             library.set_device_int(device, "numThreads", threads);
-            // The threads are also those of the renderer, which are not to stay on one core each.
+            // The renderer uses the same threads, which must not be pinned to a core each.
             library.set_device_bool(device, "setAffinity", false);
         }
         library.commit_device(device);
@@ -93,7 +94,7 @@ struct Denoiser::Parts {
             throw DeviceError(std::string("Open Image Denoise: ") + (message ? message : "no device"));
     }
 
-    /// Filters and their memory are made anew for another size, which takes as long as they need for small pictures.
+    /// Filters and buffers for one picture size and quality. Making them takes as long as denoising a small picture.
     struct Filters {
         Filters(const Parts& parts, int width, int height, DenoiseQuality quality)
             : width(width),
@@ -110,7 +111,7 @@ struct Denoiser::Parts {
                     layers.push_back(parts.filter());
                     set(parts, layers.back(), name, *image);
                     set(parts, layers.back(), "output", *image);
-                    // High takes more than twice the time, and the picture is no nearer to the converged one.
+                    // kHigh takes more than twice the time, and the picture is no closer to the converged one.
                     parts.library.set_filter_int(layers.back(), "quality", oidn::kBalanced);
                     parts.library.commit_filter(layers.back());
                 }
@@ -153,7 +154,7 @@ struct Denoiser::Parts {
 
     const Filters& filters_for(int width, int height, DenoiseQuality quality) {
         if (!filters || filters->width != width || filters->height != height || filters->quality != quality) {
-            filters.reset();  // before the next take as much memory
+            filters.reset();  // frees their memory before the next are made
             filters = std::make_unique<Filters>(*this, width, height, quality);
         }
         return *filters;
@@ -161,7 +162,7 @@ struct Denoiser::Parts {
 
     void execute(oidn::Filter filter, std::atomic<bool>& stop, bool heeds) const {
         const auto goes_on = [](void* stopped, double) { return !*static_cast<std::atomic<bool>*>(stopped); };
-        // Asking costs time on a GPU.
+        // A progress monitor costs time on a GPU.
         library.set_filter_monitor(filter, heeds ? oidn::Monitor(goes_on) : nullptr, &stop);
         library.commit_filter(filter);
         library.execute_filter(filter);
@@ -223,21 +224,23 @@ void denoise(Image& image, LayerSet wanted, Denoiser& denoiser, const KeepGoing&
         const auto is_it = [&](const LayerImage& other) { return other.layer == layer; };
         return std::find_if(image.layers.begin(), image.layers.end(), is_it)->values.data();
     };
-    // Lamps out of focus are discs, and their noise is fine grain, which a network takes for detail and spreads.
+    // Light traced from lamps is not denoised: lamps out of focus are discs, and their noise is fine grain, which a
+    // network takes for detail and spreads.
     const float* traced = values_of(Layer::traced_light);
     std::vector<float> rest(image.exposure.begin(), image.exposure.end());
     for (std::size_t i = 0; i < rest.size(); ++i) rest[i] = std::max(rest[i] - traced[i], 0.0f);
     std::vector<float> denoised =
         denoiser.denoised({image.width, image.height, rest.data(), values_of(Layer::albedo), values_of(Layer::normal)},
                           DenoiseQuality::high, keep_going);
-    // Pixels that lamps outshine keep their noise: it is invisible beside the lamp, and part of it is the lamp's light.
+    // Pixels dominated by traced light keep their noise: it is invisible beside the lamp, and part of it is the lamp's
+    // light.
     for (std::size_t i = 0; i < rest.size(); ++i) {
         const float all = traced[i] + denoised[i], share = all > 0 ? traced[i] / all : 0;
         denoised[i] += share * (rest[i] - denoised[i]) + traced[i];
     }
     image.exposure = PictureFloats(std::move(denoised));
     keep_layers(image, wanted);
-    // These describe the noise, or have it.
+    // These layers describe the noise or contain it.
     constexpr LayerSet kNoisy = {Layer::variance, Layer::dual_pixel_left, Layer::dual_pixel_right};
     std::erase_if(image.layers, [&](const LayerImage& layer) { return kNoisy.has(layer.layer); });
 }

@@ -9,11 +9,11 @@
 namespace realcam {
 
 enum class DenoiseQuality {
-    high,  ///< first the layers are denoised, then the picture by them
-    fast,  ///< the picture by the layers as they are: for previews
+    high,  ///< denoises the guide layers first, then the picture with them
+    fast,  ///< denoises the picture with noisy guide layers: for previews
 };
 
-/// What Open Image Denoise reads: three floats per pixel each, row by row.
+/// Input of Open Image Denoise: three floats per pixel in each array, row by row.
 struct NoisyPicture {
     int width, height;
     const float* exposure;  ///< linear, not negative
@@ -21,21 +21,22 @@ struct NoisyPicture {
     const float* normal;    ///< -1 to 1
 };
 
-/// Intel's Open Image Denoise, which guesses the picture without noise. Not for two threads at once.
+/// Denoiser that uses Intel's Open Image Denoise. Not to be used by two threads at once.
 class Denoiser {
 public:
-    /// `library`: see oidn::library. `device`: as make_session has it; of several GPUs the first is taken, and the CPU
-    /// where "auto" finds none that the library can use. `threads`: of the CPU; 0: all. Throws InputError where the
-    /// library is missing, and DeviceError where the device is no use to it.
+    /// `library`: see oidn::library. `device`: a name as for make_session; of several GPUs the first is used, and
+    /// "auto" is the CPU if the library supports no GPU. `threads`: number of CPU threads; 0: all. Throws InputError if
+    /// the library is missing, and DeviceError if it cannot use the device.
     explicit Denoiser(const std::string& device = "auto", int threads = 0, const std::string& library = "");
     ~Denoiser();
     Denoiser(const Denoiser&) = delete;
     Denoiser& operator=(const Denoiser&) = delete;
 
-    /// Its name and version, for people and for the metadata of pictures.
+    /// Returns the library's name and version, for display and for the metadata of pictures.
     std::string name() const;
 
-    /// The exposure without noise. Throws DeviceError, and Cancelled.
+    /// Returns the denoised exposure. Throws DeviceError if the library fails, and Cancelled if `keep_going` returns
+    /// false.
     std::vector<float> denoised(const NoisyPicture& picture, DenoiseQuality quality, const KeepGoing& keep_going = {});
 
 private:
@@ -43,9 +44,9 @@ private:
     std::unique_ptr<Parts> parts_;
 };
 
-/// Takes the noise from the exposure of a picture, by its kDenoiserLayers, which it must have, but for that of the
-/// light that was traced from lights. Layers that are not `wanted` go, and so does the variance, which would be that of
-/// the noise. Throws as Denoiser.
+/// Denoises the exposure of a picture that has all kDenoiserLayers, except for the light that was traced from lamps.
+/// Removes the layers that are not `wanted`, and those that describe or contain the noise (variance, dual pixels).
+/// Throws as Denoiser.
 void denoise(Image& image, LayerSet wanted, Denoiser& denoiser, const KeepGoing& keep_going);
 
 }  // namespace realcam

@@ -67,7 +67,7 @@ std::string path_or_default(const std::string& path) {
 
 const Library& library(const std::string& path) {
     static std::mutex mutex;
-    static auto* const libraries = new std::map<std::string, Library>;  // threads of theirs may outlive main
+    static auto* const libraries = new std::map<std::string, Library>;  // never freed: their threads may outlive main
     const std::string wanted = path_or_default(path);
     const std::lock_guard lock(mutex);
     const auto known = libraries->find(wanted);

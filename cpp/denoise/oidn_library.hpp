@@ -1,6 +1,6 @@
 #pragma once
-// The functions of Open Image Denoise's C interface (version 2) that are used here. The library is loaded when a
-// picture is to be denoised, so that nothing else needs it.
+// Functions of Open Image Denoise's C interface (version 2). The library is loaded when a picture is to be denoised, so
+// that nothing else depends on it.
 
 #include <cstddef>
 #include <string>
@@ -41,8 +41,8 @@ struct Library {
     void (*release_filter)(Filter);
 };
 
-/// The library of a path; empty: that of the environment variable REALCAM_OIDN, or else the system's. It stays loaded.
-/// Throws InputError, which says what to install, where there is none.
+/// Returns the library at a path; if empty, the one that the environment variable REALCAM_OIDN names, or else the
+/// system's. It stays loaded. Throws InputError, which says what to install, if it cannot be loaded.
 const Library& library(const std::string& path);
 
 }  // namespace realcam::oidn

@@ -1,4 +1,4 @@
-// What the CUDA backend offers, where it was not built: the plug-in does it, where there is one.
+// Implements the functions of the CUDA backend in builds without it: forwards them to the plug-in, if there is one.
 #include <cstdlib>
 #include <utility>
 
@@ -24,7 +24,7 @@ namespace {
 struct Plugin {
     const CudaBackend* backend = nullptr;
     bool is_named = false;
-    std::string failure;  ///< where there is no backend
+    std::string failure;  ///< reason, if `backend` is null
 };
 
 std::string& named_path() {
@@ -52,7 +52,7 @@ const Plugin& plugin() {
     return once;
 }
 
-/// Throws DeviceError where there is none.
+/// Throws DeviceError if there is no plug-in or it cannot be loaded.
 const CudaBackend& backend() {
     if (!plugin().backend) throw DeviceError(plugin().failure);
     return *plugin().backend;

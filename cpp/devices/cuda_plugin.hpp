@@ -5,16 +5,16 @@ namespace realcam {
 
 struct CudaBackend;
 
-/// Loads the plug-in of a path, which stays loaded. Throws DeviceError where there is none, and where it is of another
-/// version or build.
+/// Loads the plug-in at a path; it stays loaded. Throws DeviceError if it cannot be loaded, or is of another version or
+/// build.
 const CudaBackend& load_cuda_plugin(const std::string& path);
 
-/// Where the plug-in is, for a build without the CUDA backend; empty: nowhere. To be said before it is first wanted.
-/// The environment's REALCAM_CUDA_PLUGIN goes before.
+/// Sets the path of the plug-in, for a build without the CUDA backend; empty: no plug-in. To be called before the
+/// plug-in is first used. The environment variable REALCAM_CUDA_PLUGIN takes precedence.
 void name_cuda_plugin(const std::string& path);
 
-/// In one sentence, why the plug-in that is named gives no GPU. Empty where it does, where none is named, and in a
-/// build that has the CUDA backend inside.
+/// Returns one sentence that says why the named plug-in provides no GPU. Empty if it provides one, if no plug-in is
+/// named, and in a build with the CUDA backend.
 std::string why_no_gpu_by_plugin();
 
 }  // namespace realcam

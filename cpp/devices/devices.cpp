@@ -18,7 +18,7 @@ namespace {
                      "\"; auto, cpu, cuda (all GPUs), cuda:0 or cuda:0,1 is wanted (`realcam devices` lists them)");
 }
 
-/// The numbers after "cuda:"; none for "cuda".
+/// Returns the ordinals after "cuda:"; empty for "cuda".
 std::vector<int> ordinals_of(const std::string& device) {
     std::vector<int> ordinals;
     if (device == "cuda") return ordinals;
@@ -50,7 +50,8 @@ std::unique_ptr<Session> make_gpu_session(std::vector<int> ordinals) {
     return make_cuda_session(ordinals, fast_pupil_tracer());
 }
 
-/// The ordinal of the only GPU of a device. `what_happens`: there, for the error.
+/// Returns the ordinal of the one GPU that a device name stands for. `what_happens`: begins the error message if the
+/// name stands for several.
 int one_gpu(const std::string& device, const std::string& what_happens) {
     if (device != "cuda" && !device.starts_with("cuda:")) fail_unknown(device);
     const std::vector<int> ordinals = ordinals_of(device);
@@ -58,7 +59,7 @@ int one_gpu(const std::string& device, const std::string& what_happens) {
     return cuda_device(ordinals.empty() ? 0 : ordinals.front()).ordinal;
 }
 
-/// A GPU that is no use to this build is passed over.
+/// Opens the first GPU, or the CPU if there is no GPU that this build supports.
 std::unique_ptr<Session> make_best_session(const DeviceNotice& notice) {
     std::string why_not;
     try {

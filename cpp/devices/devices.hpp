@@ -9,28 +9,29 @@ namespace realcam {
 
 class Session;
 
-/// What pictures can be taken with, by the name that make_session takes.
+/// Device to render on, by the name that make_session takes.
 struct Device {
     std::string name;         ///< cpu, cuda:0, cuda:1, ...
-    std::string description;  ///< for people
+    std::string description;  ///< for display
 };
 
-/// All devices of this machine, the CPU first.
+/// Returns all devices of this machine, the CPU first.
 std::vector<Device> devices();
 
-/// Told a sentence for people: why "auto" is the CPU, where a GPU or the plug-in for GPUs is there but of no use.
+/// Receives one sentence for the user: why "auto" is the CPU although a GPU or the plug-in for GPUs is present.
 using DeviceNotice = std::function<void(const std::string&)>;
 
-/// "auto": the first GPU if there is one that this build has code for, else the CPU. "cpu". "cuda": all GPUs. "cuda:1",
-/// "cuda:0,1": those. Throws InputError for another name, and DeviceError where the device is not there or does not
-/// work.
+/// Opens a session on a device. "auto": the first GPU if this build has code for it, else the CPU. "cpu". "cuda": all
+/// GPUs. "cuda:1", "cuda:0,1": these GPUs. Throws InputError for another name, and DeviceError if the device is missing
+/// or does not work.
 std::unique_ptr<Session> make_session(const std::string& device, const DeviceNotice& notice);
 
-/// The same on one device, for frames: "auto" and "cuda" are the first GPU.
+/// Opens a session on a single device, for live frames: "cuda" is the first GPU, and several GPUs are an InputError.
+/// Otherwise as make_session.
 std::unique_ptr<Session> make_live_session(const std::string& device, const DeviceNotice& notice);
 
-/// The one GPU that rays alone are traced on, by its ordinal; none for the CPU. "cuda" is the first; for the rest, and
-/// for errors, see make_session.
+/// Returns the ordinal of the single GPU for tracing given rays, or std::nullopt for the CPU. "cuda" is the first GPU;
+/// see make_session for other names and for errors.
 std::optional<int> gpu_for_rays(const std::string& device);
 
 }  // namespace realcam

@@ -76,7 +76,7 @@ BinaryTree::BinaryTree(std::size_t triangles, const BoxOf& box_of, const KeepGoi
     arguments.primitives = primitives.data();
     arguments.primitiveCount = arguments.primitiveArrayCapacity = primitives.size();
     arguments.maxLeafSize = 1;
-    arguments.maxDepth = 1024;  // chains are dealt with later, see balance()
+    arguments.maxDepth = 1024;  // balance() flattens chains later
     arguments.createNode = create_inner;
     arguments.createLeaf = create_leaf;
     arguments.setNodeChildren = set_children;

@@ -1,5 +1,5 @@
 #pragma once
-// Embree 3 and 4 differ in how a query is called; this is the one place that knows.
+// Wraps the difference between the queries of Embree 3 and 4.
 #if REALCAM_EMBREE_MAJOR >= 4
 #include <embree4/rtcore.h>
 #else

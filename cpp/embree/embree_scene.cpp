@@ -17,7 +17,7 @@ void EmbreeScene::check() const {
 
 EmbreeScene::OwnScene EmbreeScene::new_scene() const {
     OwnScene scene(rtcNewScene(device_));
-    // Robust: rays that hit an edge or a sliver's corner must not slip between two triangles.
+    // Robust: rays that hit an edge or the corner of a sliver must not slip between two triangles.
     rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
     rtcSetSceneBuildQuality(scene.get(), RTC_BUILD_QUALITY_MEDIUM);
     return scene;
@@ -30,7 +30,7 @@ void EmbreeScene::commit(const OwnScene& scene) const {
     check();
 }
 
-/// Embree's filter: takes back hits at which the ray goes on.
+/// Embree's filter function: rejects hits at which the ray passes through the surface.
 void EmbreeScene::let_through(const RTCFilterFunctionNArguments* hits) {
     const auto& [mesh, instance_count] = *static_cast<const MeshWithHoles*>(hits->geometryUserPtr);
     for (unsigned i = 0; i < hits->N; ++i) {

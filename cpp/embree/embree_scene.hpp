@@ -10,19 +10,19 @@
 
 namespace realcam {
 
-/// A scene in render space with its Embree BVHs: one for static geometry and, where there are instances, one for each
-/// object and one over them all.
+/// Scene in render space with its Embree BVHs: one for the static geometry and, if there are instances, one for each
+/// object and one over all instances.
 class EmbreeScene {
 public:
-    /// Throws DeviceError (out of memory, for one), what RenderSpaceScene throws, and Cancelled where `stop` becomes
-    /// true meanwhile, or in move.
+    /// Throws DeviceError if Embree fails (out of memory, for example), the errors of RenderSpaceScene, and Cancelled
+    /// if `stop` becomes true here or in move.
     EmbreeScene(RTCDevice device, const Assembly& assembly, Vec3d origin_m, TimeInterval exposure,
                 const std::atomic<bool>& stop);
 
     const RenderSpaceScene& placed() const { return placed_; }
     RTCScene handle() const { return all_ ? all_.get() : meshes_.front().get(); }
 
-    /// As RenderSpaceScene::move.
+    /// Updates the instances' transforms; see RenderSpaceScene::move.
     void move(const Assembly& assembly, TimeInterval exposure);
 
 private:
@@ -35,14 +35,14 @@ private:
 
     OwnScene new_scene() const;
     OwnScene build(const RenderSpaceMesh& mesh);
-    /// Makes a geometry of `all_` an instance. Its number is that of RenderSpaceScene's; static geometry's follows on
-    /// the last.
+    /// Attaches a mesh to `all_` as an instance. Its id is the index in RenderSpaceScene's instances; the static
+    /// geometry's follows the last one.
     OwnGeometry attach(const OwnScene& mesh, unsigned number) const;
     void add_instances();
     void commit(const OwnScene& scene) const;
     void check() const;
 
-    /// What Embree's filter needs to know of a mesh with holes.
+    /// User data of Embree's filter function, for a mesh with holes.
     struct MeshWithHoles {
         MeshView mesh;
         std::uint32_t instance_count;
@@ -52,9 +52,9 @@ private:
     RTCDevice device_;
     const std::atomic<bool>& stop_;
     RenderSpaceScene placed_;
-    std::deque<MeshWithHoles> with_holes_;  ///< their geometries know the addresses
+    std::deque<MeshWithHoles> with_holes_;  ///< a deque, because Embree's geometries hold pointers to the elements
     std::vector<OwnScene> meshes_;  ///< static geometry, then the objects
-    OwnScene all_;  ///< null where there is only static geometry
+    OwnScene all_;  ///< null if there is only static geometry
     std::vector<OwnGeometry> instances_;
 };
 

@@ -56,7 +56,8 @@ public:
     }
 
 private:
-    /// Any pupil is found anew: a frame takes so much longer that one given up would cost more than that.
+    /// Ignores PupilStart and computes the pupil from scratch: a frame takes so much longer than that search that a
+    /// discarded frame would cost more.
     void prepare(const Assembly& scene, const Camera& camera, const RenderSettings& settings, PupilStart,
                  const KeepGoing& keep_going, OwnStop& stop) override {
         const auto work = [&] {
@@ -139,7 +140,7 @@ private:
 
     std::shared_ptr<LiveFrame> start(const std::vector<SampleRange>& ranges, ToneCurve curve,
                                      std::shared_ptr<void> under_way) override {
-        // Turns that follow wait for the frame, so that what this thread works with stays as it is.
+        // Later calls wait for the frame, so that the members which this thread uses do not change.
         auto work = [this, ranges, curve, film = camera().film, dials = Dials{camera().exposure_time_s, camera().iso},
                      settings = settings(), token = std::move(under_way)]() mutable {
             const std::shared_ptr<void> until_the_end = std::move(token);
@@ -196,7 +197,7 @@ private:
     }
 
     static tbb::task_arena arena(const RenderSettings& settings) {
-        // For more threads than cores TBB writes a warning to the console, and starts as many as there are cores.
+        // For more threads than cores, TBB writes a warning to the console and starts only as many as there are cores.
         const int most = tbb::info::default_concurrency();
         return tbb::task_arena(settings.threads > 0 ? std::min(settings.threads, most) : most);
     }
@@ -204,12 +205,12 @@ private:
     void place(const Assembly& scene, const Camera& camera) {
         const SceneChange change = scene_change(scene_ ? &scene_->placed() : nullptr, scene, camera);
         if (change == SceneChange::none) return;
-        std::unique_ptr<EmbreeScene> last = std::exchange(scene_, nullptr);  // what fails is not kept
+        std::unique_ptr<EmbreeScene> last = std::exchange(scene_, nullptr);  // discarded if an update fails
         if (change == SceneChange::transforms) {
             last->move(scene, camera.exposure());
             scene_ = std::move(last);
         } else {
-            last.reset();  // before the next takes as much memory
+            last.reset();  // frees its memory before the next one is built
             scene_ = std::make_unique<EmbreeScene>(device_, scene, position_when_open(camera), camera.exposure(),
                                                    stop_.flag());
         }
@@ -220,7 +221,7 @@ private:
         expose(whole_film(), range, counts, settings, done, film_, stats_);
     }
 
-    /// Adds samples of a region to its pixels' sums. `counts`: of the region's pixels.
+    /// Adds samples of a region to the sums of its pixels. `counts`: of the region's pixels.
     void expose(const FilmRegion& region, const SampleRange& range, const PixelCounts& counts,
                 const RenderSettings& settings, std::atomic<std::int64_t>& done, FilmSums& film, RenderStats& stats) {
         const PathSettings path = settings.path();
@@ -245,7 +246,7 @@ private:
         });
     }
 
-    /// The sample counts of a tile's pixels, for a part of a range; nothing where all take all samples.
+    /// Returns the sample counts of a tile's pixels for a part of a range; empty if every pixel takes all samples.
     static std::vector<std::uint32_t> counts_of(const realcam_tile& tile, const FilmRegion& region,
                                                 const PixelCounts& counts, const SampleRange& range) {
         if (!counts.counts) return {};
@@ -265,7 +266,7 @@ private:
         return films;
     }
 
-    /// Adds what belongs to these samples of each pixel.
+    /// Adds the splatted light that belongs to these samples of each pixel.
     void splat(std::vector<SplatFilm>& films, const SampleRange& range, const RenderSettings& settings) {
         const std::vector<GhostView> lights = splatted_lights(*setup_, traced_lights_);
         for (std::size_t i = 0; i < lights.size(); ++i) splat_on(films[i], lights[i], range, settings);
@@ -277,7 +278,7 @@ private:
         const PathSettings path = settings.path();
         constexpr std::uint64_t kVisit = 64;
         const std::uint64_t count = blocks.end - blocks.first;
-        // Of many samples there are so many visits that passing over them would take minutes, too.
+        // With many samples, merely skipping the remaining visits would take minutes, too.
         tbb::task_group_context group;
         const auto visit_blocks = [&](std::uint64_t visit) {
             if (is_stopped()) {
@@ -305,8 +306,8 @@ private:
             [&] { tbb::parallel_for(std::uint64_t{0}, (count + kVisit - 1) / kVisit, visit_blocks, group); });
     }
 
-    /// visit(tile, without sums) of the region's tiles and some of the samples, until all were taken. A tile is left
-    /// after some samples for the next, so that the share done grows everywhere.
+    /// Calls visit(tile) for the region's tiles, without sums, and a part of the samples, until all samples are taken.
+    /// A tile takes only some samples per visit, so that progress is even over the picture.
     template <class Visit>
     void for_tiles(const FilmRegion& region, const SampleRange& range, const RenderSettings& settings, Visit&& visit) {
         const int columns = (region.width + kTileSide - 1) / kTileSide,
@@ -325,7 +326,7 @@ private:
         });
     }
 
-    /// With its first pixel so far from the region's.
+    /// Returns a tile whose first pixel is `right` and `down` pixels from the region's.
     realcam_tile tile_at(const FilmRegion& region, int right, int down, const SampleRange& range) const {
         realcam_tile tile{};
         tile.scene_view = &scene_view_;
@@ -352,7 +353,7 @@ private:
         return static_cast<std::int64_t>(tile.sample_count) * tile.width * tile.height;
     }
 
-    /// f(pixel of the tile, pixel of the region).
+    /// Calls f(pixel of the tile, pixel of the region) for all pixels of a tile.
     template <class F>
     static void for_pixels(const realcam_tile& tile, const FilmRegion& region, F&& f) {
         for (int row = 0; row < tile.height; ++row)
@@ -371,16 +372,16 @@ private:
     }
 
     RTCDevice device_;
-    HostStop stop_;  ///< the scene's hierarchies look at it, too, while they are built
+    HostStop stop_;  ///< stops the construction of the scene's BVHs, too
     std::unique_ptr<EmbreeScene> scene_;
     LastSetup last_setup_;
-    std::shared_ptr<const CameraSetup> setup_;  ///< owns what the view points to
+    std::shared_ptr<const CameraSetup> setup_;  ///< owns the data that `camera_view_` points to
     TracedLights traced_lights_;
     CameraView camera_view_{};
-    std::vector<PixelPupil> known_, found_;  ///< of each pixel: PixelPupils
-    SceneView scene_view_{};  ///< while tiles are visited
+    std::vector<PixelPupil> known_, found_;  ///< one per pixel; see PixelPupils
+    SceneView scene_view_{};  ///< valid while tiles are visited
     FilmSums film_;
-    std::vector<SplatFilm> splats_;  ///< as splatted_lights
+    std::vector<SplatFilm> splats_;  ///< one per light of splatted_lights
     std::mutex stats_mutex_;
     RenderStats stats_;
 };

@@ -5,8 +5,8 @@
 
 namespace realcam {
 
-/// The CPU: Embree for the scene, TBB over tiles, the lens in vector code. One frame is under way at a time, on a
-/// thread of its own. Throws DeviceError where there is no Embree.
+/// Makes a session on the CPU: Embree for the scene, TBB over tiles, vector code for the lens. One live frame is
+/// rendered at a time, on its own thread. Throws DeviceError if Embree cannot be started.
 std::unique_ptr<Session> make_embree_session();
 
 }  // namespace realcam

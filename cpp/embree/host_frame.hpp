@@ -8,7 +8,7 @@
 
 namespace realcam {
 
-/// A frame that a thread of the host takes.
+/// Live frame rendered by a thread of the host.
 class HostFrame final : public LiveFrame {
 public:
     using Codes = std::shared_future<std::vector<std::uint8_t>>;

@@ -4,7 +4,7 @@
 
 namespace realcam {
 
-/// Asks the host's threads to end early; stands until it was lowered as often as it was raised.
+/// Stop flag for the host's threads. Remains set until it was lowered as often as it was raised.
 class HostStop {
 public:
     void raise() {

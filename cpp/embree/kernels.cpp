@@ -46,7 +46,7 @@ struct StageClock {
     }
 };
 
-/// Small squares of pixels one after the other: neighbours in a packet see the same part of the scene.
+/// Visits pixels in small squares, because neighbours in a packet hit the same part of the scene.
 struct PixelOrder {
     static constexpr int kSide = 4;
     int width, height;
@@ -60,8 +60,8 @@ struct PixelOrder {
     }
 };
 
-/// f(block, lanes, place) for all samples of a tile, kLanes at a time: `place` has the pixel of each of the first
-/// `lanes` in the tile's sums.
+/// Calls f(block, lanes, place) for all samples of a tile, kLanes at a time. `place`: index in the tile's sums of the
+/// pixel of each of the first `lanes` samples.
 template <class F>
 void for_blocks_of(const realcam_tile& tile, int film_width, F&& f) {
     const PixelOrder order{tile.width, tile.height};
@@ -113,7 +113,7 @@ PacketScene<scene_kind> packet_scene_of(const realcam_tile& tile, const SceneVie
             RayOrder::coherent, 0};
 }
 
-/// Out of line: pictures without these layers pass over it.
+/// Adds the dual-pixel halves. Out of line, because most pictures do not have these layers.
 template <Effects effects>
 [[gnu::noinline]] void add_halves(const CameraView& camera, const SampleBlock<kLanes>& block, int lanes,
                                   const int* place, const PathResults<kLanes>& results, PixelSum* sums) {
@@ -122,7 +122,7 @@ template <Effects effects>
     for (int k = 0; k < lanes; ++k) sums[place[k]].add_half(results, k, is_right[k] != 0);
 }
 
-/// What samples bring to other pixels than their own.
+/// Adds the contributions of samples to pixels other than their own.
 template <Effects effects>
 void add_shared(const PathResultsWith<kLanes, effects>& results, int lanes, const int* place, PixelSum* sums) {
     for (int step = 0; step < kSharedWavelengths - 1; ++step)
@@ -148,7 +148,7 @@ void render_tile_of(realcam_tile* tile) {
         render_samples<lens_kind, scene_kind, effects>(view, camera, settings, block, scene, clock, results);
         for (int k = 0; k < lanes;) {
             const int pixel = place[k];
-            PixelSum sum = sums[pixel];  // in registers while the samples are the same pixel's
+            PixelSum sum = sums[pixel];  // stays in registers while consecutive samples are in the same pixel
             for (; k < lanes && place[k] == pixel; ++k) sum.add(results, k);
             sums[pixel] = sum;
         }
@@ -178,7 +178,7 @@ void render_tile_of(realcam_tile* tile) {
 template <int effects_number>
 void render_tile_with(realcam_tile* tile, LensKind lens_kind, SceneKind scene_kind) {
     constexpr Effects effects = kCompiledEffects[effects_number];
-    // Few lenses are not centred, and their code takes as long to compile.
+    // Lenses without rotational symmetry are rare, and each variant takes as long to compile.
     if (lens_kind == LensKind::any) return render_tile_of<LensKind::any, SceneKind::any, effects>(tile);
     switch (scene_kind) {
         case SceneKind::plain: return render_tile_of<LensKind::rotational, SceneKind::plain, effects>(tile);
@@ -224,8 +224,8 @@ void see_middle_surfaces_of_tile(realcam_tile* tile) {
     });
 }
 
-/// take(view, camera, ghosts, range, first, scene, splat) for each kLanes of the samples, from number `first` in a
-/// block.
+/// Calls take(view, camera, ghosts, range, first, scene, splat) for each kLanes samples of a block, from sample `first`
+/// on.
 template <SceneKind scene_kind, class Take>
 void for_ghosts_of(realcam_ghosts* job, Take&& take) {
     const SceneView view = *static_cast<const SceneView*>(job->scene_view);
@@ -274,7 +274,7 @@ void gather_ghosts_with(realcam_ghosts* job) {
     });
 }
 
-/// For the light that the job's GhostView names.
+/// Splats the kind of light given by the job's GhostView.
 template <bool has_wavelengths>
 void take_splats_with(realcam_ghosts* job) {
     const auto& camera = *static_cast<const CameraView*>(job->camera_view);

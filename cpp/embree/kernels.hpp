@@ -2,68 +2,69 @@
 #include <cstdint>
 #include <vector>
 
-// What is built once for each instruction set. Only plain C functions on plain data cross this border: the core's
-// types have the same layout on both sides, but other names, so they travel as untyped pointers.
+// Interface of the code that is built once for each instruction set. Only plain C functions on plain data cross it: the
+// core's types have the same layout on both sides, but other names, so they are passed as untyped pointers.
 
 extern "C" {
 
 struct realcam_tile {
-    const void* scene_view;   // SceneView
+    const void* scene_view;  // SceneView
     const void* camera_view;  // CameraView
-    void* embree_scene;       // RTCScene
+    void* embree_scene;  // RTCScene
     int x, y, width, height;  // pixels
     std::uint32_t first_sample, sample_count, seed;
-    const std::uint32_t* counts;  // of the first of these samples, as many for each pixel, row by row; none: all
+    const std::uint32_t* counts;  // samples per pixel, row by row, from first_sample on; null: all samples
     const void* path_settings;  // PathSettings
-    int (*stopped)(const void* stop);  // asked before each block of samples; what is left then is left out
+    int (*stopped)(const void* stop);  // called before each block of samples; if true, the remaining ones are skipped
     const void* stop;
-    void* sums;  // PixelSum, LayerSum or MiddleSurface of the tile, row by row; sums are added to
-    int adds_squares, adds_half, balances;  // PixelSum::besides, too, for one of them
-    int shares;  // its pixels share samples (SampleSharing); none of them is right where it is stopped
+    void* sums;  // PixelSum, LayerSum or MiddleSurface per pixel, row by row; sums are accumulated
+    int adds_squares, adds_half, balances;  // PixelSum::besides holds one of these
+    int shares;  // pixels share samples (SampleSharing); all sums are invalid if stopped
     double lens_seconds, scene_seconds, other_seconds;
     std::uint64_t sampled_rays, passed_rays, scene_rays;
 };
 
 struct realcam_ghosts {
-    const void* scene_view;   // SceneView
+    const void* scene_view;  // SceneView
     const void* camera_view;  // CameraView
-    const void* ghost_view;   // GhostView
-    void* embree_scene;       // RTCScene
+    const void* ghost_view;  // GhostView
+    void* embree_scene;  // RTCScene
     std::uint64_t first_block, block_count;
     std::uint32_t seed;
     const void* path_settings;  // PathSettings
     double units_per_lux;
-    int (*stopped)(const void* stop);  // asked before each block; what is left then is left out
+    int (*stopped)(const void* stop);  // called before each block; if true, the remaining ones are skipped
     const void* stop;
-    void* sums;  // GhostSum of all pixels, film by film; added to, also by other threads
-    int films;   // 1, or 2: of blocks with even and with odd numbers
+    void* sums;  // GhostSum of all pixels, film by film; accumulated, also by other threads
+    int films;  // 1, or 2: one for blocks with even and one for odd numbers
     std::uint64_t blocks_done[2], rays;
 };
 
 struct realcam_kernels {
     const char* instruction_set;
     void (*render_tile)(realcam_tile*);
-    void (*see_layers)(realcam_tile*);           // of the same samples
-    void (*see_middle_surfaces)(realcam_tile*);  // of one sample per pixel
+    void (*see_layers)(realcam_tile*);  // same samples as render_tile
+    void (*see_middle_surfaces)(realcam_tile*);  // one sample per pixel
     void (*splat_ghosts)(realcam_ghosts*);
-    void (*generate_rays)(const void* request);              // RayRequest
+    void (*generate_rays)(const void* request);  // RayRequest
     void (*trace_block)(const void* lens_view, void* rays);  // LensView<float>, LensRays<float, 256>
-    void (*trace_f64)(const void* request);                  // TraceRequest<double>
-    void (*trace_f32)(const void* request);                  // TraceRequest<float>
-    void (*expose_sensor)(const void* request);              // SensorRequest
-    void (*film_points_f32)(void* request);                  // FilmPointsRequest<float>
-    void (*film_points_f64)(void* request);                  // FilmPointsRequest<double>
-    void (*aim_rays)(const void* request);                   // AimRequest
+    void (*trace_f64)(const void* request);  // TraceRequest<double>
+    void (*trace_f32)(const void* request);  // TraceRequest<float>
+    void (*expose_sensor)(const void* request);  // SensorRequest
+    void (*film_points_f32)(void* request);  // FilmPointsRequest<float>
+    void (*film_points_f64)(void* request);  // FilmPointsRequest<double>
+    void (*aim_rays)(const void* request);  // AimRequest
 };
 }
 
 namespace realcam {
 
-/// The widest instruction set that was built and that this machine has. The environment variable
-/// REALCAM_INSTRUCTION_SET (v2, v3, v4) asks for a narrower one. Throws DeviceError where the machine has none.
+/// Returns the kernels for the widest instruction set that was built and that this machine has. The environment
+/// variable REALCAM_INSTRUCTION_SET (v2, v3, v4) selects a narrower one. Throws DeviceError if the machine has none of
+/// those that were built.
 const realcam_kernels& kernels();
 
-/// All that were built and that this machine can run, the narrowest first.
+/// Returns all kernels that were built and that this machine can run, the narrowest instruction set first.
 std::vector<const realcam_kernels*> available_kernels();
 
 }  // namespace realcam

@@ -4,8 +4,8 @@
 #include "../error.hpp"
 #include "kernels.hpp"
 
-// REALCAM_INSTRUCTION_SETS names what was built, the narrowest first: SET(v2) SET(v3) SET(v4), some of them, or
-// SET(native).
+// REALCAM_INSTRUCTION_SETS lists the instruction sets that were built, the narrowest first: some of SET(v2) SET(v3)
+// SET(v4), or SET(native).
 #define SET(name) extern "C" const realcam_kernels realcam_kernels_##name;
 REALCAM_INSTRUCTION_SETS
 #undef SET

@@ -18,11 +18,11 @@ namespace {
 
 constexpr std::int64_t kChunk = 4096;
 
-/// f(begin, end) for parts of [from, to), on all threads.
+/// Calls f(begin, end) for parts of [from, to), on all threads.
 template <class I, class F>
 void in_parallel(I from, I to, I grain, F&& f) {
-    // With the rounding of the calling thread. Otherwise it is that of whoever used this thread's arena first, such as
-    // Embree, which takes denormal numbers for zeros while it builds a scene.
+    // Uses the floating-point settings of the calling thread. Otherwise they would be those of whoever used this
+    // thread's arena first, such as Embree, which flushes denormal numbers to zero while it builds a scene.
     tbb::task_group_context context(tbb::task_group_context::bound, tbb::task_group_context::fp_settings);
     tbb::parallel_for(
         tbb::blocked_range<I>(from, to, grain), [&](const auto& range) { f(range.begin(), range.end()); }, context);
@@ -132,7 +132,7 @@ void generate_camera_rays(const CameraSetup& setup, std::uint32_t spp, std::uint
                                  to.wavelengths_nm,
                                  static_cast<float>(setup.camera().lens.wavelength_nm)};
         kernels().generate_rays(&request);
-        // The camera's place is added in double: far from the scene's origin float would lose the pupil.
+        // The camera's position is added in double: far from the scene's origin, float could not resolve the pupil.
         for (std::int64_t i = 0; i < end - begin; ++i) {
             const float* from = origins.data() + 3 * i;
             to.origins_m[3 * i] = place.x + static_cast<double>(from[0]);

@@ -15,28 +15,28 @@ class CameraSetup;
 
 /// Traces rays through a lens on all cores. Origins in mm and directions (of any length) in the lens frame, count x 3.
 /// Rays with a component that is not finite, a direction of length zero or an origin beyond kFarthestOrigin end as
-/// bad_input with zeros. A ray from far away that meets no surface ends where it is nearest to the first vertex. Only
-/// the first `surface_count` surfaces that the light meets are crossed (all where it is negative). `on`: kernels of one
+/// bad_input with zeros. A ray from far away that hits no surface ends where it is nearest to the first vertex. Only
+/// the first `surface_count` surfaces along the light's path are traced (all if it is negative). `on`: kernels of one
 /// instruction set; nullptr: the machine's best. Throws Cancelled.
 void trace_rays(const LensSystem& lens, LightDirection direction, double wavelength_nm, Precision precision,
                 int surface_count, std::int64_t count, const double* origins, const double* directions,
                 const TracedRays& out, const realcam_kernels* on = nullptr, const KeepGoing& keep_going = {});
 
-/// Where rays of one object point land that fill the light before the lens: x and y, mm from the axis, of those of
-/// `count` rays that pass. `at` has room for 2 x count numbers; returns how many points there are. On the calling
-/// thread. `index`: of the object's space. Throws Cancelled.
+/// Traces `count` rays of one object point over the entrance-pupil bounds of its bundle, on the calling thread. Writes
+/// x and y on the film, mm from the axis, of the rays that pass to `at`, which has room for 2 x count numbers, and
+/// returns the number of these rays. Throws Cancelled.
 std::int64_t find_film_points(const LensSystem& lens, double wavelength_nm, const PointBundle& bundle,
                               EntryPattern pattern, Precision precision, std::int64_t count, double film_distance,
                               float* at, const KeepGoing& keep_going = {});
 
-/// A loop over rays on all cores. `grain`: as many as are worth a task of their own.
+/// Returns a loop over rays on all cores. `grain`: number of rays that are worth a task of their own.
 RayLoop parallel_ray_loop(KeepGoing keep_going, std::size_t grain = 64);
 
-/// Where a camera's rays are written, each of them `count` times.
+/// Output arrays for a camera's rays.
 struct CameraRayOutput {
-    double* origins_m;  ///< 3 for each ray, scene
-    float* directions;  ///< 3 for each ray, unit, scene
-    float* weights;  ///< irradiance on the film for unit radiance; 0: the ray does not leave the lens
+    double* origins_m;  ///< 3 per ray, scene frame
+    float* directions;  ///< 3 per ray, unit vectors in the scene frame
+    float* weights;  ///< irradiance on the film for unit radiance; 0 if the ray does not leave the lens
     float* wavelengths_nm;
     double* times_s;
 
@@ -45,7 +45,7 @@ struct CameraRayOutput {
     }
 };
 
-/// Some of the camera's own rays, spp for each pixel, row by row.
+/// Generates a range of the camera's rays, `spp` per pixel, row by row.
 void generate_camera_rays(const CameraSetup& setup, std::uint32_t spp, std::uint32_t seed, RayRange range,
                           const CameraRayOutput& out);
 

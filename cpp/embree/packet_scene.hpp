@@ -4,7 +4,7 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// The SceneT of render_samples on a CPU: hands the lanes to Embree in packets of 16.
+/// SceneT of render_samples on a CPU: passes the lanes to Embree in packets of 16.
 template <SceneKind scene_kind>
 struct PacketScene {
     RTCScene scene;
@@ -32,16 +32,16 @@ struct PacketScene {
                 hits.triangle[first + k] = packet.hit.primID[k];
                 hits.u[first + k] = packet.hit.u[k];
                 hits.v[first + k] = packet.hit.v[k];
-                // Static geometry comes after the objects, or is alone and no instance at all.
+                // Static geometry follows the objects' instances, or is alone and not an instance.
                 const std::uint32_t instance = packet.hit.instID[0][k];
                 hits.instance[first + k] = instance < instance_count ? instance : kNoInstance;
             }
             rays_traced += static_cast<std::uint64_t>(used);
         }
-        order = RayOrder::incoherent;  // what follows the camera rays is scattered
+        order = RayOrder::incoherent;  // rays after the camera rays are scattered
     }
 
-    /// hidden: 1 where something is in the way, 0 elsewhere and for rays that are left out.
+    /// Sets `hidden` to 1 for occluded rays, and to 0 for others and for inactive rays.
     template <int N>
     void occluded(const SceneRays<N>& rays, std::int32_t (&hidden)[N]) {
         for (int first = 0; first < N; first += 16) {
@@ -50,13 +50,13 @@ struct PacketScene {
             const int used = load(rays, first, packet, valid);
             if (used > 0) occluded16(valid, scene, order, &packet);
             REALCAM_LANES
-            for (int k = 0; k < 16; ++k) hidden[first + k] = packet.tfar[k] < 0.0f ? 1 : 0;  // Embree's mark
+            for (int k = 0; k < 16; ++k) hidden[first + k] = packet.tfar[k] < 0.0f ? 1 : 0;  // set by Embree on a hit
             rays_traced += static_cast<std::uint64_t>(used);
         }
     }
 
 private:
-    /// Rays that are left out may hold anything; the packet gets zeros for them.
+    /// Loads a packet, with zeros for inactive rays, whose values are undefined. Returns the number of active rays.
     template <int N>
     static int load(const SceneRays<N>& rays, int first, RTCRay16& packet, int (&valid)[16]) {
         int used = 0;

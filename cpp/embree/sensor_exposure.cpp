@@ -25,7 +25,7 @@ void expose_band(const SensorRequest& all, std::int32_t first_row, std::int32_t 
 }  // namespace
 
 void expose_sensor(const SensorRequest& request, int threads, const KeepGoing& keep_going) {
-    // For more threads than cores TBB writes a warning to the console, and starts as many as there are cores.
+    // For more threads than cores, TBB writes a warning to the console and starts only as many as there are cores.
     const int most = tbb::this_task_arena::max_concurrency();
     tbb::task_arena arena(threads > 0 ? std::min(threads, most) : most);
     const std::int32_t step = std::max(1, (1 << 21) / request.width);  // some 0.1 s of one core

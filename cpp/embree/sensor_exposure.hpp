@@ -4,8 +4,8 @@
 
 namespace realcam {
 
-/// All rows of a request, on all cores or on `threads` of them (0: all). The same numbers for any number of threads.
-/// Throws Cancelled.
+/// Computes all rows of a request, on all cores or on `threads` of them (0: all). The results do not depend on the
+/// number of threads. Throws Cancelled.
 void expose_sensor(const SensorRequest& request, int threads = 0, const KeepGoing& keep_going = {});
 
 }  // namespace realcam

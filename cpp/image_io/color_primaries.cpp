@@ -11,10 +11,10 @@ namespace {
 
 using Matrix = std::array<double, 9>;
 
-/// ITU-R BT.709, the values that OpenEXR takes where a file names none.
+/// ITU-R BT.709, which OpenEXR assumes if a file has no chromaticities.
 constexpr Chromaticities kRec709 = {0.64, 0.33, 0.30, 0.60, 0.15, 0.06, 0.3127, 0.3290};
 
-/// Files of X, Y and Z name any white, or none.
+/// Files of X, Y and Z give an arbitrary white point.
 constexpr std::array<double, 6> kXyzPrimaries = {1, 0, 0, 1, 0, 0};
 
 bool are_close(const Chromaticities& a, const Chromaticities& b) {
@@ -23,7 +23,8 @@ bool are_close(const Chromaticities& a, const Chromaticities& b) {
     return std::equal(a.begin(), a.end(), b.begin(), [](double x, double y) { return std::abs(x - y) < kRounding; });
 }
 
-/// XYZ of each column's colour, white of Y = 1 being all three together.
+/// Returns the matrix from RGB to XYZ; RGB = (1, 1, 1) is white with Y = 1. All zeros if the chromaticities are
+/// degenerate.
 Matrix xyz_from(const Chromaticities& c) {
     const auto xyz = [&](std::size_t i) {
         return std::array<double, 3>{c[2 * i], c[2 * i + 1], 1 - c[2 * i] - c[2 * i + 1]};

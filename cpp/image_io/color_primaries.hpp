@@ -9,15 +9,15 @@ namespace realcam::image_io {
 /// PRIMARIES.
 using Chromaticities = std::array<double, 8>;
 
-/// Those of the tristimulus values X, Y and Z themselves.
+/// Chromaticities of files whose channels are the tristimulus values X, Y and Z.
 inline constexpr Chromaticities kXyzChromaticities = {1, 0, 0, 1, 0, 0, 1.0 / 3, 1.0 / 3};
 
-/// By rows: what takes light in such colours to linear Rec. 709. Their white becomes Rec. 709's by Bradford's
-/// adaptation, but for X, Y and Z, which are what they are. Nothing where they are Rec. 709's own. Throws Error where
-/// they span no colours.
+/// Returns the matrix, by rows, from colours with these chromaticities to linear Rec. 709. White is adapted to that of
+/// Rec. 709 by Bradford's method, except for X, Y and Z, which are absolute. Returns std::nullopt if the chromaticities
+/// are those of Rec. 709. Throws Error if they span no colours.
 std::optional<std::array<double, 9>> rec709_from(const Chromaticities& chromaticities);
 
-/// Applies such a matrix to the first three numbers of each pixel, of which the next is `stride` numbers on.
+/// Applies a 3 x 3 matrix to the first three numbers of each pixel. `stride`: distance between pixels, in numbers.
 void apply_matrix(const std::array<double, 9>& matrix, float* pixels, std::size_t count, std::size_t stride);
 
 }  // namespace realcam::image_io

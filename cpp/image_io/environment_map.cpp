@@ -9,8 +9,8 @@
 namespace realcam::image_io {
 namespace {
 
-/// OpenEXR's cube map (ImfEnvmap.h): each square is what is seen from the inside with +y upwards, or, above and below,
-/// with +z and -z upwards. The middles of its outer pixels lie on the edges of the cube.
+/// OpenEXR's cube map (ImfEnvmap.h): each face is a view from the inside with +y upwards, or, for the upper and lower
+/// face, with +z and -z upwards. The centres of its outer pixels lie on the edges of the cube.
 class CubeMap {
 public:
     explicit CubeMap(const Environment& file) : file_(file), size_(file.width) {}
@@ -23,7 +23,7 @@ public:
     }
 
 private:
-    /// `right`, `up`: -1 to 1. Bilinear.
+    /// Interpolates bilinearly in a face; `right`, `up`: -1 to 1.
     Color in_square(int number, double right, double up) const {
         const double last = size_ - 1;
         const double column = std::clamp(0.5 * (right + 1) * last, 0.0, last),
@@ -46,7 +46,8 @@ private:
     int size_;
 };
 
-/// Four samples a pixel, and about as many pixels along the horizon as the cube has.
+/// Resamples a cube map to a latitude-longitude picture, with four samples per pixel, and about as many pixels along
+/// the horizon as the cube has.
 Environment of_cube(const Environment& file, const KeepGoing& keep_going) {
     if (file.height != 6 * std::int64_t{file.width})
         throw Error("says that it is a cube map, and has " + std::to_string(file.width) + " x " +

@@ -5,9 +5,9 @@
 
 namespace realcam::image_io {
 
-/// The pixels of a file as an environment: OpenEXR's latitude-longitude map turned round, so that its middle column
-/// lies towards +z, and its cube map as a latitude-longitude picture. Throws Error where a cube map is none, and
-/// Cancelled.
+/// Converts the pixels of a file to an environment: rotates OpenEXR's latitude-longitude map, whose middle column lies
+/// towards +z, and resamples a cube map to a latitude-longitude picture. Throws Error if a cube map does not consist of
+/// six squares, and Cancelled.
 Environment environment_of(EnvironmentMap map, Environment file, const KeepGoing& keep_going);
 
 }  // namespace realcam::image_io

@@ -11,10 +11,10 @@
 namespace realcam::image_io {
 namespace {
 
-/// Names of the layer that holds the light of all others together, in lower case: of the part, or behind the last dot.
+/// Names, in lower case, of the layer with the complete light: the part's name, or the component after the last dot.
 constexpr std::string_view kBeauty[] = {"beauty", "combined", "rgba", "rgb", "color", "colour", "main", "final"};
 
-/// Channel names, in lower case, of red, green and blue, or of a picture in grey.
+/// Lower-case channel names of red, green and blue, or of X, Y and Z.
 constexpr std::array<std::string_view, 3> kColours[] = {{"r", "g", "b"}, {"red", "green", "blue"}, {"x", "y", "z"}};
 constexpr std::size_t kTristimulus = 2;
 
@@ -40,8 +40,8 @@ struct Layer {
     }
     int alpha() const { return std::max(find("a"), find("alpha")); }
 
-    /// Empty if the layer has no red, green and blue. X, Y and Z are tristimulus values only without a prefix: behind
-    /// one they are vectors.
+    /// Returns the channels of red, green and blue, or an empty list. X, Y and Z are tristimulus values only without a
+    /// prefix: with a prefix they are vectors.
     std::vector<int> colours() const {
         for (const auto& names : kColours) {
             if (&names == &kColours[kTristimulus] && !name.empty()) continue;
@@ -52,7 +52,7 @@ struct Layer {
         return {};
     }
 
-    /// A luminance, or the only channel beside alpha, unless it is a depth.
+    /// Returns the luminance channel, or the only channel other than alpha unless it is a depth; else an empty list.
     std::vector<int> grey() const {
         if (const int y = find("y"); y >= 0) return {y};
         std::vector<int> others;
@@ -68,7 +68,7 @@ struct Layer {
     }
 };
 
-/// Flat layers, in the order of the file.
+/// Returns the flat layers, in the order of the file.
 std::vector<Layer> layers_of(const std::vector<EncodedHeader>& parts) {
     std::vector<Layer> layers;
     for (std::size_t p = 0; p < parts.size(); ++p) {
@@ -139,7 +139,7 @@ ExrLayer choose_layer(const std::vector<EncodedHeader>& parts, const std::string
     std::vector<const Layer*> pictures;
     for (const Layer& layer : layers)
         if (!layer.picture().empty()) pictures.push_back(&layer);
-    // Ids beside the light have whole numbers; where nothing else is there, the message names the reason.
+    // Id layers have whole numbers and are ignored; if there are no others, the error message names the reason.
     const auto light = those(pictures, [](const Layer& l) { return !l.has_whole_numbers; });
     const Layer& layer = chosen(!name.empty() || light.empty() ? pictures : light, name);
     std::vector<int> channels = layer.picture();

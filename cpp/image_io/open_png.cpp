@@ -1,4 +1,4 @@
-// PNG through libpng itself: under OpenImageIO, libpng prints its errors and warnings on stderr.
+// Reads PNG through libpng directly: under OpenImageIO, libpng prints its errors and warnings on stderr.
 
 #include <png.h>
 
@@ -23,7 +23,7 @@ public:
         info_ = png_ ? png_create_info_struct(png_) : nullptr;
         if (!info_) throw std::bad_alloc();
         png_set_read_fn(png_, this, read_bytes);
-        // Colour profiles and times are not looked at: the pixels are taken for sRGB. Compressed texts are not read.
+        // Colour profiles and times are ignored: pixels are assumed to be sRGB. Compressed texts are not read.
         png_set_keep_unknown_chunks(png_, PNG_HANDLE_CHUNK_NEVER, nullptr, -1);
         png_set_keep_unknown_chunks(png_, PNG_HANDLE_CHUNK_AS_DEFAULT, reinterpret_cast<png_const_bytep>("tEXt"), 1);
         require(guarded([this] { read_header(); }));
@@ -69,7 +69,8 @@ private:
         self.bytes_ = self.bytes_.subspan(count);
     }
 
-    /// Calls into libpng. False where it jumped out, so that `work` may own nothing.
+    /// Runs `work`, which calls libpng. Returns false if libpng jumped out on an error; `work` must therefore own
+    /// nothing.
     template <class Work>
     bool guarded(const Work& work) {
         if (setjmp(after_error_) != 0) return false;
@@ -82,16 +83,16 @@ private:
 
     void read_header() {
         png_read_info(png_, info_);
-        png_set_expand(png_);  // palettes, fewer than 8 bits, and a colour that stands for transparency
-        png_set_swap(png_);  // 16 bits as this machine has them
+        png_set_expand(png_);  // expands palettes, fewer than 8 bits, and a transparent colour
+        png_set_swap(png_);  // 16 bits in the machine's byte order
         passes_ = png_set_interlace_handling(png_);
         png_read_update_info(png_, info_);
     }
 
-    /// A chunk of rows that libpng has left off at; an interlaced picture is put together in memory first.
+    /// Converts rows in chunks; an interlaced picture is first assembled in memory.
     template <class Value, class Convert>
     void read_as(int count, int stride, Value* pixels, const KeepGoing& keep_going, Convert&& convert) {
-        constexpr int kRows = 64;  // between two looks at keep_going
+        constexpr int kRows = 64;  // between two calls of keep_going
         const std::size_t row_bytes = png_get_rowbytes(png_, info_);
         const int held = passes_ > 1 ? height : std::min(kRows, height);
         std::vector<std::uint8_t> rows(row_bytes * static_cast<std::size_t>(held));
@@ -127,7 +128,7 @@ private:
 
     std::span<const std::uint8_t> bytes_;
     std::ifstream file_;
-    /// What libpng allocates: freed where the constructor throws, too.
+    /// Owns libpng's structures, so that they are freed also if the constructor throws.
     struct Handles {
         png_structp png = nullptr;
         png_infop info = nullptr;

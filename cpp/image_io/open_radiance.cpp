@@ -1,6 +1,6 @@
-// Radiance's pictures (.hdr), read here: OpenImageIO's reader knows neither the lines EXPOSURE and COLORCORR, nor
-// pictures from another corner, nor colours in X, Y and Z, nor the older run lengths. The format is described in
-// Radiance's "File Formats" and in Ward, "Real Pixels" (Graphics Gems II, 1991).
+// Reads Radiance pictures (.hdr) without OpenImageIO, whose reader supports neither the lines EXPOSURE and COLORCORR,
+// nor pictures that start at another corner, nor X, Y and Z, nor the older run-length coding. The format is described
+// in Radiance's "File Formats" and in Ward, "Real Pixels" (Graphics Gems II, 1991).
 
 #include <algorithm>
 #include <array>
@@ -18,14 +18,14 @@
 namespace realcam::image_io {
 namespace {
 
-/// The bytes of a file, or of memory, one after the other.
+/// Sequential reader of the bytes of a file or of memory.
 class Bytes {
 public:
     Bytes(const std::string& path, std::span<const std::uint8_t> memory) : memory_(memory) {
         if (!path.empty()) file_ = std::make_unique<io::RegularFile>(path);
     }
 
-    /// -1 at the end.
+    /// Returns the next byte, or -1 at the end.
     int next() {
         if (begin_ == end_ && !read_more()) return -1;
         return buffer_[begin_++];
@@ -70,7 +70,7 @@ public:
     void read(int, int, std::uint8_t*, const KeepGoing&) override { throw Error("holds no codes of 8 bits"); }
 
     void read(int count, int stride, float* pixels, const KeepGoing& keep_going) override {
-        constexpr int kLines = 64;  // between two looks at keep_going
+        constexpr int kLines = 64;  // between two calls of keep_going
         std::vector<Rgbe> line(static_cast<std::size_t>(is_by_columns_ ? height : width));
         const int lines = is_by_columns_ ? width : height;
         for (int i = 0; i < lines; ++i) {
@@ -92,7 +92,7 @@ public:
     }
 
 private:
-    /// Without its end. Throws where it has none.
+    /// Returns the next header line without its line end. Throws Error if the line does not end.
     std::string next_line() {
         constexpr std::size_t kLongest = 1 << 16;
         std::string line;
@@ -104,8 +104,8 @@ private:
         return line;
     }
 
-    /// Lines up to an empty one. What Radiance's programs copy from the pictures that they were given is indented, and
-    /// says nothing of this one.
+    /// Reads the header up to an empty line. Indented lines are ignored: Radiance's programs copy them from their input
+    /// pictures.
     void read_header() {
         for (std::string line = next_line(); !line.empty(); line = next_line()) {
             const std::string_view text = line;
@@ -142,7 +142,8 @@ private:
         return out;
     }
 
-    /// What the pixels have been multiplied by. Of several such lines all have been.
+    /// Divides by a factor with which the pixels have been multiplied. A file can have several such lines, which all
+    /// apply.
     template <std::size_t N>
     void divide_by(const std::array<double, N>& factors) {
         for (std::size_t c = 0; c < 3; ++c) {
@@ -154,8 +155,8 @@ private:
         }
     }
 
-    /// "-Y 8 +X 16": lines of 16 pixels from the left to the right, the topmost first. "+" of Y is upwards, and the
-    /// axis that comes first is the one along which lines follow each other.
+    /// Reads the resolution line. "-Y 8 +X 16": 8 scanlines of 16 pixels from left to right, the topmost first. "+Y" is
+    /// upwards, and the first axis is the one along which scanlines follow each other.
     void read_resolution() {
         const std::string line = next_line();
         std::string_view rest = line;
@@ -182,7 +183,7 @@ private:
     }
 
     void read_line(std::vector<Rgbe>& line) {
-        constexpr std::size_t kShortest = 8, kLongest = 0x7fff;  // of lines with one run length for each channel
+        constexpr std::size_t kShortest = 8, kLongest = 0x7fff;  // length of scanlines with run lengths per channel
         Rgbe first;
         for (std::uint8_t& byte : first) byte = bytes_.wanted();
         const bool is_by_channels =
@@ -205,8 +206,8 @@ private:
         }
     }
 
-    /// Pixels one after the other. One of mantissas 1, 1 and 1 is none, but repeats the one before as often as its
-    /// exponent says; the next such one in a row counts 256 times as much.
+    /// Reads the older coding, pixel by pixel. A pixel with the mantissas 1, 1 and 1 repeats the one before it, as
+    /// often as its exponent says; the next such pixel in a row counts 256 times as much.
     void read_older(std::vector<Rgbe>& line, Rgbe next) {
         std::uint64_t unit = 1;
         for (std::size_t i = 0;;) {

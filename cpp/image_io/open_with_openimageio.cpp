@@ -16,7 +16,7 @@ public:
         if (std::ranges::none_of(decoder_->parts, is_flat)) return;
         if (format == "openexr") chosen_ = choose_layer(decoder_->parts, layer);
         const EncodedHeader& found = part();
-        // OpenImageIO decodes all of them, whichever are asked for: a broken file may claim more than memory holds.
+        // OpenImageIO decodes all channels, whichever are requested: a broken file may claim more than memory holds.
         constexpr std::size_t kMostChannels = 64;
         if (found.channel_names.size() > kMostChannels)
             throw Error("has " + std::to_string(found.channel_names.size()) + " channels; at most 64 are read");
@@ -30,7 +30,7 @@ public:
         channels = static_cast<int>(chosen_.channels.size());
         is_linear = found.is_floating_point;
         is_wide = found.bytes_per_value > 1;
-        // OpenEXR multiplies colours by alpha, whatever a reader wishes.
+        // OpenEXR colours are always premultiplied by alpha.
         has_associated_alpha = format == "openexr" && channels == 4;
         entries = found.entries;
     }
@@ -43,8 +43,8 @@ public:
     }
 
 private:
-    /// The picture is the display window. What of the data window lies outside is cut off, and what it leaves is black.
-    /// An environment map, of which a part would mean nothing, is the data window.
+    /// The picture is the display window: pixels of the data window outside of it are cropped, and pixels without data
+    /// are black. For an environment map, which has no meaningful crop, the picture is the data window.
     void read_openexr_header(const EncodedHeader& found) {
         if (found.chromaticities) {
             Chromaticities chromaticities{};
@@ -68,10 +68,10 @@ private:
         height = found.full_height;
     }
 
-    /// Rows of the data window, of which those in the picture are copied to the beginning of their pixels.
+    /// Reads the rows of the data window and copies the part inside the picture to the beginning of its pixels.
     template <class Value>
     void read_as(int count, int stride, Value* pixels, const KeepGoing& keep_going) {
-        constexpr std::int64_t kRows = 64;  // between two looks at keep_going
+        constexpr std::int64_t kRows = 64;  // between two calls of keep_going
         const EncodedHeader& s = part();
         const auto used = std::ranges::minmax(std::span(chosen_.channels).first(static_cast<std::size_t>(count)));
         const int read_channels = used.max + 1 - used.min;
@@ -99,8 +99,8 @@ private:
         }
     }
 
-    /// Reading continues behind the end of a TIFF's or JPEG's data, with rows of grey or nothing, and only reports it.
-    /// For a JPEG it also reports harmless things, such as a few bytes too many.
+    /// True if OpenImageIO's message tells of truncated data. It decodes a truncated TIFF or JPEG to the end, with rows
+    /// of grey or nothing, and only reports it. For a JPEG it also reports harmless things, such as a few excess bytes.
     bool tells_of_a_cut(const std::string& said) const {
         return is_jpeg_ ? said.find("Premature end") != std::string::npos : !said.empty();
     }
@@ -110,7 +110,7 @@ private:
     bool is_jpeg_;
     std::unique_ptr<PictureDecoder> decoder_;
     ExrLayer chosen_;
-    bool is_windowed_ = false;  // the data window is another than the display window
+    bool is_windowed_ = false;  // the data window differs from the display window
 };
 
 }  // namespace

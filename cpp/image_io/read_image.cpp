@@ -19,14 +19,15 @@
 namespace realcam::image_io {
 namespace {
 
-/// 16384 x 8192, the largest environments that are sold.
+/// 16384 x 8192 pixels, the largest environments on the market.
 constexpr std::size_t kMostEnvironmentPixels = std::size_t{1} << 27;
 
-/// More than any of the formats makes of one byte: deflate makes at most 1032 bytes of one, of 8 pixels each where they
-/// have one bit, and OpenEXR's PIZ some 17 000 pixels. Broken files would be decoded for seconds before their data end.
+/// Upper bound of the number of pixels that any of the formats encodes in one byte: deflate makes at most 1032 bytes of
+/// one, with 8 pixels each if they have one bit, and OpenEXR's PIZ some 17 000 pixels. Without it, broken files would
+/// be decoded for seconds before their data end.
 constexpr std::size_t kMostPixelsPerByte = 20000;
 
-/// Throws Error where the pixels are more than anybody needs, or than there is memory for.
+/// Throws Error if there are more pixels than `most_pixels`, than the file can hold, or than there is memory for.
 void check_size(const OpenPicture& picture, std::size_t most_pixels, std::size_t bytes_per_pixel) {
     const std::string size =
         "has " + std::to_string(picture.width) + " x " + std::to_string(picture.height) + " pixels";
@@ -42,7 +43,7 @@ void check_size(const OpenPicture& picture, std::size_t most_pixels, std::size_t
         throw Error(size + ", more than the free memory holds");
 }
 
-/// Grey and grey with alpha, as they were decoded to the beginning of a pixel, as red, green, blue (and alpha).
+/// Expands a pixel in place: grey, or grey and alpha, becomes red, green, blue and alpha.
 template <class Value>
 void spread_grey(int channels, Value opaque, Value* rgba) {
     const Value alpha = channels == 2 ? rgba[1] : channels == 4 ? rgba[3] : opaque;
@@ -79,7 +80,7 @@ std::vector<float> decode_floats(OpenPicture& picture, const KeepGoing& keep_goi
 }
 
 io::DecodedImage decode(OpenPicture& picture, const KeepGoing& keep_going) {
-    // Floats become the 8 bits of a Texture beside them.
+    // A Texture holds 8-bit values, which exist beside the floats for a while.
     constexpr std::size_t of_codes = 4, of_floats = 4 * sizeof(float) + of_codes;
     check_size(picture, io::kMostTexturePixels, picture.is_wide ? of_floats : of_codes);
     if (!picture.is_wide) return {picture.width, picture.height, decode_codes(picture, keep_going)};
@@ -103,9 +104,9 @@ Environment decode_environment(OpenPicture& picture, const KeepGoing& keep_going
     return environment_of(picture.environment_map, std::move(environment), keep_going);
 }
 
-constexpr float kBrightest = 1e20f;  // as io::validate has it for scenes
+constexpr float kBrightest = 1e20f;  // the limit of io::validate for scenes
 
-/// Which pixels of an environment are no light, for messages.
+/// Count and first position of the invalid pixels of an environment, for messages.
 struct PixelCount {
     std::size_t count = 0, first = 0;
 
@@ -126,9 +127,9 @@ std::string pixels_are(std::size_t count) {
     return std::to_string(count) + (count == 1 ? " pixel is" : " pixels are");
 }
 
-/// Conversions of colours and sharpening leave numbers a little below 0 where there is hardly any light of a colour:
-/// they become 0. Throws ImageFileError where a pixel holds what no scene may, or where negative numbers are more than
-/// a twentieth of the light: it would be darkened, or brightened, unnoticed.
+/// Sets negative numbers to 0, with a warning: colour conversions and sharpening leave numbers slightly below 0 where a
+/// colour is hardly present. Throws ImageFileError if a pixel has a value that no scene may have, or if negative
+/// numbers are more than a twentieth of the light, because the brightness would change unnoticed.
 void settle_light(Environment& environment, const std::string& path, const WarnOf& warn) {
     constexpr double kMostNegative = 0.05;
     PixelCount wrong, negative;
@@ -179,7 +180,7 @@ Environment read_environment(const std::string& path, const std::string& layer, 
 
 namespace {
 
-/// False for a PNG without its last chunk, whose pixels may be decodable all the same.
+/// False for a PNG without its last chunk; its pixels may be decodable nevertheless.
 bool has_its_end(const std::string& path) {
     constexpr std::string_view kLastChunk("\0\0\0\0IEND\xae\x42\x60\x82", 12);
     if (io::suffix_of(path) != ".png") return true;

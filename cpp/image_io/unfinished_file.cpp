@@ -29,9 +29,9 @@ std::string temporary_name(const std::string& path) {
     return (fs::path(folder_of(path)) / name).string();
 }
 
-/// The file that a path leads to through symbolic links, which need not exist.
+/// Follows symbolic links from a path to a file, which need not exist.
 std::string followed(std::string path) {
-    constexpr int kMostLinks = 40;  // as the kernel
+    constexpr int kMostLinks = 40;  // the kernel's limit
     for (int i = 0; i < kMostLinks; ++i) {
         std::error_code error;
         const fs::path link = fs::read_symlink(path, error);
@@ -41,7 +41,7 @@ std::string followed(std::string path) {
     return path;
 }
 
-/// Gives a file without a name one. False, with errno, where it exists or the system cannot.
+/// Links an unnamed file to a name. Returns false, with errno, if the name exists or the system cannot do it.
 bool link_to(std::FILE* file, const std::string& name) {
     const std::string open_file = "/proc/self/fd/" + std::to_string(fileno(file));
     return linkat(AT_FDCWD, open_file.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) == 0;
@@ -61,11 +61,12 @@ UnfinishedFile::UnfinishedFile(const std::string& path) : path_(path), target_(f
         descriptor = open(temporary_.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, kMode);
         if (descriptor < 0) fail(errno);
     }
-    // What is replaced may be private. Some file systems have no modes to set.
+    // A replaced file may be private, so its mode is kept. Some file systems do not support modes.
     struct stat before{};
     if (stat(target_.c_str(), &before) == 0) static_cast<void>(fchmod(descriptor, before.st_mode & 07777));
     file_ = fdopen(descriptor, "wb");
-    // A buffer could be emptied, in vain, by whoever closes the picture, and the error be lost.
+    // Unbuffered: whoever closes the picture could otherwise flush a buffer without success, and the error would be
+    // lost.
     std::setvbuf(file_, nullptr, _IONBF, 0);
 }
 
@@ -109,9 +110,9 @@ void UnfinishedFile::fail(int error) const {
 
 void UnfinishedFile::finish() {
     if (failure_ != 0) fail(failure_);
-    // Some file systems find out only now that they are full.
+    // Some file systems report only now that they are full.
     if (fsync(fileno(file_)) != 0) fail(errno);
-    // A name that is taken cannot be linked to, but be replaced.
+    // linkat does not replace an existing name, but rename does.
     if (temporary_.empty() && !link_to(file_, target_)) {
         const std::string name = temporary_name(target_);
         if (!link_to(file_, name)) fail(errno);

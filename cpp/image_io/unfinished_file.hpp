@@ -4,32 +4,32 @@
 
 namespace realcam::image_io {
 
-/// A file that gets its name when it is whole. Until then it has none where the file system can do that, so that
-/// nothing is left behind even by a program that is killed, and a temporary one in the same folder elsewhere.
+/// File that gets its name when it is complete. Until then it is unnamed, if the file system supports that, so that
+/// nothing is left behind even if the program is killed; otherwise it has a temporary name in the same folder.
 class UnfinishedFile {
 public:
-    /// Throws ImageFileError where no file of this name can be made: the folder takes none, the name is too long, or it
-    /// belongs to something else than a file. A symbolic link is followed.
+    /// Throws ImageFileError if no file of this name can be made: the folder is not writable, the name is too long, or
+    /// it belongs to something other than a file. A symbolic link is followed.
     explicit UnfinishedFile(const std::string& path);
     UnfinishedFile(const UnfinishedFile&) = delete;
     UnfinishedFile& operator=(const UnfinishedFile&) = delete;
     ~UnfinishedFile();
 
-    /// Where it is written to. It has no buffer.
+    /// Returns the stream to write to. It is unbuffered.
     std::FILE* stream() { return file_; }
-    /// A write failed with this errno: finish() will tell.
+    /// Records the errno of a failed write, which finish() reports.
     void remember_failure(int error);
 
-    /// Gives the file its name. Throws ImageFileError where the system refused that, or a write before.
+    /// Gives the file its name. Throws ImageFileError if this or an earlier write failed.
     void finish();
 
 private:
     void check_target() const;
     [[noreturn]] void fail(int error) const;
 
-    std::string path_;  ///< as the user calls it
-    std::string target_;  ///< what it is a link to, or itself
-    std::string temporary_;  ///< empty where the file has no name yet
+    std::string path_;  ///< path as given by the user
+    std::string target_;  ///< path after following symbolic links
+    std::string temporary_;  ///< empty if the file has no name yet
     std::FILE* file_ = nullptr;
     int failure_ = 0;  ///< errno of the first write that failed
 };

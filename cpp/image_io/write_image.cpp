@@ -14,10 +14,10 @@
 namespace realcam::image_io {
 namespace {
 
-/// Rows that are converted and handed over at a time: a large picture is not held twice.
+/// Number of rows converted at a time, so that a large picture is not held twice.
 constexpr int kRows = 64;
 
-/// A format that is written: the suffix of its files, its name in OpenImageIO, and the attribute that compresses it.
+/// Format for writing: the suffix of its files, its name in OpenImageIO, and the attribute that compresses it.
 struct WrittenFormat {
     std::string_view suffix;
     const char* name;
@@ -39,7 +39,7 @@ const WrittenFormat& format_of(const std::string& path) {
                          "; .png, .jpg, .tif, .webp (developed) or .exr (exposure and depth) is wanted");
 }
 
-/// What an UnfinishedFile could only name as the system does.
+/// Throws ImageFileError for errors that UnfinishedFile could report only in the system's words.
 void check_name(const std::string& path) {
     namespace fs = std::filesystem;
     format_of(path);
@@ -70,7 +70,7 @@ EncodedPicture encoded_codes(const WrittenFormat& format, int width, int height,
     picture.attributes.emplace_back("oiio:ColorSpace", "sRGB");
     if (picture.format == "jpeg") picture.attributes.emplace_back("jpeg:subsampling", "4:4:4");
     if (picture.format == "jpeg" || picture.format == "tiff") {
-        // These formats have no attributes of any name, and WebP has no text at all.
+        // JPEG and TIFF have no attributes with arbitrary names, and WebP has no text at all.
         std::string description;
         for (const auto& [name, value] : entries) description += name + '=' + value + '\n';
         picture.attributes.emplace_back("ImageDescription", description);
@@ -78,7 +78,7 @@ EncodedPicture encoded_codes(const WrittenFormat& format, int width, int height,
     return picture;
 }
 
-/// Writes through `fill(first_row, end_row, buffer)`, some rows at a time.
+/// Writes a picture whose rows `fill(first_row, end_row, buffer)` provides, some at a time.
 template <class Value, class Fill>
 void write_rows(const std::string& path, const EncodedPicture& picture, const KeepGoing& keep_going, Fill&& fill) {
     UnfinishedFile file(path);
@@ -118,7 +118,7 @@ void write_developed(const PictureView& picture, const std::string& path, const 
     });
 }
 
-/// A layer in the file: the names of its channels, and what they hold.
+/// Channel names of a layer in the file, and the unit of their values.
 struct LayerChannels {
     std::vector<const char*> names;
     const char* unit;
@@ -151,7 +151,7 @@ LayerChannels channels_of(Layer layer) {
     return {};
 }
 
-/// {"1": "static geometry", ...}
+/// Returns the names as JSON: {"1": "static geometry", ...}.
 std::string json_of(const IdNames& names) {
     io::JsonWriter json;
     json.begin_object();
@@ -179,7 +179,7 @@ void write_exr(const PictureView& picture, const std::string& path, const io::Im
     EncodedPicture exr = encoded(kExr, picture.width, picture.height, metadata.entries());
     exr.channels = {{"R"}, {"G"}, {"B"}, {"Z"}};
     add_layers(picture, exr);
-    // The standard attributes of OpenEXR, in its units.
+    // Standard attributes of OpenEXR, in its units.
     const auto set = [&](const char* name, double value) {
         exr.attributes.emplace_back(name, static_cast<float>(value));
     };
@@ -192,7 +192,7 @@ void write_exr(const PictureView& picture, const std::string& path, const io::Im
     exr.attributes.emplace_back("sensorOverallDimensions", std::array{static_cast<float>(metadata.film_width_mm),
                                                                       static_cast<float>(metadata.film_height_mm)});
     const std::size_t row = row_values(picture, 1);
-    // All channels have four bytes, so that numbers lie among the floats.
+    // All channels have four bytes, so whole numbers are stored among the floats.
     write_rows<float>(path, exr, keep_going, [&](std::size_t first, std::size_t end, float* out) {
         for (std::size_t i = first * row; i < end * row; ++i) {
             for (std::size_t c = 0; c < 3; ++c) *out++ = picture.exposure[3 * i + c];

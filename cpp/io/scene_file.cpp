@@ -26,7 +26,8 @@
 namespace realcam::io {
 namespace {
 
-/// Throws for a file that is none, that is empty, or that is larger than memory, which all formats then need.
+/// Throws FileError or SceneFileError if the file cannot be read, is empty, or is larger than the free memory, which
+/// all formats need.
 void check_file(const std::string& path) {
     const std::uint64_t size = RegularFile(path).size();
     if (size == 0) throw SceneFileError(path + ": is empty; a scene with triangles is wanted");
@@ -37,7 +38,7 @@ void append(std::vector<std::string>& warnings, std::vector<std::string> more) {
     warnings.insert(warnings.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
 }
 
-/// A file may be wrong in a million places.
+/// Limits the number of warnings: a file may have a million errors.
 void limit_warnings(std::vector<std::string>& warnings, const std::string& path) {
     constexpr std::size_t kMost = 50;
     if (warnings.size() <= kMost) return;
@@ -55,7 +56,7 @@ Assembly read_ply_scene(const std::string& path, const SceneFileOptions& options
     for (const std::string& name : read_ply(scene, path, options.scale, checkpoint))
         file.pictures.push_back({name, false, {}});
     Material plain;
-    // The colours of vertices are the surface's own.
+    // Vertex colours are the surface's own colours.
     if (!scene.colors.empty()) plain.diffuse = {1, 1, 1};
     plain.vertex_opacity = are_transparent(scene.colors);
     Scene materials;
@@ -76,7 +77,7 @@ Assembly read_ply_scene(const std::string& path, const SceneFileOptions& options
     return scene;
 }
 
-/// Those of the nodes, by the names of these, or their own where a node has none.
+/// Returns the cameras of the nodes, named after these, or by their own name if a node has none.
 std::vector<SceneCamera> cameras_of(const FileScene& file, SceneObjects& objects, std::vector<std::string>& warnings) {
     std::vector<SceneCamera> cameras;
     if (file.cameras.empty()) return cameras;
@@ -163,7 +164,7 @@ const SceneFormat& format_of(const std::string& path) {
 
 Assembly read_any(const std::string& path, const SceneFileOptions& options, const ImageReader& read_image) {
     Checkpoint checkpoint(options.keep_going);
-    // The system knows no longer ones, and no message has to repeat them.
+    // The system has no longer paths, and messages need not repeat them.
     if (path.size() > PATH_MAX) throw SceneFileError(in_quotes(path) + ": no such file");
     const SceneFormat& format = format_of(path);
     check_file(path);

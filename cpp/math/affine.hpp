@@ -3,7 +3,8 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// The inverse of a map, in the form that loses nothing near what the map makes of 0: `origin` is subtracted first.
+/// Inverse of an affine map, in the form that loses no precision near the image of the origin under that map: `origin`
+/// is subtracted first.
 template <class T>
 struct InverseAffine {
     Vec3<T> x, y, z, origin;
@@ -11,8 +12,8 @@ struct InverseAffine {
     REALCAM_INLINE Vec3<T> direction(Vec3<T> d) const { return d.x * x + d.y * y + d.z * z; }
     REALCAM_INLINE Vec3<T> point(Vec3<T> p) const { return direction(p - origin); }
 
-    /// What the map itself makes of a plane's normal: on the same side also where it mirrors, longer than 1 where it
-    /// shrinks along the normal.
+    /// Transforms a plane's normal by the map itself, not its inverse. The result stays on the same side also if the
+    /// map mirrors, and is longer than 1 if the map shrinks along the normal.
     REALCAM_INLINE Vec3<T> normal_of(Vec3<T> n) const { return {dot(x, n), dot(y, n), dot(z, n)}; }
 
     template <class U>
@@ -22,7 +23,7 @@ struct InverseAffine {
     }
 };
 
-/// A linear map and a shift, as the images of the axes and of the origin.
+/// Affine map: a linear map and a translation, as the images of the axes and of the origin.
 template <class T>
 struct Affine {
     Vec3<T> x = {1, 0, 0}, y = {0, 1, 0}, z = {0, 0, 1}, origin = {0, 0, 0};
@@ -32,20 +33,20 @@ struct Affine {
     REALCAM_INLINE Vec3<T> direction(Vec3<T> d) const { return d.x * x + d.y * y + d.z * z; }
     REALCAM_INLINE Vec3<T> point(Vec3<T> p) const { return direction(p) + origin; }
     REALCAM_INLINE T determinant() const { return dot(x, cross(y, z)); }
-    /// Neither turns nor mirrors, and scales all directions alike.
+    /// True if the map is a positive uniform scale and a translation.
     REALCAM_INLINE bool is_scale_and_shift() const {
         return x.x > 0 && x == Vec3<T>{x.x, 0, 0} && y == Vec3<T>{0, x.x, 0} && z == Vec3<T>{0, 0, x.x};
     }
 
-    /// Maps the normal of a plane. It stays on the same side of the surface also where the map mirrors it, and is not
-    /// of unit length. The cofactors are the inverse transpose times the determinant, and exist where the inverse does
-    /// not.
+    /// Transforms the normal of a plane. The result stays on the same side of the surface also if the map mirrors, and
+    /// is not of unit length. The cofactors are the inverse transpose times the determinant, and exist even if the
+    /// inverse does not.
     REALCAM_INLINE Vec3<T> normal(Vec3<T> n) const {
         const Vec3<T> m = n.x * cross(y, z) + n.y * cross(z, x) + n.z * cross(x, y);
         return determinant() < 0 ? -m : m;
     }
 
-    /// The determinant is not 0.
+    /// The determinant must not be 0.
     REALCAM_INLINE InverseAffine<T> inverse() const {
         const T scale = T(1) / determinant();
         const Vec3<T> a = scale * cross(y, z), b = scale * cross(z, x), c = scale * cross(x, y);
@@ -61,7 +62,7 @@ struct Affine {
         return c;
     }
 
-    /// Entry by entry.
+    /// Interpolates linearly, entry by entry.
     friend REALCAM_INLINE Affine mix(const Affine& a, const Affine& b, T share_of_b) {
         return {mix(a.x, b.x, share_of_b), mix(a.y, b.y, share_of_b), mix(a.z, b.z, share_of_b),
                 mix(a.origin, b.origin, share_of_b)};

@@ -7,7 +7,7 @@ namespace realcam {
 void append_alias_table(const std::vector<double>& weights, std::vector<AliasEntry>& tables) {
     double sum = 0;
     for (const double weight : weights) sum += weight;
-    std::vector<double> share;  // of what an entry has in an even table
+    std::vector<double> share;  // weight relative to the mean weight
     std::vector<std::size_t> less, more;
     for (std::size_t i = 0; i < weights.size(); ++i) {
         share.push_back(weights[i] / sum * static_cast<double>(weights.size()));
@@ -24,7 +24,7 @@ void append_alias_table(const std::vector<double>& weights, std::vector<AliasEnt
             less.push_back(giver);
         }
     }
-    // But for roundings, what is left over has its even share.
+    // Except for rounding, the remaining entries have the mean weight.
     for (const auto& left : {less, more})
         for (const std::size_t i : left) table[i] = {1, static_cast<std::int32_t>(i)};
 }

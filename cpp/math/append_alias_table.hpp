@@ -5,7 +5,7 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Appends the table of these weights, of which one at least is above 0 (Vose 1991).
+/// Appends the alias table of these weights (Vose 1991). At least one weight must be above 0.
 void append_alias_table(const std::vector<double>& weights, std::vector<AliasEntry>& tables);
 
 }  // namespace REALCAM_NAMESPACE

@@ -5,10 +5,10 @@
 
 namespace REALCAM_NAMESPACE {
 
-// Tables of count + 1 cumulative probabilities, from 0 to 1, in steps of 2^-24 (append_cdf). These are the steps of the
-// random numbers, so an entry is chosen exactly as often as its probability says.
+// Tables of count + 1 cumulative probabilities, from 0 to 1, in steps of 2^-24 (append_cdf). Random numbers have the
+// same steps, so an entry is chosen exactly with its probability.
 
-/// First index whose cumulative probability exceeds u.
+/// Returns the index with cdf[index] <= u < cdf[index + 1].
 REALCAM_INLINE int find_in_cdf(const float* cdf, int count, float u) {
     int first = 0, last = count;
     while (first + 1 < last) {
@@ -22,11 +22,11 @@ REALCAM_INLINE int find_in_cdf(const float* cdf, int count, float u) {
     return first;
 }
 
-/// An entry chosen from a table.
+/// Entry drawn from a table.
 struct CdfChoice {
     int index;
     float probability;
-    float fresh;  ///< a random number in (0, 1), made of what the choice left over
+    float fresh;  ///< random number in (0, 1), from the remainder of u
 };
 
 template <int N>
@@ -37,10 +37,10 @@ struct CdfChoices {
     REALCAM_INLINE CdfChoice operator[](int lane) const { return {index[lane], probability[lane], fresh[lane]}; }
 };
 
-/// The entry between two cumulative probabilities, with u between them.
+/// Returns the entry whose cumulative probabilities enclose u.
 REALCAM_INLINE CdfChoice cdf_choice(int index, float below, float above, float u) {
     const float probability = above - below;
-    // Starts from the middle of the random number's step, because an entry of one step would always give 0.
+    // u is taken as the middle of its step, because an entry of one step would otherwise always give 0.
     return {index, probability, left_over(u - below + 0x1p-25f, probability)};
 }
 
@@ -49,8 +49,8 @@ REALCAM_INLINE CdfChoice choose_from_cdf(const float* cdf, int count, float u) {
     return cdf_choice(index, cdf[index], cdf[index + 1], u);
 }
 
-/// The same for many numbers, all in step, which is vector code and waits for memory for many at once. `tables`: of the
-/// same length, one of which begins at `begin[i]`.
+/// Draws entries for `places` numbers in lockstep, which is vector code and waits for memory for many at once.
+/// `tables`: tables of the same length; that of number i begins at `begin[i]`.
 template <int N>
 REALCAM_INLINE void choose_from_cdfs(const float* tables, const std::int32_t (&begin)[N], int count,
                                      const float (&u)[N], int places, CdfChoices<N>& chosen) {
@@ -64,7 +64,7 @@ REALCAM_INLINE void choose_from_cdfs(const float* tables, const std::int32_t (&b
         REALCAM_LANES
         for (int i = 0; i < places; ++i) {
             const std::int32_t middle = first[i] + (last[i] - first[i]) / 2;
-            // Where only one is left, that is the middle, and stays.
+            // If only one entry is left, it is the middle, and stays.
             const bool is_below = tables[middle] <= u[i];
             first[i] = select(is_below, middle, first[i]);
             last[i] = select(is_below, last[i], middle);

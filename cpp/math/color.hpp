@@ -5,7 +5,7 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Light, or what a surface does to it, by linear Rec. 709 channels.
+/// Light, or a factor on it such as a reflectance, in linear Rec. 709 channels.
 struct Color {
     float r, g, b;
 
@@ -55,7 +55,7 @@ REALCAM_INLINE constexpr Color select(bool condition, Color a, Color b) {
     return {condition ? a.r : b.r, condition ? a.g : b.g, condition ? a.b : b.b};
 }
 
-/// N colours as Vec3Lanes are N vectors.
+/// N colours in structure-of-arrays form; see Vec3Lanes.
 template <int N>
 struct ColorLanes {
     Lanes<float, N> r, g, b;

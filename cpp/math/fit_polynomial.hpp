@@ -9,8 +9,9 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Coefficients, the constant first, of the polynomial that comes nearest to points (x, y) in the mean of squares. x
-/// within [-1, 1]. A power that is no new one at these x, because they are few or all the same, has the coefficient 0.
+/// Returns the coefficients, constant first, of the least-squares polynomial for points (x, y), with x within [-1, 1].
+/// A power that is linearly dependent on lower ones at these x, because they are few or coincide, has the coefficient
+/// 0.
 template <std::size_t kTerms>
 std::array<double, kTerms> fit_polynomial(const std::vector<double>& x, std::vector<double> y) {
     std::vector<std::vector<double>> powers(1, std::vector<double>(x.size(), 1));

@@ -6,15 +6,15 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// A node of Gauss and Legendre's quadrature on [0, 1], and its weight; the weights of a rule sum to 1.
+/// Node of Gauss-Legendre quadrature on [0, 1], and its weight; the weights of a rule sum to 1.
 struct GaussNode {
     double node, weight;
 };
 
-/// Node k, from 0, of n. They begin at 1 and fall.
+/// Returns node k, from 0, of n. Nodes decrease from 1 towards 0.
 inline GaussNode gauss_node(int n, int k) {
     double x = std::cos(std::numbers::pi * (k + 0.75) / (n + 0.5)), slope = 1;
-    for (int step = 0; step < 10; ++step) {  // Newton from there has all digits after four
+    for (int step = 0; step < 10; ++step) {  // from there, Newton's method has all digits after four
         double last = 1, value = x;
         for (int j = 2; j <= n; ++j) {
             const double next = ((2 * j - 1) * x * value - (j - 1) * last) / j;

@@ -4,8 +4,8 @@
 
 namespace realcam {
 
-/// sqrt(x^2 + y^2), rounded as well as std::hypot, without overflow or underflow on the way; infinite where one of the
-/// two is. glibc has had its hypot since 2.35 alone, and a package that calls it would ask for a system of that age.
+/// Returns sqrt(x^2 + y^2), rounded as well as std::hypot, without intermediate overflow or underflow; infinite if x or
+/// y is. std::hypot is avoided, because its symbol requires glibc 2.35 or later at run time.
 inline double hypotenuse(double x, double y) {
     using Wide = long double;
     if constexpr (std::numeric_limits<Wide>::max_exponent > 2 * std::numeric_limits<double>::max_exponent) {
@@ -16,7 +16,7 @@ inline double hypotenuse(double x, double y) {
     }
 }
 
-/// The same of single numbers, whose squares double holds without rounding.
+/// The same in single precision, whose squares double holds without rounding.
 inline float hypotenuse(float x, float y) {
     if (std::isinf(x) || std::isinf(y)) return std::numeric_limits<float>::infinity();
     return static_cast<float>(std::sqrt(double{x} * double{x} + double{y} * double{y}));

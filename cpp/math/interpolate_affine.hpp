@@ -3,13 +3,15 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// The linear part of a map as a rotation after a stretch along three axes (and a mirror, where the map is one).
+/// Polar decomposition of a map's linear part: a rotation applied after a stretch along three axes (with a reflection,
+/// if the map mirrors).
 struct PolarDecomposition {
     Quaternion rotation;
     Affine<double> stretch;
 };
 
-/// The polar decomposition of a map whose determinant is not 0, by Newton's iteration with scaling (Higham 1986).
+/// Returns the polar decomposition of a map whose determinant is not 0, by Newton's iteration with scaling (Higham
+/// 1986).
 inline PolarDecomposition polar_decomposition(const Affine<double>& map) {
     Affine<double> r = {map.x, map.y, map.z, {0, 0, 0}};
     if (map.determinant() < 0) r = {-map.x, -map.y, -map.z, {0, 0, 0}};
@@ -33,8 +35,8 @@ inline PolarDecomposition polar_decomposition(const Affine<double>& map) {
     return {q, {turned.direction(map.x), turned.direction(map.y), turned.direction(map.z), {0, 0, 0}}};
 }
 
-/// At a share of the way from one map to another, which mirror both or neither: rotations by the shorter way at an even
-/// pace, stretch and shift evenly (Shoemake and Duff 1992).
+/// Interpolates between two maps, which mirror both or neither: rotations along the shorter arc at constant speed,
+/// stretch and translation linearly (Shoemake and Duff 1992). `share` 0 gives a, and 1 gives b.
 inline Affine<double> interpolated(const Affine<double>& a, const Affine<double>& b, double share) {
     const Vec3d origin = mix(a.origin, b.origin, share);
     if (a.x == b.x && a.y == b.y && a.z == b.z) return {a.x, a.y, a.z, origin};

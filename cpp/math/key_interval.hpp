@@ -5,13 +5,13 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Two successive keys at even times from 0 to 1, and a share of the way from the first to the second.
+/// Two successive keys at uniform times from 0 to 1, and a fraction of the interval between them.
 struct KeyInterval {
     std::int32_t first;
     float share;
 };
 
-/// `count` is 2 or more.
+/// Returns the interval of a time among `count` keys, which are at least 2.
 REALCAM_INLINE KeyInterval key_interval(float time, std::int32_t count) {
     const float place = time * static_cast<float>(count - 1);
     const auto whole = static_cast<std::int32_t>(place);

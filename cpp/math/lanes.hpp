@@ -5,19 +5,18 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// The alignment is that of a cache line, which vector loads want. A GPU thread has one lane, which a compiler
-/// keeps in registers only where it need not lie in memory at such an address.
+/// Array of N lanes aligned to a cache line, for vector loads. A GPU thread has one lane, which must not be
+/// over-aligned: the compiler would keep it in memory instead of registers.
 template <class T, int N>
 struct AlignedLanes {
     using type[[gnu::aligned(N > 1 ? 64 : alignof(T))]] = T[N];
 };
 
-/// An array of N lanes. It is aligned by way of a class, because clang forgets the alignment of an alias template.
+/// Array of N lanes. Its alignment is set in a class, because clang forgets the alignment of an alias template.
 template <class T, int N>
 using Lanes = typename AlignedLanes<T, N>::type;
 
-/// The first `count` of N lanes, and those beside them that a vector register holds too: a loop to this number needs no
-/// scalar code for what is left over.
+/// Rounds `count` lanes of N up to whole vector registers: a loop to this number needs no scalar remainder.
 template <int N>
 REALCAM_INLINE constexpr int whole_vectors(int count) {
     constexpr int kWidest = 16;  // floats of AVX-512
@@ -25,8 +24,8 @@ REALCAM_INLINE constexpr int whole_vectors(int count) {
     return (count + kWidest - 1) & -kWidest;
 }
 
-/// N vectors in structure-of-arrays form: what one vector register loads lies side by side.
-/// A GPU thread uses N = 1, and the arrays become registers.
+/// N vectors in structure-of-arrays form, so that a vector register loads adjacent values. A GPU thread uses N = 1, and
+/// the arrays become registers.
 template <class T, int N>
 struct Vec3Lanes {
     Lanes<T, N> x, y, z;
@@ -39,7 +38,7 @@ struct Vec3Lanes {
     }
 };
 
-/// The same for pairs.
+/// N pairs in structure-of-arrays form.
 template <class T, int N>
 struct Vec2Lanes {
     Lanes<T, N> x, y;
@@ -51,7 +50,7 @@ struct Vec2Lanes {
     }
 };
 
-/// a where the condition holds, else b; both are always computed, so that a lane loop stays free of branches.
+/// Returns a if the condition holds, else b; both are always computed, so that a lane loop stays free of branches.
 template <class T>
 REALCAM_INLINE constexpr T select(bool condition, T a, T b) {
     return condition ? a : b;
@@ -61,7 +60,7 @@ REALCAM_INLINE constexpr Vec3<T> select(bool condition, Vec3<T> a, Vec3<T> b) {
     return {condition ? a.x : b.x, condition ? a.y : b.y, condition ? a.z : b.z};
 }
 
-/// NaN becomes the least.
+/// Returns the larger of v and `least`; `least` if v is NaN.
 REALCAM_INLINE constexpr float at_least(float v, float least) {
     return select(v > least, v, least);
 }

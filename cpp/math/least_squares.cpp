@@ -15,9 +15,9 @@ std::vector<std::vector<double>> least_squares(const std::vector<std::vector<dou
         for (std::size_t i = 0; i < from.size(); ++i) from[i] -= factor * vector[i];
     };
     const std::size_t count = columns.size();
-    std::vector<std::vector<double>> basis(count);  // orthogonal; empty where a column is no new one
+    std::vector<std::vector<double>> basis(count);  // orthogonal; empty for a linearly dependent column
     std::vector<double> sizes(count);
-    std::vector<std::vector<double>> in_basis(count, std::vector<double>(count));  // columns in terms of it
+    std::vector<std::vector<double>> in_basis(count, std::vector<double>(count));  // coefficients of the columns in it
     std::vector<std::vector<double>> factors(targets.size(), std::vector<double>(count));
     for (std::size_t k = 0; k < count; ++k) {
         basis[k] = columns[k];

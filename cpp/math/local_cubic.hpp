@@ -9,11 +9,12 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// The cubic through the four nodes nearest to a place, two on either side where there are as many, of functions that
-/// are odd or even. Nodes need not lie at even distances.
+/// Interpolation by the cubic through the four nodes nearest to a point, two on either side if possible, of functions
+/// that are odd or even. Nodes need not be equidistant.
 class LocalCubic {
 public:
-    /// `nodes` rise from 0 on. Nothing where the place is not between two of them, or where there are fewer than three.
+    /// `nodes` increase from 0. Returns std::nullopt if `place` is not between two of them, or if there are fewer than
+    /// three.
     static std::optional<LocalCubic> at(const std::vector<double>& nodes, double place) {
         const auto count = static_cast<std::ptrdiff_t>(nodes.size());
         const std::ptrdiff_t above = std::upper_bound(nodes.begin(), nodes.end(), place) - nodes.begin();
@@ -22,7 +23,7 @@ public:
         std::array<double, 4> x{};
         LocalCubic cubic;
         for (std::ptrdiff_t i = 0; i < 4; ++i) {
-            const std::ptrdiff_t node = first + i;  // below 0: the mirror image of one
+            const std::ptrdiff_t node = first + i;  // below 0: mirror image of a node
             const auto k = static_cast<std::size_t>(i);
             cubic.mirrored_[k] = node < 0;
             cubic.nodes_[k] = static_cast<std::size_t>(node < 0 ? -node : node);
@@ -36,7 +37,7 @@ public:
         return cubic;
     }
 
-    /// `value`: of the node of a number.
+    /// Interpolates an odd function; `value` returns the function's value at the node of an index.
     template <class Value>
     double odd(Value&& value) const {
         double sum = 0;

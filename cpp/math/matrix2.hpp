@@ -7,7 +7,7 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// A 2 x 2 matrix by its rows.
+/// 2 x 2 matrix, by rows.
 struct Matrix2 {
     Vec2<double> first, second;
 
@@ -28,17 +28,18 @@ struct Matrix2 {
     double determinant() const { return first.x * second.y - first.y * second.x; }
     double trace() const { return first.x + second.y; }
     Matrix2 transposed() const { return {{first.x, second.x}, {first.y, second.y}}; }
-    /// The determinant is not 0.
+    /// The determinant must not be 0.
     Matrix2 inverse() const { return (1 / determinant()) * Matrix2{{second.y, -first.y}, {-second.x, first.x}}; }
 };
 
-/// m = left diag(larger, smaller) right^T, with rotations on both sides: the smaller value has the determinant's sign.
+/// Singular value decomposition m = left diag(larger, smaller) right^T, with rotations on both sides: the smaller value
+/// has the determinant's sign.
 struct SingularValues {
     double larger, smaller;
     double left, right;  ///< angles of the rotations, rad
 };
 
-/// G. H. Golub and C. F. Van Loan, "Matrix Computations": of a 2 x 2 matrix in closed form.
+/// Returns the singular value decomposition in closed form (G. H. Golub and C. F. Van Loan, "Matrix Computations").
 inline SingularValues singular_values(const Matrix2& m) {
     const double e = 0.5 * (m.first.x + m.second.y), f = 0.5 * (m.first.x - m.second.y);
     const double g = 0.5 * (m.second.x + m.first.y), h = 0.5 * (m.second.x - m.first.y);

@@ -8,8 +8,8 @@
 namespace realcam {
 namespace {
 
-/// Of a parabola through the end and the two points beside it, within what keeps the cubic monotone. `near`, `far`:
-/// the chords from the end on, over steps of these widths.
+/// Returns the slope at an end point, by the parabola through it and the two points beside it, limited so that the
+/// cubic stays monotone. `near`, `far`: slopes of the chords from the end on, over intervals of these widths.
 double end_slope(double near_width, double near, double far_width, double far) {
     const double slope = ((2 * near_width + far_width) * near - near_width * far) / (near_width + far_width);
     if (slope * near <= 0) return 0;

@@ -5,18 +5,18 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// What a curve does at its first and at its last point.
+/// Slope of a curve at its first and last point.
 enum class CurveEnds {
-    free,  ///< it goes on as the points beside the end say
-    rest,  ///< its slope is 0
+    free,  ///< estimated from the points beside the end
+    rest,  ///< 0
 };
 
-/// A curve through points, of cubics (Hermite) that never go beyond the two points between which they lie. Its slopes
-/// are continuous: weighted harmonic means of those of the two chords, or 0 where the points turn round
-/// (F. Fritsch and J. Butland, SIAM J. Sci. Stat. Comput. 5 (1984) 300). Beyond the ends it stays at their values.
+/// Curve through points, by cubic Hermite polynomials that never leave the range between the two points where they lie.
+/// Slopes are continuous: weighted harmonic means of those of the two chords, or 0 at a local extremum of the points
+/// (F. Fritsch and J. Butland, SIAM J. Sci. Stat. Comput. 5 (1984) 300). Constant beyond the ends.
 class MonotoneCurve {
 public:
-    /// One point at least; `x` rises.
+    /// Needs at least one point; `x` is strictly increasing.
     MonotoneCurve(std::vector<double> x, std::vector<double> y, CurveEnds ends = CurveEnds::free);
 
     double at(double x) const;

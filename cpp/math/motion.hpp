@@ -8,10 +8,10 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Times beyond are refused: a double tells a tenth of a microsecond from the next up to here.
+/// Largest accepted magnitude of a time: up to here a double resolves a tenth of a microsecond.
 inline constexpr double kMostSeconds = 1e9;
 
-/// The interval in which something is looked at, in seconds of the scene.
+/// Time interval, in seconds of the scene's clock.
 struct TimeInterval {
     double begin_s = 0, end_s = 0;
 
@@ -19,27 +19,29 @@ struct TimeInterval {
     double at(double share) const { return begin_s + share * (end_s - begin_s); }
 };
 
-/// A transform that changes with time, by keys. Between two of them it is interpolated (see `interpolated`): a turn
-/// goes the shorter way. Before the first and after the last nothing moves.
+/// Animated transform, by keyframes. Between two keys it is interpolated (see `interpolated`): a rotation takes the
+/// shorter arc. It is constant before the first key and after the last.
 struct Motion {
-    std::vector<double> times_s;  ///< rising
-    std::vector<Affine<double>> transforms;  ///< one for each
+    std::vector<double> times_s;  ///< strictly increasing
+    std::vector<Affine<double>> transforms;  ///< one per key
 
     bool operator==(const Motion&) const = default;
 
     Affine<double> at(double time_s) const;
 
-    /// The keys within an interval, without its ends.
+    /// Returns the key times within an interval, without its ends.
     std::vector<double> times_within(const TimeInterval& interval) const;
 };
 
-/// In rising order, each once.
+/// Returns the times in increasing order, without duplicates.
 std::vector<double> sorted_once(std::vector<double> times);
 
-/// What is wrong with the time of the key after one at `last` (null: it is the first); empty: nothing.
+/// Returns why the time of a key is invalid, or an empty string. `last`: time of the key before it; null for the first
+/// key.
 std::string key_time_error(double time_s, const double* last);
 
-/// Throws InputError, which names the key, where `check` does, or where times do not rise. `of`: "the camera".
+/// Throws InputError, which names the key, if `check` does or if the key times are not strictly increasing. `of`: what
+/// the keys animate, for the message ("the camera").
 template <class Key, class Check>
 void check_keys(const std::vector<Key>& keys, const std::string& of, Check&& check) {
     for (std::size_t k = 0; k < keys.size(); ++k) {
@@ -56,12 +58,12 @@ void check_keys(const std::vector<Key>& keys, const std::string& of, Check&& che
     }
 }
 
-/// A motion by keys at the given times and at as many between them as the interpolation wants, to be what `at` is: a
-/// function of the time. For what moves with something else, and goes along arcs where that turns.
+/// Samples `at`, a function of time, as a motion: with keys at the given times, and as many between them as the
+/// interpolation needs to follow it. For objects attached to a rotating one, which move along arcs.
 template <class At>
 Motion sampled_motion(const std::vector<double>& times_s, At&& at) {
     constexpr int kMostHalvings = 8;
-    constexpr double kClose = 1e-5;  // of the axes' lengths, and of the way: a hundredth of what key_steps grants
+    constexpr double kClose = 1e-5;  // of the axes' lengths and the distance moved: 1/100 of key_steps' tolerance
     Motion motion;
     const auto add = [&](double time, const Affine<double>& map) {
         motion.times_s.push_back(time);

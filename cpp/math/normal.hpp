@@ -20,19 +20,20 @@ REALCAM_INLINE float log_of_positive(float v) {
     return static_cast<float>(exponent) * 0.6931471806f + 2.0f * s * series;
 }
 
-/// 32 random bits as a float in (0, 1], even near 0: logarithms of it reach as far as a bell curve is wanted.
+/// Converts 32 random bits to a float in (0, 1], with a fine resolution also near 0: its logarithm reaches into the
+/// tails of the normal distribution.
 REALCAM_INLINE float positive_unit_float(std::uint32_t bits) {
     return (static_cast<float>(static_cast<std::int32_t>(bits >> 1)) + 0.5f) * 0x1p-31f;
 }
 
-/// Two independent standard normal numbers of 64 random bits (Box and Muller 1958), up to 6.7 in size.
+/// Returns two independent standard normal numbers from 64 random bits (Box and Muller 1958), up to 6.7 in magnitude.
 REALCAM_INLINE Vec2f normal_pair(std::uint32_t radius_bits, std::uint32_t angle_bits) {
     const float radius = sqrt_or_zero(-2.0f * log_of_positive(positive_unit_float(radius_bits)));
     const Vec2f direction = cos_sin_of_turn(unit_float(angle_bits));
     return {radius * direction.x, radius * direction.y};
 }
 
-/// Density of each of the two.
+/// Density of each number of normal_pair.
 REALCAM_INLINE float normal_pdf(float x) {
     return 0.3989422804f * std::exp(-0.5f * x * x);
 }

@@ -6,8 +6,8 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// An odd function of which the values at 0, 1, 2, ... are known, with cubics between them (Hermite). NaN where there
-/// is no value, and in the steps beside it.
+/// Odd function tabulated at 0, 1, 2, ..., with cubics between these points (Hermite). NaN at points without a value,
+/// and in the intervals beside them.
 class OddCurve {
 public:
     /// A value and its slope.
@@ -16,21 +16,21 @@ public:
     };
 
     OddCurve() = default;
-    /// At least three values. `rises_where_values_do`: limits the slopes so that cubics between values that rise never
-    /// fall, also where the function bends (F. Fritsch and R. Carlson, SIAM J. Numer. Anal. 17 (1980) 238).
+    /// Needs at least three values. `rises_where_values_do`: limits the slopes so that cubics between increasing values
+    /// never fall, also where the function bends (F. Fritsch and R. Carlson, SIAM J. Numer. Anal. 17 (1980) 238).
     explicit OddCurve(std::vector<double> values, bool rises_where_values_do = false);
 
     int count() const { return static_cast<int>(values_.size()); }
     double operator[](int k) const { return values_[static_cast<std::size_t>(k)]; }
 
-    /// In the step that begins at k; `share` from 0 to 1.
+    /// Evaluates the function in the interval that begins at k; `share` from 0 to 1.
     Point between(int k, double share) const;
     Point at(double place) const;
 
 private:
     double value_at(int k) const;
 
-    /// By differences of the fourth order; by lower ones at the end and beside gaps.
+    /// Estimates the slope by fourth-order finite differences; by lower orders at the end and beside gaps.
     double slope_at(int k) const;
 
     double limited(int k, double slope) const;

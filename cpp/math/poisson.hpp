@@ -7,14 +7,15 @@
 
 namespace REALCAM_NAMESPACE {
 
-// Poisson numbers without an approximation of their distribution: by inversion where the mean is small, and by
-// transformed rejection where it is not (Hoermann 1993, "The transformed rejection method for generating Poisson random
-// variables", algorithm PTRS). All in double: a mean of 1e7 electrons has a deviation of 3e3 whole numbers.
+// Poisson sampling without an approximation of the distribution: by inversion for small means, and by transformed
+// rejection for large ones (Hoermann 1993, "The transformed rejection method for generating Poisson random variables",
+// algorithm PTRS). All in double: a mean of 1e7 electrons has a standard deviation of 3e3.
 
-/// Up to here the sum of probabilities is quicker than rejection, which is valid from 10 on (Hoermann 1993).
+/// Largest mean sampled by inversion, which is faster than rejection up to here. Rejection is valid from 10 on
+/// (Hoermann 1993).
 inline constexpr double kLargestInvertedMean = 40;
 
-/// 32 random bits as a double in (0, 1).
+/// Converts 32 random bits to a double in (0, 1).
 REALCAM_INLINE double open_unit_double(std::uint32_t bits) {
     // Through a signed integer: AVX2 cannot convert unsigned ones.
     return 0.5 + (static_cast<double>(static_cast<std::int32_t>(bits)) + 0.5) * 0x1p-32;
@@ -23,11 +24,11 @@ REALCAM_INLINE double open_unit_double(std::uint32_t bits) {
 /// One attempt of PTRS.
 struct PoissonAttempt {
     double count;  ///< whole; the result if accepted
-    bool is_accepted;  ///< at once: some 9 in 10
-    bool is_possible;  ///< is_accepted_slowly decides
+    bool is_accepted;  ///< without further tests: some 9 in 10
+    bool is_possible;  ///< if not accepted: is_accepted_slowly decides
 };
 
-/// The hat of PTRS for one mean of at least 10.
+/// Hat function of PTRS for one mean of at least 10.
 struct PoissonHat {
     double mean, b, a, least_v;
 
@@ -37,7 +38,7 @@ struct PoissonHat {
           a(-0.059 + 0.02483 * b),
           least_v(0.9277 - 3.6224 / (b - 2)) {}
 
-    /// u and v in (0, 1).
+    /// Makes an attempt from u and v in (0, 1).
     REALCAM_INLINE PoissonAttempt attempt(double u, double v) const {
         const double from_middle = u - 0.5, to_edge = 0.5 - std::fabs(from_middle);
         const double count = std::floor((2 * a / to_edge + b) * from_middle + mean + 0.43);
@@ -75,13 +76,14 @@ REALCAM_INLINE double exp_of_negative(double x) {
     return sum * std::bit_cast<double>(exponent << 52);
 }
 
-/// Poisson numbers by inversion, of means up to kLargestInvertedMean: the number of partial sums of the probabilities
-/// that are below u, a uniform number in (0, 1) of 53 bits. All lanes go as far as the farthest of them, which is
-/// quicker than one by one: a step has no quotient and no branch of a lane's own. Other means: any count.
+/// Samples Poisson numbers by inversion, for means up to kLargestInvertedMean: counts the partial sums of the
+/// probabilities that are below u, a uniform number in (0, 1) of 53 bits. All lanes iterate until the last one is done,
+/// which is quicker than one by one: a step has no division and no divergent branch. Counts for larger means are
+/// undefined.
 template <int N>
 REALCAM_HD void invert_poisson(const double (&mean)[N], const double (&u)[N], double (&count)[N]) {
     constexpr int kFarthest = 160;  // a probability of 1e-40 at the largest mean
-    alignas(64) double probability[N], left[N];  // of u, less the sum so far
+    alignas(64) double probability[N], left[N];  // left: u less the sum so far
     REALCAM_LANES
     for (int k = 0; k < N; ++k) {
         const double m = mean[k] < kLargestInvertedMean ? mean[k] : 0.0;
@@ -104,12 +106,13 @@ REALCAM_HD void invert_poisson(const double (&mean)[N], const double (&u)[N], do
     }
 }
 
-/// The random bits of one Poisson number are a function of its stream and of the attempt; two halves for each.
+/// Returns the random bits of one attempt at a Poisson number, by its stream and the attempt; `half` is 0 or 1.
 REALCAM_INLINE std::uint32_t attempt_bits(std::uint32_t stream, std::uint32_t attempt, std::uint32_t half) {
     return hash32(stream, 2 * attempt + half);
 }
 
-/// A Poisson number of a finite mean of at least 10, by rejection. Attempts before `first_attempt` have failed.
+/// Samples a Poisson number with a finite mean of at least 10, by rejection. Attempts before `first_attempt` have
+/// failed.
 REALCAM_HD inline double poisson_by_rejection(double mean, std::uint32_t stream, std::uint32_t first_attempt = 0) {
     const PoissonHat hat(mean);
     for (std::uint32_t i = first_attempt;; ++i) {

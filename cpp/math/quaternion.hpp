@@ -22,7 +22,7 @@ inline double dot(const Quaternion& a, const Quaternion& b) {
     return dot(a.v, b.v) + a.w * b.w;
 }
 
-/// The rotation of a quaternion of any length but 0.
+/// Returns the rotation of a non-zero quaternion of any length.
 inline Affine<double> rotation(Quaternion q) {
     q = (1 / std::sqrt(dot(q, q))) * q;
     const auto [x, y, z] = q.v;
@@ -33,8 +33,8 @@ inline Affine<double> rotation(Quaternion q) {
             {0, 0, 0}};
 }
 
-/// The quaternion of the linear part of a rotation. It starts from the largest of the four components, which loses no
-/// digits (Shepperd 1978).
+/// Returns the quaternion of the linear part of a rotation. It starts from the largest of the four components, which
+/// loses no digits (Shepperd 1978).
 inline Quaternion quaternion_of(const Affine<double>& r) {
     const double trace = r.x.x + r.y.y + r.z.z;
     const double most = std::max({trace, r.x.x, r.y.y, r.z.z});
@@ -50,10 +50,10 @@ inline Quaternion quaternion_of(const Affine<double>& r) {
     return (1 / std::sqrt(dot(q, q))) * q;
 }
 
-/// On the shorter way from one rotation to another, at a share of the angle between them (Shoemake 1985).
+/// Interpolates between two rotations along the shorter arc, at a fraction of the angle between them (Shoemake 1985).
 inline Quaternion slerp(const Quaternion& a, Quaternion b, double share) {
     if (dot(a, b) < 0) b = -1.0 * b;
-    // Between unit vectors; the arc cosine would lose half of the digits of a small angle.
+    // The angle between unit vectors; the arc cosine would lose half of the digits of a small angle.
     const Quaternion apart = b + -1.0 * a, sum = a + b;
     const double angle = 2 * std::atan2(std::sqrt(dot(apart, apart)), std::sqrt(dot(sum, sum)));
     if (!(angle > 1e-9)) return (1 - share) * a + share * b;

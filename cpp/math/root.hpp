@@ -5,25 +5,25 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Most calls of f by find_root: every four at least halve the bracket, so that 81 halvings are sure. From a bracket
-/// 2^28 times as wide as its root is large, they leave the root's last digit.
+/// Greatest number of calls of f by find_root: every four at least halve the bracket, so that 81 halvings are certain.
+/// They determine the root to its last digit in a bracket 2^28 times as wide as the root's magnitude.
 inline constexpr int kMaxRootCalls = 324;
 
 struct Root {
-    double at, value;  ///< value: f(at). NaN where f was
+    double at, value;  ///< value: f(at); NaN if f returned NaN
 };
 
-/// Root of a continuous function between a and b, where it has different signs (f_a = f(a), f_b = f(b)), until |f| is
-/// at most `tolerance` or no number is left between. By the secant that halves the function of an end that stays for
-/// a second time (M. Dowell and P. Jarratt, "A modified regula falsi method", BIT 11, 168, 1971), and by halves where
-/// three of its steps have not halved the bracket. The caller judges the value: a jump or a pole has none that is
-/// small.
+/// Returns a root of a continuous function between a and b, where it has different signs (f_a = f(a), f_b = f(b)), with
+/// |f| at most `tolerance` unless no number is left between. Uses secant steps that halve the function value of an end
+/// retained for a second time (M. Dowell and P. Jarratt, "A modified regula falsi method", BIT 11, 168, 1971), and
+/// bisection if three of these steps have not halved the bracket. The caller checks the value: at a jump or a pole it
+/// is not small.
 template <class F>
 Root find_root(F&& f, double a, double f_a, double b, double f_b, double tolerance) {
     if (f_a == 0) return {a, f_a};
     Root best = std::fabs(f_a) < std::fabs(f_b) ? Root{a, f_a} : Root{b, f_b};
-    double weight_a = f_a, weight_b = f_b;  // as the secant takes them
-    double width = std::fabs(b - a);  // of the bracket, four calls ago or less
+    double weight_a = f_a, weight_b = f_b;  // function values that the secant uses
+    double width = std::fabs(b - a);  // of the bracket, at most four calls ago
     enum class End { none, first, second } kept = End::none;
     for (int call = 0; call < kMaxRootCalls && !(std::fabs(best.value) <= tolerance); ++call) {
         const bool halves = call % 4 == 3 && std::fabs(b - a) > 0.5 * width;

@@ -4,22 +4,22 @@
 
 namespace REALCAM_NAMESPACE {
 
-// Warps of the unit square, each with its density beside it, to which tests hold the warp. What uses both may divide by
-// the density, or, as scatter does, by a form in which factors have cancelled.
+// Warps of the unit square, each followed by its density, against which it is tested. Code that uses both may divide by
+// the density, or, as scatter does, use a form in which factors have cancelled.
 
-/// Uniform on the unit disc.
+/// Samples the unit disc uniformly.
 REALCAM_INLINE Vec2f sample_disc(Vec2f u) {
     const float radius = std::sqrt(u.y);
     const Vec2f azimuth = cos_sin_of_turn(u.x);
     return {radius * azimuth.x, radius * azimuth.y};
 }
 
-/// Per unit of area.
+/// Density of sample_disc, per unit area.
 REALCAM_INLINE float disc_pdf(Vec2f p) {
     return select(p.x * p.x + p.y * p.y <= 1.0f, 0.3183098862f, 0.0f);
 }
 
-/// Two unit vectors that make a right-handed frame with n (Duff et al. 2017).
+/// Computes two unit vectors that make a right-handed frame with n (Duff et al. 2017).
 REALCAM_INLINE void tangent_frame(Vec3f n, Vec3f& s, Vec3f& t) {
     const float sign = std::copysign(1.0f, n.z);
     const float a = -1.0f / (sign + n.z), b = n.x * n.y * a;
@@ -27,17 +27,17 @@ REALCAM_INLINE void tangent_frame(Vec3f n, Vec3f& s, Vec3f& t) {
     t = {b, sign + n.y * n.y * a, -n.y};
 }
 
-/// Per steradian.
+/// Density of sample_sphere, per steradian.
 inline constexpr float kSpherePdf = 0.07957747155f;
 
-/// Any direction alike.
+/// Samples the unit sphere uniformly.
 REALCAM_INLINE Vec3f sample_sphere(Vec2f u) {
     const float z = 1.0f - 2.0f * u.x, radius = sqrt_or_zero(1.0f - z * z);
     const Vec2f azimuth = cos_sin_of_turn(u.y);
     return {radius * azimuth.x, radius * azimuth.y, z};
 }
 
-/// Direction about n with density cosine / pi.
+/// Samples a direction about n with density cosine / pi.
 REALCAM_INLINE Vec3f sample_cosine(Vec3f n, Vec2f u) {
     Vec3f s, t;
     tangent_frame(n, s, t);
@@ -46,35 +46,36 @@ REALCAM_INLINE Vec3f sample_cosine(Vec3f n, Vec2f u) {
     return (radius * azimuth.x) * s + (radius * azimuth.y) * t + height * n;
 }
 
-/// Per steradian.
+/// Density of sample_cosine, per steradian.
 REALCAM_INLINE float cosine_pdf(Vec3f n, Vec3f direction) {
     const float cosine = dot(n, direction);
     return select(cosine > 0.0f, 0.3183098862f * cosine, 0.0f);
 }
 
-/// Direction about a unit vector with density (exponent + 1) / (2 pi) cosine^exponent.
+/// Samples a direction about a unit vector with density (exponent + 1) / (2 pi) cosine^exponent.
 REALCAM_INLINE Vec3f sample_phong(Vec3f axis, float exponent, Vec2f u) {
     Vec3f s, t;
     tangent_frame(axis, s, t);
-    // cosine^2 = (1 - u)^(2 / (exponent + 1)). The sine comes first: one minus a rounded cosine would leave a narrow
-    // lobe a few steps of angle only.
+    // cosine^2 = (1 - u)^(2 / (exponent + 1)). The sine is computed first: one minus a rounded cosine would leave only
+    // a few steps of angle in a narrow lobe.
     const float sine_squared = -std::expm1(2.0f / (exponent + 1.0f) * std::log1p(-u.x));
     const float radius = sqrt_or_zero(sine_squared), height = sqrt_or_zero(1.0f - sine_squared);
     const Vec2f azimuth = cos_sin_of_turn(u.y);
     return (radius * azimuth.x) * s + (radius * azimuth.y) * t + height * axis;
 }
 
-/// Per steradian.
+/// Density of sample_phong, per steradian.
 REALCAM_INLINE float phong_pdf(Vec3f axis, float exponent, Vec3f direction) {
-    // One minus the cosine from the chord: a power of 1e4 would make 1e-3 out of the rounding of a dot product.
+    // One minus the cosine is computed from the chord: a power of 1e4 would raise the rounding of a dot product to
+    // 1e-3.
     const Vec3f chord = axis - direction;
     const float missing = 0.5f * dot(chord, chord);
     if (!(missing < 1.0f)) return 0.0f;
     return (exponent + 1.0f) * 0.1591549431f * std::exp(exponent * std::log1p(-missing));
 }
 
-/// Veach's power heuristic: what counts of light that was found with one density, where the other way had the other.
-/// With an infinite one, all of it, because no other way finds it.
+/// Weight of a sample by Veach's power heuristic. It is 1 if `pdf` is infinite, because no other technique finds such
+/// light.
 REALCAM_INLINE float mis_weight(float pdf, float other_pdf) {
     const float ratio = other_pdf / pdf;
     return 1.0f / (1.0f + ratio * ratio);

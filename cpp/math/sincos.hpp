@@ -3,8 +3,8 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// (cos, sin) of `turns` full turns, for 0 <= turns < 1; error below 2e-7. Plain arithmetic, so that lane loops with it
-/// become vector code and all backends get the same bits; the library's functions give neither.
+/// Returns (cos, sin) of `turns` full turns, for 0 <= turns < 1; error below 2e-7. Plain arithmetic, so that lane loops
+/// with it become vector code and all backends get the same bits; the standard library guarantees neither.
 REALCAM_INLINE Vec2f cos_sin_of_turn(float turns) {
     const float quarters = 4.0f * turns;
     const int nearest = static_cast<int>(quarters + 0.5f);
@@ -19,7 +19,7 @@ REALCAM_INLINE Vec2f cos_sin_of_turn(float turns) {
     return {((quadrant == 1) | (quadrant == 2)) ? -a : a, quadrant >= 2 ? -b : b};
 }
 
-/// Density per radian of the angle of a turn that is drawn evenly.
+/// Density, per radian, of an angle drawn uniformly from a full turn.
 inline constexpr float kTurnPdf = 0.1591549431f;
 
 }  // namespace REALCAM_NAMESPACE

@@ -11,13 +11,13 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// K functions of which the values at the nodes of a grid are known, with bicubics between them (Hermite). A node whose
-/// values are NaN has none, nor have the cells around it.
+/// K functions tabulated at the nodes of a grid, with bicubics between them (Hermite). The result is NaN in the cells
+/// around a node whose values are NaN.
 template <int K>
 class SmoothGrid {
 public:
     using Values = std::array<double, K>;
-    /// Values, and their slopes for each column and row.
+    /// Values, and their derivatives by column and by row.
     struct Point {
         Values value{}, by_column{}, by_row{};
     };
@@ -31,11 +31,12 @@ public:
         set_slopes(&Node::by_column, &Node::by_both, columns_, rows_);
     }
 
-    int columns() const { return columns_; }  ///< of nodes
+    int columns() const { return columns_; }  ///< number of columns of nodes
     int rows() const { return rows_; }
     const Values& node(int column, int row) const { return nodes_[index(column, row)].value; }
 
-    /// `column` from 0 to columns() - 1, and `row` likewise. Beyond, the outermost cell goes on.
+    /// Evaluates the functions; `column` from 0 to columns() - 1, and `row` likewise. Beyond, the outermost cell is
+    /// extrapolated.
     Point at(double column, double row) const {
         const int left = std::clamp(static_cast<int>(column), 0, columns_ - 2);
         const int top = std::clamp(static_cast<int>(row), 0, rows_ - 2);
@@ -62,7 +63,7 @@ private:
         Values value{}, by_column{}, by_row{}, by_both{};
     };
 
-    /// Of value and slope at both ends of a step, and their derivatives.
+    /// Weights of the values and slopes at both ends of an interval, and their derivatives.
     struct Weights {
         double value[2], slope[2], value_rise[2], slope_rise[2];
 
@@ -77,7 +78,7 @@ private:
 
     std::size_t index(int column, int row) const { return static_cast<std::size_t>(row * columns_ + column); }
 
-    /// Of `from`, along lines of `count` nodes that lie `stride` apart.
+    /// Stores the slopes of `from` in `to`, along lines of `count` nodes that lie `stride` apart.
     void set_slopes(Values Node::* from, Values Node::* to, int stride, int count) {
         for (int i = 0; i < columns_ * rows_; ++i) {
             const int place = i / stride % count;
@@ -91,8 +92,8 @@ private:
         }
     }
 
-    /// By differences of the fourth order, over five nodes that lie as evenly about this one as the end and gaps let
-    /// them; where these leave fewer, by three or two.
+    /// Returns the slope by fourth-order finite differences over five nodes, as symmetric about this one as the edge
+    /// and gaps permit; if there are fewer, over three or two. NaN if there are not even two.
     template <class Value, class IsKnown>
     static Values slope_of(Value&& value, IsKnown&& is_known) {
         struct Rule {

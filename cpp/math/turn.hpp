@@ -6,7 +6,7 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// A rotation about x, then y, then z, by angles in degrees.
+/// Returns the rotation about x, then y, then z, by angles in degrees.
 inline Affine<double> turn_of(Vec3d degrees) {
     const auto turn = [](double angle_deg, Vec3d Affine<double>::* a, Vec3d Affine<double>::* b) {
         const double angle = angle_deg * (std::numbers::pi / 180);

@@ -13,8 +13,8 @@ std::vector<Affine<double>> uniform_keys(const Motion& motion, const TimeInterva
 
 std::optional<int> key_steps(const Motion& motion, const TimeInterval& interval, std::span<const Vec3d> points) {
     constexpr double kOfWay = 1e-3, kOfSize = 1e-5, kTooFar = 0.1;
-    // Where the path is looked at: at the motion's own keys, and at sevenths between them, which lie at sevenths of
-    // every power of two of steps, too, and so near the middles of some.
+    // The path is checked at the motion's own keys, and at sevenths between them, which also lie at sevenths of every
+    // power of two of steps, and so near the middles of some.
     std::vector<double> times = {interval.begin_s};
     const auto look_until = [&](double end) {
         const double begin = times.back();
@@ -32,7 +32,7 @@ std::optional<int> key_steps(const Motion& motion, const TimeInterval& interval,
     double way = 0, size = 0, reach = 0;
     for (const auto& map : path) way = std::max(way, farthest(map, path[0]));
     for (const Vec3d p : points) reach = std::max(reach, length(path[0].point(p)));
-    constexpr double kRounding = 1e-14;  // of what stays in its place, when it is interpolated
+    constexpr double kRounding = 1e-14;  // relative to the distance from the origin, for points at rest
     if (way <= kRounding * reach) return 0;
     for (const Vec3d p : points) size = std::max(size, length(path[0].direction(p - points[0])));
     const double close = std::max(kOfWay * way, kOfSize * size);

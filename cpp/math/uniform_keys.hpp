@@ -7,16 +7,16 @@
 
 namespace REALCAM_NAMESPACE {
 
-// Keys for kernels: transforms at even times of an interval, whose entries change evenly from one to the next.
+// Keys for kernels: transforms at uniform times of an interval, whose entries are interpolated linearly.
 
-inline constexpr int kMostKeySteps = 128;  ///< Embree takes 129 keys
+inline constexpr int kMostKeySteps = 128;  ///< Embree supports 129 keys
 
 std::vector<Affine<double>> uniform_keys(const Motion& motion, const TimeInterval& interval, int steps);
 
-/// The number of steps between keys that keeps each of some points where the motion has it. The tolerance is 1/1000 of
-/// the longest way that one of them goes, or 1e-5 of the distance between them. 0: nothing moves. Where kMostKeySteps
-/// are too few for that, so many; and nothing where it would be off by a tenth of the way then, because it turns more
-/// often than some twenty times.
+/// Returns the number of steps between keys that keeps each of the points close to its position in the motion. The
+/// tolerance is 1/1000 of the greatest displacement of a point, or 1e-5 of the distance between points if that is more.
+/// 0: nothing moves. kMostKeySteps if these are too few for the tolerance, and std::nullopt if the error is then more
+/// than a tenth of the displacement, because the motion has more than about twenty rotations.
 std::optional<int> key_steps(const Motion& motion, const TimeInterval& interval, std::span<const Vec3d> points);
 
 }  // namespace REALCAM_NAMESPACE

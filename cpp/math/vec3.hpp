@@ -45,7 +45,7 @@ template <class T>
 REALCAM_INLINE constexpr Vec3<T> operator*(T s, Vec3<T> a) {
     return {s * a.x, s * a.y, s * a.z};
 }
-/// Component by component: the product of two colours.
+/// Component-wise product, as of two colours.
 template <class T>
 REALCAM_INLINE constexpr Vec3<T> operator*(Vec3<T> a, Vec3<T> b) {
     return {a.x * b.x, a.y * b.y, a.z * b.z};
@@ -62,13 +62,13 @@ template <class T>
 REALCAM_INLINE constexpr Vec3<T> cross(Vec3<T> a, Vec3<T> b) {
     return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
-/// Where a line through `origin` crosses the plane at z.
+/// Returns x and y of the point where a line through `origin` crosses the plane at z.
 template <class T>
 REALCAM_INLINE Vec2<T> crossing_at(T z, Vec3<T> origin, Vec3<T> direction) {
     const T way = quotient(z - origin.z, direction.z);
     return {origin.x + way * direction.x, origin.y + way * direction.y};
 }
-/// At a share of the way from a to b.
+/// Interpolates linearly between a and b.
 template <class T>
 REALCAM_INLINE constexpr Vec3<T> mix(Vec3<T> a, Vec3<T> b, T share_of_b) {
     return (T(1) - share_of_b) * a + share_of_b * b;

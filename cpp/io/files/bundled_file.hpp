@@ -3,9 +3,9 @@
 
 namespace realcam::io {
 
-/// A file of the repository as it was when the library was built.
+/// File of the repository that is compiled into the library.
 struct BundledFile {
-    std::string_view name;  ///< of the file, without its suffix: "double-gauss-50mm"
+    std::string_view name;  ///< file name without its suffix: "double-gauss-50mm"
     std::string_view text;
 };
 

@@ -9,7 +9,7 @@ namespace realcam::io {
 
 std::optional<std::string> find_beside(const std::string& scene_path, const std::string& name) {
     namespace fs = std::filesystem;
-    // Longer ones exist nowhere, and what holds a null character would be looked for by its beginning.
+    // No system has longer paths, and a name with a null character would be truncated at it.
     constexpr std::size_t kLongestPath = 4096;
     if (name.empty() || name.size() > kLongestPath || name.find('\0') != std::string::npos) return std::nullopt;
     const fs::path folder = fs::path(scene_path).parent_path();

@@ -4,8 +4,9 @@
 
 namespace realcam::io {
 
-/// The regular file that a scene file means by a name. Files from other machines spell names with backslashes, and by
-/// paths that exist only there; what is meant then mostly lies beside the scene. Nothing where there is no such file.
+/// Returns the path of the regular file that a scene file refers to by a name. Files from other machines have names
+/// with backslashes and paths that exist only there; then a file of that name beside the scene is taken. Returns
+/// std::nullopt if there is no such file.
 std::optional<std::string> find_beside(const std::string& scene_path, const std::string& name);
 
 }  // namespace realcam::io

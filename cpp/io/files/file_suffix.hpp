@@ -3,7 +3,7 @@
 
 namespace realcam::io {
 
-/// The suffix of a file's name in small letters, with its point: ".png". Empty where there is none.
+/// Returns the suffix of a file's name in lower case, with its dot: ".png". Empty if there is no suffix.
 std::string suffix_of(const std::string& path);
 
 }  // namespace realcam::io

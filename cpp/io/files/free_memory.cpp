@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::uint64_t kUnknown = std::numeric_limits<std::uint64_t>::max();
 
-/// A file with one number, or with a word such as "max".
+/// Reads a file that contains one number, or a word such as "max", for which it returns kUnknown.
 std::uint64_t number_in(const std::string& path) {
     std::uint64_t value = 0;
     return std::ifstream(path) >> value ? value : kUnknown;
@@ -29,8 +29,8 @@ std::uint64_t available_on_machine() {
     return kUnknown;
 }
 
-/// The limits of this process's group and of those above it. Inside a container the paths often do not exist, and the
-/// container's own limit lies at the root.
+/// Returns the least limit of this process's control group and of the groups above it. Inside a container the groups'
+/// paths often do not exist, and the container's own limit lies at the root.
 std::uint64_t limit_of_groups() {
     std::uint64_t limit = kUnknown;
     std::ifstream file("/proc/self/cgroup");
@@ -50,7 +50,7 @@ std::uint64_t limit_of_groups() {
     return limit;
 }
 
-/// What this process has taken: addresses, and of these what lies in memory.
+/// Memory in use by this process: its address space, and the resident part of it.
 struct Taken {
     std::uint64_t addresses = 0, memory = 0;
 };
@@ -62,7 +62,7 @@ Taken taken_by_process() {
     return {page * pages.addresses, page * pages.memory};
 }
 
-/// As `ulimit -v` sets it.
+/// Returns the limit of the address space, as set by `ulimit -v`.
 std::uint64_t limit_of_addresses() {
     rlimit limit{};
     return getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY ? limit.rlim_cur : kUnknown;

@@ -3,11 +3,12 @@
 
 namespace realcam::io {
 
-/// Bytes that this process may still take: what the machine has free, and no more than what the limits of its container
-/// or control group, and of its addresses (`ulimit -v`), leave to it. The largest number where the system does not say.
+/// Returns the number of bytes that this process may still allocate: the machine's available memory, limited by what
+/// its container or control group and its address space (`ulimit -v`) leave. The largest number if the system does not
+/// say.
 ///
-/// Linux hands out more memory than there is and ends the program when it is used; a large picture therefore asks
-/// first.
+/// Linux hands out more memory than there is and kills the program when it is used; therefore the program asks before
+/// it allocates a large picture.
 std::uint64_t free_memory();
 
 }  // namespace realcam::io

@@ -17,7 +17,7 @@ std::string number(double value) {
     return text;
 }
 
-/// With all digits that a place far from the scene's origin needs.
+/// Formats numbers with all digits that a position far from the scene's origin needs.
 std::string numbers(std::initializer_list<double> values) {
     std::string list;
     for (const double value : values) {
@@ -100,8 +100,8 @@ std::vector<std::pair<std::string, std::string>> ImageMetadata::entries() const 
                              numbers({p.right.x, p.right.y, p.right.z, t.x, p.down.x, p.down.y, p.down.z, t.y,
                                       p.forward.x, p.forward.y, p.forward.z, t.z}));
     }
-    // What is not said of a picture is that nothing was left out, that the film is centred and the diaphragm round, and
-    // that the shutter opened at once at time 0.
+    // Defaults are not written: full light transport, a centred film, a round diaphragm, and a global shutter that
+    // opens at time 0.
     if (film_shift_mm.x != 0 || film_shift_mm.y != 0)
         entries.emplace_back("realcam:film_shift_mm", numbers({film_shift_mm.x, film_shift_mm.y}));
     if (iris.blades > 0) {

@@ -10,18 +10,18 @@
 
 namespace realcam::io {
 
-/// What a picture was taken with, as its file tells it.
+/// Metadata of a picture: how it was taken, as stored in its file.
 struct ImageMetadata {
     std::string lens;
     std::string model;
     double focal_length_mm = 0;
     double f_number = 0;
     IrisShape iris;
-    double focus_distance_m = 0;  ///< object plane to film; may be infinite
+    double focus_distance_m = 0;  ///< from the object plane to the film; may be infinite
     double film_width_mm = 0, film_height_mm = 0;
     Vec2<double> film_shift_mm = {0, 0};
     double pixel_width_um = 0, pixel_height_um = 0;
-    std::optional<PinholeCamera> pinhole;  ///< to first order, in the middle of the exposure
+    std::optional<PinholeCamera> pinhole;  ///< paraxial model, at the middle of the exposure
     double exposure_time_s = 0;
     double shutter_opens_s = 0, readout_time_s = 0;
     double iso = 100;
@@ -29,19 +29,20 @@ struct ImageMetadata {
     int spp = 0;
     LightTransport transport = LightTransport::paths;
     double clamp_cd_m2 = 0;
-    std::string effects, illuminant;  ///< names with commas, and as it was written; empty: none
-    std::string coatings;  ///< of the effects coatings and ghosts: coating_summary; empty: without
-    std::string plan;  ///< what a planner has decided, and by which sizes; empty: there was none
-    std::string film;      ///< of a frame: digest of all settings of its film and of its number; empty: a still
-    std::string denoiser;  ///< what has changed the exposure since it was taken; empty: nothing
+    /// Names of effects, separated by commas, and the illuminant as text; may be empty.
+    std::string effects, illuminant;
+    std::string coatings;  ///< coating_summary, with the effects coatings and ghosts; otherwise empty
+    std::string plan;  ///< decisions of a planner and the values behind them; empty without a planner
+    std::string film;      ///< in a frame: digest of its film's settings and of its number; empty in a still
+    std::string denoiser;  ///< name of the denoiser that changed the exposure; empty without one
 
-    /// Names "realcam:..." and values, as they go into every format.
+    /// Returns names "realcam:..." and their values, as stored in every format.
     std::vector<std::pair<std::string, std::string>> entries() const;
 };
 
-/// Names as on the command line: "full", "thick", "thin", "pinhole".
+/// Returns the name as on the command line: "full", "thick", "thin", "pinhole", ...
 std::string name_of(CameraModel model);
-/// "paths" or "whitted".
+/// Returns "paths" or "whitted".
 std::string name_of(LightTransport transport);
 
 ImageMetadata metadata_of(const Camera& camera, const RenderSettings& settings);

@@ -4,12 +4,12 @@
 
 namespace realcam::io {
 
-/// Why a path is no file that can be read, as a message continues: "no such file", "is a folder", ...; empty where it
-/// is one. Pipes and devices are none: opening them may wait for ever, and reading them may never end.
+/// Returns why a path cannot be read as a file, to continue a message: "no such file", "is a folder", ...; empty if it
+/// can. Pipes and devices are rejected: opening them may block for ever, and reading them may never end.
 std::string why_unreadable(const std::string& path);
 
-/// Records the inputs of a command during its lifetime: all files that why_unreadable finds readable. The library
-/// records none, as its user may well replace a file that was read. At most one object exists at a time.
+/// Records the inputs of a command during its lifetime: all files that why_unreadable finds readable. The library does
+/// not record any, because its user may well replace a file that was read. At most one object exists at a time.
 class InputRecording {
 public:
     InputRecording();

@@ -23,7 +23,7 @@ std::string reason_of(int error) {
 
 RegularFile::RegularFile(const std::string& path) : path_(path) {
     if (const std::string why = why_unreadable(path); !why.empty()) throw FileError(path, why);
-    // Not to wait, and asked once more what it is, should it have been exchanged in between.
+    // Opened without blocking, and checked again, in case the file was replaced in between.
     file_ = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOCTTY | O_NONBLOCK);
     struct stat status{};
     const bool is_open = file_ >= 0 && fstat(file_, &status) == 0;
@@ -47,7 +47,7 @@ std::size_t RegularFile::read(char* to, std::size_t most) {
         const ssize_t n = ::read(file_, to + done, most - done);
         if (n < 0 && errno == EINTR) continue;
         if (n < 0) throw FileError(path_, reason_of(errno));
-        if (n == 0) left_ = done;  // it has become shorter
+        if (n == 0) left_ = done;  // the file was truncated
         if (n == 0) break;
         done += static_cast<std::size_t>(n);
     }

@@ -8,28 +8,28 @@
 
 namespace realcam::io {
 
-/// A file that cannot be read. The message is "PATH: REASON".
+/// Error for a file that cannot be read. The message is "PATH: REASON".
 class FileError : public Error {
 public:
     FileError(const std::string& path, const std::string& why) : Error(path + ": " + why), reason(why) {}
     std::string reason;
 };
 
-/// A file on a disk, open for reading. Pipes and devices, which may have no end or keep their reader waiting, are
-/// refused before they are opened.
+/// File on a disk, open for reading. Pipes and devices, which may have no end or block their reader, are rejected
+/// before they are opened.
 class RegularFile {
 public:
-    /// Throws FileError.
+    /// Opens the file. Throws FileError if it cannot be read.
     explicit RegularFile(const std::string& path);
     RegularFile(const RegularFile&) = delete;
     RegularFile& operator=(const RegularFile&) = delete;
     ~RegularFile();
 
-    /// Bytes that were in it when it was opened. What is written to it later is not read.
+    /// Returns the size of the file when it was opened. Data that are appended later are not read.
     std::uint64_t size() const { return size_; }
     std::uint64_t left() const { return left_; }
 
-    /// The next bytes, fewer than `most` only at the end; how many. Throws FileError.
+    /// Reads the next bytes, fewer than `most` only at the end, and returns how many. Throws FileError.
     std::size_t read(char* to, std::size_t most);
 
 private:
@@ -38,11 +38,12 @@ private:
     std::uint64_t size_ = 0, left_ = 0;
 };
 
-/// All of a regular file, or its first `most` bytes. Throws FileError, also where these are more than the memory that
-/// is free.
+/// Returns the content of a regular file, or its first `most` bytes. Throws FileError, also if this is more than the
+/// free memory.
 std::string read_whole_file(const std::string& path, Checkpoint& checkpoint, std::uint64_t most = UINT64_MAX);
 
-/// "1.5 GB, and 0.7 GB of memory are free": the second half of a message that refuses. Empty where it is free.
+/// Returns an error text such as "1.5 GB, and 0.7 GB of memory are free", to end a message with; empty if the memory is
+/// free.
 std::string too_much_memory(std::uint64_t bytes);
 
 }  // namespace realcam::io

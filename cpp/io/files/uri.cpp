@@ -62,7 +62,7 @@ std::string percent_decoded(std::string_view text) {
 
 std::optional<std::string> data_of_uri(std::string_view uri) {
     constexpr std::string_view mark = ";base64,";
-    // The kind before it is short; a long text without the mark is not searched to its end.
+    // The media type before it is short; a long text without the mark is not searched to its end.
     const std::size_t at = uri.substr(0, 1000).find(mark);
     if (!is_data_uri(uri) || at == std::string_view::npos) return std::nullopt;
     return base64_decoded(uri.substr(at + mark.size()));

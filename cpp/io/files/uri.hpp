@@ -5,15 +5,15 @@
 
 namespace realcam::io {
 
-/// "my%20wood.png" as "my wood.png".
+/// Decodes percent escapes: "my%20wood.png" becomes "my wood.png".
 std::string percent_decoded(std::string_view text);
 
-/// Whether an address holds its bytes itself.
+/// True if a URI contains its data itself.
 inline bool is_data_uri(std::string_view uri) {
     return uri.starts_with("data:");
 }
 
-/// The bytes of "data:KIND;base64,TEXT"; nothing where the text is no base64, or spelt in another way.
+/// Returns the bytes of "data:KIND;base64,TEXT"; std::nullopt if the text is not base64, or the URI has another form.
 std::optional<std::string> data_of_uri(std::string_view uri);
 
 }  // namespace realcam::io

@@ -12,7 +12,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little);
 
-/// What an accessor without bytes may promise, of which all but the sparse ones are 0.
+/// Greatest number of elements of an accessor without a bufferView, whose elements are 0 except for the sparse ones.
 constexpr std::size_t kMostWithoutBytes = std::size_t{1} << 20;
 
 std::size_t components_of(std::string_view type) {
@@ -22,7 +22,7 @@ std::size_t components_of(std::string_view type) {
     return type == "MAT4" ? 16 : 4;
 }
 
-/// Elements of one component type in a row of bytes.
+/// Array of elements of one component type.
 struct Elements {
     std::string_view bytes;
     std::size_t component_type, components, count, stride;
@@ -41,7 +41,7 @@ std::size_t size_of_component(std::size_t type) {
     }
 }
 
-/// Normalised, a signed integer means -1 to 1, an unsigned one 0 to 1.
+/// Converts a stored component. A normalised signed integer maps to -1 to 1, an unsigned one to 0 to 1.
 template <class Stored, class Value>
 Value meaning_of(Stored stored, bool normalised) {
     if constexpr (std::is_same_v<Value, float> && std::is_integral_v<Stored>) {
@@ -77,13 +77,14 @@ std::vector<Value> values_of(const Elements& from, Checkpoint& checkpoint) {
         case 5123: copy_elements<std::uint16_t>(from, to, checkpoint); break;
         case 5125: copy_elements<std::uint32_t>(from, to, checkpoint); break;
         default:
-            // Floats where whole numbers are wanted have been refused.
+            // Floats instead of integers have been rejected by read_view.
             if constexpr (std::is_same_v<Value, float>) copy_elements<float>(from, to, checkpoint);
     }
     return to;
 }
 
-/// `from`: an accessor, or a part of a sparse one, with bufferView, byteOffset and componentType.
+/// Reads elements through a buffer view. `from`: an accessor, or the indices or values of a sparse one, with
+/// bufferView, byteOffset and componentType.
 template <class Value>
 std::vector<Value> read_view(const GltfDocument& document, GltfBuffers& buffers, Checkpoint& checkpoint,
                              const Json& from, std::size_t components, std::size_t count, const Json& component_type,
@@ -96,7 +97,7 @@ std::vector<Value> read_view(const GltfDocument& document, GltfBuffers& buffers,
     const Json& view = document.root()["bufferViews"][from["bufferView"].index(0)];
     const std::size_t given_stride = view["byteStride"].index(0), stride = given_stride > 0 ? given_stride : size;
     const std::size_t room = offset <= bytes.size() ? bytes.size() - offset : 0;
-    // Elements may overlap, but for one that reaches into the next.
+    // Rejects a byteStride less than the size of an element, with which elements would overlap.
     if (stride < size || (count > 0 && (room < size || count - 1 > (room - size) / stride)))
         document.fail(where + ": promises " + std::to_string(count) + " elements of " + std::to_string(size) +
                       " bytes, and its bufferView has " + std::to_string(room) + " bytes for them");

@@ -7,22 +7,22 @@
 
 namespace realcam::io {
 
-/// The numbers of a glTF's accessors: of any component type, normalised integers as what they stand for, sparse ones
-/// put together.
+/// Reads the numbers of a glTF's accessors: of any component type, with normalised integers converted to fractions and
+/// sparse accessors assembled.
 class GltfAccessors {
 public:
-    /// All arguments have to outlive it.
+    /// All arguments have to outlive the object.
     GltfAccessors(const GltfDocument& document, GltfBuffers& buffers, Checkpoint& checkpoint)
         : document_(document), buffers_(buffers), checkpoint_(checkpoint) {}
 
-    /// All elements, one after the other: for `type` "VEC3" three numbers each. Throws SceneFileError, which begins
-    /// with `where`, if the accessor does not exist, is of another type, or its bytes do not.
+    /// Returns all elements, one after the other: three numbers each for `type` "VEC3". Throws SceneFileError, which
+    /// begins with `where`, if the accessor or its bytes do not exist or if it is of another type.
     std::vector<float> numbers(const Json& reference, const std::string& type, const std::string& where);
 
-    /// The same for whole numbers, which no accessor of floats has.
+    /// Returns all elements as whole numbers; accessors of floats are an error.
     std::vector<std::uint32_t> integers(const Json& reference, const std::string& type, const std::string& where);
 
-    /// Elements that an accessor promises; 0 where it does not exist.
+    /// Returns the number of elements that an accessor declares; 0 if it does not exist.
     std::size_t count(const Json& reference) const;
 
 private:

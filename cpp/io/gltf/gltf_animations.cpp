@@ -69,7 +69,7 @@ private:
                                : motion.scale_keys) = std::move(keys);
     }
 
-    /// Many programs write keys for every node, also for those that never move.
+    /// Removes motions that are constant: many programs write keys for every node, also for those that never move.
     void let_stand() {
         for (FileNode& node : scene_.nodes) {
             if (node.motion < 0) continue;
@@ -143,8 +143,9 @@ private:
     const Json& animation_;
     std::string label_;
     Checkpoint& checkpoint_;
-    std::map<std::size_t, std::size_t> places_;  ///< of the file's nodes in the scene
-    std::map<std::pair<std::size_t, std::size_t>, std::shared_ptr<const FileKeys>> read_;  ///< by sampler, components
+    std::map<std::size_t, std::size_t> places_;  ///< index in the scene of each node of the file
+    /// Keyed by sampler and components.
+    std::map<std::pair<std::size_t, std::size_t>, std::shared_ptr<const FileKeys>> read_;
     std::map<const FileKeys*, bool> changes_;
 };
 

@@ -7,8 +7,8 @@
 
 namespace realcam::io {
 
-/// Lets the nodes of a scene move as the file's first animation says; what else it animates, and further animations,
-/// are named in scene.warnings. `numbers`: the file's number of each node. Throws SceneFileError.
+/// Animates the nodes of a scene by the file's first animation; its channels that are not supported, and further
+/// animations, are named in scene.warnings. `numbers`: index in the file of each node. Throws SceneFileError.
 void read_gltf_animations(FileScene& scene, const GltfDocument& document, GltfAccessors& accessors,
                           const std::vector<std::size_t>& numbers, Checkpoint& checkpoint);
 

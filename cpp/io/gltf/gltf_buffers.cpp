@@ -51,7 +51,7 @@ std::string_view GltfBuffers::view(const Json& reference, const std::string& whe
     for (const char* extension : {"EXT_meshopt_compression", "KHR_meshopt_compression"}) {
         const Json& buffers = document_.root()["buffers"];
         const Json& buffer = buffers[view["buffer"].index(buffers.size())];
-        // Beside the compressed bytes there may be plain ones. Where there are none, the buffer is a promise.
+        // There may be uncompressed bytes beside the compressed ones. If not, the buffer is only declared.
         const bool has_plain = !buffer["uri"].is_null() || buffer["extensions"][extension].is_null();
         if (!view["extensions"][extension].is_null() && !has_plain)
             document_.fail(where + ": its numbers are in the glTF extension " + extension +

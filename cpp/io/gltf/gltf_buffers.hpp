@@ -7,13 +7,13 @@
 
 namespace realcam::io {
 
-/// The bytes of a glTF: of its .glb, of data: addresses, and of files beside it, each read when it is asked for.
+/// Bytes of a glTF: from its .glb, from data: URIs, and from files beside it, each read on first use.
 class GltfBuffers {
 public:
-    /// Both arguments have to outlive it.
+    /// Both arguments have to outlive the object.
     GltfBuffers(const GltfDocument& document, Checkpoint& checkpoint) : document_(document), checkpoint_(checkpoint) {}
 
-    /// All bytes of a buffer view. Throws SceneFileError, which begins with `where`, if there are not so many.
+    /// Returns all bytes of a buffer view. Throws SceneFileError, which begins with `where`, if the buffer has fewer.
     std::string_view view(const Json& reference, const std::string& where);
 
 private:

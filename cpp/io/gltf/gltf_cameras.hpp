@@ -4,7 +4,7 @@
 
 namespace realcam::io {
 
-/// Fills scene.cameras with those that the file lists.
+/// Fills scene.cameras with the cameras that the file lists.
 void read_gltf_cameras(FileScene& scene, const GltfDocument& document);
 
 }  // namespace realcam::io

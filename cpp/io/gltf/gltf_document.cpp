@@ -18,7 +18,7 @@ bool may_be_required(std::string_view extension) {
            extension == "EXT_texture_webp" || extension.starts_with("KHR_materials_");
 }
 
-/// What helps where an extension is required that is not read.
+/// Returns advice for a file that requires an unsupported extension.
 std::string advice(std::string_view extension) {
     if (extension.ends_with("_compression")) return "export it without compression";
     if (extension.find("_texture_") != std::string_view::npos) return "export its pictures as PNG or JPEG";
@@ -42,7 +42,7 @@ void GltfDocument::fail(const std::string& message) const {
     throw SceneFileError(path_ + ": " + message);
 }
 
-// A GLB is a header of 12 bytes, then chunks of a length, a kind and their bytes; JSON is the first.
+// A GLB is a header of 12 bytes and chunks of a length, a type and their bytes; the first chunk is JSON.
 std::string_view GltfDocument::json_text() {
     const std::string_view file = file_;
     if (!file.starts_with("glTF")) return file.substr(file.starts_with("\xef\xbb\xbf") ? 3 : 0);
@@ -61,7 +61,7 @@ std::string_view GltfDocument::json_text() {
         binary_size_ = word_at(file, end);
         room(binary_begin_ + binary_size_);
     }
-    // The specification wants spaces as padding, and many writers use zeros.
+    // The specification requires spaces as padding, but many writers use zeros.
     const std::string_view json = file.substr(begin, size);
     return json.substr(0, json.find_last_not_of('\0') + 1);
 }

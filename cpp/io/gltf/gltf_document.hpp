@@ -8,15 +8,16 @@
 
 namespace realcam::io {
 
-/// The JSON of a .gltf or .glb, and what lies behind it in a .glb.
+/// JSON of a .gltf or .glb, and the binary chunk of a .glb.
 class GltfDocument {
 public:
-    /// Throws FileError, and SceneFileError: no JSON, or an extension is required that is not read.
+    /// Reads the file. Throws FileError, and SceneFileError if it is not valid JSON or requires an unsupported
+    /// extension.
     GltfDocument(const std::string& path, Checkpoint& checkpoint);
 
     const std::string& path() const { return path_; }
     const Json& root() const { return root_; }
-    /// The second chunk of a .glb; empty where there is none.
+    /// Returns the binary chunk of a .glb; empty if there is no such chunk.
     std::string_view binary_chunk() const {
         return binary_size_ > 0 ? std::string_view(file_).substr(binary_begin_, binary_size_) : "";
     }
@@ -24,7 +25,7 @@ public:
     /// Throws SceneFileError "PATH: message".
     [[noreturn]] void fail(const std::string& message) const;
 
-    /// The element of a list of the root that `reference` numbers; nothing where there is no reference. Throws
+    /// Returns the index that `reference` gives in a list of the root; std::nullopt if there is no reference. Throws
     /// SceneFileError, which begins with `where`, if there is no such element.
     std::optional<std::size_t> find(const char* list, const Json& reference, const std::string& where) const;
 
@@ -37,7 +38,7 @@ private:
     Json root_;
 };
 
-/// How messages name an element: "mesh 3", and its name if it has one.
+/// Returns the name of an element for messages: "mesh 3", followed by its own name if it has one.
 std::string gltf_label(const std::string& kind, std::size_t number, const Json& element);
 
 }  // namespace realcam::io

@@ -17,7 +17,7 @@ constexpr std::array kRead = std::to_array<std::string_view>(
      "KHR_materials_specular", "KHR_materials_transmission", "KHR_materials_unlit", "KHR_materials_volume",
      "KHR_mesh_quantization", "KHR_texture_transform"});
 
-/// Those that materials have even where a file forgets to list them.
+/// Extensions of materials, found also if a file does not list them.
 constexpr std::array kOfMaterials =
     std::to_array<std::string_view>({"KHR_materials_anisotropy", "KHR_materials_diffuse_transmission",
                                      "KHR_materials_dispersion", "KHR_materials_iridescence", "KHR_materials_sheen"});

@@ -4,7 +4,7 @@
 
 namespace realcam::io {
 
-/// Warns of the extensions that a file uses and that change nothing here, of each once.
+/// Warns once of each extension that a file uses and that is not supported.
 void warn_of_extensions(FileScene& scene, const GltfDocument& document);
 
 }  // namespace realcam::io

@@ -15,7 +15,7 @@
 namespace realcam::io {
 namespace {
 
-/// A file of a megabyte may let twenty thousand nodes move a mesh each in its own way.
+/// Checks the memory for meshes that nodes deform individually: a file of a megabyte may have twenty thousand of them.
 void check_own_meshes(const FileScene& scene, const GltfDocument& document, GltfMeshes& meshes,
                       const GltfNodeNumbers& numbers) {
     double bytes = 0;
@@ -28,7 +28,7 @@ void check_own_meshes(const FileScene& scene, const GltfDocument& document, Gltf
     meshes.check_promise(bytes);
 }
 
-/// A skin of a node whose transform has no inverse is left out, and counted.
+/// Adds the meshes of all nodes. Skins of nodes whose transform has no inverse are left out, with a warning.
 void add_meshes(FileScene& scene, const GltfDocument& document, GltfAccessors& accessors,
                 const GltfNodeNumbers& numbers, Checkpoint& checkpoint) {
     const GltfSkins skins(document, accessors, scene, numbers.nodes, checkpoint);
@@ -42,7 +42,7 @@ void add_meshes(FileScene& scene, const GltfDocument& document, GltfAccessors& a
         const std::optional<std::size_t> mesh = document.find("meshes", node["mesh"], label + ": its mesh");
         if (!mesh) continue;
         std::optional<JointMaps> joints;
-        // An instance has no skin: the extension says nothing of how it would move.
+        // Instances have no skin: the extension does not define how it would deform them.
         const bool is_instance = numbers.nodes[i] == kNoGltfNode;
         const auto skin = is_instance ? std::nullopt : document.find("skins", node["skin"], label + ": its skin");
         if (skin) {

@@ -6,8 +6,8 @@
 
 namespace realcam::io {
 
-/// Reads a glTF 2.0, .gltf or .glb, in the pose that its nodes have: skins and morph targets are applied, cameras left
-/// out. The nodes move as the first animation says. Throws FileError, and SceneFileError that names the element.
+/// Reads a glTF 2.0 file (.gltf or .glb) in the pose of its nodes: skins and morph targets are applied. Nodes are
+/// animated by the first animation. Throws FileError, and SceneFileError that names the element.
 FileScene read_gltf(const std::string& path, Checkpoint& checkpoint);
 
 }  // namespace realcam::io

@@ -8,7 +8,7 @@
 namespace realcam::io {
 namespace {
 
-/// A file of a megabyte may let a thousand nodes have the same million places.
+/// Greatest number of instances per node: in a file of a megabyte, a thousand nodes may share a million transforms.
 constexpr std::size_t kMost = std::size_t{1} << 21;
 
 }  // namespace

@@ -6,8 +6,8 @@
 
 namespace realcam::io {
 
-/// Where a node has its mesh, in its own frame, by EXT_mesh_gpu_instancing; empty where it has no such extension, and
-/// the mesh once. `label`: of the node. Throws SceneFileError.
+/// Returns the transforms of a node's instances (EXT_mesh_gpu_instancing) in the node's frame; empty if the node does
+/// not have this extension, and hence one mesh. `label`: names the node in messages. Throws SceneFileError.
 std::vector<Affine<double>> instances_of(const Json& node, GltfAccessors& accessors, const GltfDocument& document,
                                          const std::string& label);
 

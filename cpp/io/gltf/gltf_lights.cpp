@@ -8,12 +8,12 @@ namespace {
 
 constexpr double kRightAngle = 1.57079632679489662;
 
-/// Angles that lie beyond their ranges by no more than a rounding to float are not wrong.
+/// True if two angles are equal up to rounding to float, so that angles just outside their range are accepted.
 bool is_about(double a, double b) {
     return std::abs(a - b) < 1e-6;
 }
 
-/// Returns whether the cone is one that the extension allows; if not, it becomes the nearest.
+/// Reads the cone of a spot light and clamps it to the allowed range. Returns false if it was outside.
 bool read_cone(FileLight& light, const Json& spot) {
     const double outer = spot["outerConeAngle"].number(light.outer_cone_angle);
     const double inner = spot["innerConeAngle"].number(light.inner_cone_angle);

@@ -4,7 +4,7 @@
 
 namespace realcam::io {
 
-/// scene.lights become those of KHR_lights_punctual.
+/// Sets scene.lights to the lights of KHR_lights_punctual.
 void read_gltf_lights(FileScene& scene, const GltfDocument& document);
 
 }  // namespace realcam::io

@@ -39,7 +39,7 @@ public:
         return out;
     }
 
-    /// What is wrong, or not modelled, in any of the materials.
+    /// Adds warnings for values that are wrong or not modelled in any of the materials.
     void tell() const {
         const auto warn = [&](std::size_t count, const std::string& text) {
             if (count > 0) scene_.warnings.push_back(std::to_string(count) + ' ' + text);
@@ -102,7 +102,7 @@ private:
         read(out.thickness_texture, json["thicknessTexture"]);
         read(out.attenuation_color, json["attenuationColor"], kUnit);
         const Json& distance = json["attenuationDistance"];
-        // 0 is written by programs that mean no attenuation; taken as it is, nothing would pass.
+        // Some programs write 0 for no attenuation; taken literally, no light would pass.
         const bool is_positive = distance.number(1) > 0;
         if (!is_positive) ++out_of_range_;
         constexpr double infinite = std::numeric_limits<double>::infinity();
@@ -157,7 +157,7 @@ private:
         if (bad_alpha_mode_.empty()) bad_alpha_mode_ = in_quotes(name);
     }
 
-    /// `info`: the place in a material that names a texture; null where it has none.
+    /// Reads a texture reference. `info`: glTF's textureInfo; null if there is no texture.
     void read(FileTexture& out, const Json& info) {
         if (info.is_null()) return;
         const Json& moved = info["extensions"]["KHR_texture_transform"];
@@ -175,8 +175,8 @@ private:
             ++bad_transforms_;
     }
 
-    /// How a texture is seen beyond its edges, and between the middles of its texels where these are large: its levels
-    /// for small ones are the renderer's own.
+    /// Returns the wrap modes and the magnification filter of a texture. Minification filters are ignored: the renderer
+    /// has its own.
     TextureSampler sampler_of(const Json& texture) {
         const Json& number = root_["textures"][texture.index(root_["textures"].size())]["sampler"];
         const Json& sampler = root_["samplers"][number.index(root_["samplers"].size())];
@@ -192,7 +192,8 @@ private:
                 filter == kNearest ? TextureFilter::nearest : TextureFilter::linear};
     }
 
-    /// A texture that names no picture gets one without bytes, which stands out in the picture and is warned of.
+    /// Returns the index of a texture's picture. A texture without a picture gets one without bytes, which causes a
+    /// warning and a stand-in that is easily seen.
     std::int32_t picture_of(const Json& texture) {
         const Json& found = root_["textures"][texture.index(root_["textures"].size())];
         const Json& source =
@@ -206,14 +207,14 @@ private:
         return missing_;
     }
 
-    /// Images inside the file that share their bytes are one, which is decoded once.
+    /// Returns the first image with the same bytes, so that images which share a bufferView are decoded once.
     std::int32_t first_alike(std::size_t image) {
         const auto number = static_cast<std::int32_t>(image);
         const Json& view = root_["images"][image]["bufferView"];
         return view.is_number() ? first_of_view_.emplace(view.number(0), number).first->second : number;
     }
 
-    /// Lets textures point to the sets of coordinates that their meshes get, in place of those that the file has.
+    /// Replaces the texture coordinate sets of textures by indices in `uv_sets`, whose sets the meshes will have.
     void number_uv_sets(GltfMaterial& material) {
         std::vector<std::uint32_t>& sets = material.uv_sets;
         for (FileTexture* texture : material.textures()) {
@@ -231,7 +232,7 @@ private:
     std::int32_t missing_ = -1;
     std::map<double, std::int32_t> first_of_view_;
     std::size_t out_of_range_ = 0, bad_transforms_ = 0, bad_samplers_ = 0;
-    std::string bad_alpha_mode_;  // the first, in quotes
+    std::string bad_alpha_mode_;  // the first invalid one, in quotes
     bool has_occlusion_ = false, has_third_set_ = false;
 };
 

@@ -4,8 +4,8 @@
 
 namespace realcam::io {
 
-/// scene.materials become those of the file. scene.pictures have to be listed; one without bytes is added for textures
-/// that name none. What is wrong in many places is one warning.
+/// Sets scene.materials to the materials of the file. scene.pictures must have been listed; a picture without bytes is
+/// added for textures that name none. Each kind of error gives one warning.
 void read_gltf_materials(FileScene& scene, const GltfDocument& document);
 
 }  // namespace realcam::io

@@ -54,8 +54,8 @@ std::uint32_t GltfMeshes::material_of(const Json& primitive, const std::string& 
     return *default_material_;
 }
 
-/// Throws where the numbers of a primitive are in a compressed form alone: beside it they need not be, and accessors
-/// without bytes are all 0.
+/// Throws SceneFileError if a primitive exists only in a compressed form: accessors without bytes would be read as 0.
+/// Files may have an uncompressed form in addition.
 void GltfMeshes::check_compression(const Primitive& primitive) const {
     constexpr const char* kDraco = "KHR_draco_mesh_compression";
     if (primitive.json["extensions"][kDraco].is_null()) return;
@@ -78,7 +78,8 @@ void GltfMeshes::add_primitive(const Primitive& primitive) {
     scene_.meshes.push_back(std::move(mesh));
 }
 
-/// A file of a megabyte may let a thousand meshes repeat its million vertices.
+/// Throws SceneFileError if the meshes need more memory than is free: in a file of a megabyte, a thousand meshes may
+/// repeat a million vertices.
 void GltfMeshes::check_memory(const FileMesh& mesh) {
     bytes_ += mesh.triangles.size() * sizeof(Triangle);
     if (mesh.vertices + 1 == scene_.vertices.size())
@@ -103,7 +104,7 @@ double GltfMeshes::bytes_of_own(std::size_t mesh, bool is_skinned) {
         const double corners = primitive["indices"].is_null() ? vertices : count_of(primitive["indices"]);
         const std::size_t mode = primitive["mode"].index(kTriangles);
         const double triangles = mode < kFirstOfTriangles ? 0 : mode == kTriangles ? corners / 3 : corners;
-        // Here, and flattened in the scene.
+        // Twice: here, and in the flattened scene.
         known->second += 2 * sizeof(Triangle) * triangles;
         if (is_skinned || !primitive["targets"].is_null()) known->second += kBytesPerVertex * vertices;
     }
@@ -174,13 +175,13 @@ FileVertices GltfMeshes::read_vertices(const Primitive& primitive, const Json& u
     return out;
 }
 
-/// Linear, with alpha or without, between 0 and 1.
+/// Reads colours, which are linear, with or without alpha, and between 0 and 1.
 std::vector<VertexColor> GltfMeshes::read_colours(const Json& reference, const std::string& where) {
     const Json& accessors = document_.root()["accessors"];
     const Json& accessor = accessors[reference.index(accessors.size())];
     const std::size_t components = accessor["type"].text() == "VEC4" ? 4 : 3, type = accessor["componentType"].index(0);
     const std::vector<float> numbers = accessors_.numbers(reference, components == 4 ? "VEC4" : "VEC3", where);
-    // Whole numbers have to be normalised, and are meant so where a file forgets to say it.
+    // Whole numbers must be normalised; if a file does not say so, they are normalised nevertheless.
     const bool is_forgotten = !accessor["normalized"].is_true();
     const float unit = !is_forgotten || (type != 5121 && type != 5123) ? 1.0f : type == 5121 ? 255.0f : 65535.0f;
     const auto share = [&](std::size_t i) {
@@ -194,7 +195,7 @@ std::vector<VertexColor> GltfMeshes::read_colours(const Json& reference, const s
     return out;
 }
 
-/// Morph targets by the weights of the file.
+/// Applies the morph targets with the file's weights.
 void GltfMeshes::add_targets(const Primitive& primitive, FileVertices& vertices) {
     const Json& targets = primitive.json["targets"];
     for (std::size_t t = 0; t < targets.size(); ++t) {
@@ -240,7 +241,7 @@ std::vector<Triangle> GltfMeshes::read_triangles(const Primitive& primitive, std
     triangles.reserve(i.size() / step);
     for (std::size_t k = 0; k + 2 < i.size(); k += step) {
         checkpoint_.pass();
-        // Every other triangle of a strip runs the other way round.
+        // Every second triangle of a strip has the opposite orientation.
         const std::size_t odd = mode == kStrip ? k % 2 : 0;
         const std::uint32_t first = mode == kFan ? i[0] : i[k + odd];
         triangles.push_back({{first, i[k + 1 - odd], i[k + 2]}, primitive.material});

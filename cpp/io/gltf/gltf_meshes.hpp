@@ -11,10 +11,10 @@
 
 namespace realcam::io {
 
-/// Adds the meshes of a glTF to a scene: one FileMesh for each primitive, and vertices that primitives share once.
+/// Adds the meshes of a glTF to a scene: one FileMesh per primitive. Vertices that primitives share are added once.
 class GltfMeshes {
 public:
-    /// All arguments have to outlive it. scene.materials are those of the file.
+    /// All arguments have to outlive the object. scene.materials must be those of the file.
     GltfMeshes(const GltfDocument& document, GltfAccessors& accessors, FileScene& scene, Checkpoint& checkpoint)
         : document_(document), accessors_(accessors), scene_(scene), checkpoint_(checkpoint) {}
 
@@ -22,13 +22,14 @@ public:
         std::uint32_t first, count;  ///< in scene.meshes
     };
 
-    /// `weights`: of the mesh's morph targets where the node has some of its own. `joints`: where it has a skin. A mesh
-    /// without either is added once. Throws SceneFileError.
+    /// Adds a mesh. `weights`: morph target weights of the node, or null for those of the mesh. `joints`: joint
+    /// transforms, if the node has a skin. A mesh without either is added only once. Throws SceneFileError.
     Range add(std::size_t mesh, const Json& weights, const std::optional<JointMaps>& joints);
 
-    /// Bytes that a node with a skin or weights of its own needs for its copy of a mesh, as the file promises them.
+    /// Returns the number of bytes, according to the file, of the copy of a mesh for a node with a skin or with its own
+    /// weights.
     double bytes_of_own(std::size_t mesh, bool is_skinned);
-    /// Throws SceneFileError where such copies need more memory than is free.
+    /// Throws SceneFileError if such copies need more memory than is free.
     void check_promise(double bytes) const;
 
 private:
@@ -52,7 +53,7 @@ private:
     void check_memory(const FileMesh& mesh);
     void check_count(std::size_t count, std::size_t vertices, const std::string& where) const;
 
-    /// Numbers of the accessors of positions, normals, both sets of texture coordinates, and colours.
+    /// Indices of the accessors of positions, normals, both sets of texture coordinates, and colours.
     using Attributes = std::tuple<std::size_t, std::size_t, std::size_t, std::size_t, std::size_t>;
 
     const GltfDocument& document_;
@@ -63,7 +64,7 @@ private:
     std::map<std::pair<std::size_t, bool>, double> own_bytes_;
     std::map<Attributes, std::uint32_t> shared_vertices_;
     std::optional<std::uint32_t> default_material_;
-    std::size_t bytes_ = 0, next_check_ = std::size_t{1} << 28;  // of what has been added
+    std::size_t bytes_ = 0, next_check_ = std::size_t{1} << 28;  // size of the meshes added so far
 };
 
 }  // namespace realcam::io

@@ -72,7 +72,8 @@ private:
         return roots;
     }
 
-    /// Without recursion: a chain may be as long as the file. As every node has one parent, none comes twice.
+    /// Adds a subtree in depth-first order. Without recursion: a chain may be as long as the file. It ends, because
+    /// every node has at most one parent.
     void add_tree(std::size_t root) {
         struct Open {
             std::size_t node, next_child;
@@ -139,7 +140,7 @@ private:
     Checkpoint& checkpoint_;
     std::vector<std::size_t> parents_;
     GltfNodeNumbers numbers_;
-    std::size_t bytes_ = 0;  // of the instances' nodes
+    std::size_t bytes_ = 0;  // size of the instances' nodes
 };
 
 }  // namespace

@@ -10,19 +10,19 @@ namespace realcam::io {
 
 inline constexpr std::size_t kNoGltfNode = static_cast<std::size_t>(-1);
 
-/// The file's numbers of a scene's nodes. Where a node has many instances of its mesh (EXT_mesh_gpu_instancing), each
-/// of them is a node more, below it, which the file does not have.
+/// Indices in the file of a scene's nodes. If a node has several instances of its mesh (EXT_mesh_gpu_instancing), each
+/// of them is an additional node below it that does not exist in the file.
 struct GltfNodeNumbers {
-    std::vector<std::size_t> nodes;  ///< kNoGltfNode: it is an instance
-    std::vector<std::size_t> meshes;  ///< the node whose mesh it has; kNoGltfNode: none
+    std::vector<std::size_t> nodes;  ///< kNoGltfNode for an instance
+    std::vector<std::size_t> meshes;  ///< the node in the file whose mesh it has, or kNoGltfNode
 };
 
-/// Fills scene.nodes with those of the file's scene, without their meshes. Without a scene in the file, with all that
-/// are no other's child. Throws SceneFileError for nodes that form no tree.
+/// Fills scene.nodes with the nodes of the file's scene, without their meshes; if the file has no scene, with all trees
+/// of nodes. Throws SceneFileError if the nodes are not trees.
 GltfNodeNumbers lay_out_nodes(FileScene& scene, const GltfDocument& document, GltfAccessors& accessors,
                               Checkpoint& checkpoint);
 
-/// The transforms of nodes in depth-first order, relative to the scene.
+/// Returns the transforms from node frames to the scene; `nodes` are in depth-first order.
 std::vector<Affine<double>> global_transforms(const std::vector<FileNode>& nodes);
 
 }  // namespace realcam::io

@@ -12,7 +12,7 @@ std::string bytes_of(const Json& image, GltfBuffers& buffers, std::size_t number
     try {
         return std::string(buffers.view(image["bufferView"], "image " + std::to_string(number)));
     } catch (const SceneFileError&) {
-        return {};  // a stand-in and a warning follow, as for any picture that cannot be had
+        return {};  // leads to a stand-in and a warning, as for any missing picture
     }
 }
 

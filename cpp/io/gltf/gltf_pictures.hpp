@@ -4,10 +4,11 @@
 
 namespace realcam::io {
 
-/// scene.pictures become those of the file, those inside it without their bytes.
+/// Sets scene.pictures to the images of the file; embedded ones are still without their bytes.
 void list_pictures(FileScene& scene, const GltfDocument& document);
 
-/// Fetches the bytes of the pictures that materials of scene.meshes use. Those that cannot be had stay empty.
+/// Fetches the bytes of the embedded pictures that materials of scene.meshes use. Pictures that cannot be read stay
+/// empty.
 void fetch_pictures(FileScene& scene, const GltfDocument& document, GltfBuffers& buffers);
 
 }  // namespace realcam::io

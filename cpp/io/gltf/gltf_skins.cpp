@@ -8,7 +8,7 @@
 namespace realcam::io {
 namespace {
 
-Affine<double> affine_of(const float* m) {  // 4 x 4, by columns
+Affine<double> affine_of(const float* m) {  // 4 x 4, column-major
     const auto column = [&](int c) { return Vec3d{double(m[4 * c]), double(m[4 * c + 1]), double(m[4 * c + 2])}; };
     return {column(0), column(1), column(2), column(3)};
 }
@@ -81,7 +81,7 @@ JointWeights read_joint_weights(const GltfDocument& document, GltfAccessors& acc
             if (weights[i] != 0 && numbers[i] >= joints)
                 document.fail(label + ": joint " + std::to_string(numbers[i]) +
                               " is not smaller than the number of joints, " + std::to_string(joints));
-        // Set after set; apply_skin knows that.
+        // Set after set, in the layout that apply_skin expects.
         out.joints.insert(out.joints.end(), numbers.begin(), numbers.end());
         out.weights.insert(out.weights.end(), weights.begin(), weights.end());
         out.per_vertex += 4;
@@ -102,7 +102,7 @@ void apply_skin(FileVertices& vertices, const JointWeights& weights, const Joint
             add(map, weight, maps[weights.joints[at]]);
             sum += weight;
         }
-        if (sum == 0) continue;  // moved by nothing
+        if (sum == 0) continue;  // no joint moves it
         Affine<double> mean = kNothing;
         add(mean, 1 / sum, map);
         vertices.positions[v] = mean.point(vertices.positions[v]);

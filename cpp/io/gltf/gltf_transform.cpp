@@ -8,7 +8,7 @@ Vec3d vector_of(const Json& numbers, Vec3d otherwise) {
             numbers[2].number(otherwise.z)};
 }
 
-Affine<double> matrix_of(const Json& m) {  // by columns
+Affine<double> matrix_of(const Json& m) {  // column-major
     const auto column = [&](std::size_t c) {
         return Vec3d{m[4 * c].number(0), m[4 * c + 1].number(0), m[4 * c + 2].number(0)};
     };
@@ -20,7 +20,7 @@ Affine<double> matrix_of(const Json& m) {  // by columns
 FileMotion standing(const Json& node) {
     FileMotion motion;
     const Json& q = node["rotation"];
-    // Files round quaternions to seven digits; `rotation` takes them at any length.
+    // Files round quaternions to seven digits; `rotation` accepts any length.
     const Quaternion turn = {vector_of(q, {0, 0, 0}), q[3].number(1)};
     if (dot(turn, turn) > 0) motion.rotation = turn;
     motion.scale = vector_of(node["scale"], {1, 1, 1});

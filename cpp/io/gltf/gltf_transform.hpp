@@ -5,10 +5,10 @@
 
 namespace realcam::io {
 
-/// The frame of a glTF node in that of its parent: by its matrix, or by translation, rotation and scale.
+/// Returns the transform of a glTF node to its parent: from its matrix, or from translation, rotation and scale.
 Affine<double> transform_of(const Json& node);
 
-/// The latter, of which nothing moves.
+/// Returns a node's translation, rotation and scale as a motion without keys.
 FileMotion standing(const Json& node);
 
 }  // namespace realcam::io

@@ -1,5 +1,5 @@
 #pragma once
-// The files of lenses/ as they were when the library was built; the definitions are generated.
+// Files of lenses/, compiled into the library; the definitions are generated.
 
 #include <span>
 #include <string_view>
@@ -8,10 +8,10 @@
 
 namespace realcam::io {
 
-// Every bundled lens, in the order of the file names.
+// Returns the bundled lenses, in the order of the file names.
 std::span<const BundledFile> bundled_lens_files();
 
-// The glass catalogue, lenses/glass.toml; empty where there is none.
+// Returns the glass catalogue, lenses/glass.toml; empty if there is no catalogue.
 std::string_view bundled_glass_catalogue();
 
 }  // namespace realcam::io

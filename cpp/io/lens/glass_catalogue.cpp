@@ -17,7 +17,7 @@ const toml::table& catalogue() {
     return table;
 }
 
-/// Qualified names ("schott:N-BK7") by plain name.
+/// Returns qualified names ("schott:N-BK7") by plain name.
 const std::multimap<std::string, std::string>& names() {
     static const std::multimap<std::string, std::string> map = [] {
         std::multimap<std::string, std::string> all;
@@ -30,7 +30,7 @@ const std::multimap<std::string, std::string>& names() {
     return map;
 }
 
-/// The same, by bare names.
+/// Returns catalogue names by bare name.
 const std::multimap<std::string, CatalogueName>& bare_names() {
     static const std::multimap<std::string, CatalogueName> map = [] {
         std::multimap<std::string, CatalogueName> all;

@@ -4,7 +4,7 @@
 
 namespace realcam::io {
 
-/// A glass from its table: exactly one of n_d with V_d, sellmeier, cauchy, table, index.
+/// Reads a glass from its table: exactly one of n_d with V_d, sellmeier, cauchy, table, index.
 Glass glass_from_table(const TomlTable& table);
 
 }  // namespace realcam::io

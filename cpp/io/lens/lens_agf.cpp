@@ -1,5 +1,5 @@
-// Glass catalogues of Zemax, .agf: "NM" begins a glass with its name and the number of its dispersion formula, "CD" has
-// the coefficients, for wavelengths in um. The formulas are those of OpticStudio's manual.
+// Reads Zemax's glass catalogues, .agf: "NM" begins a glass with its name and the number of its dispersion formula,
+// "CD" has the coefficients, for wavelengths in um. The formulas are those of OpticStudio's manual.
 
 #include <array>
 #include <cmath>
@@ -15,7 +15,7 @@ namespace {
 
 using Coefficients = std::array<double, 12>;
 
-/// c_0 + c_1 l^p_1 + c_2 l^p_2 + ...
+/// Returns c_0 + c_1 l^p_1 + c_2 l^p_2 + ...
 double power_sum(const Coefficients& c, double l, std::initializer_list<double> powers) {
     double sum = c[0];
     std::size_t i = 1;
@@ -23,14 +23,14 @@ double power_sum(const Coefficients& c, double l, std::initializer_list<double> 
     return sum;
 }
 
-/// The sum of c_i l^2 / (l^2 - c_(i + 1)) over pairs from `first` on.
+/// Returns the sum of c_i l^2 / (l^2 - c_(i + 1)) over pairs from `first` on.
 double poles(const Coefficients& c, double l, std::size_t first, std::size_t pairs) {
     double sum = 0;
     for (std::size_t i = first; i < first + 2 * pairs; i += 2) sum += c[i] * l * l / (l * l - c[i + 1]);
     return sum;
 }
 
-/// The squared index by formula number; std::nullopt for one that does not exist.
+/// Returns the squared index by formula number; std::nullopt if the formula does not exist.
 std::optional<double> squared_index(int formula, const Coefficients& c, double l) {
     const double herzberger = 1 / (l * l - 0.028);
     const auto square = [](double n) { return n * n; };
@@ -92,7 +92,7 @@ void read_glass_catalogue(const std::string& path, std::map<std::string, Glass>&
                         : glass_of_formula([&](double um) { return std::sqrt(*squared_index(formula, c, um)); }, name);
                 glass.label = name;
                 catalogue.emplace(bare_glass_name(name), std::move(glass));
-            } catch (const InputError&) {  // of a material of the infrared
+            } catch (const InputError&) {  // an infrared material, which has no visible index
             }
             ++count;
             name.clear();

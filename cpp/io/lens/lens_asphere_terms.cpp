@@ -11,12 +11,12 @@ namespace realcam::io {
 namespace {
 
 constexpr int kLargestPower = 2 * kMaxAsphericTerms + 2;
-/// By how much the surface may differ from what the file says, mm: the round trips through other programs are held to
+/// Largest deviation of the surface from the file's, mm: round trips through other programs are required to be within
 /// 1e-9 mm.
 constexpr double kLargestDifference = 1e-10;
 
-/// Coefficients of the polynomial through `kMaxAsphericTerms` points of a function on [0, 1], chosen as for Chebyshev
-/// polynomials, so that it is nearly the best one everywhere.
+/// Returns the coefficients of the polynomial through `kMaxAsphericTerms` points of a function on [0, 1]. At the
+/// Chebyshev nodes, so that it is nearly the best one everywhere.
 template <class Function>
 std::vector<double> polynomial_through(const Function& f) {
     constexpr int n = kMaxAsphericTerms;
@@ -36,11 +36,11 @@ std::vector<double> polynomial_through(const Function& f) {
     return c;
 }
 
-/// c r^2 / (1 + S) + a2 r^2 with S = sqrt(1 - q), q = (1 + k) c^2 r^2, has the vertex curvature c' = c + 2 a2. A conic
-/// of that curvature whose (1 + k') c'^2 is (1 + k) c^2 has the same S, so that what is left is
-///     a2 r^2 (S - 1) / (S + 1) = -a2 r^2 q / (1 + S)^2,
-/// without a term of r^2. It is exact for a plane and for a paraboloid, where q is 0; else 1 / (1 + S)^2 is replaced by
-/// a polynomial in q that holds out to the rim.
+/// Folds a term a2 r^2 into the curvature. The sag c r^2 / (1 + S) + a2 r^2 with S = sqrt(1 - q), q = (1 + k) c^2 r^2,
+/// has the vertex curvature c' = c + 2 a2. A conic of that curvature with (1 + k') c'^2 = (1 + k) c^2 has the same S,
+/// so that the remainder is a2 r^2 (S - 1) / (S + 1) = -a2 r^2 q / (1 + S)^2, without a term of r^2. It is 0 for a
+/// plane and for a paraboloid, where q is 0; otherwise 1 / (1 + S)^2 is replaced by a polynomial in q that is accurate
+/// up to the rim. Returns the term that cannot be folded, or an empty string.
 std::string fold_square_term(double a2, double height, Surface& surface) {
     const double c = surface.curvature, square = (1 + surface.conic) * c * c;
     const double folded = c + 2 * a2, q_rim = square * height * height;
@@ -61,7 +61,7 @@ std::string fold_square_term(double a2, double height, Surface& surface) {
     double difference = 0;
     constexpr int kSamples = 64;
     for (int i = 0; i <= kSamples; ++i) {
-        const double share = static_cast<double>(i) / kSamples;  // of the squared height
+        const double share = static_cast<double>(i) / kSamples;  // fraction of the squared height
         double kept = 0;
         for (std::size_t j = terms.size(); j-- > 0;) kept = kept * share + terms[j];
         difference =

@@ -6,9 +6,9 @@
 
 namespace realcam::io {
 
-/// Brings the aspheric terms of a row into those of the core: r^4 to r^18. A term of r^2 is folded into the curvature
-/// (see the source); `height` is the clear semi-diameter out to which that has to hold. Returns what cannot be
-/// expressed, as a message names it; empty where all can.
+/// Converts the aspheric terms of a row to those of the core: r^4 to r^18. A term of r^2 is folded into the curvature
+/// (see the source), accurately up to `height`, the clear semi-diameter. Returns the terms that cannot be expressed,
+/// for a message, or an empty string.
 std::string set_aspheric_terms(const PrescriptionSurface& row, double height, Surface& surface);
 
 }  // namespace realcam::io

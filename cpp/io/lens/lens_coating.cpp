@@ -10,7 +10,7 @@
 namespace realcam::io {
 namespace {
 
-/// Several for each surface.
+/// Limit on the number of coatings: several for each surface.
 constexpr std::size_t kMostCoatings = 1000;
 
 std::vector<std::string> metal_names() {

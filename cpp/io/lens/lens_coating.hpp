@@ -8,17 +8,17 @@
 
 namespace realcam::io {
 
-/// The coatings of a lens file: its tables [coating.NAME], those that have a name of their own, and what it says of all
-/// faces at once. Every complaint is a LensFileError with file and line.
+/// Coatings of a lens file: its tables [coating.NAME], the predefined coatings, and the default for all faces. Every
+/// error is a LensFileError with file and line.
 class LensCoatings {
 public:
-    /// `glasses`: the file's table "glass", of which layers may be made too.
+    /// `glasses`: the file's table "glass", whose glasses may be used for layers.
     LensCoatings(const TomlTable& file, const std::optional<TomlTable>& glasses);
 
-    /// The key "coating" of a surface; unknown where there is none.
+    /// Reads the key "coating" of a surface; without it, the coating is unknown.
     Coating of(const TomlTable& surface) const;
 
-    /// Gives faces between air and glass that have no key "coating" the file's "default_coating".
+    /// Applies the file's "default_coating" to faces between air and glass without a key "coating".
     void apply_default(LensSystem& lens, const toml::array& surfaces) const;
 
 private:

@@ -6,22 +6,23 @@
 
 namespace realcam::io {
 
-/// A glass of a lens file that no catalogue has, or several; whoever names another one for it settles that.
+/// A glass of a lens file that no catalogue has, or several have. The caller can resolve it by specifying a glass for
+/// the name.
 class UnknownGlass : public InputError {
 public:
     UnknownGlass(const std::string& message, std::string glass, std::string candidate = {})
         : InputError(message), glass(std::move(glass)), candidate(std::move(candidate)) {}
 
-    std::string glass;  ///< as the file calls it
-    std::string candidate;  ///< one of several that it may be, "schott:F4"; empty where there is none
+    std::string glass;  ///< name in the file
+    std::string candidate;  ///< one of several possible glasses, "schott:F4"; empty if there are none
 };
 
-/// An error of a lens file that the caller may settle. How that is said is known to programs and not to a reader, whose
-/// message leaves it out.
+/// An error of a lens file that the caller can resolve. How to do so depends on the program, so the message does not
+/// mention it.
 class LensReadError : public LensFileError {
 public:
     using LensFileError::LensFileError;
-    /// Adds the place to an error that knows none.
+    /// Adds the position in the file to an error without one.
     LensReadError(const InputError& cause, std::string file, int line = 0, int surface = 0)
         : LensFileError(cause.what(), std::move(file), line, surface) {
         if (const auto* unknown = dynamic_cast<const UnknownGlass*>(&cause))
@@ -29,7 +30,7 @@ public:
     }
 
     std::string glass, candidate;  ///< see UnknownGlass
-    bool can_be_forced = false;  ///< a reader that is told to leaves out what this is about
+    bool can_be_forced = false;  ///< true if LensReadOptions::force omits the feature
 };
 
 }  // namespace realcam::io

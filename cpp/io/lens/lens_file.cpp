@@ -57,7 +57,7 @@ std::vector<double> read_aspheric_coefficients(const TomlTable& table) {
     return values;
 }
 
-/// `of`: before the keys.
+/// `of`: prefix of the keys.
 SurfacePlacement read_placement(const TomlTable& table, const std::string& of = "") {
     SurfacePlacement placement;
     const std::vector<double> decentre = table.numbers(of + "decentre_mm", 3), tilt = table.numbers(of + "tilt_deg", 3);
@@ -175,8 +175,8 @@ void read_focusing(const TomlTable& file, LensSystem& lens) {
     lens.focusing.group_last = static_cast<int>(group[1]) - 1;
 }
 
-/// A check of the finished lens, which knows nothing of the file: the error gets the line of the surface that it names,
-/// or else of the part of the file that it is about.
+/// Checks the finished lens. The check does not know the file: its error gets the line of the surface that it names, or
+/// else of the part of the file that it concerns.
 template <class Check>
 void check_part(const TomlTable& file, const toml::node& part, const toml::array& surfaces, Check&& check) {
     try {
@@ -227,12 +227,12 @@ void set_film_distance(const TomlTable& file, LensSystem& lens) {
     if (const std::string why = film_distance_error(lens); !why.empty()) file.fail(why, file.find("film_distance_mm"));
 }
 
-/// How the rings of a lens stand that was saved: on what it is focused, and how far its diaphragm is closed.
+/// Sets focus and aperture as they were when the lens was saved.
 void set_rings(const TomlTable& file, LensSystem& lens) {
     if (!lens.zoom.positions.empty())
         lens.focus_distance = lens.zoom.positions[static_cast<std::size_t>(lens.zoom.current)].focus_distance;
     if (const toml::node* node = file.find("focus_distance_mm")) {
-        // Infinity is what it is without the key; a lens that zooms may be focused nearer at rest.
+        // Infinity is the default without the key, but a zoom position may be focused at a finite distance at rest.
         const bool infinite = node->is_floating_point() && node->value_or(0.0) == kInfinity;
         lens.focus_distance = infinite ? kInfinity : *file.number("focus_distance_mm");
     }
@@ -293,7 +293,7 @@ LensSystem lens_from_table(const toml::table& root, const std::string& file, con
     const toml::array* surfaces = root["surface"].as_array();
     if (!surfaces || !surfaces->is_array_of_tables())
         top.fail("the lens has no surfaces; tables [[surface]] are wanted");
-    // Each may hold a long table of a glass, which is copied.
+    // A limit, because each may contain a long table of a glass, which is copied.
     if (surfaces->size() > static_cast<std::size_t>(kMaxSurfaces))
         top.fail("the lens has " + std::to_string(surfaces->size()) + " surfaces; at most " +
                      std::to_string(kMaxSurfaces) + " are supported",
@@ -320,7 +320,7 @@ LensSystem lens_from_table(const toml::table& root, const std::string& file, con
     return lens;
 }
 
-/// Throws LensFileError for what is no ordinary file, and for one that is too long to be a lens.
+/// Throws LensFileError if a file is not an ordinary file, or is too long for a lens.
 std::string text_of_file(const std::string& path) {
     constexpr std::size_t kLargest = 16 << 20;  // bytes; the bundled lenses have some thousand
     try {
@@ -339,7 +339,7 @@ std::string text_of_file(const std::string& path) {
 std::vector<std::string> lens_names() {
     std::vector<std::string> names;
     for (const BundledFile& file : bundled_lens_files()) names.emplace_back(file.name);
-    std::sort(names.begin(), names.end());  // with their ".toml" they are in another order: '-' comes before '.'
+    std::sort(names.begin(), names.end());  // file names with ".toml" have another order: '-' comes before '.'
     return names;
 }
 
@@ -376,7 +376,7 @@ std::string_view bundled_lens_text(const std::string& name) {
 bool is_lens_path(const std::string& name, const std::string& path) {
     for (const BundledFile& file : bundled_lens_files())
         if (file.name == name) return false;
-    std::error_code nothing;  // what cannot be looked at is no file of that name
+    std::error_code nothing;  // errors mean that there is no file of that name
     return name.find('/') != name.npos || suffix_of(name) == ".toml" || foreign_format_of(name) ||
            std::filesystem::is_regular_file(path, nothing);
 }
@@ -403,7 +403,7 @@ LensSystem parse_lens_file(std::string_view bytes, const std::string& file, cons
                                 file);
         }
         LensSystem lens = lens_from_table(table, file, options.keep_going);
-        glasses.check_all_used();  // which says that this file names its glasses itself
+        glasses.check_all_used();  // reports that this file defines its own glasses
         return lens;
     }
     const std::string text = decoded_lens_text(bytes, file);

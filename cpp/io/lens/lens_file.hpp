@@ -10,79 +10,78 @@
 
 namespace realcam::io {
 
-/// Names of the bundled lenses, sorted.
+/// Returns the names of the bundled lenses, sorted.
 std::vector<std::string> lens_names();
 
-/// Lens files in the folders of the environment variable REALCAM_LENS_PATH, separated by colons, by name: the file's
-/// without its suffix. A bundled lens, and the first of the folders, come before others of the same name.
+/// Returns the lens files in the folders of the environment variable REALCAM_LENS_PATH, separated by colons, by file
+/// name without suffix. Bundled lenses take precedence, and then earlier folders.
 std::map<std::string, std::string> lens_files_on_path();
 
-/// The text of a bundled lens file. Throws LensFileError, with the nearest names, where there is none.
+/// Returns the text of a bundled lens file. Throws LensFileError, with the nearest names, if there is no such lens.
 std::string_view bundled_lens_text(const std::string& name);
 
-/// The row of a pbrt lens table in which a thickness stands: that of the surface behind it, or in front of it.
+/// Meaning of the thickness in a row of a pbrt lens table: distance after the surface or before it.
 enum class PbrtThickness { by_first_row, after, before };
 
-/// The light that a lens was designed for, as another program's file states it.
+/// Fields and wavelengths that a lens was designed for, as stated in another program's file.
 struct DesignLight {
-    std::vector<double> fields_deg;  ///< of the chief rays, by first-order optics; empty: the file states none
+    std::vector<double> fields_deg;  ///< field angles of the chief rays, by first-order optics; empty if not stated
     std::vector<double> wavelengths_nm;
 };
 
-/// What a reader may be told of another program's file.
+/// Options for reading another program's lens file.
 struct LensReadOptions {
-    /// Glasses by the names that the file gives them: for those that no catalogue has, or several.
+    /// Glasses for names in the file that no catalogue has, or several have.
     std::map<std::string, Glass> glasses;
-    /// Glasses of the user's catalogues (see read_glass_catalogue), which come before the bundled ones.
+    /// Glasses of the user's catalogues (see read_glass_catalogue), which take precedence over the bundled ones.
     std::map<std::string, Glass> catalogue;
-    /// Leaves out what realcam has no model of, with a warning, where else the file is refused.
+    /// Omits features that realcam does not model, with a warning; otherwise the file is rejected.
     bool force = false;
     PbrtThickness pbrt_thickness = PbrtThickness::by_first_row;
-    /// Is called with a line of text for all that was left out or assumed. Empty: nobody listens.
+    /// Called with a line of text for everything omitted or assumed; may be empty.
     std::function<void(const std::string&)> warn;
-    /// Long files take seconds; where it returns false, reading ends by throwing Cancelled.
+    /// Called while reading; long files take seconds. If it returns false, reading ends with Cancelled.
     KeepGoing keep_going;
-    DesignLight* design_light = nullptr;  ///< receives it
+    DesignLight* design_light = nullptr;  ///< receives the design light, if not null
 };
 
-/// Whether `name` means a file. It does if it is no bundled lens, and has a '/' or the suffix of a lens file, or if a
-/// file exists at `path`. This is the name itself, or the name relative to another file's folder.
+/// True if `name` means a file: if it is not a bundled lens, and has a '/' or the suffix of a lens file, or if a file
+/// exists at `path`, which is the name itself, or the name relative to another file's folder.
 bool is_lens_path(const std::string& name, const std::string& path);
 
 /// Reads a lens: a bundled one or one of the lens path by name, or a file by its path (see is_lens_path). The suffix
-/// says how to read it: .zmx (Zemax), .seq (CODE V), .len (OSLO), .dat (pbrt), .json (Optiland) or .roa (ray-optics),
-/// in any case; anything else is a lens file of realcam, TOML. The lens is focused at infinity, or as its file says,
-/// and wide open. Throws LensFileError, naming file, line and surface, and InputError where the options name a glass
-/// that the file does not have.
+/// selects the format: .zmx (Zemax), .seq (CODE V), .len (OSLO), .dat (pbrt), .json (Optiland) or .roa (ray-optics),
+/// ignoring case; any other is a lens file of realcam, TOML. The lens is wide open and focused at infinity, unless its
+/// file states otherwise. Throws LensFileError, naming file, line and surface, and InputError if the options name a
+/// glass that the file does not have.
 LensSystem read_lens(const std::string& name_or_path, const LensReadOptions& options = {});
 
-/// Reads a lens from the text of a lens file of realcam (format 1, described in lenses/README.md).
-/// `file` is what messages call it.
+/// Reads a lens from the text of a lens file of realcam (format 1, described in lenses/README.md). `file`: its name in
+/// messages.
 LensSystem parse_lens(std::string_view text, const std::string& file, const KeepGoing& keep_going = {});
 
-/// Reads a lens from the bytes of any lens file, whose name says how.
+/// Reads a lens from the bytes of a lens file, whose format follows from its name.
 LensSystem parse_lens_file(std::string_view bytes, const std::string& file, const LensReadOptions& options = {});
 
-/// A glass of the catalogue: "N-BK7", or "schott:F4" where makers share a name.
-/// Throws InputError where the name is unknown (with the nearest names) or stands for several glasses.
+/// Returns a glass of the catalogue: "N-BK7", or "schott:F4" if makers share a name. Throws InputError if the name is
+/// unknown (with the nearest names) or ambiguous.
 Glass catalogue_glass(const std::string& name);
 
-/// Adds the glasses of a catalogue of Zemax (.agf), by bare name. Throws InputError naming file and line.
+/// Adds the glasses of a Zemax catalogue (.agf), by bare name. Throws InputError naming file and line.
 void read_glass_catalogue(const std::string& path, std::map<std::string, Glass>& catalogue);
 
-/// A glass as the command line names it, "NAME=n_d,V_d" or "NAME=schott:F4": the name, and the glass. Throws
-/// InputError.
+/// Parses a glass of the command line, "NAME=n_d,V_d" or "NAME=schott:F4": the name, and the glass. Throws InputError.
 std::pair<std::string, Glass> named_glass(const std::string& text);
 
-/// What a file of another program cannot say of a lens is in `warnings`.
+/// Text of a lens file; `warnings` names the properties of the lens that its format cannot express.
 struct LensText {
     std::string text;
     std::vector<std::string> warnings;
 };
 
-/// The text of a lens file by the suffix of its name: .zmx, .seq, or else TOML, which gives the same lens again.
-/// Throws InputError where the lens has a text that no file can hold, or the suffix is that of a format that is only
-/// read.
+/// Returns the text of a lens file in the format of the suffix: .zmx, .seq, .json, .roa, or TOML, which preserves the
+/// lens exactly. Throws InputError if the lens has a text that no file can contain, or if the suffix is not that of a
+/// format for writing.
 LensText lens_text_for(const LensSystem& lens, const std::string& path);
 
 }  // namespace realcam::io

@@ -8,7 +8,8 @@
 
 namespace realcam::io {
 
-/// Names all that a file has and realcam has no model of: as warnings where that is forced, else as one LensFileError.
+/// Reports all features of a file that realcam does not model: as warnings if `options.force` is set, otherwise as one
+/// LensFileError.
 void refuse_foreign(const std::vector<ForeignFeature>& features, const std::string& file,
                     const LensReadOptions& options);
 

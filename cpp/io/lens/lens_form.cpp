@@ -9,7 +9,7 @@ namespace realcam::io {
 
 namespace {
 
-/// A power as a key of a table.
+/// Parses a power that is a key of a table.
 int power_of(const TomlTable& table, std::string_view key, const toml::node& node, int most) {
     const bool digits = !key.empty() && key.size() < 3 && key.find_first_not_of("0123456789") == key.npos;
     const int power = digits ? std::stoi(std::string(key)) : 0;
@@ -97,7 +97,7 @@ std::vector<Vec2d> read_corners(const TomlTable& table) {
     return corners;
 }
 
-/// The one of these keys that a table has.
+/// Returns the one of these keys that a table has.
 std::string one_of(const TomlTable& table, const std::vector<std::string_view>& keys, const std::string& wanted) {
     std::string found;
     for (const std::string_view key : keys) {

@@ -6,13 +6,14 @@
 
 namespace realcam::io {
 
-/// What a surface's table says of its form. Throws LensFileError.
+/// Reads the form of a surface from its table. Throws LensFileError.
 SurfaceForm read_form(const TomlTable& table);
 
-/// And of the shape of its aperture. `rim`: clear semi-diameter, to which the arms of a spider go.
+/// Reads the shape of a surface's aperture from its table. `rim`: clear semi-diameter, to which the arms of a spider
+/// extend. Throws LensFileError.
 ApertureShape read_aperture(const TomlTable& table, double rim);
 
-/// Lines of a surface's table, from which the readers make the same form and shape.
+/// Return lines of a surface's table, from which the readers restore the form and the aperture shape.
 std::string form_as_toml(const SurfaceForm& form);
 std::string aperture_as_toml(const ApertureShape& shape);
 

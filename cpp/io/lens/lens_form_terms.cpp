@@ -8,7 +8,7 @@ namespace realcam::io {
 
 namespace {
 
-/// u^4 times a polynomial in t = 2 u^2 - 1, whose powers are multiplied out.
+/// Adds the powers of r of u^4 times a polynomial in t = 2 u^2 - 1.
 void add_forbes(const ForbesTerms& forbes, std::map<int, double>& terms) {
     const std::vector<double> in_t = forbes_polynomial(forbes);
     std::vector<double> in_square(in_t.size(), 0.0);

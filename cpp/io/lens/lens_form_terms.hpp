@@ -6,18 +6,18 @@
 
 namespace realcam::io {
 
-/// Coefficients of the powers of r: even terms, radial ones and those of Forbes that depart from a conic. Forbes's
-/// departures from a sphere are no polynomial, and are left out.
+/// Returns the coefficients of the powers of r: even terms, radial terms, and Forbes terms that depart from a conic.
+/// Forbes's departures from a sphere are not polynomials, and are omitted.
 std::map<int, double> radial_terms_of(const Surface& surface);
 
 /// Degree, and the power of y in it.
 using XyPower = std::pair<int, int>;
 
-/// Coefficients of powers of x and y: all terms but those of a toroid, of odd powers of r and of Forbes's departures
-/// from a sphere.
+/// Returns the coefficients of powers of x and y: all terms except those of a toroid, odd powers of r, and Forbes's
+/// departures from a sphere.
 std::map<XyPower, double> xy_terms_of(const Surface& surface);
 
-/// Whether a surface has a term of an odd power of r.
+/// True if a surface has a term of an odd power of r.
 bool has_odd_terms(const Surface& surface);
 
 }  // namespace realcam::io

@@ -8,21 +8,21 @@
 
 namespace realcam::io {
 
-/// A format of another program's lens files.
+/// Lens file format of another program.
 struct LensFormat {
     std::string_view suffix;  ///< ".zmx"
     Prescription (*read)(std::string_view text, const std::string& file, LensGlasses& glasses,
                          const LensReadOptions& options);
-    LensText (*write)(const LensSystem& lens);  ///< null: it is only read
+    LensText (*write)(const LensSystem& lens);  ///< null if the format is only read
 };
 
-/// By the suffix of a file's name, in any case. Null: realcam's own, TOML.
+/// Returns the format by the suffix of a file's name, ignoring case. Null for realcam's own format, TOML.
 const LensFormat* foreign_format_of(const std::string& path);
 
-/// The suffixes that are read, or those that are written, in a sentence: ".toml, .zmx or .seq".
+/// Returns the suffixes that are read, or those that are written, for a sentence: ".toml, .zmx or .seq".
 std::string lens_suffixes(bool written);
 
-/// "after" or "before". Throws InputError.
+/// Parses "after" or "before". Throws InputError.
 PbrtThickness pbrt_thickness_named(const std::string& name);
 
 }  // namespace realcam::io

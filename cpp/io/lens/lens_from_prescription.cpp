@@ -61,12 +61,13 @@ private:
     }
     const PrescriptionSurface& row_of(std::size_t surface) const { return p_.surfaces[kept_[surface].row]; }
 
-    /// Whether the surface is a plane that light passes everywhere beyond a disc.
+    /// True if the surface is a plane that light passes everywhere outside a disc.
     bool is_open_plane(std::size_t surface) const {
         return kept_[surface].type == SurfaceType::aperture && row_of(surface).is_open_outside;
     }
 
-    /// Here the surface is known by its number in the file; what is computed with the lens would name it by another.
+    /// Checked here, because errors can name the surface by its number in the file; later computations would use the
+    /// lens's numbers.
     void check_materials() const {
         for (std::size_t i = 0; i < kept_.size(); ++i) {
             if (kept_[i].type != SurfaceType::refracting) continue;
@@ -94,7 +95,7 @@ private:
         if (stops > 1) fail("several surfaces are aperture stops; one has to be");
     }
 
-    /// Whether a row became a face of the lens, perhaps beside a stop.
+    /// True if a row became a face of the lens, possibly in addition to a stop.
     bool bends_light(std::size_t row) const {
         return std::any_of(kept_.begin(), kept_.end(), [&](const KeptRow& k) {
             return k.row == row && (k.type == SurfaceType::refracting || k.type == SurfaceType::mirror);
@@ -107,7 +108,7 @@ private:
             Surface surface;
             surface.type = kept.type;
             surface.clear_semi_diameter = row.clear_semi_diameter;
-            // If a surface is also a stop, the rim and the hole are the surface's.
+            // If a surface is also a stop, rim and hole belong to the surface.
             const bool is_extra_plane = kept.type == SurfaceType::stop && bends_light(kept.row);
             surface.inner_semi_diameter = is_extra_plane ? 0 : row.inner_semi_diameter;
             if (surface.bends_light()) {
@@ -121,14 +122,14 @@ private:
         }
     }
 
-    /// Puts a form aside that is not of revolution.
+    /// Stores a form without rotational symmetry for later, and removes it from the surface.
     void keep_form(std::size_t i) {
         forms_.resize(kept_.size());
         forms_[i] = lens_.surfaces[i].form;
         if (!forms_[i].asymmetry().empty()) lens_.surfaces[i].form = {};
     }
 
-    /// Names all that there is no model of; where that is not forced, as an error.
+    /// Reports all features that are not modelled; an error unless forced.
     void refuse_foreign() {
         for (std::size_t i = 0; i < kept_.size(); ++i) {
             if (!lens_.surfaces[i].bends_light()) continue;
@@ -141,13 +142,14 @@ private:
         realcam::io::refuse_foreign(foreign_, p_.file, options_);
     }
 
-    /// A rim that is not known yet is guessed from the entrance pupil's diameter, until rays tell.
+    /// Factor for a rim that is not known yet: it is estimated from the entrance pupil's diameter, until rays are
+    /// traced.
     static constexpr double kGuess = 0.5;
     double known_aperture() const {
         return p_.aperture_kind == ApertureKind::entrance_pupil_diameter ? p_.aperture : 0.0;
     }
 
-    /// Rims that the file leaves out: those of the real rays, of whichever zoom position has the largest.
+    /// Sets rims that the file omits to the extent of the real rays, over all zoom positions.
     void set_rims() {
         std::vector<std::size_t> wanted;
         for (std::size_t i = 0; i < kept_.size(); ++i)
@@ -178,7 +180,7 @@ private:
              (all ? "" : ", of which some do not pass the lens"));
     }
 
-    /// A term of r^2 was folded in before the rim was known out to which that has to hold.
+    /// Folds a term of r^2 again: the first time, the rim up to which that must be accurate was not known.
     void fold_again(std::size_t i, double rim) {
         const PrescriptionSurface& row = row_of(i);
         if (!row.aspheric.contains(2) || !lens_.surfaces[i].bends_light()) return;
@@ -193,10 +195,10 @@ private:
         }
     }
 
-    /// A plane that light passes everywhere beyond a disc gets a rim that stops no ray which the others let pass:
-    /// between two rims a straight line lies within the larger of them.
+    /// Gives a plane that light passes everywhere outside a disc a rim that blocks no ray which the other surfaces
+    /// pass: between two rims, a straight line stays within the larger of them.
     void set_open_rims() {
-        constexpr double kMargin = 1.25;  // faces are no planes at their vertices
+        constexpr double kMargin = 1.25;  // faces are not planes at their vertices
         for (std::size_t i = 0; i < kept_.size(); ++i) {
             if (!is_open_plane(i)) continue;
             double rim = 0;
@@ -208,24 +210,25 @@ private:
         }
     }
 
-    /// How far from the axis light may be at a plane.
+    /// Returns the greatest distance from the axis at which light can cross a plane.
     double reach_of_light(const LensSystem& lens, std::size_t plane) const {
         const double film = 0.5 * hypotenuse(lens.film_width, lens.film_height);
         const auto rim = [&](std::size_t i) { return lens.surfaces[i].clear_semi_diameter; };
         std::size_t before = plane, behind = plane + 1;
         while (before > 0 && is_open_plane(before - 1)) --before;
         while (behind < kept_.size() && is_open_plane(behind)) ++behind;
-        // Behind the last rim the film is the other end of the line; a larger one may be put there.
+        // After the last rim the line ends on the film; a larger film may be used later.
         const double end = behind < kept_.size() ? rim(behind) : 2 * film;
         if (before > 0) return std::max(rim(before - 1), end);
         double distance = 0;
         for (std::size_t i = plane; i < behind && i + 1 < kept_.size(); ++i) distance += lens.surfaces[i].thickness;
         const double focal = std::fabs(first_order(lens, lens_.wavelength_nm).effective_focal_length);
-        // In front of all rims: whatever comes at twice the field's slope, and at 27 degrees at least.
+        // Before all rims: light comes at up to twice the field's slope, and at least at 27 degrees.
         return end + std::fabs(distance) * std::clamp(2 * film / focal, 0.5, 10.0);
     }
 
-    /// Sizes were found as if the lens were centred, in the yz planes of its surfaces.
+    /// Sets forms, apertures and placements without symmetry. Sizes were found as if the lens were centred, in the yz
+    /// planes of its surfaces.
     void set_free_parts() {
         bool moves = !p_.image_placement.is_in_place();
         for (const PrescriptionSurface& row : p_.surfaces) moves |= is_moved(row);
@@ -241,11 +244,11 @@ private:
                  ". Its stop and what else the file leaves open are found as if it were, in the yz plane");
     }
 
-    /// Of its radius of curvature, to which a curved film may go.
+    /// Greatest half diagonal of a curved film, as a fraction of its radius of curvature.
     static constexpr double kReachOfFilm = 0.95;
 
     void set_film_size() {
-        // A film of 3:2, as 36 x 24 mm is, whose corners lie at the largest image height.
+        // A film of 3:2, as 36 x 24 mm, with its corners at the largest image height.
         double height = 0;
         for (std::size_t k = 0; k < states_.size(); ++k)
             height = std::max(
@@ -278,7 +281,7 @@ private:
         lens_.allow_crossing = true;
         try {
             check_all();
-        } catch (const LensFileError& error) {  // which counts the surfaces of the lens
+        } catch (const LensFileError& error) {  // its surface numbers are those of the lens
             const auto index = static_cast<std::size_t>(error.surface) - 1;
             fail(error.detail, error.surface > 0 && index < kept_.size() ? &row_of(index) : nullptr);
         }
@@ -305,7 +308,8 @@ private:
         if (const std::string why = film_distance_error(lens_); !why.empty()) throw LensFileError(why);
     }
 
-    /// Whether faces cross inside their clear semi-diameters, which is refused unless it is forced.
+    /// True if faces cross inside their clear semi-diameters. This is an error unless it is forced, or no ray of the
+    /// file's fields that passes the lens reaches the crossing.
     bool crosses() {
         const int count = std::max(1, static_cast<int>(lens_.zoom.positions.size()));
         bool is_crossed = false;
@@ -338,7 +342,7 @@ private:
         return is_crossed;
     }
 
-    /// True if no ray of the fields that passes the lens meets two faces where they cross.
+    /// True if no ray of the fields that passes the lens reaches two faces where they cross.
     bool passes_inside_crossings(LensSystem lens, std::size_t state) {
         if (!lens_.is_rotational() || film_crosses_lens(lens)) return false;
         const RayRims reach =
@@ -360,7 +364,7 @@ private:
     int stop_on_surface_ = 0;
     std::set<int> curved_planes_;
     Checkpoint checkpoint_;
-    static constexpr std::size_t kWorkOfLens = 1 << 14;  // of the checkpoint, where a lens is looked at as a whole
+    static constexpr std::size_t kWorkOfLens = 1 << 14;  // checkpoint work of an operation on a whole lens
 };
 
 }  // namespace
@@ -374,7 +378,7 @@ LensSystem lens_from(Prescription prescription, const LensReadOptions& options) 
     }
     try {
         return Builder(prescription, options).build();
-    } catch (const InputError& error) {  // a glass without an index, a field that no ray reaches
+    } catch (const InputError& error) {  // a glass without an index, or a field that no ray reaches
         throw LensReadError(error, prescription.file);
     }
 }

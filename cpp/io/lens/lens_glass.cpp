@@ -13,14 +13,14 @@
 namespace realcam::io {
 namespace {
 
-/// The catalogue that a file means: "SCHOTT", "SUMITA_AUG2011", "NIKON-HIKARI", "MISC"; empty for one that is not
-/// known.
+/// Returns the catalogue that a file means by a name: "SCHOTT", "SUMITA_AUG2011", "NIKON-HIKARI", "MISC"; empty if it
+/// is not known.
 std::string maker_of(const std::string& catalogue) {
     const std::string word = upper_case(catalogue);
     for (const char* maker : {"schott", "ohara", "hoya", "cdgm", "hikari", "sumita"})
         if (word.find(upper_case(maker)) != std::string::npos) return maker;
     if (word == "NIKON") return "hikari";
-    // Other programs' catalogues of what no glass maker lists.
+    // Other programs' catalogues of materials of no glass maker.
     for (const char* mixed : {"MISC", "SPECIAL", "INFRARED", "PLASTIC", "PLASTICS", "ZEON", "ZEONEX", "POLYMER"})
         if (word == mixed) return "misc";
     return {};
@@ -32,7 +32,7 @@ std::string listed(const std::vector<std::string>& names) {
     return text;
 }
 
-/// Whether two glasses bend light alike, to the digits of the makers' tables.
+/// True if two glasses have the same indices, to the digits of the makers' tables.
 bool same_indices(const Glass& a, const Glass& b) {
     for (double nm = 400; nm <= 700; nm += 25)
         if (std::fabs(a.index(nm) - b.index(nm)) > 1e-6) return false;
@@ -44,7 +44,7 @@ Glass catalogued(const CatalogueName& found) {
     return catalogue_glass(is_unique ? found.name : found.full());
 }
 
-/// The names in the catalogues that a file lists.
+/// Returns the names that are in the catalogues listed in a file.
 std::vector<CatalogueName> allowed(const std::vector<CatalogueName>& all, const std::vector<std::string>& catalogues) {
     if (catalogues.empty()) return all;
     std::vector<CatalogueName> found;
@@ -119,9 +119,9 @@ Glass LensGlasses::find(const std::string& name, const std::vector<std::string>&
 
 Glass LensGlasses::substance(const std::string& book, const std::string& page, std::vector<std::string>& remarks) {
     struct Page {
-        const char *book, *page, *name;  ///< name in the catalogue
+        const char *book, *page, *name;  ///< `name`: in the catalogue
     };
-    // The first page of a book stands for those that are not known.
+    // The first page of a book stands for unknown pages.
     static constexpr Page kPages[] = {
         {"Al2O3", "Malitson-o", "SAPPHIRE"},
         {"BaF2", "Malitson", "BAF2-MALITSON"},
@@ -197,8 +197,8 @@ Glass glass_of_formula(const std::function<double(double)>& index, std::string l
     bool has_visible = false;
     for (double nm = 300; nm <= 15000; nm += nm < 2500 ? 10 : 50) {
         const double n = index(nm / 1000);
-        const bool is_index = n >= 1 && n < 10;  // not of NaN
-        // A run of wavelengths that has the visible in it; beyond a gap the formula means nothing.
+        const bool is_index = n >= 1 && n < 10;  // false for NaN
+        // Uses the contiguous range of wavelengths that contains the visible; beyond a gap the formula is not valid.
         if (!is_index && has_visible) break;
         if (!is_index) points.clear();
         if (is_index) points.push_back({nm, n});

@@ -8,7 +8,7 @@ namespace realcam::io {
 
 namespace {
 
-/// Without what roundings leave of breaks that undo each other.
+/// Returns the placement of a frame, without the rounding errors of breaks that undo each other.
 SurfacePlacement placement_of(const Affine<double>& frame) {
     SurfacePlacement placement = SurfacePlacement::of(frame);
     constexpr double kRounding = 1e-12;
@@ -66,9 +66,9 @@ void turn_about_axis(PrescriptionSurface& row) {
 }
 
 void set_places(const Prescription& p, const std::vector<KeptRow>& kept, LensSystem& lens) {
-    Affine<double> way;      // from the last kept surface's axis to here
-    double thickness = 0;    // along it, as if it were straight
-    bool is_straight = true;  // so far there was nothing but thickness
+    Affine<double> way;      // from the axis of the last kept surface to here
+    double thickness = 0;    // along that path, as if it were straight
+    bool is_straight = true;  // true while there are only thicknesses
     std::size_t next = 0;
     for (std::size_t row = 0; row < p.surfaces.size(); ++row) {
         const PrescriptionSurface& here = p.surfaces[row];
@@ -101,7 +101,7 @@ void set_places(const Prescription& p, const std::vector<KeptRow>& kept, LensSys
 }
 
 void set_film(const Prescription& p, LensSystem& lens) {
-    // The film counts its height along the light, which behind a mirror goes against the axis.
+    // The sag of the film is measured along the light, which after a mirror travels against the axis.
     const double direction = lens.film_distance < 0 ? -1 : 1;
     if (p.image_curvature != 0) lens.film_radius_of_curvature = direction / p.image_curvature;
 }

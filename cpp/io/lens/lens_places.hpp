@@ -4,28 +4,28 @@
 
 namespace realcam::io {
 
-/// Whether a row of the table is moved from the axis in front of it, or the axis behind from the row.
+/// True if a row is tilted or decentred relative to the axis before it, or the axis after it relative to the row.
 bool is_moved(const PrescriptionSurface& row);
 
-/// What CODE V and ray-optics do with a decentre.
+/// Types of decentre in CODE V and ray-optics.
 enum class DecentreKind {
-    ordinary,    ///< in front of the surface: the axis goes on from it
-    and_return,  ///< and undone behind it
-    bend,        ///< and its tilts once more behind it, as a mirror turns light
-    reverse,     ///< undone behind the surface alone
+    ordinary,    ///< before the surface: the axis continues from it
+    and_return,  ///< before the surface, and reversed after it
+    bend,        ///< before the surface, and its tilts again after it, as a mirror folds the axis
+    reverse,     ///< only reversed after the surface
 };
 void set_decentre(const SurfacePlacement& placement, DecentreKind kind, PrescriptionSurface& row);
 
-/// Turns a toroid about its axis by 90 degrees, so that its section with conic and terms lies in the xz plane. Its
-/// place and its aperture, which have to be known, stay as they are.
+/// Rotates a toroid about its axis by 90 degrees, so that its section with conic and terms lies in the xz plane. Its
+/// placement and its aperture, which must be known, are compensated.
 void turn_about_axis(PrescriptionSurface& row);
 
-/// Gives the surfaces of a lens, made of the kept rows as if it were centred, and the film their places. The breaks of
-/// rows that were not kept go to the next one. Before a film that looks another way than the last axis, a plane is put
-/// that blocks nothing.
+/// Sets the placements of the surfaces of a lens, which was made from the kept rows as if it were centred, and of the
+/// film. Coordinate breaks of rows that were not kept are added to the next surface. If the film's axis is at 60
+/// degrees or more to the last axis, an auxiliary plane that blocks nothing is inserted before it.
 void set_places(const Prescription& prescription, const std::vector<KeptRow>& kept, LensSystem& lens);
 
-/// Gives the film the curvature of the image surface.
+/// Sets the film's curvature to that of the image surface.
 void set_film(const Prescription& prescription, LensSystem& lens);
 
 }  // namespace realcam::io

@@ -7,8 +7,8 @@
 
 namespace realcam::io {
 
-// The readers of other programs' lens files. Each takes the text as UTF-8, throws LensFileError with line and surface
-// for what is wrong in it, and lists what realcam has no model of.
+// Readers of other programs' lens files. Each takes the text as UTF-8, throws LensFileError with line and surface for
+// errors in it, and lists the features that realcam does not model.
 
 /// Zemax OpticStudio, .zmx.
 Prescription read_zemax(std::string_view text, const std::string& file, LensGlasses& glasses);

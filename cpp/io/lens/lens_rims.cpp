@@ -14,14 +14,15 @@
 namespace realcam::io {
 namespace {
 
-/// So that the ray at the edge is not blocked by what is rounded.
+/// Margin, so that rounding does not block the ray at the edge.
 constexpr double kMargin = 1 + 1e-9;
 
 double size_of(const PrescriptionField& field) {
     return hypotenuse(field.x, field.y);
 }
 
-/// With rims that stop no ray which the surfaces allow: an asphere is searched for its rays within its rim.
+/// Returns the lens with rims that block no ray which the surfaces allow: intersections with an asphere are searched
+/// within its rim.
 LensSystem with_wide_rims(LensSystem lens, double largest_angle) {
     const FirstOrder data = first_order(lens, lens.wavelength_nm);
     const int count = static_cast<int>(lens.surfaces.size());
@@ -44,7 +45,8 @@ LensSystem with_wide_rims(LensSystem lens, double largest_angle) {
     return lens;
 }
 
-/// Rays of one field after the other through points of the stop, and where they meet each surface.
+/// Traces ray bundles of one field after the other through points of the stop, and records the greatest ray height at
+/// each surface.
 class FieldBundles {
 public:
     /// `passing`: only rays that pass the rims of the lens count.
@@ -73,7 +75,7 @@ public:
                 else
                     result_.all_rays_pass = false;
             }
-        } catch (const InputError&) {  // no chief ray
+        } catch (const InputError&) {  // there is no chief ray
             result_.all_rays_pass = false;
         }
     }
@@ -120,7 +122,7 @@ double field_angle_of(const LensSystem& lens, double object_distance, FieldKind 
     const double to_pupil = object_distance + data.entrance_pupil_position;
     if (kind == FieldKind::object_height) return std::atan(size / to_pupil);
     if (std::isinf(object_distance)) return std::atan(size / std::fabs(data.effective_focal_length));
-    // The magnification of the object plane: n u of the marginal ray in front of the lens over that behind it.
+    // The magnification of the object plane is n u of the marginal ray before the lens over that after it.
     const ParaxialRay end =
         trace_paraxial(lens, lens.wavelength_nm, {object_distance, 1}, 0, static_cast<int>(lens.surfaces.size()));
     return std::atan(std::fabs(size * data.image_index * end.slope / to_pupil));
@@ -132,7 +134,7 @@ RayRims rims_of_rays(const LensSystem& lens, double object_distance, FieldKind k
     std::vector<PrescriptionField> all{{}};
     all.insert(all.end(), fields.begin(), fields.end());
     for (const PrescriptionField& field : all) {
-        // The field's own direction is that of y here.
+        // Here y is along the direction of the field.
         const bool along_x = std::fabs(field.x) > std::fabs(field.y);
         const double across = along_x ? field.upper_y : field.upper_x;
         const double up = along_x ? field.upper_x : field.upper_y, down = along_x ? field.lower_x : field.lower_y;
@@ -145,7 +147,7 @@ RayRims rims_of_rays(const LensSystem& lens, double object_distance, FieldKind k
 
 RayRims reach_of_rays(const LensSystem& lens, double object_distance, FieldKind kind,
                       const std::vector<PrescriptionField>& fields, Checkpoint& checkpoint) {
-    constexpr int kFields = 12, kPlaces = 24;  // rims cut bundles between the axis and the edge of the stop
+    constexpr int kFields = 12, kPlaces = 24;  // rims vignette bundles between the axis and the edge of the stop
     const double largest = largest_of(fields);
     FieldBundles bundles(lens, object_distance, kind, largest, true, checkpoint);
     std::vector<Vec2<double>> places;
@@ -172,7 +174,7 @@ double largest_image_height(const LensSystem& lens, double object_distance, Fiel
             if (std::isfinite(height)) return height;
         }
     } catch (const InputError&) {
-        // Told by first-order optics then.
+        // Falls back to first-order optics.
     }
     const FirstOrder data = first_order(lens, lens.wavelength_nm);
     return std::fabs(data.effective_focal_length * std::tan(std::min(angle, 1.2)));

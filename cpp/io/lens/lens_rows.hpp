@@ -6,14 +6,14 @@
 
 namespace realcam::io {
 
-/// Which rows of the file became surfaces of the lens. One that is a stop and bends light is two of them.
+/// A row of the file that became a surface of the lens. A stop that bends light becomes two surfaces.
 struct KeptRow {
     std::size_t row;
     SurfaceType type;
 };
 
-/// The lens's surfaces: what bends or blocks light. The others, with one medium on both sides, only add their thickness
-/// to what stands before them.
+/// Returns the rows that bend or block light. The others, with the same medium on both sides, only add their thickness
+/// to the surface before them.
 std::vector<KeptRow> kept_rows(const Prescription& p);
 
 }  // namespace realcam::io

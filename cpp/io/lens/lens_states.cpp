@@ -20,7 +20,7 @@ double thickness(const Prescription& p, int row, std::size_t state) {
     return row < 0 ? p.object_distance : p.surfaces[static_cast<std::size_t>(row)].thickness;
 }
 
-/// By first-order optics, as lens-design programs do it.
+/// Sets the size of the stop by first-order optics, as lens-design programs do.
 void set_stop(const Prescription& p, const std::vector<KeptRow>& kept, LensSystem& lens, double object,
               std::size_t state) {
     const int stop = lens.stop_index(), count = static_cast<int>(lens.surfaces.size());
@@ -31,7 +31,7 @@ void set_stop(const Prescription& p, const std::vector<KeptRow>& kept, LensSyste
     };
     const ParaxialRay start = std::isinf(object) ? ParaxialRay{1, 0} : ParaxialRay{object, 1};
     const double at_stop = std::fabs(trace(start, stop + 1).height);
-    const double pupil = std::fabs(trace({1, 0}, stop + 1).height);  // height at the stop over that in the pupil
+    const double pupil = std::fabs(trace({1, 0}, stop + 1).height);  // height at the stop over height in the pupil
     const double behind = lens.indices(lens.wavelength_nm).back();
     const auto slope_of = [&](double numerical) {
         if (!(numerical > 0 && numerical < 1)) fail(p, "the numerical aperture must lie between 0 and 1");
@@ -61,7 +61,7 @@ void set_stop(const Prescription& p, const std::vector<KeptRow>& kept, LensSyste
              "the size of the aperture stop follows from nothing that the file says; "
              "an entrance pupil diameter, an f-number or the stop's semi-diameter is wanted",
              &p.surfaces[kept[static_cast<std::size_t>(stop)].row]);
-    // The stop's own aperture, where it is smaller than that: what passes the stop's plane is what it leaves.
+    // The stop's own aperture limits it if it is smaller.
     const KeptRow& own = kept[static_cast<std::size_t>(stop)];
     const PrescriptionSurface& row = p.surfaces[own.row];
     const bool is_plane =

@@ -6,17 +6,17 @@
 
 namespace realcam::io {
 
-/// A lens in one of the zoom positions of its file, and how far the object is from its first vertex, mm.
+/// A lens in one of the zoom positions of its file, and the distance of the object from its first vertex, mm.
 struct LensState {
     LensSystem lens;
     double object_distance;
 };
 
-/// `lens` has the surfaces of the rows that are kept; thicknesses, film and stop are those of the state. Rims need not
-/// be known. Throws LensFileError where the size of the stop follows from nothing.
+/// Returns the lens of a zoom position. `lens` has the surfaces of the kept rows; thicknesses, film and stop are those
+/// of the position. Rims need not be known. Throws LensFileError if the size of the stop cannot be determined.
 LensState lens_state(const Prescription& p, const std::vector<KeptRow>& kept, LensSystem lens, std::size_t state);
 
-/// The lens that zooms between its states.
+/// Returns the zoom lens with these positions.
 LensSystem joined_states(const Prescription& p, const std::vector<LensState>& states);
 
 }  // namespace realcam::io

@@ -52,7 +52,7 @@ std::string decoded_lens_text(std::string_view bytes, const std::string& file) {
     else if (bytes.starts_with("\xfe\xff"sv))
         text = from_utf16(bytes.substr(2), true, file);
     else if (bytes.size() > 3 && bytes[0] != 0 && bytes[1] == 0 && bytes[2] != 0 && bytes[3] == 0)
-        text = from_utf16(bytes, false, file);  // some programs leave the mark out
+        text = from_utf16(bytes, false, file);  // some programs omit the mark
     else if (bytes.size() > 3 && bytes[0] == 0 && bytes[1] != 0 && bytes[2] == 0 && bytes[3] != 0)
         text = from_utf16(bytes, true, file);
     else if (bytes.starts_with("\xef\xbb\xbf"sv))

@@ -111,7 +111,7 @@ private:
         if (!(s.coating == Coating())) body_ += key("coating", coating(s.coating));
     }
 
-    /// As short as the reader makes the very same glass of it; else a table of its own.
+    /// Returns the shortest form from which the reader restores exactly this glass; otherwise adds a table.
     std::string material(const Glass& glass) {
         if (glass.has_one_index()) {
             const double index = glass.index(kLineD_nm);
@@ -136,7 +136,8 @@ private:
         return text(add_glass(glass));
     }
 
-    /// A glass of the file's own goes before the catalogue's, so that its name must not be used for both.
+    /// True if the catalogue has this glass. A glass table of the file takes precedence over the catalogue, so a name
+    /// must not be used for both.
     bool is_catalogued(const Glass& glass) {
         if (names_.contains(glass.label) || !catalogue_name_of(glass)) return false;
         catalogued_.insert(glass.label);
@@ -282,7 +283,7 @@ LensText lens_text_for(const LensSystem& lens, const std::string& path) {
     validate(lens);
     const LensFormat* format = foreign_format_of(path);
     if (format && format->write) return format->write(lens);
-    // Without the suffix nobody could read it again by its name.
+    // Requires the suffix, because without it the file could not be read by its name.
     if (suffix_of(path) == ".toml") return {lens_as_toml(lens), {}};
     throw InputError(path + ": the suffix " + lens_suffixes(true) + " is wanted");
 }

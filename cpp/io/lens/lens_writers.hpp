@@ -6,7 +6,7 @@
 
 namespace realcam::io {
 
-/// realcam's own format: the same lens is read again.
+/// Writes realcam's own format, which preserves the lens exactly.
 std::string lens_as_toml(const LensSystem& lens);
 /// Zemax OpticStudio, .zmx.
 LensText lens_as_zemax(const LensSystem& lens);
@@ -17,13 +17,13 @@ LensText lens_as_optiland(const LensSystem& lens);
 /// ray-optics, .roa.
 LensText lens_as_ray_optics(const LensSystem& lens);
 
-/// Indices of a glass at lines of the spectrum, sorted, among them the wavelength of a lens.
+/// Returns the indices of a glass at spectral lines and at the wavelength of a lens, sorted.
 std::vector<Glass::TablePoint> indices_at_lines(const Glass& glass, double wavelength_nm);
 
-/// A number in as few digits as read again give the same double.
+/// Returns a number with the fewest digits that restore the same double.
 std::string exact_number(double value);
 
-/// What no format of other programs has a word for: coatings, blades of the iris, focusing.
+/// Returns warnings for properties that other programs' formats lack: coatings, blades of the iris, focusing.
 std::vector<std::string> left_out_of_foreign_files(const LensSystem& lens, const std::string& format);
 
 }  // namespace realcam::io

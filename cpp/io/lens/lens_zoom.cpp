@@ -11,7 +11,7 @@
 namespace realcam::io {
 namespace {
 
-/// "12" as a surface's number.
+/// Parses a surface number that is a key, such as "12".
 int surface_number(const TomlTable& table, std::string_view key, const toml::node& node) {
     const bool digits = !key.empty() && key.size() < 6 && key.find_first_not_of("0123456789") == key.npos;
     const int number = digits ? std::stoi(std::string(key)) : 0;
@@ -94,7 +94,7 @@ void LensZoom::apply(LensSystem& lens, const std::vector<bool>& given, const Kee
                 file_.file(), static_cast<int>(positions_.front().table.raw().source().begin.line), surface);
         }
     }
-    // Zooming brings the focusing group back to rest: the thicknesses that focusing changes are needed too.
+    // Zooming returns the focusing group to rest: the thicknesses that focusing changes are needed, too.
     const FocusingRule& rule = lens.focusing;
     if (rule.moves_group())
         for (const int i : {rule.group_first - 1, rule.group_last})
@@ -115,7 +115,7 @@ void LensZoom::apply(LensSystem& lens, const std::vector<bool>& given, const Kee
         const auto stop = from.table.number("stop_semi_diameter_mm");
         if (stop && !(*stop > 0))
             from.table.fail("\"stop_semi_diameter_mm\" must be positive", from.table.find("stop_semi_diameter_mm"));
-        to.stop_semi_diameter = stop.value_or(0);  // 0: it does not change
+        to.stop_semi_diameter = stop.value_or(0);  // 0: constant
         if ((from.table.find("stop_semi_diameter_mm") == nullptr) !=
             (positions_.front().table.find("stop_semi_diameter_mm") == nullptr))
             from.table.fail("either all zoom positions give the stop's semi-diameter, or none");
@@ -125,7 +125,7 @@ void LensZoom::apply(LensSystem& lens, const std::vector<bool>& given, const Kee
         lens.surfaces[static_cast<std::size_t>(lens.stop_index())].clear_semi_diameter =
             zoom.positions[current].stop_semi_diameter;
     Checkpoint checkpoint(keep_going);
-    constexpr std::size_t kWork = 1 << 14;  // some milliseconds each
+    constexpr std::size_t kWork = 1 << 14;  // a few milliseconds each
     for (std::size_t i = 0; i < positions_.size(); ++i) {
         checkpoint.pass(kWork);
         const TomlTable& table = positions_[i].table;

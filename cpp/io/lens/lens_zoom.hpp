@@ -10,18 +10,17 @@
 
 namespace realcam::io {
 
-/// The tables [[zoom]] of a lens file and its key "zoom_position". Every complaint is a LensFileError with file and
-/// line.
+/// Tables [[zoom]] of a lens file and its key "zoom_position". Every error is a LensFileError with file and line.
 class LensZoom {
 public:
     explicit LensZoom(const TomlTable& file);
 
-    /// Whether zooming changes the thickness behind a surface, from 1: its table may leave it out.
+    /// True if zooming changes the thickness behind a surface, numbered from 1, so that its table may omit it.
     bool changes(int surface) const;
 
-    /// Sets the lens's zoom positions, and what its tables leave out to the current one. `given`: for each surface
-    /// whether its table has a thickness. Film distances that are not given are those of the smallest axial spot.
-    /// Throws Cancelled where `keep_going` returns false.
+    /// Sets the lens's zoom positions, and thicknesses that its tables omit to those of the current position. `given`:
+    /// for each surface, true if its table has a thickness. Film distances that are not given are those of the smallest
+    /// axial spot. Throws Cancelled if `keep_going` returns false.
     void apply(LensSystem& lens, const std::vector<bool>& given, const KeepGoing& keep_going) const;
 
 private:
@@ -34,7 +33,7 @@ private:
 
     TomlTable file_;
     std::vector<Position> positions_;
-    std::optional<int> current_;  ///< where the file says it
+    std::optional<int> current_;  ///< if stated in the file
 };
 
 }  // namespace realcam::io

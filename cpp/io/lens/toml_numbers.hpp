@@ -9,13 +9,13 @@
 
 namespace realcam::io {
 
-/// In TOML a whole number without a point is an integer, of 64 bits.
+/// Returns a number as a TOML float: without a point, TOML reads a 64-bit integer.
 inline std::string toml_number(double value) {
     const std::string text = exact_number(value);
     return text.find_first_of(".e") == text.npos ? text + ".0" : text;
 }
 
-/// What `back` makes exactly this value of; nothing where rounding leaves none.
+/// Returns a number near `near` that `back` maps exactly to `value`; std::nullopt if rounding leaves no such number.
 template <class Back>
 std::optional<double> before_rounding(double near, double value, const Back& back) {
     constexpr double kInfinity = std::numeric_limits<double>::infinity();

@@ -57,14 +57,14 @@ constexpr PictureKey kPictures[] = {
     {"map_Pr", &MtlMaterial::map_Pr},       {"map_Pm", &MtlMaterial::map_Pm}, {"bump", &MtlMaterial::bump},
     {"map_bump", &MtlMaterial::bump},       {"norm", &MtlMaterial::norm}};
 
-/// What changes how a surface looks, and is not read. Where a number follows that is 0, it says nothing.
+/// Statements that change a surface's appearance and are not supported. They are ignored if their number is 0.
 struct OtherKey {
     std::string_view name;
 };
 constexpr OtherKey kNotModelled[] = {{"refl"},   {"map_refl"}, {"disp"},      {"map_disp"},   {"decal"}, {"Ps"},
                                      {"map_Ps"}, {"aniso"},    {"map_aniso"}, {"map_anisor"}, {"map_Tr"}};
 
-/// Statements that a path tracer has no use for.
+/// Statements that a path tracer does not need.
 constexpr OtherKey kNotNeeded[] = {{"map_Ka"}, {"map_aat"}, {"sharpness"}};
 
 bool equal_without_case(std::string_view a, std::string_view b) {
@@ -72,7 +72,7 @@ bool equal_without_case(std::string_view a, std::string_view b) {
     return std::ranges::equal(a, b, {}, lower, lower);
 }
 
-/// Writers do not agree on the case of keywords.
+/// Finds a keyword, ignoring case, which differs between programs.
 template <class Keys>
 auto find_key(const Keys& keys, std::string_view name) -> decltype(&keys[0]) {
     for (const auto& key : keys)
@@ -80,21 +80,21 @@ auto find_key(const Keys& keys, std::string_view name) -> decltype(&keys[0]) {
     return nullptr;
 }
 
-/// A number that is all of a word; the word is taken.
+/// Takes a word and returns its number; std::nullopt if the word is not just a number.
 std::optional<double> take_whole_number(std::string_view& rest) {
     std::string_view word = take_word(rest);
     const std::optional<double> value = take_number(word);
     return word.empty() ? value : std::nullopt;
 }
 
-/// Lines of which a warning tells the first and the number.
+/// Lines with the same error: a warning tells the first and the number of others.
 struct LineCount {
     std::size_t count = 0, first = 0;
 
     void add(std::size_t line) {
         if (count++ == 0) first = line;
     }
-    /// " nor 3 others" or the like.
+    /// Returns ", nor 3 others" or the like.
     std::string others(const std::string& conjunction) const {
         return count > 1 ? ", " + conjunction + ' ' + std::to_string(count - 1) + " others" : "";
     }
@@ -142,7 +142,7 @@ private:
             warn(std::to_string(skipped_options_) + " options of pictures are skipped (" + joined(option_names_) + ")");
     }
 
-    /// Unknown statements are named in one warning.
+    /// Reads a statement. Unknown ones are collected for one warning.
     void read_statement(std::string_view rest) {
         const std::string_view keyword = take_word(rest);
         if (equal_without_case(keyword, "newmtl")) return begin_material(rest);
@@ -170,8 +170,8 @@ private:
         if (is_illum) read_illum(rest);
     }
 
-    /// As a transparency, a Tr near 1 is a surface that nobody would see: in a file that has one, Tr is an opacity. A
-    /// Tr of 0 stays opaque for the same reason.
+    /// Decides the meaning of Tr for materials without `d`. As a transparency, a Tr near 1 would make a surface
+    /// invisible: in a file that has one, Tr is an opacity. For the same reason, a Tr of 0 stays opaque.
     void settle_dissolves() {
         constexpr float kInvisible = 0.95f;
         const bool is_opacity =
@@ -185,7 +185,7 @@ private:
             "an opacity, as MeshLab writes it");
     }
 
-    /// Maya and others write a black Kd beside its texture.
+    /// Replaces a black Kd beside a texture by white: Maya and other programs write it.
     void settle_textured_colours(std::size_t first) {
         std::size_t count = 0;
         for (std::size_t i = first; i < scene_.materials.size(); ++i) {
@@ -205,7 +205,7 @@ private:
         has_illum_ = has_d_ = false;
     }
 
-    /// Red, green and blue, or one number for all of them.
+    /// Reads red, green and blue, or one number for all of them.
     void read_colour(const ColourKey& key, std::string_view rest) {
         std::array<double, 3> values{};
         std::size_t count = 0;
@@ -226,8 +226,8 @@ private:
         if (value) std::visit([&](auto member) { material_->*member = *value; }, key.member);
     }
 
-    /// Programs do not agree on Tr: with a `d` it may be anything. Alone it is a transparency by the format's name, and
-    /// an opacity as MeshLab and others write it (see settle_dissolves).
+    /// Reads `d` or Tr. Programs differ in the meaning of Tr: beside a `d` it is ignored. Alone it is a transparency by
+    /// the format's definition, and an opacity as MeshLab and others write it (see settle_dissolves).
     void read_dissolve(bool is_d, std::string_view keyword, std::string_view rest) {
         if (rest.starts_with("-halo")) {
             take_word(rest);
@@ -266,7 +266,8 @@ private:
         FileTexture& texture = material_->*key.member;
         texture.picture = picture_of(std::string(parsed->name));
         texture.transform = parsed->transform;
-        // The format has one copy of the picture, and leaves open what is beside it: as in other programs, its edge.
+        // The format has one copy of the picture, and does not define what is outside: as in other programs, its edge
+        // is repeated.
         const TextureWrap wrap = parsed->clamps ? TextureWrap::clamp : TextureWrap::repeat;
         texture.sampler = {wrap, wrap, TextureFilter::linear};
     }
@@ -282,7 +283,7 @@ private:
         option_names_.insert(name);
     }
 
-    /// Nothing, and the line is counted, where no number follows.
+    /// Returns a number; std::nullopt, after counting the line, if there is none.
     std::optional<float> number_of(std::string_view keyword, std::string_view rest, Range range) {
         const std::optional<double> value = take_whole_number(rest);
         if (!value) {
@@ -295,7 +296,7 @@ private:
     }
 
     double checked(double value, std::string_view keyword) const {
-        // How bright a light may be is checked with those of all formats.
+        // The limit on the brightness of lights is checked for all formats in one function.
         if (value >= 0 && value <= kLargestFloat) return value;
         fail(std::string(keyword) + " must be finite and not negative");
     }
@@ -309,13 +310,13 @@ private:
     Checkpoint& checkpoint_;
     TextLines lines_;
     MtlMaterial* material_ = nullptr;  // the last of scene_.materials
-    bool has_illum_ = false, has_d_ = false;  // whether it says so itself
+    bool has_illum_ = false, has_d_ = false;  // true if the material has this statement
     std::map<std::string, std::int32_t> pictures_;
     LineCount unread_, out_of_range_;
     std::set<std::string> unknown_;
-    std::map<std::size_t, float> transparencies_;  // Tr of the materials that have no d, by index
+    std::map<std::size_t, float> transparencies_;  // Tr of the materials without d, by index
     std::size_t homeless_ = 0, skipped_options_ = 0;
-    std::set<std::string_view> not_modelled_, option_names_;  // of the tables, which outlive it
+    std::set<std::string_view> not_modelled_, option_names_;  // names in the tables above, which outlive this object
 };
 
 }  // namespace

@@ -6,8 +6,8 @@
 
 namespace realcam::io {
 
-/// Adds the materials of an MTL to a scene, and the pictures that they name. Lines that cannot be read are counted in
-/// one warning. Throws FileError, and SceneFileError with file and line for numbers that no material can have.
+/// Adds the materials of an MTL file to a scene, and the pictures that they name. Lines that cannot be read are counted
+/// in one warning. Throws FileError, and SceneFileError with file and line for numbers that no material can have.
 void read_mtl(FileScene& scene, const std::string& path, Checkpoint& checkpoint);
 
 }  // namespace realcam::io

@@ -18,7 +18,7 @@ namespace {
 
 using Indices = std::vector<std::uint32_t>;
 
-/// Numbers a list of names as they come up.
+/// Assigns indices to names in the order of their first use.
 class Names {
 public:
     explicit Names(std::vector<std::string>& names) : names_(names) {}
@@ -35,15 +35,15 @@ private:
     std::map<std::string, std::uint32_t, std::less<>> numbers_;
 };
 
-/// One of the three lists that faces refer to. A face may refer to what follows it, so whether that exists is known at
-/// the file's end only.
+/// One of the three lists that faces refer to. A face may refer to elements that follow it, so whether they exist is
+/// known only at the end of the file.
 struct Referred {
     const char* name;
-    std::uint64_t farthest = 0;  ///< the largest number referred to, from 1
+    std::uint64_t farthest = 0;  ///< largest index in a reference, from 1
     std::size_t farthest_line = 0;
 };
 
-/// Names keep theirs: "Material #25" is what 3ds Max calls materials.
+/// Removes a comment from numbers. Not used for names: "Material #25" is a material's name in 3ds Max.
 std::string_view without_comment(std::string_view numbers) {
     return trimmed(numbers.substr(0, numbers.find('#')));
 }
@@ -71,7 +71,7 @@ private:
         throw SceneFileError(path_ + ": line " + std::to_string(line) + ": " + message);
     }
 
-    /// What else an OBJ may say, such as curves, is left out.
+    /// Parses a statement. Others that OBJ has, such as curves, are ignored.
     void parse_statement(std::string_view rest) {
         const std::string_view keyword = take_word(rest);
         if (keyword == "v")
@@ -92,7 +92,7 @@ private:
             libraries_.number(rest);
     }
 
-    /// The numbers of a line, at most seven; how many.
+    /// Reads the numbers of a line, at most seven, and returns how many.
     std::size_t take_numbers(std::string_view rest, std::array<double, 7>& numbers, std::size_t least) {
         std::size_t count = 0;
         while (count < numbers.size() && !rest.empty()) {
@@ -115,7 +115,7 @@ private:
         Vec3d p = {n[0], n[1], n[2]};
         if (count == 4 && n[3] != 0) p = (1 / n[3]) * p;  // homogeneous
         if (!in_reach(scale_ * p)) fail(why_out_of_reach({n[0], n[1], n[2]}));
-        // Vertices without a colour are white in a file that has some.
+        // Vertices without a colour are white in a file that has colours.
         if (count >= 6 && out_.colours.empty()) out_.colours.resize(out_.positions.size());
         out_.positions.push_back(p);
         if (count < 6 && out_.colours.empty()) return;
@@ -124,7 +124,8 @@ private:
                                          : VertexColor{{f(n[3]), f(n[4]), f(n[5])}, count == 7 ? f(n[6]) : 1.0f});
     }
 
-    /// "off" and 0 are flat, as is what stands before the first such line. ZBrush writes the keyword alone for on.
+    /// Reads a smoothing group. "off" and 0 are flat, and so are faces before the first such line. ZBrush writes the
+    /// keyword alone for on.
     void parse_smoothing(std::string_view rest) {
         out_.has_smoothing = true;
         const std::string_view word = take_word(rest);
@@ -168,7 +169,7 @@ private:
         out_.face_ends.push_back(static_cast<std::uint32_t>(out_.corner_positions.size()));
     }
 
-    // v, v/vt, v//vn or v/vt/vn, and the blanks behind it.
+    // Reads v, v/vt, v//vn or v/vt/vn, and the blanks behind it.
     void parse_corner(std::string_view& rest) {
         const std::string_view from = rest;
         const auto fail_form = [&] {
@@ -201,7 +202,8 @@ private:
         list.push_back(number ? resolved(*number, so_far, kind) : ObjData::kNone);
     }
 
-    /// Numbers from 1 count from the file's beginning, negative ones back from here.
+    /// Resolves a reference: positive numbers count from 1 at the beginning of the file, negative ones back from this
+    /// line.
     std::uint32_t resolved(std::int64_t number, std::size_t so_far, Referred& kind) {
         if (number == 0) fail(std::string(kind.name) + " 0 does not exist; numbers begin with 1");
         if (number < 0) {

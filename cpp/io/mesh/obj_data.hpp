@@ -9,25 +9,24 @@
 
 namespace realcam::io {
 
-/// The statements of an OBJ, with its references resolved to numbers from 0 that are in range.
+/// Statements of an OBJ file, with its references resolved to indices from 0 that are in range.
 struct ObjData {
     static constexpr std::uint32_t kNone = 0xffffffffu;
 
     std::vector<Vec3d> positions;
     std::vector<Vec2f> uvs;
     std::vector<Vec3f> normals;
-    std::vector<VertexColor> colours;  ///< of the positions, as the file has them; empty: none
-    bool has_smoothing = false;        ///< whether any line says which faces are smooth
+    std::vector<VertexColor> colours;  ///< per position, as encoded in the file; may be empty
+    bool has_smoothing = false;        ///< true if any line defines smoothing groups
 
-    // Indices of the corners of all faces, one after the other. Those of uvs and normals are empty where no face has
-    // any.
+    // Indices for the corners of all faces, one after the other. Those of uvs and normals are empty if no face has any.
     std::vector<std::uint32_t> corner_positions, corner_uvs, corner_normals;
-    std::vector<std::uint32_t> face_ends;  ///< number of the corner after each face's last
+    std::vector<std::uint32_t> face_ends;  ///< index of the corner after each face's last
 
-    /// Faces from `first_face` up to the next run's.
+    /// Faces from `first_face` to before the next run's.
     struct Run {
         std::uint32_t first_face, material, group;
-        std::uint32_t smoothing;  ///< number of the smoothing group; 0: off, as before the first line "s"
+        std::uint32_t smoothing;  ///< smoothing group; 0: off, as before the first line "s"
 
         bool continues(const Run& before) const {
             return material == before.material && group == before.group && smoothing == before.smoothing;
@@ -37,11 +36,11 @@ struct ObjData {
     std::vector<std::string> materials;  ///< names after "usemtl"
     std::vector<std::string> groups;  ///< names after "o" and "g"; the first is empty
     std::vector<std::string> libraries;  ///< texts after "mtllib"
-    std::size_t short_faces = 0;  ///< left out, because they have fewer than three corners
+    std::size_t short_faces = 0;  ///< faces left out, with fewer than three corners
 };
 
-/// `scale`: metres per unit, by which coordinates are found to be too large. Throws FileError, and SceneFileError with
-/// the line.
+/// Reads the statements of an OBJ file. `scale`: metres per unit, for the limit on coordinates. Throws FileError, and
+/// SceneFileError with the line.
 ObjData read_obj_data(const std::string& path, double scale, Checkpoint& checkpoint);
 
 }  // namespace realcam::io

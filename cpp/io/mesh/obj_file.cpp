@@ -22,7 +22,7 @@
 namespace realcam::io {
 namespace {
 
-/// Numbers the different corners of an OBJ: a position may have several normals and texture coordinates.
+/// Assigns indices to the distinct corners of an OBJ: a position may have several normals and texture coordinates.
 class CornerTable {
 public:
     struct Corner {
@@ -58,7 +58,7 @@ private:
     }
 
     std::vector<Corner> corners_;
-    std::vector<std::uint32_t> table_;  // a power of two of numbers in corners_
+    std::vector<std::uint32_t> table_;  // hash table of indices in corners_; its size is a power of two
 };
 
 class ObjAssembler {
@@ -86,7 +86,7 @@ private:
         if (count > 0) scene_.warnings.push_back(std::to_string(count) + ' ' + what);
     }
 
-    /// A line may name several files, or one with blanks in its name.
+    /// Reads the material libraries. A line may name several files, or one with blanks in its name.
     void read_libraries() {
         std::set<std::string> read;
         for (const std::string& line : data_.libraries) {
@@ -102,7 +102,7 @@ private:
     void read_library(const std::string& name, std::set<std::string>& read) {
         std::optional<std::string> file = find_beside(scene_.path, name);
         if (!file) {
-            // Renamed together with its OBJ, it still has the old name inside.
+            // A library renamed together with its OBJ is still referred to by its old name.
             const std::string own = scene_.path.substr(0, scene_.path.rfind('.')) + ".mtl";
             scene_.warnings.push_back("mtllib " + in_quotes(name) + ": no such file beside the scene");
             file = find_beside(own, own.substr(own.rfind('/') + 1));
@@ -140,7 +140,7 @@ private:
         return *default_material_;
     }
 
-    /// One node and one mesh for each group, in the order of the file.
+    /// Adds one node and one mesh for each group, in the order of the file.
     void add_nodes() {
         const auto count = static_cast<std::uint32_t>(data_.groups.size());
         scene_.meshes.resize(count);
@@ -197,7 +197,7 @@ private:
         FileVertices& out = scene_.vertices[0];
         if (const std::string warning = decode_vertex_colours(data_.colours); !warning.empty())
             scene_.warnings.push_back(warning);
-        // Where corners are plain, they are numbered as the positions are.
+        // If corners have only positions, their indices are those of the positions.
         if (corners_.corners().empty()) {
             out.positions = std::move(data_.positions);
             out.colours = std::move(data_.colours);
@@ -224,7 +224,7 @@ private:
     Checkpoint& checkpoint_;
     FileScene scene_;
     CornerTable corners_;
-    std::vector<std::uint32_t> material_numbers_;  // of data_.materials in scene_.materials
+    std::vector<std::uint32_t> material_numbers_;  // index in scene_.materials of each of data_.materials
     std::optional<std::uint32_t> default_material_;
     std::size_t tangled_ = 0;
     // Scratch memory for the current face.

@@ -6,13 +6,13 @@
 
 namespace realcam::io {
 
-/// What the faces of a PLY say of their own corners, in the order of the triangles.
+/// Attributes that the faces of a PLY give to their own corners, in the order of the triangles.
 struct PlyCorners {
-    std::vector<Vec2f> uvs;            ///< three for each triangle; empty: none
-    std::vector<VertexColor> colours;  ///< one for each triangle; empty: none
+    std::vector<Vec2f> uvs;            ///< three per triangle, or empty
+    std::vector<VertexColor> colours;  ///< one per triangle, or empty
 };
 
-/// Gives each triangle three vertices of its own, with what its face says of them. Equal ones are welded later.
+/// Gives each triangle three vertices of its own, with the attributes from its face. Equal ones are merged later.
 void apply_corners(Scene& scene, const PlyCorners& corners, Checkpoint& checkpoint);
 
 }  // namespace realcam::io

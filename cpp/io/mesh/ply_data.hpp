@@ -18,7 +18,7 @@ struct PlyType {
 struct PlyProperty {
     std::string name;
     PlyType type;
-    std::optional<PlyType> count_type;  // of a list
+    std::optional<PlyType> count_type;  // type of the length, if the property is a list
 };
 
 struct PlyElement {
@@ -30,31 +30,31 @@ struct PlyElement {
 struct PlyHeader {
     enum class Format { ascii, little_endian, big_endian } format = Format::ascii;
     std::vector<PlyElement> elements;
-    std::vector<std::string> textures;  // of "comment TextureFile"
+    std::vector<std::string> textures;  // names in "comment TextureFile"
     std::size_t size = 0;  // in bytes; the data begin here
 };
 
-/// Throws SceneFileError with `path` and the line.
+/// Parses the header. Throws SceneFileError with `path` and the line.
 PlyHeader parse_ply_header(std::string_view text, const std::string& path);
 
-/// A PLY, read piece by piece: its header, and the numbers after it, one after the other.
+/// PLY file, read piece by piece: its header, and the numbers after it, one after the other.
 class PlyData {
 public:
-    /// Throws FileError, and SceneFileError for the header.
+    /// Opens the file. Throws FileError, and SceneFileError for errors in the header.
     PlyData(const std::string& path, Checkpoint& checkpoint);
 
     const PlyHeader& header() const { return header_; }
-    /// Nothing at the end of the data, or at what is no number.
+    /// Returns the next number; std::nullopt at the end of the data, or if the data are not a number.
     std::optional<double> next(PlyType type) {
         if (end_ - begin_ < kLongestNumber && file_.left() > 0) read_more();
         return header_.format == PlyHeader::Format::ascii ? next_ascii() : next_binary(type);
     }
     std::uint64_t bytes_left() const { return end_ - begin_ + file_.left(); }
-    /// The fewest bytes in which one number of a type is written.
+    /// Returns the least number of bytes that a number of a type occupies.
     std::size_t least_bytes(PlyType type) const { return header_.format == PlyHeader::Format::ascii ? 2 : type.bytes; }
 
 private:
-    /// Longer ones, blanks before them included, are cut off.
+    /// Greatest length of a number, including blanks before it; longer ones are cut off.
     static constexpr std::size_t kLongestNumber = 1 << 12;
 
     void read_more();
@@ -65,7 +65,7 @@ private:
     RegularFile file_;
     PlyHeader header_;
     std::vector<char> buffer_;
-    std::size_t begin_ = 0, end_ = 0;  // of what is in the buffer and not yet read
+    std::size_t begin_ = 0, end_ = 0;  // range of the unread bytes in the buffer
 };
 
 }  // namespace realcam::io

@@ -23,10 +23,10 @@ public:
     PlyReader(Scene& scene, const std::string& path, double scale, Checkpoint& checkpoint)
         : scene_(scene), path_(path), scale_(scale), checkpoint_(checkpoint), data_(path, checkpoint) {}
 
-    /// Returns the textures' names.
+    /// Reads the file and returns the names of its textures.
     std::vector<std::string> read() {
         for (const PlyElement& element : data_.header().elements) {
-            // One without properties takes no bytes, however many of it there are.
+            // An element without properties occupies no bytes, whatever its count.
             if (element.properties.empty()) continue;
             check_promise(element);
             if (element.name == "vertex")
@@ -58,7 +58,8 @@ private:
                              in_quotes(element.name) + ", and " + what);
     }
 
-    /// Before any memory is taken for them. The last number of an ASCII file needs no blank behind it.
+    /// Checks the declared count before memory is allocated for it. The last number of an ASCII file needs no blank
+    /// behind it.
     void check_promise(const PlyElement& element) const {
         std::uint64_t least = 0;
         for (const PlyProperty& p : element.properties) least += data_.least_bytes(p.count_type.value_or(p.type));
@@ -72,7 +73,7 @@ private:
         fail_short(element, "it ends in number " + std::to_string(i));
     }
 
-    /// How many numbers of a list follow.
+    /// Reads the length of a list.
     std::uint64_t list_size(const PlyElement& element, std::uint64_t i, const PlyProperty& p) {
         const double count = number(element, i, *p.count_type);
         if (!(count >= 0 && count == std::floor(count))) fail(element, i, "the length of a list is a whole number");
@@ -185,7 +186,7 @@ private:
         indices_.clear();
         texcoords_.clear();
         PlyNumbers value{};
-        // Where a file names one texture and no numbers, all faces have it.
+        // If a file names one texture and has no texnumber, all faces have it.
         double texture = 0;
         for (const PlyProperty& p : element.properties) {
             if (has_indices(p))
@@ -208,7 +209,7 @@ private:
         return static_cast<std::uint32_t>(exists ? static_cast<std::size_t>(texture) : count);
     }
 
-    /// The numbers of a list of vertices, `least` or more, into indices_.
+    /// Reads a list of vertex indices, each at least `least`, into indices_.
     void read_indices(const PlyElement& element, std::uint64_t i, const PlyProperty& p, double least) {
         const std::uint64_t count = list_size(element, i, p);
         for (std::uint64_t k = 0; k < count; ++k) {
@@ -216,7 +217,7 @@ private:
             const double index = number(element, i, p.type);
             if (!(index >= least && index < 4294967295.0 && index == std::floor(index)))
                 fail(element, i, "an index is a whole number of at least " + std::to_string(static_cast<int>(least)));
-            // Nothing says that the vertices come first, so whether it exists is known at the end.
+            // The vertices may come later in the file, so whether they exist is known at the end.
             if (index >= static_cast<double>(farthest_index_))
                 farthest_index_ = static_cast<std::uint32_t>(index), farthest_face_ = i;
             indices_.push_back(index < 0 ? kNoVertex : static_cast<std::uint32_t>(index));
@@ -243,8 +244,8 @@ private:
         }
     }
 
-    /// Each vertex from the third on makes a triangle with the two before it, every other one the other way round; -1
-    /// begins a new strip.
+    /// Reads triangle strips. Each vertex from the third on makes a triangle with the two before it, with alternating
+    /// orientation; -1 begins a new strip.
     void read_strips(const PlyElement& element) {
         for (std::uint64_t i = 0; i < element.count; ++i) {
             checkpoint_.pass(element.properties.size());
@@ -294,7 +295,7 @@ private:
     std::uint64_t farthest_face_ = 0;
     bool has_normals_ = false, has_uvs_ = false, has_colours_ = false, has_alpha_ = false;
     bool faces_have_colours_ = false, faces_have_alpha_ = false, faces_have_uvs_ = false;
-    std::vector<std::uint32_t> indices_;  // of the face or strip at work
+    std::vector<std::uint32_t> indices_;  // of the current face or strip
     std::vector<double> texcoords_;
     PlyCorners corners_;
     std::size_t bad_ = 0, bad_texcoords_ = 0;

@@ -1,5 +1,5 @@
 #pragma once
-// PLY, ASCII and binary.
+// Reads PLY files, ASCII and binary.
 
 #include <string>
 #include <vector>
@@ -10,14 +10,14 @@
 namespace realcam::io {
 
 /// Adds the triangles of `path` to an empty scene, `scale` metres per unit; polygons are cut into fans, and strips
-/// (element "tristrips") into triangles. Read are
+/// (element "tristrips") into triangles. These properties are read:
 /// - of the vertices x, y, z, nx, ny, nz, s, t (also u, v and texture_u, texture_v) and red, green, blue, alpha (also
 ///   diffuse_red ... and r, g, b, a);
-/// - of the faces vertex_indices (also vertex_index), red, green, blue, alpha, texcoord (two for each corner, in place
-///   of the vertices') and texnumber.
-/// Returns the names of the textures that comments give ("comment TextureFile name"). A triangle's material is the
-/// number of its texture, and that behind the last where it has none: scene.materials are not touched. Throws
-/// FileError, and SceneFileError that names the line of the header, the vertex or the face, counted from 0.
+/// - of the faces vertex_indices (also vertex_index), red, green, blue, alpha, texcoord (two for each corner, which
+///   replace the vertices') and texnumber.
+/// Returns the names of the textures in comments ("comment TextureFile name"). A triangle's material is the index of
+/// its texture, or the number of textures if it has no texture: scene.materials are not changed. Throws FileError, and
+/// SceneFileError that names the line of the header, the vertex or the face, counted from 0.
 std::vector<std::string> read_ply(Scene& scene, const std::string& path, double scale, Checkpoint& checkpoint);
 
 }  // namespace realcam::io

@@ -8,7 +8,7 @@
 
 namespace realcam::io::ply_detail {
 
-/// Where a vertex or a face keeps the numbers that are read.
+/// Properties of a vertex or a face that are read, as indices in PlyNumbers.
 enum PlySlot : std::size_t { x, y, z, nx, ny, nz, u, v, red, green, blue, alpha, slot_count, unread = slot_count };
 
 using PlyNumbers = std::array<double, slot_count + 1>;
@@ -24,7 +24,7 @@ inline PlySlot slot_of(std::string_view name) {
     return unread;
 }
 
-/// Which slots the properties of an element fill.
+/// Returns which slots the properties of an element fill.
 inline std::array<bool, slot_count + 1> slots_of(const PlyElement& element) {
     std::array<bool, slot_count + 1> has{};
     for (const PlyProperty& p : element.properties) has[p.count_type ? unread : slot_of(p.name)] = true;
@@ -35,7 +35,7 @@ inline bool has_colour(const std::array<bool, slot_count + 1>& has) {
     return has[red] && has[green] && has[blue];
 }
 
-/// A number as it stands for itself: colours that are whole numbers are fractions of the largest of their type.
+/// Converts a stored number to its value: integer colours are fractions of the largest value of their type.
 inline double meaning_of(PlySlot slot, PlyType type, double number) {
     if (slot < red || slot > alpha || type.kind == 'f') return number;
     const double values = static_cast<double>(std::size_t{1} << (8 * type.bytes - (type.kind == 'i' ? 1 : 0)));

@@ -13,7 +13,7 @@ struct Point {
     bool operator==(const Point&) const = default;
 };
 
-/// Twice the area of a triangle, positive where it turns left.
+/// Returns twice the signed area of a triangle, positive if it is counter-clockwise.
 double turn(Point a, Point b, Point c) {
     return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
@@ -22,8 +22,8 @@ bool is_inside(Point p, Point a, Point b, Point c) {
     return turn(a, b, p) >= 0 && turn(b, c, p) >= 0 && turn(c, a, p) >= 0;
 }
 
-/// The polygon seen along the axis that is nearest to its normal (Newell's), from the side where it runs to the left.
-/// Empty where it has no normal.
+/// Projects the polygon along the axis that is nearest to its normal (Newell's), so that it is counter-clockwise. Empty
+/// if it has no normal.
 std::vector<Point> projected(std::span<const Vec3d> corners) {
     Vec3d normal = {0, 0, 0};
     const Vec3d origin = corners[0];
@@ -45,7 +45,7 @@ std::vector<Point> projected(std::span<const Vec3d> corners) {
     return points;
 }
 
-/// Points by the cell of a square grid that they lie in: about as many cells as points.
+/// Points sorted by the cells of a square grid, with about as many cells as points.
 class Grid {
 public:
     Grid(const std::vector<Point>& points, const std::vector<std::uint32_t>& members) {
@@ -63,7 +63,8 @@ public:
         for (const std::uint32_t m : members) members_[next[cell(points[m])]++] = m;
     }
 
-    /// Whether `test` is true of any member in the cells that a triangle touches. Adds what it looked at to `work`.
+    /// True if `test` is true for any member in the cells that a triangle touches. Adds the number of visited cells and
+    /// members to `work`.
     template <class Test>
     bool any_in(const std::array<Point, 3>& triangle, std::size_t& work, Test&& test) const {
         const auto [lowest, highest] = std::minmax({triangle[0].y, triangle[1].y, triangle[2].y});
@@ -84,8 +85,8 @@ private:
         const double share = high > low ? (v - low) / (high - low) : 0;
         return std::min(static_cast<std::size_t>(std::clamp(share, 0.0, 1.0) * static_cast<double>(side_)), side_ - 1);
     }
-    /// The columns of a row that a triangle may touch. If a long triangle lies across the grid, a row has few of its
-    /// cells. One more row on both sides allows for rounding.
+    /// Returns the range of columns of a row that a triangle may touch. A long triangle across the grid touches only a
+    /// few cells of each row. One more row on both sides allows for rounding.
     std::pair<std::size_t, std::size_t> columns_in_row(const std::array<Point, 3>& triangle, std::size_t y) const {
         const double height = (high_.y - low_.y) / static_cast<double>(side_);
         const double bottom = low_.y + (static_cast<double>(y) - 1) * height, top = bottom + 3 * height;
@@ -94,7 +95,7 @@ private:
             const Point a = triangle[i], b = triangle[(i + 1) % 3];
             if (std::max(a.y, b.y) < bottom || std::min(a.y, b.y) > top) continue;
             for (const double end : {bottom, top}) {
-                // The edge's end, or where it leaves the row.
+                // The edge's end point, or its intersection with the border of the row.
                 const double share =
                     a.y == b.y ? (end == top ? 1 : 0) : std::clamp((end - a.y) / (b.y - a.y), 0.0, 1.0);
                 const double x = a.x + share * (b.x - a.x);
@@ -115,7 +116,7 @@ private:
 };
 
 std::vector<std::uint32_t> reflex_corners(const std::vector<Point>& points) {
-    // What is straight but for rounding is no corner that turns right.
+    // A corner that is straight up to rounding is not reflex.
     double size = 0;
     for (const Point& p : points) size = std::max({size, std::abs(p.x), std::abs(p.y)});
     const double rounding = 1e-12 * size * size;
@@ -146,7 +147,7 @@ public:
         std::uint32_t at = 0;
         while (left > 3 && work < most_work) {
             const std::size_t before = work++;
-            // After a round without an ear the polygon crosses itself, and any corner is as good as another.
+            // If a full round has no ear, the polygon crosses itself, and any corner is as good as another.
             const bool clips = since_last >= left || is_ear(at, work);
             checkpoint.pass(work - before);
             const std::uint32_t next = after_[at];
@@ -156,7 +157,8 @@ public:
                 --left;
             }
             since_last = clips ? 0 : since_last + 1;
-            // The corner after the ear's neighbour: ears all around, not a fan of slivers at one corner.
+            // Continues at the corner after the ear's neighbour: this cuts ears all around, instead of a fan of slivers
+            // at one corner.
             at = clips ? after_[next] : next;
         }
         for (std::uint32_t second = after_[at]; left > 2; --left, second = after_[second])
@@ -170,7 +172,7 @@ private:
         const Point a = points_[before_[at]], b = points_[at], c = points_[after_[at]];
         return !grid_.any_in({a, b, c}, work, [&](std::uint32_t other) {
             const Point p = points_[other];
-            // Where a cut leads to a hole and back, corners lie on each other.
+            // Corners coincide if a cut leads to a hole and back.
             return is_reflex_[other] && p != a && p != b && p != c && is_inside(p, a, b, c);
         });
     }

@@ -11,9 +11,9 @@ namespace realcam::io {
 
 using PolygonTriangle = std::array<std::uint32_t, 3>;
 
-/// Adds the triangles of a polygon, as numbers of its corners and in their sense: a fan where it is convex, ears cut
-/// off one by one where it is not. Corners need not lie in a plane exactly. The work is about n log n; a polygon that
-/// crosses itself so often that it would take much more ends as a fan, and returns false.
+/// Adds the triangles of a polygon, as indices of its corners and with its orientation: a fan if it is convex,
+/// otherwise by ear clipping. Corners need not be exactly coplanar. The work is about n log n; a polygon that crosses
+/// itself so often that it would take much more is completed as a fan, and false is returned.
 bool triangulate_polygon(std::span<const Vec3d> corners, std::vector<PolygonTriangle>& triangles,
                          Checkpoint& checkpoint);
 

@@ -19,7 +19,8 @@ bool is_whole(const DecodedImage& image) {
 
 namespace {
 
-/// Into the fourth channel, unless that says something itself. `white`: its largest value.
+/// Stores the mean of the colours in the alpha channel, unless alpha is not white everywhere. `white`: largest value of
+/// a channel.
 template <class Value>
 void put_mean_into_alpha(std::vector<Value>& rgba, Value white) {
     for (std::size_t i = 3; i < rgba.size(); i += 4)
@@ -28,7 +29,7 @@ void put_mean_into_alpha(std::vector<Value>& rgba, Value white) {
         rgba[i + 3] = std::min(static_cast<Value>((rgba[i] + rgba[i + 1] + rgba[i + 2]) / 3), white);
 }
 
-/// Colours that the new primaries cannot show, the nearest of which has a negative number, keep 0 there.
+/// Converts to linear Rec. 709. Negative results, of colours outside its gamut, become 0.
 void convert(std::vector<float>& rgba, const std::array<double, 9>& rec709) {
     for (std::size_t i = 0; i < rgba.size(); i += 4) {
         const double in[3] = {double(rgba[i]), double(rgba[i + 1]), double(rgba[i + 2])};

@@ -1,5 +1,5 @@
 #pragma once
-// Materials as scene files describe them. What a renderer makes of them is decided in scene_materials.cpp alone.
+// Materials as described in scene files. Only scene_materials.cpp decides how they are rendered.
 
 #include <cstdint>
 #include <string>
@@ -11,20 +11,21 @@
 
 namespace realcam::io {
 
-/// Nothing inside: what a mesh without a material has.
+/// Material of a scene file. Without content it is the default for meshes without a material.
 struct FileMaterial {
     std::string name;
     std::variant<std::monostate, MtlMaterial, GltfMaterial> content;
-    bool is_white = false;  ///< of nothing: not grey, because the colours of the vertices are the surface's own
+    /// Without content: white instead of grey, because the vertex colours are the surface's colours.
+    bool is_white = false;
 
-    /// The one that colours the surface.
+    /// Returns the texture of the surface's colour.
     FileTexture colour_texture() const {
         if (const auto* mtl = std::get_if<MtlMaterial>(&content)) return mtl->map_Kd;
         const auto* gltf = std::get_if<GltfMaterial>(&content);
         return gltf ? gltf->colour_texture() : FileTexture{};
     }
 
-    /// The sets of a glTF mesh's texture coordinates by which its textures lie, first those of the first texture: its
+    /// Returns the texture coordinate sets of a glTF mesh that the textures use, that of the first texture first: its
     /// vertices get them as uvs and second_uvs.
     std::vector<std::uint32_t> uv_sets() const {
         const auto* gltf = std::get_if<GltfMaterial>(&content);

@@ -8,7 +8,8 @@ namespace {
 
 using Components = std::array<double, 4>;
 
-/// Where a time lies among the keys: behind `first`, by a share of the way to the next, which `seconds` takes.
+/// Position of a time among keys: index of the key before it, fraction of the interval to the next key, and that
+/// interval's length in seconds.
 struct Place {
     std::size_t first;
     double share, seconds;
@@ -30,7 +31,7 @@ Components read(const FileKeys& keys, std::size_t row) {
     return out;
 }
 
-/// By Hermite's polynomials, from the values and tangents at both ends.
+/// Interpolates by Hermite polynomials, from the values and tangents at both ends.
 Components on_spline(const FileKeys& keys, const Place& at) {
     const Components p0 = read(keys, 3 * at.first + 1);
     if (at.share == 0) return p0;
@@ -70,7 +71,7 @@ void add_times(const std::shared_ptr<const FileKeys>& keys, std::vector<double>&
     if (!keys) return;
     for (std::size_t k = 0; k < keys->times.size(); ++k) {
         times.push_back(keys->times[k]);
-        // A jump lasts a millionth of the time since the last key.
+        // A jump takes a millionth of the time since the last key.
         if (k > 0 && keys->interpolation == KeyInterpolation::step)
             times.push_back(keys->times[k] - 1e-6 * (keys->times[k] - keys->times[k - 1]));
     }

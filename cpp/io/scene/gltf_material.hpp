@@ -8,10 +8,9 @@
 
 namespace realcam::io {
 
-// Members have the names of glTF 2.0 and its extensions, and the values that these name for what a file does not say:
-// with those, an extension changes nothing. Numbers lie in the ranges of the format. A texture multiplies the factor of
-// its name; where the comment names a channel it holds numbers, and otherwise colours, or directions if it is a normal
-// map.
+// Members have the names of glTF 2.0 and its extensions, and their default values, with which an extension changes
+// nothing. Numbers lie in the ranges of the format. A texture multiplies the factor of its name; it holds numbers if
+// the comment names a channel, directions if it is a normal map, and otherwise colours.
 
 /// KHR_materials_pbrSpecularGlossiness.
 struct GltfSpecularGlossiness {
@@ -29,10 +28,10 @@ struct GltfTransmission {
 
 /// KHR_materials_volume. Lengths are in units of the file.
 struct GltfVolume {
-    float thickness_factor = 0;  ///< in the mesh's coordinates; 0: the surface is a thin wall, with nothing inside
+    float thickness_factor = 0;  ///< in the mesh's coordinates; 0: thin-walled, without interior
     FileTexture thickness_texture;  ///< green
     float attenuation_distance = std::numeric_limits<float>::infinity();  ///< in the scene's coordinates, above 0
-    Vec3f attenuation_color = {1, 1, 1};  ///< what white light has become after that distance
+    Vec3f attenuation_color = {1, 1, 1};  ///< colour of white light after that distance
 };
 
 /// KHR_materials_clearcoat.
@@ -47,7 +46,7 @@ struct GltfClearcoat {
 /// KHR_materials_specular.
 struct GltfSpecular {
     float factor = 1;
-    Vec3f color_factor = {1, 1, 1};  ///< may be above 1
+    Vec3f color_factor = {1, 1, 1};  ///< can be above 1
     FileTexture texture;  ///< alpha
     FileTexture color_texture;
 };
@@ -63,31 +62,31 @@ struct GltfMaterial {
 
     FileTexture normal_texture;
     float normal_scale = 1;
-    FileTexture occlusion_texture;  ///< red; a path tracer computes itself what it says
+    FileTexture occlusion_texture;  ///< red; not needed by a path tracer
     float occlusion_strength = 1;
     Vec3f emissive_factor = {0, 0, 0};  ///< any number: emission is checked with the lights of all formats
     FileTexture emissive_texture;
     float emissive_strength = 1;  ///< KHR_materials_emissive_strength; any number
 
     AlphaMode alpha_mode = AlphaMode::opaque;
-    float alpha_cutoff = 0.5f;  ///< of AlphaMode::mask
+    float alpha_cutoff = 0.5f;  ///< threshold for AlphaMode::mask
     bool double_sided = false;
 
-    float ior = 1.5f;  ///< KHR_materials_ior: at least 1, or 0 for a surface that reflects all light as specular says
+    float ior = 1.5f;  ///< KHR_materials_ior: at least 1, or 0 for a reflectance given by `specular` alone
     bool unlit = false;  ///< KHR_materials_unlit
     GltfTransmission transmission;
     GltfVolume volume;
     GltfClearcoat clearcoat;
     GltfSpecular specular;
-    std::optional<GltfSpecularGlossiness> specular_glossiness;  ///< in place of base colour, metallic and roughness
+    std::optional<GltfSpecularGlossiness> specular_glossiness;  ///< replaces base colour, metallic and roughness
 
     FileTexture colour_texture() const {
         return specular_glossiness ? specular_glossiness->diffuse_texture : base_color_texture;
     }
-    std::vector<std::uint32_t> uv_sets;  ///< n of TEXCOORD_n, to which FileTexture::uv_set points: at most two
+    std::vector<std::uint32_t> uv_sets;  ///< n of TEXCOORD_n, indexed by FileTexture::uv_set: at most two
 
-    /// Those that there are and that count, the colour's first: no occlusion, and of two models that which replaces the
-    /// other.
+    /// Returns the textures that exist and take effect, that of the colour first: without occlusion, and of the two
+    /// reflection models only those of the one in effect.
     std::vector<const FileTexture*> textures() const;
     std::vector<FileTexture*> textures();
 };

@@ -8,7 +8,7 @@
 namespace realcam::io {
 namespace {
 
-/// A number of a picture, 0 to 1 where it has 8 bits. Beyond the edges the picture comes again, or its edge goes on.
+/// Access to the numbers of a picture, 0 to 1 if it has 8 bits. Beyond the edges the picture is repeated or clamped.
 class Values {
 public:
     explicit Values(const DecodedImage& image, bool repeats = true) : image_(image), repeats_(repeats) {}
@@ -27,7 +27,7 @@ public:
     float mean(int column, int row) const {
         return (channel(column, row, 0) + channel(column, row, 1) + channel(column, row, 2)) * (1.0f / 3.0f);
     }
-    /// Bilinear, where another picture of width x height has a texel.
+    /// Returns the mean at a texel of another picture of width x height, interpolated bilinearly.
     float mean_at(int column, int row, int width, int height) const {
         if (width == image_.width && height == image_.height) return mean(column, row);
         const float x = (static_cast<float>(column) + 0.5f) * static_cast<float>(image_.width) /
@@ -65,14 +65,14 @@ std::uint8_t code(float v) {
 Texture normals_of_heights(const DecodedImage& heights, float scale, bool repeats, std::string name) {
     const Values values(heights, repeats);
     Texture texture = empty_texture(heights.width, heights.height, std::move(name));
-    // Floats: between two codes of 8 bits lies a slope of half a degree.
+    // Floats, because a step of 8-bit values is half a degree of slope.
     texture.linear_rgba.reserve(4 * static_cast<std::size_t>(heights.width) * static_cast<std::size_t>(heights.height));
     for (int row = 0; row < heights.height; ++row)
         for (int column = 0; column < heights.width; ++column) {
             const float u = 0.5f * scale * (values.mean(column + 1, row) - values.mean(column - 1, row)),
                         v = 0.5f * scale * (values.mean(column, row - 1) - values.mean(column, row + 1));  // upwards
             const float z = 1 / std::sqrt(1 + u * u + v * v);
-            // A scale that float cannot square: no normal, rather than none that is a number.
+            // If the scale is too large to be squared in float: a flat normal instead of NaN.
             const bool is_number = z > 0 && std::isfinite(u * z) && std::isfinite(v * z);
             const auto coded = [&](float n) { return 0.5f + 0.5f * (is_number ? n : 0.0f); };
             texture.linear_rgba.insert(texture.linear_rgba.end(),

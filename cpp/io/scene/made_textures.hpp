@@ -1,19 +1,20 @@
 #pragma once
-// Textures that are not in a file as the renderer reads them: made of the file's by arithmetic.
+// Textures that the renderer needs and that are computed from those of the file.
 
 #include "decoded_image.hpp"
 
 namespace realcam::io {
 
-/// Directions in tangent space of heights, which are the means of red, green and blue times `scale`, in widths of a
-/// texel: by central differences, across the picture's edges where it repeats.
+/// Converts a height map to a normal map in tangent space. Heights are the means of red, green and blue times `scale`,
+/// in widths of a texel; slopes are central differences, across the picture's edges if it repeats.
 Texture normals_of_heights(const DecodedImage& heights, float scale, bool repeats, std::string name);
 
-/// Roughness in green and metallic in blue, from the means of red, green and blue of either picture; null: 1. Of two
-/// sizes the larger in each direction, with the other one interpolated.
+/// Returns a texture with roughness in green and metallic in blue, from the means of red, green and blue of each
+/// picture; null: 1. It has the larger size in each direction; the other picture is interpolated.
 Texture roughness_and_metallic(const DecodedImage* roughness, const DecodedImage* metallic, std::string name);
 
-/// Roughness in green, which is 1 - factor times alpha, the glossiness (KHR_materials_pbrSpecularGlossiness).
+/// Returns a texture with roughness in green: 1 - factor * alpha, where alpha is the glossiness
+/// (KHR_materials_pbrSpecularGlossiness).
 Texture roughness_of_glossiness(const DecodedImage& image, float factor, std::string name);
 
 }  // namespace realcam::io

@@ -9,8 +9,8 @@
 namespace realcam::io {
 namespace {
 
-/// How many words follow an option at most: beyond the first they are numbers, and may be absent. With the default
-/// behind it, an option says nothing.
+/// Option of a picture statement: the greatest number of its words and its default. Words after the first are numbers
+/// and optional. With its default, an option has no effect.
 struct Option {
     std::string_view name;
     std::size_t words;
@@ -32,7 +32,7 @@ std::optional<double> number_of(std::string_view word) {
     return word.empty() ? number : std::nullopt;
 }
 
-/// The words behind an option, taken from the beginning of `rest`.
+/// Takes the words of an option from the beginning of `rest`.
 std::vector<std::string_view> take_arguments(std::string_view& rest, const Option& option) {
     std::vector<std::string_view> words;
     while (words.size() < option.words) {
@@ -51,7 +51,7 @@ public:
         while (rest.starts_with('-')) {
             std::string_view after = rest;
             const Option* option = find_option(take_word(after));
-            if (!option) break;  // a name may begin so, too
+            if (!option) break;  // a file name may begin with - as well
             if (!apply(*option, take_arguments(after, *option))) return std::nullopt;
             rest = after;
         }

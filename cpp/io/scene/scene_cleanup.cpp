@@ -15,7 +15,7 @@ void clean_geometry(Scene& scene, Smoothing smoothing, const std::string& path, 
         throw SceneFileError(path + ": holds no triangles" +
                              (scene.positions_m.empty() ? "" : ", only points or lines"));
     }
-    // Like drop_degenerate_triangles, but the groups have to follow.
+    // Like drop_degenerate_triangles, but keeps the smoothing groups in step.
     std::size_t kept = 0;
     bool any_smooth = false;
     for (std::size_t t = 0; t < scene.triangles.size(); ++t) {

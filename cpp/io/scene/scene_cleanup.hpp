@@ -7,8 +7,8 @@
 
 namespace realcam::io {
 
-/// The last step of every reader: drops triangles without area, with a warning, smooths the others, and welds equal
-/// vertices. Indices have to be in range. Throws SceneFileError, with `path`, if no triangle is left.
+/// Last step of every reader: drops triangles without area, with a warning, smooths the others, and merges equal
+/// vertices. Indices must be in range. Throws SceneFileError, with `path`, if no triangle is left.
 void clean_geometry(Scene& scene, Smoothing smoothing, const std::string& path, Checkpoint& checkpoint);
 
 /// Adds the warning "path: n what" unless n is 0.

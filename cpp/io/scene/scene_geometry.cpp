@@ -58,7 +58,8 @@ private:
         });
     }
 
-    /// All at once: growing step by step would take twice the memory. Throws where there is too little.
+    /// Reserves memory at once: growing step by step would take twice as much. Throws SceneFileError if there is too
+    /// little.
     void make_room() {
         std::size_t vertices = 0, triangles = 0;
         for_each_mesh([&](const FileMesh& mesh, const Affine<double>&) {
@@ -92,7 +93,7 @@ private:
         uncovered_ += (is_textured && vertices.uvs.empty()) || (has_two_sets && vertices.second_uvs.empty());
     }
 
-    /// Returns whether any of them has a texture.
+    /// Adds the triangles of a mesh. Returns true if any of them has a texture.
     bool add_triangles(const FileMesh& mesh, const Affine<double>& transform) {
         const bool mirrored = transform.determinant() < 0;
         bool is_textured = false;
@@ -118,7 +119,7 @@ private:
         return is_textured;
     }
 
-    /// Number in scene_ of a vertex of the mesh at work, which is added when it is first used.
+    /// Returns the index in scene_ of a vertex of the current mesh, adding it on first use.
     std::uint32_t vertex(const FileMesh& mesh, std::uint32_t number, const Affine<double>& transform) {
         std::uint32_t& known = new_numbers_[number];
         if (known != kUnset) return known;
@@ -162,7 +163,7 @@ private:
     bool left_out_ = false;
     bool any_normals_ = false, any_uvs_ = false, any_second_uvs_ = false, any_colours_ = false, any_places_ = false;
     Smoothing smoothing_;
-    std::vector<std::uint32_t> new_numbers_;  // in scene_, of the vertices of the mesh at work
+    std::vector<std::uint32_t> new_numbers_;  // index in scene_ of each vertex of the current mesh
     std::size_t bad_normals_ = 0, bad_uvs_ = 0, uncovered_ = 0;
 };
 

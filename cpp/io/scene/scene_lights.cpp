@@ -11,7 +11,7 @@ Color color_of(Vec3d v) {
     return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
 }
 
-// A light emits along -z of its node, from its origin. The extension's `range` is no physics, and left out.
+// A light emits along -z of its node, from its origin. The extension's `range` is not physical and ignored.
 void add_light(Scene& scene, const FileLight& light, const Affine<double>& transform, const std::string& label,
                double scale) {
     if (light.type == "directional") {

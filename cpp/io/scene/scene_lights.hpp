@@ -4,7 +4,8 @@
 
 namespace realcam::io {
 
-/// The punctual lights of a glTF file, intensity in cd, illuminance in lux; other formats have none.
+/// Adds the punctual lights of a glTF file, with intensities in cd and illuminances in lux; other formats have no
+/// lights.
 void read_lights(Scene& scene, const ScenePart& part, const LeavesOut& leaves_out);
 
 }  // namespace realcam::io

@@ -19,14 +19,14 @@ Color unit_range(Vec3f v) {
     return {std::clamp(v.x, 0.0f, 1.0f), std::clamp(v.y, 0.0f, 1.0f), std::clamp(v.z, 0.0f, 1.0f)};
 }
 
-/// The colours of the vertices that have a material.
+/// Colours of the vertices of a material's triangles.
 struct VertexColours {
     bool exist = false, are_transparent = false;
 };
 
 class MaterialMaker {
 public:
-    /// `scale`: metres for a unit of the file.
+    /// `scale`: metres per unit of the file.
     MaterialMaker(Scene& scene, SceneTextures& textures, std::string label, double scale)
         : scene_(scene), textures_(textures), label_(std::move(label)), scale_(scale) {}
 
@@ -67,7 +67,8 @@ private:
         set_dissolve(from);
     }
 
-    /// Heights in texels, times -bm. A normal map says the same more exactly.
+    /// Converts the bump map; heights are in texels, times -bm. A normal map takes precedence, because it is more
+    /// exact.
     void set_bump_map(const MtlMaterial& from) {
         if (!from.bump || from.bm == 0) return;
         if (from.norm) return warn("has a bump map beside a normal map (norm), which alone counts");
@@ -83,8 +84,8 @@ private:
             material_.metallic_roughness_texture = *found;
     }
 
-    // The format's table of illumination models. In 3 to 9 highlights are what mirrors show of the lights, so that
-    // there is no lobe for them beside the mirror.
+    // Follows the format's table of illumination models. In 3 to 9 the highlights are mirror images of the lights, so
+    // that there is no Phong lobe beside the mirror.
     void set_illumination_model(const MtlMaterial& from) {
         const float passing = 1 - from.d;
         switch (from.illum) {
@@ -102,7 +103,7 @@ private:
                 material_.specular = color_of(from.Ks);
                 set_specular_map(from.map_Ks);
                 material_.shininess = from.Ns;
-                if (from.map_Ns) set_roughness_and_metallic(from.map_Ns, {});  // green, which shininess reads, too
+                if (from.map_Ns) set_roughness_and_metallic(from.map_Ns, {});  // stored in green, as shininess expects
                 set_dissolve(from);
         }
     }
@@ -113,14 +114,14 @@ private:
         if (from.map_Ks) warn("has a map of Ks, which is modelled for highlights only");
     }
 
-    /// d: how much of the surface is there. With a colour for what passes it is a film.
+    /// Applies d, the coverage of the surface. With a transmission filter it becomes a coloured film.
     void set_dissolve(const MtlMaterial& from) {
         if (unit_range(from.Tf) != Color{1, 1, 1}) return set_film(1 - from.d, from);
         material_.opacity = from.d;
         set_opacity_map(from.map_d, TextureUse::opacity);
     }
 
-    /// Light goes through without being bent.
+    /// Makes a surface that transmits light without refraction.
     void set_film(float share, const MtlMaterial& from) {
         if (from.map_d) warn("has a map_d, which is not modelled for what lets light through coloured or as glass");
         if (!(share > 0)) return;
@@ -160,7 +161,7 @@ private:
         material_.vertex_opacity = colours_.are_transparent;
         material_.opacity = from.specular_glossiness ? from.specular_glossiness->alpha : from.alpha;
         set_opacity_map(from.colour_texture(), TextureUse::colour);
-        // A cutoff of 0 keeps everything.
+        // With a cutoff of 0 everything is opaque.
         if (from.alpha_mode == AlphaMode::mask && !(from.alpha_cutoff > 0)) {
             material_.opacity = 1;
             material_.opacity_texture = {};
@@ -178,10 +179,10 @@ private:
         if (!found.is_stand_in && says_something) material_.opacity_texture = found.reference;
     }
 
-    /// Shows its colour whatever light there is, as a screen does, for which a camera needs to know how bright white
-    /// is.
+    /// Makes the surface emit its colour independent of lighting, as a screen does; a camera needs the luminance of
+    /// white for this.
     void make_unlit(const std::string& why) {
-        constexpr float kWhite = 100;  // cd/m^2: a usual screen
+        constexpr float kWhite = 100;  // cd/m^2, typical of a screen
         material_.model = MaterialModel::phong;
         material_.emission = kWhite * material_.diffuse;
         material_.emission_texture = material_.diffuse_texture;
@@ -214,7 +215,7 @@ private:
                 "has a map of its thickness, which the surface itself says here: light goes as far as to its other "
                 "side");
         material_.is_thin = from.volume.thickness_factor > 0 ? 0 : 1;
-        // KHR_materials_volume: what is left of white light after attenuationDistance.
+        // KHR_materials_volume: attenuation_color is what is left of white light after attenuationDistance.
         const double distance_m = static_cast<double>(from.volume.attenuation_distance) * scale_;
         const auto absorption = [&](float left) {
             const double sigma = -std::log(std::max(static_cast<double>(left), 1e-10)) / distance_m;
@@ -235,7 +236,8 @@ private:
         material_.clearcoat_normal_scale = from.normal_scale;
     }
 
-    // Reflectances at normal incidence in place of an index: an index of 0 has that of 1, which `specular` weakens.
+    // Uses reflectances at normal incidence instead of an index of refraction: ior 0 stands for a reflectance of 1,
+    // which `specular` scales.
     void set_specular_glossiness(const GltfSpecularGlossiness& from) {
         material_.metallic = 0;
         material_.roughness = 1 - from.glossiness_factor;
@@ -254,10 +256,10 @@ private:
         if (!texture) return;
         const SceneTextures::Found found = textures_.find(texture, TextureUse::colour);
         material_.diffuse_texture = found.reference;
-        if (found.is_stand_in) material_.diffuse = {1, 1, 1};  // it has to be seen
+        if (found.is_stand_in) material_.diffuse = {1, 1, 1};  // so that the stand-in is visible
     }
 
-    /// One that cannot be had counts as white.
+    /// Sets a texture; one that cannot be read counts as white.
     void set_map(TextureReference Material::* member, const FileTexture& map, TextureUse use) {
         if (!map) return;
         const SceneTextures::Found found = textures_.find(map, use);
@@ -309,7 +311,7 @@ void make_materials(Scene& scene, const FileScene& file, double scale, SceneText
     scene.materials.assign(file.materials.size(), Material{});
     scene.material_names.assign(file.materials.size(), {});
     for (std::size_t i = 0; i < file.materials.size(); ++i) {
-        if (!is_used[i]) continue;  // its textures need not exist
+        if (!is_used[i]) continue;  // its textures may be missing
         const std::string& name = file.materials[i].name;
         scene.material_names[i] = printable(name);
         const std::string label =

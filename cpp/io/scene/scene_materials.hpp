@@ -5,8 +5,8 @@
 
 namespace realcam::io {
 
-/// Makes scene.materials of those of the file, number by number, with the textures that they need, and says what is not
-/// modelled. `scale`: metres for a unit of the file.
+/// Makes scene.materials from the materials of the file, with the same indices, and the textures that they need; warns
+/// of properties that are not modelled. `scale`: metres per unit of the file.
 void make_materials(Scene& scene, const FileScene& file, double scale, SceneTextures& textures);
 
 }  // namespace realcam::io

@@ -13,16 +13,16 @@ namespace {
 
 constexpr double cos_crease = 0.70710678118654752;
 
-// The work grows with the square of the faces at one vertex. The hub of so wide a fan is flat enough, and has no
-// normal.
+// The work grows with the square of the number of faces at a vertex. The hub of such a wide fan is nearly flat and gets
+// no normal.
 constexpr std::size_t most_faces = 512;
 
 double angle_between(Vec3d a, Vec3d b) {
     return std::atan2(length(cross(a, b)), dot(a, b));
 }
 
-/// Works position after position: what it knows of faces is what meets in one place, not a list of all of them, which
-/// for ten million would be the largest of all.
+/// Computes normals one position at a time: it stores only the faces at the current position, because data of all faces
+/// would need more memory than anything else in a scene of ten million.
 class Smoother {
 public:
     Smoother(Scene& scene, const Smoothing& smoothing, Checkpoint& checkpoint)
@@ -40,21 +40,21 @@ public:
     }
 
 private:
-    /// A corner of a triangle at the place at work.
+    /// Triangle corner at the current position.
     struct Corner {
         std::uint32_t* vertex;
         Vec3d face_normal;
         double angle;
         std::uint32_t group;
     };
-    /// A vertex made for the place at work.
+    /// Vertex made for the current position.
     struct Made {
         std::uint32_t source, vertex;
         Vec3f normal;
     };
 
-    /// Corners by their position: begin_[p] .. begin_[p + 1] of sorted_ are those at the position of vertex p, the
-    /// first of those that are equal. A corner's number is 3 times its triangle's, and 0 to 2.
+    /// Sorts corners by position: begin_[p] .. begin_[p + 1] of sorted_ are the corners at the position of vertex p,
+    /// the first of the equal ones. The index of a corner is 3 times that of its triangle, plus 0 to 2.
     void sort_corners() {
         if (scene_.triangles.size() > 0xffffffffu / 3) throw InputError("more than 1431655765 triangles");
         const std::vector<std::uint32_t> place = first_at_place();
@@ -62,7 +62,7 @@ private:
         for_each_corner([&](std::uint32_t, std::uint32_t vertex) { ++begin_[place[vertex] + 1]; });
         std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
         sorted_.resize(begin_.back());
-        // Filling moves each beginning to its end, which is the next one's beginning.
+        // Filling advances each beginning to its end, which is the beginning of the next.
         for_each_corner([&](std::uint32_t corner, std::uint32_t vertex) { sorted_[begin_[place[vertex]]++] = corner; });
         for (std::size_t p = begin_.size() - 1; p > 0; --p) begin_[p] = begin_[p - 1];
         begin_[0] = 0;
@@ -90,7 +90,7 @@ private:
         }
     }
 
-    /// The first normal of a vertex may become its own, unless a triangle that is not smooth has it too.
+    /// Finds vertices that triangles with flat shading use. Other vertices can take their first normal themselves.
     void find_vertices_to_keep() {
         is_taken_.assign(scene_.positions_m.size(), false);
         for (std::size_t t = 0; t < scene_.triangles.size(); ++t)
@@ -126,8 +126,7 @@ private:
         }
     }
 
-    /// Replaces a corner's vertex by one that has this normal.
-    /// Adds an element again, where a list has any.
+    /// Appends a copy of an element, unless the list is empty.
     template <class T>
     static void repeat(std::vector<T>& list, std::uint32_t source) {
         if (list.empty()) return;

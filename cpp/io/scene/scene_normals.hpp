@@ -9,19 +9,19 @@ namespace realcam::io {
 
 inline constexpr std::uint32_t kFlat = 0, kSmoothByAngle = 0xffffffffu;
 
-/// Which triangles are smooth together.
+/// Assigns triangles to smoothing groups.
 struct Smoothing {
-    /// One for each triangle: kFlat, kSmoothByAngle, or the number of its smoothing group.
+    /// One per triangle: kFlat, kSmoothByAngle, or its smoothing group.
     std::vector<std::uint32_t> groups;
-    /// The number of each vertex's place. Faces of one group meet at a place if they name the same vertex in the file.
-    /// Where this is empty, they meet where positions are equal.
+    /// Index of each vertex's position in the file. Faces of a group are smooth across vertices with the same index. If
+    /// this is empty, across vertices with equal positions.
     std::vector<std::uint32_t> places;
 };
 
-/// Gives triangles that are not flat normals: at a corner the mean of the faces that meet there, weighted by their
-/// angle there (Thuermer and Wuethrich 1998). Of a group these are all of the same group; by angle, those that lie
-/// within 45 degrees of the triangle's own plane, so that sharper edges, such as a cube's, stay edges. Vertices are
-/// added where a position needs several normals. None of the triangles may be degenerate.
+/// Computes normals for triangles that are not flat: at a corner, the mean of the faces that meet there, weighted by
+/// their angle there (Thuermer and Wuethrich 1998). In a smoothing group these are the faces of the group; by angle,
+/// those within 45 degrees of the triangle's plane, so that sharper edges, such as a cube's, stay edges. Vertices are
+/// added if a position needs several normals. The triangles must not be degenerate.
 void smooth_normals(Scene& scene, const Smoothing& smoothing, Checkpoint& checkpoint);
 
 }  // namespace realcam::io

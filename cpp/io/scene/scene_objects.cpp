@@ -54,8 +54,8 @@ std::size_t SceneObjects::triangle_count(const Meshes& meshes) const {
 
 LeftOut SceneObjects::left_out(std::uint32_t node, const Affine<double>& transform) const {
     if (names_.contains(file_.nodes[node].name) || moves(node)) return LeftOut::all;
-    // What is scaled to nothing, as animations hide nodes, has no triangles in static geometry, and no place as an
-    // object.
+    // A node scaled to zero, by which animations hide nodes, yields no triangles in the static geometry, and no valid
+    // transform for an instance.
     const bool is_shared =
         file_.nodes[node].mesh_count > 0 && shared_.contains(meshes_of(node)) && transform_error(transform).empty();
     return is_shared ? LeftOut::meshes : LeftOut::nothing;
@@ -105,7 +105,7 @@ void SceneObjects::add_scene(const std::shared_ptr<Scene>& scene, std::uint32_t 
 }
 
 Affine<double> SceneObjects::transform_at(std::uint32_t node, double time) {
-    // A chain of moving nodes costs its length for each key of each of them.
+    // Limit on matrix products: a chain of moving nodes costs its length for each key of each node.
     constexpr double kMost = 3e8;
     Affine<double> map;
     for (std::uint32_t i = node; i != kNoParent; i = file_.nodes[i].parent) {
@@ -139,7 +139,7 @@ Placement SceneObjects::placement(std::uint32_t node, const Affine<double>& tran
         keys.times_s.push_back(time);
         keys.transforms.push_back(transform_at(node, time));
     }
-    // Where a key scales it to nothing it stands as at time 0, or is left out.
+    // If a key scales the node to zero, it is static at its transform at time 0, or left out.
     if (!motion_error(keys).empty()) return transform_at(node, 0);
     return sampled_motion(times, [&](double time) { return transform_at(node, time); });
 }
@@ -155,7 +155,7 @@ std::shared_ptr<Scene> SceneObjects::read_object(std::uint32_t node, const Affin
     else if (scene->points.empty() && names_.contains(file_.nodes[node].name))
         throw SceneFileError(file_.path + ": node " + in_quotes(file_.nodes[node].name) +
                              " holds neither triangles nor a light");
-    // A sun has no place: it lights all, from where it does now.
+    // A directional light has no position: it lights the whole scene, in its current direction.
     Scene in_place;
     read_lights(in_place, {file_, scale_, node, end, transform, checkpoint_}, leaves_out);
     static_geometry.suns.insert(static_geometry.suns.end(), in_place.suns.begin(), in_place.suns.end());
@@ -165,7 +165,7 @@ std::shared_ptr<Scene> SceneObjects::read_object(std::uint32_t node, const Affin
 
 std::shared_ptr<Scene> SceneObjects::read_meshes(std::uint32_t node) const {
     auto scene = std::make_shared<Scene>();
-    // Without what is below the node, which stands for itself.
+    // Without the nodes below, which are handled on their own.
     read_geometry(*scene, {file_, scale_, node, node + 1, Affine<double>(), checkpoint_}, kLeavesOutNothing);
     return scene;
 }
@@ -182,7 +182,7 @@ std::vector<Instance> SceneObjects::finish(const Scene& materials) {
     return instances;
 }
 
-/// Removes the textures whose set of texture coordinates the vertices of the scene lack.
+/// Removes the textures whose set of texture coordinates the scene's vertices lack.
 void forget_textures(Material& material, const Scene& scene) {
     for (const auto member : kMaterialTextures) {
         TextureReference& texture = material.*member;

@@ -9,8 +9,8 @@
 
 namespace realcam::io {
 
-/// Nodes `first` to `end` - 1 of a file, where those without a parent among them stand as their own transforms say, or
-/// all as `transform`. The file and the checkpoint have to outlive it.
+/// Nodes `first` to `end` - 1 of a file. `transform`, if present, replaces the transforms of nodes whose parents are
+/// not among them. The file and the checkpoint have to outlive it.
 struct ScenePart {
     const FileScene& file;
     double scale;  ///< metres per unit of the file
@@ -19,11 +19,12 @@ struct ScenePart {
     Checkpoint& checkpoint;
 };
 
-/// What of a node is left to others: nothing, its meshes, or it and all below it.
+/// Part of a node that is left out: nothing, its meshes, or the node with all its descendants.
 enum class LeftOut { nothing, meshes, all };
 using LeavesOut = std::function<LeftOut(std::uint32_t node, const Affine<double>& transform)>;
 
-/// Calls `visit(node, transform)` for the nodes of a part, from the top; where it returns false, not for those below.
+/// Calls `visit(node, transform)` for the nodes of a part, from the top; if it returns false, the descendants are
+/// skipped.
 template <class Visit>
 void visit_nodes(const ScenePart& part, Visit&& visit) {
     std::vector<Affine<double>> transforms(part.end - part.first);

@@ -26,7 +26,7 @@ DecodedImage checker() {
     return {size, size, std::move(rgba)};
 }
 
-/// As warnings name it: one line, and not the megabyte that a file may give for a name.
+/// Returns a picture's name for warnings: in one line, and cut, because a file may have a name of a megabyte.
 std::string shown(const FilePicture& picture) {
     const std::string name = in_quotes(picture.name);
     return name.substr(1, name.size() - 2);
@@ -139,8 +139,8 @@ std::optional<TextureReference> SceneTextures::find_glossiness(const FileTexture
     return number ? std::optional(texture.reference(*number)) : std::nullopt;
 }
 
-/// A dozen pictures of 33 kB may each be decoded to a gigabyte. A render holds them once more, in its copy of the
-/// scene.
+/// Throws SceneFileError if the textures need too much memory: a picture of 33 kB may be decoded to a gigabyte. A
+/// render has another copy of them, in its copy of the scene.
 void SceneTextures::check_memory(std::size_t added) {
     constexpr std::size_t kAlwaysThere = std::size_t{1} << 24;
     bytes_ += added;

@@ -12,31 +12,31 @@
 
 namespace realcam::io {
 
-/// The pictures of a scene file, each decoded once.
+/// Textures of a scene file; each picture is decoded once.
 class SceneTextures {
 public:
-    /// `scene`: gets textures and warnings. All arguments have to outlive it.
+    /// `scene` receives textures and warnings. All arguments have to outlive the object.
     SceneTextures(Scene& scene, const FileScene& file, const ImageReader& read_image, Checkpoint& checkpoint);
 
     struct Found {
         TextureReference reference;
         bool is_stand_in;
     };
-    /// A picture of the file's as a texture in scene.textures, added if it is new. One that cannot be had becomes a
-    /// checker in magenta and black, with a warning. Throws SceneFileError where all together need more memory than is
-    /// free.
+    /// Returns a picture of the file as a texture in scene.textures, added on first use. A picture that cannot be read
+    /// becomes a checker in magenta and black, with a warning. Throws SceneFileError if all textures together need more
+    /// memory than is free.
     Found find(const FileTexture& texture, TextureUse use);
 
-    /// The same for textures that made_textures.hpp makes of pictures. A map of heights times `scale` becomes one of
-    /// normals. Maps of roughness and metallic become one, with the transform of the first that exists. A map of
-    /// glossiness times `factor` becomes one of roughness. Nothing where a picture cannot be read.
+    /// Return textures that made_textures.hpp computes from pictures. A height map times `scale` becomes a normal map.
+    /// Maps of roughness and metallic become one, with the transform of the first that exists. A map of glossiness
+    /// times `factor` becomes one of roughness. std::nullopt if a picture cannot be read.
     std::optional<TextureReference> find_heights(const FileTexture& texture, float scale);
     std::optional<TextureReference> find_roughness_and_metallic(const FileTexture& roughness,
                                                                 const FileTexture& metallic);
     std::optional<TextureReference> find_glossiness(const FileTexture& texture, float factor);
 
 private:
-    /// What was made of which pictures (-1: none), by which number, and whether they go on beyond their edges.
+    /// Kind of a computed texture. Its key: the pictures (-1 if absent), the factor, and whether they repeat.
     enum class Made { normals, roughness_and_metallic, roughness };
     using MadeKey = std::tuple<Made, std::int32_t, std::int32_t, float, bool>;
     template <class Make>
@@ -45,7 +45,7 @@ private:
 
     std::optional<DecodedImage> decode(std::int32_t picture);
     struct Added {
-        std::int32_t texture;  // in scene_.textures
+        std::int32_t texture;  // index in scene_.textures
         bool is_stand_in;
     };
     Added add(std::int32_t picture, TextureUse use);
@@ -58,7 +58,7 @@ private:
     Checkpoint& checkpoint_;
     std::map<std::pair<std::int32_t, TextureUse>, Added> added_;
     std::map<MadeKey, std::optional<std::int32_t>> made_;
-    std::size_t bytes_ = 0, checked_bytes_ = 0;  // of scene_.textures
+    std::size_t bytes_ = 0, checked_bytes_ = 0;  // size of scene_.textures
 };
 
 }  // namespace realcam::io

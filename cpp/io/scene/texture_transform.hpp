@@ -11,25 +11,26 @@ namespace realcam::io {
 class TextureTransform {
 public:
     TextureTransform() = default;
-    /// As glTF's KHR_texture_transform has them, with v downwards: scaled first, then turned, then moved.
+    /// Transform of glTF's KHR_texture_transform, with v downwards: scale, then rotation, then offset.
     TextureTransform(double scale_u, double scale_v, double rotation, double offset_u, double offset_v) {
         const double c = std::cos(rotation), s = std::sin(rotation);
         from_u_ = {c * scale_u, -s * scale_u, 0};
         from_v_ = {s * scale_v, c * scale_v, 0};
         offset_ = {offset_u, offset_v, 0};
     }
-    /// As MTL's options -s and -o have them, with v upwards: (scale_u u + offset_u, scale_v v + offset_v).
+    /// Transform of MTL's options -s and -o, with v upwards: (scale_u u + offset_u, scale_v v + offset_v).
     static TextureTransform of_mtl(double scale_u, double scale_v, double offset_u, double offset_v) {
         return {scale_u, scale_v, 0, offset_u, 1 - scale_v - offset_v};
     }
 
-    /// v upwards; the extension itself has it downwards, and turns against the clock as seen on the picture.
+    /// Transforms coordinates with v upwards; the extension itself has v downwards, and rotates counter-clockwise as
+    /// seen on the picture.
     Vec2f operator()(float u, float v) const {
         const Vec3d out = double(u) * from_u_ + (1 - double(v)) * from_v_ + offset_;
         return {static_cast<float>(out.x), static_cast<float>(1 - out.y)};
     }
 
-    /// The same for a renderer, of that texture of the scene.
+    /// Returns the transform for the renderer, with the index of the texture in the scene.
     TextureReference of(std::int32_t texture) const {
         const auto f = [](double v) { return static_cast<float>(v); };
         return {texture,
@@ -37,7 +38,7 @@ public:
                 {f(-from_u_.y), f(from_v_.y), f(1 - from_v_.y - offset_.y)}};
     }
 
-    /// Whether a renderer's floats can hold it.
+    /// True if the renderer's floats can represent the transform.
     bool is_finite() const {
         const TextureReference r = of(0);
         for (const float v : {r.to_u.x, r.to_u.y, r.to_u.z, r.to_v.x, r.to_v.y, r.to_v.z})

@@ -6,12 +6,12 @@
 
 namespace realcam::io {
 
-/// Colours of vertices as OBJ and PLY have them become linear. Neither format says what its numbers are; all programs
-/// that write them mean sRGB codes, as fractions of the largest. Where one is above 1, all are codes up to 255. What is
-/// no number from 0 on becomes 0. Alpha is linear. Returns what was put up with, for a warning; empty: nothing.
+/// Converts vertex colours of OBJ and PLY files to linear. Neither format defines its numbers; all programs that write
+/// them use sRGB, as fractions of the largest value. If a number is above 1, all are values up to 255. Negative numbers
+/// and NaN become 0. Alpha is linear. Returns a warning for corrected numbers, or an empty string.
 std::string decode_vertex_colours(std::vector<VertexColor>& colours);
 
-/// Whether any alpha is below 1.
+/// True if any alpha is below 1.
 bool are_transparent(const std::vector<VertexColor>& colours);
 
 }  // namespace realcam::io

@@ -33,7 +33,7 @@ void keep(std::vector<T>& values, const std::vector<std::uint32_t>& kept) {
 
 std::uint64_t hash_of(Vec3d p) {
     std::uint64_t state = 0;
-    // + 0.0: equal numbers have to have equal bits, and -0 has not.
+    // + 0.0, because equal numbers must have equal bits, which 0 and -0 have not.
     for (const double value : {p.x, p.y, p.z}) state = mix(state, std::bit_cast<std::uint64_t>(value + 0.0));
     return mix(state, state >> 32);
 }

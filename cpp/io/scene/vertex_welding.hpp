@@ -9,8 +9,8 @@
 
 namespace realcam::io {
 
-/// For each of `count` items the number of the first item that equals it. An open-addressing table of indices: a
-/// map of keys would hold every vertex a second time.
+/// Returns, for each of `count` items, the index of the first item that equals it. Uses an open-addressing table of
+/// indices: a map of keys would store every vertex a second time.
 template <class Hash, class Equal>
 std::vector<std::uint32_t> first_equal(std::size_t count, Hash hash, Equal equal, Checkpoint& checkpoint) {
     constexpr std::uint32_t empty = 0xffffffffu;
@@ -28,8 +28,8 @@ std::vector<std::uint32_t> first_equal(std::size_t count, Hash hash, Equal equal
 
 std::uint64_t hash_of(Vec3d position);
 
-/// Makes one vertex of those that are equal in position, normal, texture coordinate and colour, and drops those that no
-/// triangle uses. Triangles keep their order, and vertices the order of their first appearance.
+/// Merges vertices that are equal in position, normal, texture coordinates and colour, and drops those that no triangle
+/// uses. Triangles keep their order, and vertices the order of their first appearance.
 void weld_vertices(Scene& scene, Checkpoint& checkpoint);
 
 }  // namespace realcam::io

@@ -1,5 +1,5 @@
 #pragma once
-// The files of sensors/ as they were when the library was built; the definition is generated.
+// Files of sensors/, compiled into the library; the definition is generated.
 
 #include <span>
 
@@ -7,7 +7,7 @@
 
 namespace realcam::io {
 
-/// Every bundled sensor, in the order of the file names.
+/// Returns the bundled sensors, in the order of the file names.
 std::span<const BundledFile> bundled_sensor_files();
 
 }  // namespace realcam::io

@@ -23,7 +23,7 @@ int whole(const TomlTable& table, const char* key, double value) {
     return static_cast<int>(value);
 }
 
-/// The rows of a table of numbers, each with as many columns as one of `widths`.
+/// Reads the rows of a table of numbers; the number of columns of each row must be one of `widths`.
 std::vector<std::vector<double>> read_rows(const TomlTable& table, const char* key, std::vector<std::size_t> widths,
                                            const std::string& wanted) {
     const toml::node* node = table.find(key);

@@ -8,15 +8,15 @@
 
 namespace realcam::io {
 
-/// Names of the bundled sensors, sorted.
+/// Returns the names of the bundled sensors, sorted.
 std::vector<std::string> sensor_names();
 
 /// Reads a sensor: a bundled one by name, or a .toml file by its path (anything with a '/' or a '.'). Throws
-/// InputError, naming file and line, and Cancelled where `keep_going` returns false.
+/// InputError, naming file and line, and Cancelled if `keep_going` returns false.
 Sensor read_sensor(const std::string& name_or_path, const KeepGoing& keep_going = {});
 
-/// Reads a sensor from the text of a sensor file (format 1, described in sensors/README.md). `file` is what messages
-/// call it.
+/// Reads a sensor from the text of a sensor file (format 1, described in sensors/README.md). `file`: its name in
+/// messages.
 Sensor parse_sensor(std::string_view text, const std::string& file, const KeepGoing& keep_going = {});
 
 }  // namespace realcam::io

@@ -8,17 +8,17 @@ namespace realcam::io {
 namespace {
 
 constexpr std::size_t kColumns = 80, kIndent = 2, kGap = 2;
-/// Of names of options. After longer ones the text begins in the next line.
+/// Greatest width of the column of option names. After longer names, the text begins on the next line.
 constexpr std::size_t kWidestName = 30;
 
-/// In columns: the bytes that continue a character of UTF-8 take none.
+/// Returns the width in columns, where continuation bytes of UTF-8 count 0.
 std::size_t width_of(std::string_view text) {
     return static_cast<std::size_t>(
         std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; }));
 }
 
-/// Appends words, and begins a line of its own, `indent` blanks farther, before one that would go over the edge.
-/// `column`: where the text begins.
+/// Appends words, and begins a line, indented by `indent` blanks, before a word that would exceed the width. `column`:
+/// start of the text.
 void append_wrapped(std::string& page, const std::string& text, std::size_t column, std::size_t indent) {
     std::istringstream words(text);
     bool begins_line = true;

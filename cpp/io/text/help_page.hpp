@@ -5,11 +5,11 @@
 
 namespace realcam::io {
 
-/// What --help tells of a command.
+/// Content of a command's --help.
 struct HelpPage {
     struct Section {
         std::string title;
-        std::vector<std::pair<std::string, std::string>> rows;  ///< an option or a command, and what it is for
+        std::vector<std::pair<std::string, std::string>> rows;  ///< an option or a command, and its description
     };
 
     std::string usage;  ///< "realcam lens info [OPTIONS] LENS"
@@ -18,7 +18,7 @@ struct HelpPage {
     std::vector<std::string> examples;  ///< command lines
 };
 
-/// The page in lines of at most 80 columns. Words that are longer have a line of their own.
+/// Formats the page in lines of at most 80 columns. Longer words have a line of their own.
 std::string text_of(const HelpPage& page);
 
 }  // namespace realcam::io

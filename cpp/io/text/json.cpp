@@ -120,12 +120,12 @@ private:
         return Json(std::move(elements));
     }
 
-    // After the opening quote.
+    // Parses a string after its opening quote.
     std::string parse_string() {
         std::string out;
         while (at_ < text_.size() && text_[at_] != '"') {
             if (text_[at_] != '\\') {
-                // Embedded buffers are strings of megabytes.
+                // In pieces: embedded buffers are strings of megabytes.
                 constexpr std::size_t kPiece = 1 << 20;
                 const std::size_t last = std::min(at_ + kPiece, text_.size());
                 std::size_t end = at_;

@@ -1,5 +1,5 @@
 #pragma once
-// As much JSON as files of scenes and lenses need: reading, and asking for what may be absent.
+// The subset of JSON that scene and lens files need: reading, and access to members that may be absent.
 
 #include <cstddef>
 #include <string>
@@ -12,7 +12,7 @@
 
 namespace realcam::io {
 
-/// Numbers that JSON has not, and Python writes all the same.
+/// Allowed numbers: Python also writes infinite numbers and NaN, which JSON does not have.
 enum class JsonNumbers { finite, with_infinity };
 
 class Json {
@@ -28,12 +28,13 @@ public:
     Json(Array value) : value_(std::move(value)) {}
     Json(Object value) : value_(std::move(value)) {}
 
-    /// Throws std::runtime_error, with line and column (in bytes), if the text is no JSON, is nested more than 200
-    /// deep, or holds more than eight million values (some 600 MB). Of members with one name the last counts.
-    /// `with_infinity` reads Infinity, -Infinity and NaN too.
+    /// Parses a text. Throws std::runtime_error, with line and column (in bytes), if the text is not valid JSON, is
+    /// nested more than 200 deep, or has more than eight million values (some 600 MB). Of members with the same name
+    /// the last one counts. `with_infinity` also reads Infinity, -Infinity and NaN.
     static Json parse(std::string_view text, Checkpoint& checkpoint, JsonNumbers numbers = JsonNumbers::finite);
 
-    /// The member or element, or null (a Json that is_null()) if there is none or this is something else.
+    /// Returns the member or element, or null (a Json that is_null()) if it does not exist or this is not an object or
+    /// array.
     const Json& operator[](std::string_view name) const;
     const Json& operator[](const char* name) const { return (*this)[std::string_view(name)]; }
     const Json& operator[](std::size_t index) const;
@@ -41,12 +42,12 @@ public:
     bool is_null() const { return std::holds_alternative<std::monostate>(value_); }
     bool is_number() const { return std::holds_alternative<double>(value_); }
     bool is_true() const { return std::holds_alternative<bool>(value_) && std::get<bool>(value_); }
-    /// Elements of an array; 0 for anything else.
+    /// Returns the number of elements of an array; 0 for anything else.
     std::size_t size() const;
     double number(double otherwise) const;
-    /// A whole number from 0 to 2^53, as glTF counts and numbers things.
+    /// Returns a whole number from 0 to 2^53, which glTF uses for counts and indices; else `otherwise`.
     std::size_t index(std::size_t otherwise) const;
-    /// Empty for anything but a string.
+    /// Returns the text of a string; empty for anything else.
     const std::string& text() const;
 
 private:

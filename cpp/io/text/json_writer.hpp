@@ -12,9 +12,9 @@ public:
     JsonWriter& end();
     JsonWriter& key(const std::string& name);
     JsonWriter& text(const std::string& value);
-    /// null where the number is infinite or NaN: JSON has neither.
+    /// Writes a number, or null if it is infinite or NaN, which JSON does not have.
     JsonWriter& number(double value);
-    /// Infinity, as Python writes and reads it, where the number is infinite.
+    /// Writes a number; infinite ones as Infinity, as Python writes and reads them.
     JsonWriter& number_or_infinity(double value);
     JsonWriter& truth(bool value);
     JsonWriter& null();

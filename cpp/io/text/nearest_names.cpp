@@ -12,7 +12,7 @@ char lower(char c) {
     return static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
 }
 
-/// Levenshtein distance without regard to case.
+/// Returns the Levenshtein distance, ignoring case.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
     std::vector<std::size_t> row(b.size() + 1);
     std::iota(row.begin(), row.end(), std::size_t{0});
@@ -35,8 +35,8 @@ bool contains(std::string_view text, std::string_view part) {
 }  // namespace
 
 std::string did_you_mean(std::string_view name, const std::vector<std::string>& candidates) {
-    // Nobody misspells a word of a page, and no list of ten thousand is searched for what was meant: the work grows
-    // with the product of the lengths.
+    // Limits, because the work grows with the product of the lengths: longer names are not misspellings, and
+    // suggestions from longer lists are not useful.
     constexpr std::size_t kLongestName = 64, kMostCandidates = 10000;
     if (name.size() > kLongestName || candidates.size() > kMostCandidates) return {};
     std::vector<std::pair<std::size_t, std::string_view>> near;
@@ -44,7 +44,7 @@ std::string did_you_mean(std::string_view name, const std::vector<std::string>& 
         if (candidate.size() > kLongestName) continue;
         const bool part = !name.empty() && (contains(candidate, name) || contains(name, candidate));
         const std::size_t distance = part ? 0 : edit_distance(name, candidate);
-        // "tesar" for "tessar-50mm": a short first word has to be nearer.
+        // Compares the first word as well ("tesar" for "tessar-50mm"), with a stricter limit because it is short.
         const std::string_view word = std::string_view(candidate).substr(0, candidate.find('-'));
         const std::size_t of_word = edit_distance(name, word);
         if (distance <= std::max<std::size_t>(2, candidate.size() / 3))

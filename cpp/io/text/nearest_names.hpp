@@ -5,8 +5,8 @@
 
 namespace realcam::io {
 
-/// " (did you mean \"a\" or \"b\"?)" with the candidates that are nearest to a misspelt name; empty where none is near,
-/// for names of more than 64 bytes, and where there are more than 10,000 candidates.
+/// Returns " (did you mean \"a\" or \"b\"?)" with the candidates closest to a misspelt name; empty if none is close,
+/// for names of more than 64 bytes, and for more than 10,000 candidates.
 std::string did_you_mean(std::string_view name, const std::vector<std::string>& candidates);
 
 }  // namespace realcam::io

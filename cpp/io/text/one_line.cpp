@@ -3,7 +3,7 @@
 namespace realcam::io {
 namespace {
 
-/// Without its middle, if it is longer than that.
+/// Removes the middle of a text that is longer than `longest`, and keeps `kept` characters at each end.
 std::string shortened(const std::string& text, std::size_t longest, std::size_t kept) {
     if (text.size() <= longest) return text;
     return text.substr(0, kept) + "[... " + std::to_string(text.size() - 2 * kept) + " characters ...]" +

@@ -4,10 +4,10 @@
 
 namespace realcam::io {
 
-/// Any bytes as one line of valid UTF-8: control characters become blanks, and what is no UTF-8 the character U+FFFD.
+/// Returns any bytes as one line of valid UTF-8: control characters become blanks, and invalid bytes become U+FFFD.
 std::string printable(std::string_view bytes);
 
-/// The same between quotes, cut to some 60 bytes: what an error message repeats of its input.
+/// Returns the same in quotes, cut to about 60 bytes, to repeat input in error messages.
 std::string in_quotes(std::string_view bytes);
 
 }  // namespace realcam::io

@@ -7,7 +7,7 @@ namespace realcam::io {
 namespace {
 
 constexpr std::size_t kPiece = 1 << 20;
-/// A polygon of tens of millions of corners, and not a file that has no lines.
+/// Allows a polygon of tens of millions of corners, but not a file without lines.
 constexpr std::size_t kLongestLine = std::size_t{1} << 28;
 constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
 
@@ -48,7 +48,7 @@ bool TextLines::next_physical(std::string_view& line) {
             after_return_ = false;
         }
         std::size_t at = begin_ + searched;
-        // All that ends a line, or that no text holds, is at most '\r'.
+        // The characters that end a line, and the null character, are at most '\r'.
         while (at < end_ && (static_cast<unsigned char>(buffer_[at]) > '\r' ||
                              (buffer_[at] != '\n' && buffer_[at] != '\r' && buffer_[at] != '\0')))
             ++at;

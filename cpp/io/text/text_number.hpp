@@ -7,8 +7,8 @@
 
 namespace realcam::io {
 
-/// Takes a number from the beginning of a text, also "nan" and "inf", a "+" and ".5"; nothing, and the text as it was,
-/// where there is none. One too large for a double is infinite, and one too small is 0.
+/// Takes a number from the beginning of a text, also "nan", "inf", ".5" and a "+". Returns std::nullopt, and leaves the
+/// text unchanged, if there is no number. Numbers too large for a double are infinite, and those too small are 0.
 inline std::optional<double> take_number(std::string_view& text) {
     std::string_view rest = text;
     if (rest.starts_with('+') && !rest.substr(1).starts_with('-')) rest.remove_prefix(1);
@@ -17,7 +17,7 @@ inline std::optional<double> take_number(std::string_view& text) {
     if (error == std::errc::invalid_argument) return std::nullopt;
     const auto length = static_cast<std::size_t>(end - rest.data());
     if (error == std::errc::result_out_of_range) {
-        // A long double reaches farther. Beyond that, the exponent's sign tells which end it is.
+        // A long double has a larger range. Beyond it, the sign of the exponent tells overflow from underflow.
         long double wide = 0;
         const bool known = std::from_chars(rest.data(), rest.data() + rest.size(), wide).ec == std::errc();
         const std::string_view token = rest.substr(0, length);
@@ -32,7 +32,7 @@ inline std::optional<double> take_number(std::string_view& text) {
     return value;
 }
 
-/// The same for a whole number, which ends where its digits do. Those beyond 64 bits become the largest or the least.
+/// Takes a whole number, which ends after its digits. Numbers beyond 64 bits become the largest or the least.
 inline std::optional<std::int64_t> take_integer(std::string_view& text) {
     std::string_view rest = text;
     if (rest.starts_with('+') && !rest.substr(1).starts_with('-')) rest.remove_prefix(1);

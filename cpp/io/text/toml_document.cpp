@@ -13,17 +13,17 @@
 namespace realcam::io {
 namespace {
 
-/// Levels of tables and arrays. toml++ reads, copies and frees each level inside the one around it, so that the stack
-/// limits them; it counts brackets itself, but not the parts of a key ("a.b.c" is three tables).
+/// Greatest number of nested tables and arrays. toml++ parses, copies and frees levels recursively, so that the stack
+/// limits them; it limits brackets itself, but not the parts of a key ("a.b.c" is three tables).
 constexpr std::size_t kMostLevels = 100;
 
-/// Follows the brackets and the parts of keys in a text. What is no TOML is left to the parser: it stops at the first
-/// mistake, up to which this counts right.
+/// Counts the nesting of brackets and key parts in a text. Invalid TOML is left to the parser: it stops at the first
+/// error, up to which this count is right.
 class Nesting {
 public:
     explicit Nesting(std::string_view text) : text_(text) {}
 
-    /// The line with too many levels; 0 where there is none.
+    /// Returns the line with too many levels, or 0.
     int too_deep() {
         while (at_ < text_.size()) {
             const char c = text_[at_];
@@ -63,21 +63,21 @@ private:
         key_ = parts_ = 0;
     }
 
-    /// Escapes are those of a basic string, in double quotes.
+    /// Skips a string. Only basic strings, in double quotes, have escapes.
     void skip_string(char quote) {
         const std::string_view triple = quote == '"' ? "\"\"\"" : "'''";
         const bool is_long = text_.substr(at_).starts_with(triple);
         at_ += is_long ? 3 : 1;
         for (; at_ < text_.size(); ++at_) {
             if (text_[at_] == '\n') {
-                if (!is_long) return;  // not ended: no TOML
+                if (!is_long) return;  // unterminated: invalid TOML
                 ++line_;
             } else if (text_[at_] == '\\' && quote == '"') {
                 if (at_ + 1 < text_.size() && text_[at_ + 1] == '\n') ++line_;
                 ++at_;
             } else if (is_long ? text_.substr(at_).starts_with(triple) : text_[at_] == quote) {
                 at_ += is_long ? 3 : 1;
-                // Two more quotes may stand at the end of a long string.
+                // A long string may have two more quotes at its end.
                 while (is_long && at_ < text_.size() && text_[at_] == quote) ++at_;
                 return;
             }
@@ -90,7 +90,7 @@ private:
     int line_ = 1;
 };
 
-/// Hands a text out piece by piece, and asks in between whether to go on.
+/// Stream buffer that provides a text in pieces, and asks in between whether to go on.
 class Pieces : public std::streambuf {
 public:
     Pieces(std::string_view text, const KeepGoing& keep_going) : text_(text), checkpoint_(keep_going) {}
@@ -105,7 +105,7 @@ private:
         return traits_type::to_int_type(piece_.front());
     }
 
-    // toml++ goes back to where it began, behind a byte-order mark that is none.
+    // toml++ seeks back to the beginning if there is no byte-order mark.
     pos_type seekoff(off_type offset, std::ios::seekdir from, std::ios::openmode which) override {
         const auto here = static_cast<off_type>(next_) - (egptr() - gptr());
         const off_type base = from == std::ios::beg   ? 0
@@ -138,7 +138,7 @@ toml::table parse_toml(std::string_view text, const std::string& file, RaiseFile
               file, line, 0);
     Pieces pieces(text, keep_going);
     std::istream stream(&pieces);
-    stream.exceptions(std::ios::badbit);  // so that what keep_going throws comes through
+    stream.exceptions(std::ios::badbit);  // passes on exceptions from keep_going
     try {
         return toml::parse(stream, file);
     } catch (const toml::parse_error& error) {

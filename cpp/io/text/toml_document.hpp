@@ -7,8 +7,8 @@
 
 namespace realcam::io {
 
-/// The table that a TOML text is. What is no TOML, and what is nested so deeply that reading it would exhaust the
-/// stack, is an error of `raise` with the line. Throws Cancelled where `keep_going` returns false.
+/// Parses a TOML text. Invalid TOML, or nesting that would exhaust the stack, is reported by `raise` with the line.
+/// Throws Cancelled if `keep_going` returns false.
 toml::table parse_toml(std::string_view text, const std::string& file, RaiseFileError raise,
                        const KeepGoing& keep_going = {});
 

@@ -17,7 +17,7 @@
 
 namespace realcam::io {
 
-/// Throws the error of a kind of file. `line` and `surface` are 1-based; 0 where they do not apply.
+/// Throws the error of a kind of file. `line` and `surface` are 1-based; 0 if they do not apply.
 using RaiseFileError = void (*)(const std::string& message, const std::string& file, int line, int surface);
 
 [[noreturn]] inline void raise_lens_file_error(const std::string& message, const std::string& file, int line,
@@ -25,8 +25,7 @@ using RaiseFileError = void (*)(const std::string& message, const std::string& f
     throw LensFileError(message, file, line, surface);
 }
 
-/// A table of a TOML file that knows where it stands, so that every complaint names file, line and, in a lens file,
-/// surface.
+/// Table of a TOML file that knows its position, so that every error names file, line and, in a lens file, surface.
 class TomlTable {
 public:
     TomlTable(const toml::table& table, std::string file, int surface = 0, RaiseFileError raise = raise_lens_file_error)
@@ -38,7 +37,7 @@ public:
         std::abort();  // raise_ has thrown
     }
 
-    /// Refuses keys that the format does not know: a misspelt one must not be ignored in silence.
+    /// Rejects keys that the format does not define: a misspelt one must not be ignored silently.
     void allow(const std::vector<std::string_view>& keys) const {
         for (const auto& [key, node] : table_) {
             bool known = false;
@@ -59,7 +58,7 @@ public:
     }
 
     double as_number(const toml::node& node, const std::string& what) const {
-        // value_or gives nothing for a whole number that no double holds exactly.
+        // value_or returns no value for an integer that no double represents exactly.
         const double value = node.is_integer()  ? static_cast<double>(node.as_integer()->get())
                              : node.is_number() ? node.value_or(0.0)
                                                 : std::nan("");
@@ -74,7 +73,7 @@ public:
         return *node->value<std::string>();
     }
 
-    /// A text that can stand in one line of a terminal, a drawing or a file: without control characters.
+    /// Returns a text for one line of a terminal, a drawing or a file; control characters are an error.
     std::string line(std::string_view key) const {
         std::string value = text(key);
         if (printable(value) != value)
@@ -82,13 +81,13 @@ public:
         return value;
     }
 
-    /// The same for the name of the table under a key of this one.
+    /// Checks the name of a table within this one in the same way.
     void check_name(std::string_view key, const toml::node& node) const {
         if (printable(key) != key)
             fail("the name " + in_quotes(key) + " must be one line of text, without control characters", &node);
     }
 
-    /// False where the key is absent.
+    /// Returns a truth value; false if the key is absent.
     bool flag(std::string_view key) const {
         const toml::node* node = find(key);
         if (!node) return false;
@@ -96,7 +95,7 @@ public:
         return *node->value<bool>();
     }
 
-    /// An array of exactly `count` numbers (any number of them where count is 0); empty where the key is absent.
+    /// Returns an array of exactly `count` numbers (any number of them if `count` is 0); empty if the key is absent.
     std::vector<double> numbers(std::string_view key, std::size_t count) const {
         const toml::node* node = find(key);
         if (!node) return {};
@@ -109,7 +108,7 @@ public:
         return values;
     }
 
-    /// An array of texts; empty where the key is absent.
+    /// Returns an array of texts; empty if the key is absent.
     std::vector<std::string> texts(std::string_view key) const {
         const toml::node* node = find(key);
         if (!node) return {};
@@ -131,17 +130,17 @@ public:
         return TomlTable(*node->as_table(), file_, surface_, raise_);
     }
 
-    /// A table within this one.
+    /// Wraps a table within this one.
     TomlTable within(const toml::table& inner) const { return TomlTable(inner, file_, surface_, raise_); }
 
     const toml::table& raw() const { return table_; }
     const std::string& file() const { return file_; }
 
-    /// A key as messages name it.
+    /// Returns a key's name for messages.
     std::string shown(std::string_view key) const { return name_ ? name_(key) : '"' + std::string(key) + '"'; }
 
 protected:
-    std::function<std::string(std::string_view)> name_;  ///< of a key in messages, if it is not the key in quotes
+    std::function<std::string(std::string_view)> name_;  ///< name of a key in messages, if it is not the key in quotes
 
 private:
     const toml::table& table_;

@@ -16,7 +16,7 @@ std::size_t utf8_size(std::string_view text) {
     if (first < 0xc2 || first > 0xf4) return 0;
     const std::size_t size = first < 0xe0 ? 2 : first < 0xf0 ? 3 : 4;
     if (text.size() < size) return 0;
-    // Overlong forms, surrogates and what lies beyond U+10FFFF show in the second byte.
+    // The second byte reveals overlong forms, surrogates and code points beyond U+10FFFF.
     const unsigned low = first == 0xe0 ? 0xa0 : first == 0xf0 ? 0x90 : 0x80;
     const unsigned high = first == 0xed ? 0x9f : first == 0xf4 ? 0x8f : 0xbf;
     if (!is_between(text[1], low, high)) return 0;

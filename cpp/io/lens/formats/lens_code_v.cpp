@@ -1,5 +1,6 @@
-// CODE V's .seq: commands of a word and its values, several on a line where ';' separates them; '!' begins a remark and
-// '&' at a line's end goes on in the next. S adds a surface; what follows is about it, or about the one named (S3).
+// Reads CODE V's .seq: commands of a word and its values, separated by ';' within a line; '!' begins a remark, and '&'
+// at the end of a line continues it. S adds a surface; later commands apply to it, or to the surface that they name
+// (S3).
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +12,7 @@
 namespace realcam::io {
 namespace {
 
-/// Commands that say nothing about where light goes: names, solves and their control codes, weights, display.
+/// True for commands that do not affect the path of light: names, solves and their control codes, weights, display.
 bool is_harmless(const std::string& word) {
     static const std::set<std::string> words{
         "LEN", "INI", "WTW", "WTF", "TEM", "PRE", "CA",  "DER", "GO",  "SLB", "POL", "COM", "UID", "CCY",
@@ -22,7 +23,7 @@ bool is_harmless(const std::string& word) {
     return words.contains(word);
 }
 
-/// Lengths beyond the core's longest are CODE V's infinity.
+/// Lengths beyond kLongest are infinite in CODE V.
 double finite_or_infinite(double distance) {
     return distance >= kLongest ? kInfinity : distance;
 }
@@ -105,16 +106,16 @@ void CodeVReader::remark(const std::string& what) {
 }
 
 bool CodeVReader::changes_lens(const std::string& command, const Words& words) {
-    // The commands of CODE V that make another lens of the one so far. Each is refused by its name: without its effect,
-    // the file would be read as a wrong lens.
+    // Commands of CODE V that change the lens defined so far. Each is rejected by its name: without its effect, the
+    // file would be read as a wrong lens.
     static const std::set<std::string> changes{"DEL", "INS", "SCA", "FLY", "COP", "CPY", "MOV",
                                                "MER", "REP", "EXC", "SWA", "INV", "FLI", "MIR",
                                                "AUT", "RES", "RUN", "SPL", "ADD", "DZO", "DEZ"};
     const std::string word = command.substr(0, 3);
-    // REV alone, or of one surface, is a decentre that is undone.
+    // REV without a range of surfaces is a decentre type; with a range it reverses surfaces.
     const bool reverses = word == "REV" && words.size() > 1 && words[1].text.find("..") != words[1].text.npos;
     const bool is_second_lens = word == "LEN" && !rows_.empty();
-    // SET VIG and SET APE compute figures from rays; SET THI and the like change the lens.
+    // SET VIG and SET APE compute values from rays; SET THI and others change the lens.
     const std::string second = words.size() > 1 ? upper_case(words[1].text.substr(0, 3)) : "";
     const bool sets = word == "SET" && second != "VIG" && second != "APE";
     if (!is_second_lens && !sets && !reverses && command != "IN" && !changes.contains(word)) return false;
@@ -151,7 +152,7 @@ void CodeVReader::read_command(Words words) {
     } else if (word == "PRV") {
         in_private_ = true;
     } else if (!read_specification(word, words) && !read_surface_command(word, words) && !is_harmless(word)) {
-        // What is about surfaces changes them.
+        // An unknown command that names surfaces changes them.
         if (names_surfaces(words))
             foreign("the command " + printable(command.substr(0, 20)) + ", which is not known");
         else if (unknown_.size() < kMostUnknown)

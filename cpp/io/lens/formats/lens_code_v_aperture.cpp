@@ -1,5 +1,5 @@
-// The apertures of a .seq file: CIR, REX and REY, ELX and ELY, with ADX, ADY and ARO for the one before. Labels (L'A')
-// tell those of one surface apart.
+// Apertures of a .seq file: CIR, REX and REY, ELX and ELY, with ADX, ADY and ARO for the preceding one. Labels (L'A')
+// distinguish the apertures of a surface.
 
 #include <algorithm>
 #include <cmath>
@@ -23,8 +23,8 @@ void CodeVReader::read_aperture(const std::string& word, Words& words) {
             lines_.fail(word + ": " + in_quotes(words[i].text) + ": CLR, EDG, OBS or HOL is wanted");
     }
     const double value = number(words, words.size() > 1 ? words.size() - 1 : 1, "the aperture");
-    if (kind == "EDG") return;  // where the glass ends, and not the light
-    // Light that meets the hole of a mirror is lost to it. Light that goes through another hole unbent has no model.
+    if (kind == "EDG") return;  // the edge of the glass does not limit the light
+    // The hole of a mirror blocks light. Any other hole, which passes light unrefracted, is not modelled.
     if (kind == "HOL" && !row.is_mirror) return foreign("a hole through which light passes unbent (" + word + " HOL)");
     const bool is_place = word[0] == 'A', blocks = kind == "OBS" || kind == "HOL";
     if (!is_place && !(value > 0)) lines_.fail("the size of the aperture must be positive");
@@ -59,7 +59,7 @@ void CodeVReader::finish_aperture(PrescriptionSurface& row) {
     const auto fail = [&](const char* what) { p_.foreign.push_back({what, row.line, row.number}); };
     bool has_outline = false;
     for (Aperture aperture : found->second) {
-        // Of the two sides one may be left open.
+        // One of the two half-widths may be absent.
         for (double* half : {&aperture.half.x, &aperture.half.y})
             if (*half == 0) *half = 10 * largest;
         const bool is_circle = aperture.shape == 'C', is_centred = aperture.offset == Vec2d{0, 0};
@@ -91,7 +91,7 @@ void CodeVReader::finish_aperture(PrescriptionSurface& row) {
         shape.half = aperture.half;
         if (!is_circle && aperture.angle_deg != 0) fail("an ellipse as an aperture that is turned (ARO)");
     }
-    // What several apertures leave open is what each of them leaves open.
+    // Several apertures pass only the light that each of them passes.
     if (const double reach = shape.reach(); reach > 0)
         row.clear_semi_diameter = row.clear_semi_diameter > 0 ? std::min(row.clear_semi_diameter, reach) : reach;
     row.is_open_outside = row.clear_semi_diameter == 0 && shape.is_plain();

@@ -1,4 +1,4 @@
-// Glasses in a .seq file: of a catalogue, fictitious ones, and the file's own.
+// Glasses of a .seq file: catalogue glasses, fictitious glasses, and the file's private glasses.
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@
 namespace realcam::io {
 namespace {
 
-/// nd and Vd of a fictitious glass: 517642, 517.642 and 517000.642000 are n_d = 1.517, V_d = 64.2.
+/// Returns n_d and V_d of a fictitious glass: 517642, 517.642 and 517000.642000 are n_d = 1.517, V_d = 64.2.
 std::optional<AbbePair> fictitious(const std::string& name) {
     const std::size_t point = name.find_first_of(".:");
     std::string index = name.substr(0, point), abbe = point == name.npos ? "" : name.substr(point + 1);

@@ -1,5 +1,5 @@
-// The surfaces of a .seq file that are no spheres, conics or aspheres: toroids and cylinders (YTO, XTO, CYL),
-// anamorphic aspheres (AAS) and special surfaces (SPS).
+// Surfaces of a .seq file other than spheres, conics and aspheres: toroids and cylinders (YTO, XTO, CYL), anamorphic
+// aspheres (AAS) and special surfaces (SPS).
 
 #include <cmath>
 
@@ -26,7 +26,7 @@ void CodeVReader::read_special_term(Words& words) {
     if (words.size() < 3) lines_.fail("SCO needs the coefficient's name and its value");
     const std::string name = upper_case(words[1].text.substr(0, 20));
     const double value = number(words, 2, "the coefficient");
-    if (found == specials_.end()) return;  // of a kind that is told
+    if (found == specials_.end()) return;  // of an unsupported kind, which is recorded
     Special& special = found->second;
     const bool is_odd = special.kind == "ODD";
     const auto rest = [&](std::size_t letters) { return std::string_view(name).substr(letters); };
@@ -37,7 +37,7 @@ void CodeVReader::read_special_term(Words& words) {
     } else if (is_odd && name.starts_with("AR") && is_digits(rest(2))) {
         special.terms[lines_.whole_number_of(rest(2), "the power of r", 1, 30)] = value;
     } else if (name.starts_with('C') && is_digits(rest(1))) {
-        // C2 is the first: that of r, or of x.
+        // C2 is the first term: that of r, or of x.
         const int last = is_odd ? 31 : (kMaxXyDegree + 1) * (kMaxXyDegree + 2) / 2;
         special.terms[lines_.whole_number_of(rest(1), "the number of the coefficient", 2, last) - 1] = value;
     } else {
@@ -61,7 +61,7 @@ void CodeVReader::finish_special(PrescriptionSurface& row) {
             row.aspheric[number] += unit_ * value / std::pow(radius, number);
             continue;
         }
-        // x, y, x^2, x y, y^2, x^3, ...: by degree, and of a degree by the power of y.
+        // The terms are ordered x, y, x^2, x y, y^2, x^3, ...: by degree, and within a degree by the power of y.
         int left = number, degree = 0;
         while (left > degree) left -= ++degree;
         row.form.xy.push_back({degree - left, left, unit_ * value / std::pow(radius, degree)});
@@ -93,7 +93,7 @@ void CodeVReader::finish_shape(PrescriptionSurface& row) {
     const auto found = toroids_.find(row.number);
     SurfaceForm& form = row.form;
     if (found == toroids_.end()) {
-        form.curvature_x = form.conic_x = 0;  // of surfaces of revolution, CUX says nothing
+        form.curvature_x = form.conic_x = 0;  // CUX has no effect on surfaces of revolution
         return;
     }
     const std::string& kind = found->second;

@@ -6,16 +6,16 @@
 
 namespace realcam::io {
 
-/// What a .seq file says of a surface beside its curvature and thickness.
+/// Shape of a surface in a .seq file, apart from curvature and thickness.
 struct CodeVShape {
-    std::string commands;  ///< a line for each
-    double constant = 0;  ///< term of the sag, by which the surface has to be moved along its axis
-    std::vector<std::string> left_out;  ///< what it has no words for: "has a polygonal aperture, which ..."
+    std::string commands;  ///< one per line
+    double constant = 0;  ///< constant term of the sag, by which the surface is moved along its axis
+    std::vector<std::string> left_out;  ///< features that the format lacks: "has a polygonal aperture, which ..."
 };
 
 CodeVShape code_v_shape_of(const Surface& surface);
 
-/// XDE to CDE, and DAR where the placement returns. Empty: it is in place.
+/// Returns XDE to CDE, and DAR if the placement returns; empty if the surface is neither decentred nor tilted.
 std::string code_v_placement(const SurfacePlacement& placement);
 
 }  // namespace realcam::io

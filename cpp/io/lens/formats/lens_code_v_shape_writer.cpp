@@ -8,7 +8,7 @@ namespace realcam::io {
 
 namespace {
 
-constexpr int kXyDegree = 10;  // of SPS XYP
+constexpr int kXyDegree = 10;  // highest degree of SPS XYP
 constexpr std::size_t kAnamorphicTerms = 4;
 
 class ShapeWriter {
@@ -145,7 +145,7 @@ std::string code_v_placement(const SurfacePlacement& placement) {
     add("XDE", placement.decentre.x);
     add("YDE", placement.decentre.y);
     add("ZDE", placement.decentre.z);
-    // Alpha and beta count clockwise.
+    // Alpha and beta are positive clockwise.
     add("ADE", -placement.tilt_deg.x);
     add("BDE", -placement.tilt_deg.y);
     add("CDE", placement.tilt_deg.z);

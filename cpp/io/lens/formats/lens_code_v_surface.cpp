@@ -1,4 +1,4 @@
-// The commands of a .seq file that are about one surface.
+// Commands of a .seq file for one surface.
 
 #include "lens_code_v_reader.hpp"
 
@@ -51,7 +51,7 @@ void CodeVReader::read_row(const Words& words) {
 void CodeVReader::set_curvature(PrescriptionSurface& row, const Words& words, bool is_radius) const {
     const double value = is_radius ? number_or_infinity(words, 1, "the radius") : number(words, 1, "the curvature");
     row.curvature = is_radius ? (value == 0 ? 0.0 : 1 / (unit_ * value)) : value / unit_;
-    // Radii of 1e18 are planes too.
+    // Radii from 1e17 on are planes.
     if (std::fabs(row.curvature) < 1e-17) row.curvature = 0;
 }
 
@@ -81,7 +81,7 @@ bool CodeVReader::read_surface_command(const std::string& word, Words words) {
 bool CodeVReader::read_profile(const std::string& word, Words& words) {
     if (word == "STO") {
         PrescriptionSurface& row = row_of(words);
-        for (PrescriptionSurface& other : rows_) other.is_stop = false;  // a lens has one, and this moves it
+        for (PrescriptionSurface& other : rows_) other.is_stop = false;  // a lens has one stop, which this moves
         row.is_stop = true;
     } else if (word == "ASP") {
         row_of(words);
@@ -139,7 +139,7 @@ bool CodeVReader::read_form_or_place(const std::string& word, Words& words) {
     } else if (place_number(word) >= 0) {
         PrescriptionSurface& row = row_of(words);
         const int place = place_number(word);
-        // Lengths first. The first two angles count clockwise.
+        // Lengths come first. The first two angles are positive clockwise.
         const double factor = place < 3 ? unit_ : place == 5 ? 1 : -1;
         places_[row.number][place] = factor * number(words, 1, "the decentre or tilt");
         set_place(row);

@@ -1,4 +1,4 @@
-// The commands of a .seq file that are about all of the lens: aperture, fields, wavelengths, units, zoom positions.
+// Commands of a .seq file for the whole lens: aperture, fields, wavelengths, units, zoom positions.
 
 #include "../../text/printable.hpp"
 #include "lens_code_v_reader.hpp"

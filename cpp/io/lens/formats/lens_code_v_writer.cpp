@@ -19,12 +19,12 @@ public:
     LensText write() {
         result_.warnings = left_out_of_foreign_files(lens_, "CODE V");
         for (std::size_t i = 0; i < lens_.surfaces.size(); ++i) write_surface(i);
-        // Of a lens that is not centred, the stop is found again as if it were.
+        // The reader sizes the stop as if the lens were centred; the pupil diameter is computed in the same way.
         const FirstOrder data = first_order(centred(lens_), lens_.wavelength_nm);
         if (!std::isfinite(data.entrance_pupil_diameter))
             throw InputError("lens \"" + lens_.name +
                              "\" has its entrance pupil at infinity, and no aperture that a .seq file states");
-        // Curvatures, as radii would be rounded.
+        // Curvatures, because radii would be rounded.
         std::string text = "RDM N;LEN\nTITLE '" + quoted(lens_.title.empty() ? lens_.name : lens_.title) + "'\nEPD " +
                            exact_number(data.entrance_pupil_diameter) + "\nDIM M\nWL " +
                            exact_number(lens_.wavelength_nm) + "\nREF 1\nWTW 1\n";
@@ -52,7 +52,7 @@ private:
         const CodeVShape shape = code_v_shape_of(s);
         SurfacePlacement place = s.placement;
         if (shape.constant != 0) {
-            // CODE V's polynomials have none: the surface alone is moved.
+            // CODE V's polynomials have no constant term: only this surface is moved.
             place = SurfacePlacement::of(place.frame() * along_axis(shape.constant));
             place.returns = s.placement.returns || s.placement.is_in_place();
         }
@@ -71,7 +71,7 @@ private:
     }
 
     std::string image() const {
-        // The film counts its height along the light, the file along the axis.
+        // The sag of the film is measured along the light, and that of the file along the axis.
         const double curvature = (lens_.film_distance < 0 ? -1 : 1) / lens_.film_radius_of_curvature;
         return "SI " + exact_number(curvature) + " 0.0\n" + code_v_placement(lens_.film_placement);
     }
@@ -86,7 +86,7 @@ private:
     }
     static std::string private_name(std::size_t i) { return "'GLASS" + std::to_string(i + 1) + '\''; }
 
-    /// Glasses of no catalogue, by their indices at lines of the spectrum, among them the lens's own wavelength.
+    /// Returns glasses that are in no catalogue, by their indices at spectral lines and at the lens's own wavelength.
     std::string private_glasses() const {
         if (private_.empty()) return {};
         std::string text = "PRV\n  PWL";

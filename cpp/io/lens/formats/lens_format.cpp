@@ -15,7 +15,7 @@ Prescription read(std::string_view text, const std::string& file, LensGlasses& g
     return reader(text, file, glasses);
 }
 
-// It has no names of glasses.
+// The format has no glass names.
 Prescription read_pbrt_lens(std::string_view text, const std::string& file, LensGlasses&,
                             const LensReadOptions& options) {
     return read_pbrt(text, file, options);
@@ -43,7 +43,7 @@ std::string lens_suffixes(bool written) {
     std::vector<std::string_view> suffixes{".toml"};
     for (const LensFormat& format : kFormats)
         if (!written || format.write) suffixes.push_back(format.suffix);
-    if (written) suffixes.push_back(".osl");  // by the Python package
+    if (written) suffixes.push_back(".osl");  // written by the Python package
     std::string text(suffixes.front());
     for (std::size_t i = 1; i < suffixes.size(); ++i)
         text.append(i + 1 < suffixes.size() ? ", " : " or ").append(suffixes[i]);

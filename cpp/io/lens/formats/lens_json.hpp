@@ -6,10 +6,10 @@
 
 namespace realcam::io {
 
-/// What the JSON readers of lenses share: parts that have to be there, and complaints that name file and surface.
+/// Base of the JSON readers of lenses: access to required members, and error messages with file and surface.
 class LensJson {
 public:
-    /// Throws LensFileError, with the line, for what is no JSON, and Cancelled.
+    /// Parses the text. Throws LensFileError, with the line, for invalid JSON, and Cancelled.
     LensJson(std::string_view text, std::string file, const KeepGoing& keep_going);
 
     const Json& root() const { return root_; }
@@ -18,9 +18,9 @@ public:
     [[noreturn]] void fail(const std::string& message) const;
     [[noreturn]] void fail(const InputError& cause) const;
 
-    /// A finite number, in millimetres or whatever. `what` begins the message.
+    /// Returns a finite number; otherwise fails with a message that begins with `what`.
     double number(const Json& value, const std::string& what) const;
-    /// The same; `otherwise` where it is absent or null.
+    /// Returns a finite number, or `otherwise` if it is absent or null.
     double number_or(const Json& value, const std::string& what, double otherwise) const;
 
 private:

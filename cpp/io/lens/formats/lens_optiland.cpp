@@ -1,5 +1,5 @@
-// Optiland's JSON (save_optiland_file): surface_group.surfaces, each with geometry, material behind it, thickness and
-// aperture; the first is the object, the last the image.
+// Reads Optiland's JSON (save_optiland_file): surface_group.surfaces, each with geometry, the material behind it,
+// thickness and aperture; the first is the object, the last the image.
 
 #include <algorithm>
 #include <cmath>
@@ -63,7 +63,8 @@ private:
         return value == 0 ? 0 : 1 / value;
     }
 
-    /// Its systems of coordinates count from one origin, and turn about fixed axes: about x first, then y, then z.
+    /// Returns the frame of a surface. Optiland's coordinate systems have a common origin, and rotate about fixed axes:
+    /// about x first, then y, then z.
     Affine<double> frame_of(const Json& surface) {
         const Json& cs = surface["geometry"]["cs"];
         if (!cs["reference_cs"].is_null()) foreign("a system of coordinates within another");
@@ -76,8 +77,8 @@ private:
     }
 
     void set_places() {
-        // Where all surfaces look along the z axis, each alone is moved from its place on it. Else the axis goes from
-        // each to the next.
+        // If all surfaces face along the z axis, each is decentred from its position on that axis. Otherwise the axis
+        // goes from each surface to the next.
         constexpr double kSteepest = 0.5;  // cosine of 60 degrees
         const bool is_straight = std::all_of(frames_.begin(), frames_.end(),
                                              [](const Affine<double>& frame) { return frame.z.z > kSteepest; });
@@ -103,7 +104,8 @@ private:
             p_.surfaces[i].thickness = side * std::sqrt(dot(way, way));
             here = frames_[i] * along_axis(p_.surfaces[i].thickness);
         }
-        // The film stands across the axis of a plane on the way to it that blocks nothing.
+        // An auxiliary plane before the film, which blocks nothing, directs the axis so that the film is perpendicular
+        // to it.
         PrescriptionSurface plane;
         plane.number = surface_;
         plane.blocks = true;
@@ -147,7 +149,7 @@ private:
         p_.surfaces.push_back(std::move(row));
     }
 
-    /// The difference of two places has lost digits of the thickness that the file says itself.
+    /// Prefers the thickness stated in the file, because the difference of two positions has lost digits.
     void read_thickness(const Json& thickness, PrescriptionSurface& row) const {
         if (!thickness.is_number()) return;
         const double stated = json_.number(thickness, "the thickness");
@@ -204,7 +206,7 @@ private:
         row.form.forbes = forbes;
     }
 
-    /// A table whose row is the power of x, and its column that of y.
+    /// Reads a table of coefficients: row i, column j is the term x^i y^j.
     void read_xy_terms(const Json& table, PrescriptionSurface& row) {
         for (std::size_t i = 0; i < table.size() && i < 100; ++i)
             for (std::size_t j = 0; j < table[i].size() && j < 100; ++j) {
@@ -227,7 +229,7 @@ private:
         if (!terms.coefficients.empty()) row.form.zernike = terms;
     }
 
-    /// Optiland looks a name up in all of its folders, and keeps the one where it found it.
+    /// Finds a glass. Optiland looks for a name in all of its folders, and stores the folder where it found it.
     Glass glass_named(const std::string& name, const std::string& maker) {
         if (maker.empty()) return glasses_.find(name, {});
         try {
@@ -248,7 +250,8 @@ private:
         return values;
     }
 
-    /// A glass by the data in the file: a table, or formula 2 or 5 of refractiveindex.info, Sellmeier's and Cauchy's.
+    /// Returns a glass from the data in the file: a table, or formula 2 (Sellmeier) or 5 (Cauchy) of
+    /// refractiveindex.info.
     Glass data_material(const Json& material) {
         const Json& dispersion = material["definition"]["dispersion"];
         const std::string formula = dispersion["formula"].text();
@@ -303,7 +306,7 @@ private:
             }
             if (type == "DataMaterial") return data_material(material);
             if (type == "Material") {
-                // The file of the glass lies in the folder of its maker, or of what is no glass.
+                // The glass's file is in the folder of its maker, or in that of another substance.
                 std::string maker = material["reference"].text();
                 const std::string& path = material["filename"].text();
                 const std::size_t slash = path.find_last_of("/\\");
@@ -336,7 +339,7 @@ private:
         row.is_open_outside = row.inner_semi_diameter > 0 && row.clear_semi_diameter == 0;
     }
 
-    /// A shape, what two shapes share, or the first without the second.
+    /// Reads an aperture: a shape, an intersection of two, or a difference of two.
     void read_outline(const Json& aperture, PrescriptionSurface& row, int depth) {
         const std::string type = aperture["type"].text();
         const auto value = [&](const char* key) { return json_.number(aperture[key], key); };
@@ -407,7 +410,7 @@ private:
         shape.obscurations.push_back(piece);
     }
 
-    /// False where the four corners are none of a rectangle.
+    /// Returns false if the corners are not those of a rectangle.
     static bool set_rectangle(const std::vector<Vec2d>& corners, Obscuration& piece) {
         if (corners.size() != 4) return false;
         const auto between = [&](std::size_t a, std::size_t b) {
@@ -436,7 +439,7 @@ private:
         if (found == kinds.end()) json_.fail("the aperture is of the type " + in_quotes(type) + ", which is not known");
         p_.aperture_kind = found->second;
         p_.aperture = json_.number(aperture["value"], "the value of the aperture");
-        if (found->second == ApertureKind::stop_size) p_.aperture *= 0.5;  // Optiland gives the diameter
+        if (found->second == ApertureKind::stop_size) p_.aperture *= 0.5;  // Optiland has the diameter
     }
 
     void read_fields(const Json& fields) {
@@ -475,7 +478,7 @@ private:
     LensJson json_;
     LensGlasses& glasses_;
     Prescription p_;
-    std::vector<Affine<double>> frames_;  ///< of the surfaces and of the image, in one frame
+    std::vector<Affine<double>> frames_;  ///< frames of the surfaces and of the image, in a common frame
     int surface_ = 0;
 };
 

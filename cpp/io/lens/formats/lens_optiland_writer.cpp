@@ -1,4 +1,4 @@
-// Optiland's JSON. Each surface has its place in one frame, the lens's, and its angles about that frame's axes.
+// Writes Optiland's JSON. Each surface has its position in the lens frame, and its angles about that frame's axes.
 
 #include <cmath>
 #include <optional>
@@ -96,7 +96,7 @@ private:
         json_.key("coating").null().key("bsdf").null().end().end();
     }
 
-    /// Its angles are those of turns about x, then y, then z, of axes that stay.
+    /// Optiland's angles are rotations about x, then y, then z, of fixed axes.
     void write_frame(const Affine<double>& frame) {
         json_.key("cs").begin_object();
         json_.key("x").number(frame.origin.x).key("y").number(frame.origin.y);
@@ -179,7 +179,7 @@ private:
         write_list("coefficients", terms);
     }
 
-    /// A row for each power of x, a column for each of y.
+    /// Writes a row for each power of x, with a column for each power of y.
     void write_table(const Surface& s) {
         const std::map<XyPower, double> terms = xy_terms_of(s);
         const int size = terms.empty() ? 1 : terms.rbegin()->first.first + 1;
@@ -207,13 +207,13 @@ private:
         json_.key("propagation_model").begin_object().key("class").text("HomogeneousPropagation").end().end();
     }
 
-    /// Its data: names are looked up among glasses that are called alike, and n_d and V_d by another formula.
+    /// Writes a glass as dispersion data: a name could match another glass, and n_d and V_d imply another formula.
     void write_dispersion(const Glass& glass) {
         const Glass::Parts parts = glass.parts();
         json_.key("type").text("DataMaterial").key("name").text(glass.label).key("bounds").text("clamp");
         json_.key("definition").begin_object().key("dispersion").begin_object();
         if (parts.formula == Glass::Formula::table) {
-            // Optiland's interpolation is linear: over 1 nm it is off by 1e-7 at most in the visible.
+            // Optiland interpolates linearly: with steps of 1 nm the error is at most 1e-7 in the visible.
             const auto [first, last] = glass.known_nm();
             std::set<double> wavelengths{kLineF_nm, kLineD_nm, kLineC_nm, lens_.wavelength_nm};
             for (const Glass::TablePoint& point : parts.points) wavelengths.insert(point.wavelength_nm);

@@ -1,6 +1,6 @@
-// OSLO's .len: commands of a word and its values, one on a line or several where ';' separates them. "LEN NEW" begins
-// the lens, NXT the next surface, END ends it; surface 0 is the object, the last one the image. What follows END is
-// about optimisation, analysis and further configurations.
+// Reads OSLO's .len: commands of a word and its values, one per line or separated by ';'. "LEN NEW" begins the lens,
+// NXT the next surface, END ends it; surface 0 is the object, the last one the image. Commands after END are about
+// optimisation, analysis and further configurations.
 
 #include <cmath>
 
@@ -11,10 +11,11 @@
 namespace realcam::io {
 namespace {
 
-/// Object distances of that many units or more are infinite to OSLO.
+/// Object distances from this number of units on are infinite in OSLO.
 constexpr double kFarAway = 1e8;
 
-/// Commands that say nothing about where light goes: names, notes, drawing, weights, and how OSLO computes.
+/// True for commands that do not affect the path of light: names, notes, drawing, weights, and settings of OSLO's
+/// computations.
 bool is_harmless(const std::string& word) {
     static const std::set<std::string> words{
         "DES",  "NOT", "WW",   "DRW",  "LDP",  "CBK",  "CALLBACK", "GPRT", "ELMDF1", "ELMDF2", "BDI",  "BDD",  "VX",
@@ -76,7 +77,7 @@ void OsloReader::read_command(std::string_view text) {
     const std::string word = upper_case(text.substr(0, std::min<std::size_t>(text.find_first_of(" \t,"), 20)));
     if (word.empty() || is_harmless(word)) return;
     if (has_ended_) {
-        // Some programs write the wavelengths here. What follows is about other things, and has words of its own.
+        // Some programs write the wavelengths here. Later commands are about other things, with their own keywords.
         if (word.starts_with("WV") && has_late_wavelengths_)
             read_wavelengths(word, lines_.words(text));
         else
@@ -89,7 +90,7 @@ void OsloReader::read_command(std::string_view text) {
     }
     const Words words = lines_.words(text);
     if (word == "LEN") return begin_lens(words);
-    if (rows_.empty()) return;  // what a file of another kind begins with
+    if (rows_.empty()) return;  // skips the beginning of files of another kind
     if (word == "NXT") return next_surface();
     if (word == "END") return end_lens(words);
     if (word == "GTO") {
@@ -180,7 +181,7 @@ bool OsloReader::read_wavelengths(const std::string& word, const Words& words) {
 }
 
 std::vector<double> OsloReader::wavelengths_um() const {
-    if (wavelengths_.empty()) return {0.58756, 0.48613, 0.65627};  // OSLO's
+    if (wavelengths_.empty()) return {0.58756, 0.48613, 0.65627};  // OSLO's defaults
     std::vector<double> list;
     for (const auto& [i, um] : wavelengths_) list.push_back(um);
     return list;
@@ -220,7 +221,7 @@ void OsloReader::finish() {
         }
         row.thickness = unit_ * s.thickness;
         row.is_mirror = s.is_mirror;
-        row.is_stop = has_stop ? s.is_stop : i == 1;  // OSLO's own choice
+        row.is_stop = has_stop ? s.is_stop : i == 1;  // OSLO's default
         if (!s.is_mirror) row.material = media_[i];
         row.clear_semi_diameter = unit_ * s.semi_diameter;
         row.blocks = s.is_checked;
@@ -246,7 +247,7 @@ void OsloReader::finish_aperture() {
     if (std::isinf(p_.object_distance)) {
         p_.aperture_kind = ApertureKind::entrance_pupil_diameter;
         p_.aperture = 2 * radius;
-    } else {  // the beam is so wide at the first surface, wherever the pupil is
+    } else {  // the beam has this radius at the first surface, wherever the pupil is
         p_.aperture_kind = ApertureKind::object_aperture;
         p_.aperture = std::sin(std::atan(radius / std::fabs(p_.object_distance)));
     }

@@ -1,4 +1,4 @@
-// What a .len file leaves to its pickups and solves: it does not always have the values that these came to.
+// Pickups and solves of a .len file, which does not always contain their results.
 
 #include <cmath>
 
@@ -9,7 +9,7 @@
 namespace realcam::io {
 
 void OsloReader::resolve_pickups() {
-    // Pickups refer to surfaces in front, whose own pickups are done by then.
+    // Pickups refer to surfaces in front, whose own pickups are resolved by then.
     for (OsloSurface& s : rows_)
         for (const OsloSurface::Pickup& pickup : s.pickups) pick_up(s, pickup);
 }
@@ -17,7 +17,7 @@ void OsloReader::resolve_pickups() {
 void OsloReader::pick_up(OsloSurface& s, const OsloSurface::Pickup& pickup) {
     const OsloSurface& from = rows_[static_cast<std::size_t>(pickup.from)];
     const double sign = pickup.what.ends_with('M') ? -1 : 1;
-    if (pickup.what.starts_with("CV")) {  // all of the shape
+    if (pickup.what.starts_with("CV")) {  // the complete shape
         s.curvature = sign * from.curvature + pickup.added;
         s.conic = from.conic;
         s.aspheric_step = from.aspheric_step;
@@ -48,7 +48,7 @@ void OsloReader::pick_up(OsloSurface& s, const OsloSurface::Pickup& pickup) {
 }
 
 Glass OsloReader::named_glass(const std::string& name) {
-    // OSLO's files name no maker; its own search begins with Schott's catalogue, whose plain names others share.
+    // OSLO's files name no maker; OSLO searches Schott's catalogue first, which shares plain names with other makers.
     const std::vector<std::string> first{"SCHOTT"};
     if (!glasses_.in_catalogue(name, first)) return glasses_.find(name, {});
     if (!glasses_.in_catalogue(name, {}) && shared_names_.insert(name).second)
@@ -82,15 +82,15 @@ void OsloReader::resolve_solves() {
     const auto fail = [&](const OsloSurface& s, const std::string& message) {
         throw LensFileError(message, p_.file, s.line, s.number);
     };
-    // In the file's unit, from the object's distance on. Only a beam radius says how large the ray's height is; a
-    // height of 0 is one at any size.
+    // In the file's unit, beginning at the object's distance. Only a beam radius determines the height of the ray; a
+    // solve for height 0 does not need it.
     const bool is_far = rows_.front().thickness >= 1e8;
     const double radius = beam_radius_.value_or(1);
     ParaxialRay ray{radius, is_far ? 0 : radius / rows_.front().thickness};
     double index = media_.front().index(p_.wavelength_nm), sign = 1;
     for (std::size_t i = 1; i + 1 < rows_.size(); ++i) {
         OsloSurface& s = rows_[i];
-        if (s.is_mirror) media_[i] = media_[i - 1];  // light goes back through what lies in front of it
+        if (s.is_mirror) media_[i] = media_[i - 1];  // light returns through the medium in front of it
         const double before = sign * index;
         if (s.is_mirror) sign = -sign;
         index = media_[i].index(p_.wavelength_nm);

@@ -1,4 +1,4 @@
-// The commands of a .len file that are about one surface.
+// Commands of a .len file for one surface.
 
 #include <cmath>
 
@@ -119,7 +119,7 @@ bool OsloReader::read_foreign(const std::string& word, const Words& words) {
         if (words.size() > 1 && upper_case(words[1].text) == "NSS") foreign("a non-sequential group (LMO NSS)");
         return true;
     }
-    // What a special aperture consists of is named with it.
+    // Parts of a special aperture, which is recorded by its own command.
     static const std::set<std::string> parts{"ATP", "AAC", "AGN", "AAN", "AX1", "AX2", "AY1", "AY2", "APK"};
     return parts.contains(word) || word.starts_with("AVX") || word.starts_with("AVY");
 }
@@ -140,7 +140,7 @@ void OsloReader::read_glass(const Words& words) {
     };
     const bool is_code = words.size() == 2 && glass_of_number(words[1].text);
     if (is_model) {
-        first = is_number(2) ? 2 : 3;  // a name may stand in between
+        first = is_number(2) ? 2 : 3;  // a name may come between
     } else if (!is_number(1) || is_code) {
         s.glass = std::string(words[1].text);
         return;
@@ -169,7 +169,7 @@ void OsloReader::read_aperture(const Words& words) {
     }
     const double radius = number(words, i, "the radius of the aperture");
     if (radius < 0) lines_.fail("the radius of the aperture must be positive");
-    // That of an object at infinity is as large as its distance.
+    // An object at infinity has a radius as large as its distance.
     s.semi_diameter = unit_ * radius > kLongest ? 0 : radius;
 }
 
@@ -179,7 +179,7 @@ void OsloReader::read_pickup(const Words& words) {
     static const std::set<std::string> known{"CV", "CVM", "TH", "THM", "GLA", "AP"};
     if (!known.contains(what)) return foreign("a pickup of " + printable(what) + " (PK)");
     const int stated = lines_.whole_number_of(words[2].text, "the surface that is picked up", -1000, 1000);
-    // A negative one counts back from here.
+    // A negative number is relative to this surface.
     const int from = stated < 0 ? surface().number + stated : stated;
     if (from < 0 || from >= surface().number)
         lines_.fail("PK " + what + " picks up from surface " + std::to_string(from) + "; one in front is wanted");

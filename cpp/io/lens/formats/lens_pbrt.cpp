@@ -1,9 +1,10 @@
-// pbrt's lens tables, .dat: a row is radius, thickness, index behind the surface, clear diameter; from the scene to the
-// film, in mm. A radius of 0 is the aperture stop, an index of 0 air.
+// Reads pbrt's lens tables, .dat: a row is radius, thickness, index behind the surface, clear diameter; from the scene
+// to the film, in mm. A radius of 0 is the aperture stop, an index of 0 is air.
 //
-// There are two conventions of the thickness. In pbrt it is the distance to the next surface, in other programs that
-// read such tables it is the distance from the one before. The first row tells them apart: nothing lies in front of it,
-// so that its thickness is 0 in the second convention, and in the first it is not, as an element has a thickness.
+// There are two conventions for the thickness. In pbrt it is the distance to the next surface, and in other programs
+// that read such tables the distance from the preceding one. The first row tells them apart: in the second convention
+// its thickness is 0, because nothing lies in front of it, and in the first convention it is not, because it is that of
+// an element.
 
 #include <cmath>
 
@@ -35,7 +36,7 @@ Prescription read_pbrt(std::string_view text, const std::string& file, const Len
         if (remark != line.npos && p.title.empty()) p.title = without_blanks(line.substr(remark + 1));
         const std::vector<LensWord> words = lines.words(line.substr(0, remark));
         if (words.empty()) continue;
-        if (words.size() == 1 && p.surfaces.empty()) {  // ISETCam's files begin with it
+        if (words.size() == 1 && p.surfaces.empty()) {  // ISETCam's files begin with such a line
             p.remarks.push_back("the focal length before the rows, " +
                                 number_label(lines.number_of(words[0].text, "the focal length")) +
                                 " mm, is left out: it follows from the surfaces");
@@ -73,7 +74,7 @@ Prescription read_pbrt(std::string_view text, const std::string& file, const Len
         for (std::size_t i = 0; i + 1 < p.surfaces.size(); ++i) p.surfaces[i].thickness = p.surfaces[i + 1].thickness;
     }
     p.surfaces.back().thickness = 0;
-    // The stop is a plane in the medium that is there.
+    // The stop is a plane in the surrounding medium.
     for (std::size_t i = 1; i < p.surfaces.size(); ++i)
         if (p.surfaces[i].is_stop) p.surfaces[i].material = p.surfaces[i - 1].material;
     p.remarks.push_back(

@@ -1,5 +1,6 @@
-// ray-optics' .roa, JSON: optical_model.seq_model holds interfaces and the gaps behind them, profile_dict the shapes,
-// optical_spec aperture, fields and wavelengths. Each object is {"__instance_type__": [module, class], "attributes"}.
+// Reads ray-optics' .roa, JSON: optical_model.seq_model holds interfaces and the gaps behind them, profile_dict the
+// shapes, optical_spec aperture, fields and wavelengths. Each object is {"__instance_type__": [module, class],
+// "attributes"}.
 
 #include <algorithm>
 #include <array>
@@ -106,7 +107,7 @@ private:
         return array["__ndarray__"].is_null() ? array : array["__ndarray__"];
     }
 
-    /// As CODE V's: its first two angles count clockwise.
+    /// Reads a decentre. As in CODE V, the first two angles are positive clockwise.
     void read_place(const Json& decentre, PrescriptionSurface& row) {
         if (decentre.is_null()) return;
         const Json& a = attributes(decentre);
@@ -114,7 +115,7 @@ private:
                                                                {"dec and return", DecentreKind::and_return},
                                                                {"bend", DecentreKind::bend},
                                                                {"reverse", DecentreKind::reverse}};
-        // Files of earlier versions number them.
+        // Files of earlier versions have numbers instead.
         static const std::array<DecentreKind, 4> numbered{DecentreKind::ordinary, DecentreKind::reverse,
                                                           DecentreKind::and_return, DecentreKind::bend};
         const Json& dtype = a["_dtype"].is_null() ? a["dtype"] : a["_dtype"];
@@ -188,7 +189,7 @@ private:
         return glass;
     }
 
-    /// Without apertures of its own a surface has the one that was last computed.
+    /// Reads apertures. A surface without any has the semi-diameter that ray-optics last computed.
     void read_rims(const Json& a, PrescriptionSurface& row) {
         const Json& list = a["clear_apertures"];
         for (std::size_t i = 0; i < list.size() && i < 100; ++i) {
@@ -236,7 +237,7 @@ private:
         read_fields(attributes(spec["field_of_view"]));
     }
 
-    /// ["aperture", "object", "epd"], or without the first word.
+    /// Returns the side and the kind of a key such as ["aperture", "object", "epd"], whose first word may be absent.
     static std::pair<std::string, std::string> key_of(const Json& a) {
         const Json& key = a["_key"].is_null() ? a["key"] : a["_key"];
         const std::size_t first = key.size() == 3 ? 1 : 0;

@@ -1,4 +1,4 @@
-// ray-optics' .roa: what its sequential model needs; the program makes the rest of it.
+// Writes ray-optics' .roa: the data of its sequential model; the program computes other data itself.
 
 #include <cmath>
 #include <map>
@@ -35,7 +35,7 @@ public:
         json_.key("0");
         write_sphere(0);
         json_.key(image_name());
-        // The film counts its height along the light, the file along the axis.
+        // The sag of the film is measured along the light, and that of the file along the axis.
         write_sphere((lens_.film_distance < 0 ? -1 : 1) / lens_.film_radius_of_curvature);
         json_.end();
         end();
@@ -126,7 +126,7 @@ private:
         begin("rayoptics.elem.surface", "DecenterData");
         json_.key("_dtype").text(place.returns ? "dec and return" : "decenter").key("dec");
         write_array({place.decentre.x, place.decentre.y, place.decentre.z});
-        // Its first two angles count clockwise.
+        // The first two angles are positive clockwise.
         json_.key("euler");
         write_array({-place.tilt_deg.x, -place.tilt_deg.y, place.tilt_deg.z});
         json_.key("rot_pt");

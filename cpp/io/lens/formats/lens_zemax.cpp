@@ -1,4 +1,5 @@
-// Zemax OpticStudio: from what a .zmx file says to a prescription. Surface 0 is the object, the last one the image.
+// Converts the content of a Zemax OpticStudio .zmx file to a prescription. Surface 0 is the object, the last one the
+// image.
 
 #include <algorithm>
 #include <cmath>
@@ -31,10 +32,11 @@ public:
     }
 
 private:
-    /// Exporters of bare lists give surface 0 the glass of the first element, and let the list end at its last face.
+    /// Adds object and image to lists of refracting faces alone: some exporters give surface 0 the glass of the first
+    /// element, and end the list at the last face.
     void complete_ends() {
         const bool begins_in_glass = !file_.surfaces.front().glass.empty() && !file_.surfaces.front().at_infinity;
-        const ZemaxSurface end = file_.surfaces.back();  // a copy: surfaces are inserted below
+        const ZemaxSurface end = file_.surfaces.back();  // a copy, because surfaces are inserted below
         const bool ends_in_glass = !file_.surfaces[file_.surfaces.size() - 2].glass.empty() && end.glass.empty();
         if (begins_in_glass && ends_in_glass) {
             ZemaxSurface object;
@@ -52,7 +54,7 @@ private:
             "lists faces alone: the object is taken to be distant, and the film to lie where its image is sharpest");
     }
 
-    /// The image is the last surface. One that has a glass or a thickness is the last of a file that ends too early.
+    /// Checks that the last surface is the image. If it has a glass or a thickness, the file is truncated.
     void check_image() const {
         const ZemaxSurface& image = file_.surfaces.back();
         if (!image.has_thickness || image.row.thickness != 0 || !image.glass.empty())
@@ -99,7 +101,7 @@ private:
         s.row.is_mirror = upper_case(s.glass) == "MIRROR" || (s.glass_kind == 1 && s.n_d == -1);
         if (s.row.is_mirror) return;
         if (s.glass.empty()) {
-            // A coordinate break is no surface: the medium goes on behind it.
+            // A coordinate break is not a surface: the medium continues behind it.
             if (s.type == "COORDBRK") s.row.material = medium_;
             medium_ = s.row.material;
             return;
@@ -120,7 +122,7 @@ private:
         medium_ = s.row.material;
     }
 
-    /// A solve of the glass: that of a surface in front. False where the name of the glass has to tell.
+    /// Resolves a pickup of the glass from a surface in front. Returns false if the glass is determined by its name.
     template <class Fail>
     bool pick_up_glass(ZemaxSurface& s, const Fail& fail) {
         const int from = s.pickup;
@@ -152,15 +154,15 @@ private:
         }
     }
 
-    /// The n_d and V_d in the line of a glass of a catalogue may be left of an earlier one. Where the file states those
-    /// of a glass that is known, they tell whether it states the others truly.
+    /// Tells whether n_d and V_d in the lines of catalogue glasses can be trusted: they may be left over from an
+    /// earlier glass. Compares those of known glasses in the file.
     bool find_out_whether_glasses_are_stated() const {
         for (const ZemaxSurface& s : file_.surfaces) {
             if (s.glass.empty() || s.glass_kind != 0 || upper_case(s.glass) == "MIRROR") continue;
             const std::optional<Glass> known = glasses_.in_catalogue(s.glass, file_.catalogues);
             if (!known) continue;
             const AbbePair pair = abbe_pair(*known);
-            // Makers' melts and editions differ by less.
+            // Melts and catalogue editions differ by less.
             if (std::fabs(pair.n_d - s.n_d) > 2e-3 || std::fabs(pair.v_d - s.v_d) > 1) return false;
         }
         return true;
@@ -179,8 +181,8 @@ private:
         if (!file_.coatings.empty()) p_.remarks.push_back("coatings are left out: " + short_list(file_.coatings));
     }
 
-    /// Light comes from air into the medium of the object by a plane that touches the first face, as behind the pane of
-    /// an aquarium: a plane has no power, so that focal length and f-number are those in the medium.
+    /// Adds a plane surface from air to the object's medium that touches the first face, like the pane of an aquarium:
+    /// a plane has no power, so that focal length and f-number are those in the medium.
     void add_window(const ZemaxSurface& object) {
         ZemaxSurface medium = object;
         const auto fail = [&](const std::string& message, int line = 0) {
@@ -209,7 +211,7 @@ private:
         if (file_.field_type > 3) p_.remarks.push_back("its fields are of a kind that is not known");
         const double scale = file_.field_type == 0 ? 1 : file_.unit;
         for (std::size_t i = 0; i < count && file_.field_type <= 3; ++i) {
-            // The pupil's edge moves to decentre + (1 - compression).
+            // The edge of the pupil moves to decentre + (1 - compression).
             const double shift = at(file_.decentre_y, i), narrow = at(file_.compress_y, i);
             p_.fields.push_back({scale * at(file_.x, i), scale * at(file_.y, i), 0, 0,
                                  std::clamp(narrow - shift, 0.0, 0.999), std::clamp(narrow + shift, 0.0, 0.999)});
@@ -228,7 +230,7 @@ private:
                                 p_.file);
         p_.wavelength_nm = 1000 * found->second;
         for (const auto& [number, um] : file_.wavelengths) p_.wavelengths_nm.push_back(1000 * um);
-        // Of the 24 rows of a file, those that are not used repeat one value behind the others.
+        // A file has 24 rows; unused ones repeat the same value after the used ones.
         std::vector<double>& all = p_.wavelengths_nm;
         const double unused = all.back();
         if (all.size() < 2 || all[all.size() - 2] != unused) return;
@@ -272,7 +274,7 @@ private:
         }
     }
 
-    /// The index of a surface's row; -1: the object.
+    /// Returns the index of a surface's row; -1: the object.
     int row_of_number(int surface) const {
         if (surface == 0 && !file_.has_faces_alone) return -1;
         const auto found =
@@ -284,8 +286,8 @@ private:
         return static_cast<int>(found - p_.surfaces.begin());
     }
 
-    /// The semi-diameter of the stop is its size where the file states none by another measure. Other surfaces have one
-    /// rim for all configurations, which is the largest.
+    /// Sets the sizes of the stop in the zoom positions, if the file defines the aperture by its semi-diameter. Other
+    /// surfaces have one clear semi-diameter for all configurations, which is the largest.
     template <class Filled>
     void set_zoom_sizes(const Filled& filled) {
         for (const auto& [surface, values] : file_.zoom_sizes) {
@@ -306,8 +308,8 @@ private:
     ZemaxFile file_;
     Prescription p_;
     LensGlasses& glasses_;
-    Glass medium_ = Glass::air();  ///< behind the surfaces so far
-    std::vector<const ZemaxSurface*> glass_behind_;  ///< of the surfaces so far
+    Glass medium_ = Glass::air();  ///< medium behind the last surface converted
+    std::vector<const ZemaxSurface*> glass_behind_;  ///< the surfaces converted so far
     bool glasses_are_stated_ = true;
     std::set<std::string> told_;
 };

@@ -10,32 +10,34 @@
 
 namespace realcam::io {
 
-/// A surface as the lines of a .zmx file state it, in the file's unit where a parameter's unit depends on its type.
+/// Surface as stated in a .zmx file; parameters whose unit depends on the surface type are in the file's unit.
 struct ZemaxSurface {
     PrescriptionSurface row;
-    std::string type = "STANDARD";  // files without TYPE lines mean that
+    std::string type = "STANDARD";  // the type in files without TYPE lines
     std::map<int, double> parameters, extra;
     std::map<int, int> parameter_lines;
     std::string glass, hint;
     int glass_line = 0, glass_kind = 0;
-    int pickup = 0;  ///< the surface whose glass it takes, where the kind says so
-    double n_d = 0, v_d = 0, partial = 0;  ///< of a model glass; of others, what may be left of an earlier one
+    int pickup = 0;  ///< surface whose glass is picked up, if the kind says so
+    /// Of a model glass; for other glasses possibly left over from an earlier one.
+    double n_d = 0, v_d = 0, partial = 0;
     double diameter = 0;
-    Vec2d aperture_offset = {0, 0};  ///< of its aperture and its obscurations, mm
-    double arm_width = 0;            ///< of a spider, mm
+    Vec2d aperture_offset = {0, 0};  ///< offset of its aperture and its obscurations, mm
+    double arm_width = 0;            ///< width of the arms of a spider, mm
     int arms = 0;
     bool has_thickness = false, at_infinity = false;
 };
 
-/// Whether the n_d and V_d in the line of a glass are those of a glass, and not what new files have there, 1.5 and 40,
-/// or the figures of something else.
+/// True if n_d and V_d in the line of a glass are those of a glass, and not the defaults of new files, 1.5 and 40, or
+/// unrelated numbers.
 bool states_a_glass(const ZemaxSurface& s);
 
-/// What the lines of a .zmx file say.
+/// Content of a .zmx file.
 struct ZemaxFile {
-    Prescription prescription;  ///< title, aperture, remarks and what is foreign; the rest is made of what follows
-    std::vector<ZemaxSurface> surfaces;  ///< object and image too
-    /// The file lists faces alone: no surface is the object, and none has to be the image.
+    /// Title, aperture, remarks and unsupported features; other members are derived from the following.
+    Prescription prescription;
+    std::vector<ZemaxSurface> surfaces;  ///< including object and image
+    /// True if the file lists faces alone: no surface is the object, and the last need not be the image.
     bool has_faces_alone = false;
     double unit = 1;  ///< mm
     std::vector<std::string> catalogues;
@@ -44,13 +46,13 @@ struct ZemaxFile {
     std::vector<double> x, y, decentre_y, compress_y;
     std::map<int, double> wavelengths;  ///< um, by number
     int primary = 1, positions = 1, current = 1;
-    std::map<int, std::vector<double>> zoom;  ///< thicknesses by surface, nan where none is stated
-    std::map<int, std::vector<double>> zoom_sizes;  ///< the same of semi-diameters
+    std::map<int, std::vector<double>> zoom;  ///< thicknesses by surface, NaN if not stated
+    std::map<int, std::vector<double>> zoom_sizes;  ///< semi-diameters by surface, NaN if not stated
     std::vector<double> zoom_apertures;
     std::set<std::string> coatings, unknown;
 };
 
-/// Throws LensFileError with the line for what is wrong in one.
+/// Reads the lines of a .zmx file. Throws LensFileError, with the line, if they are invalid.
 ZemaxFile zemax_file_of(std::string_view text, const std::string& file, const LensReadOptions& options);
 
 }  // namespace realcam::io

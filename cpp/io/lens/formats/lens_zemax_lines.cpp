@@ -1,5 +1,5 @@
-// Zemax OpticStudio's .zmx: a line is a keyword of four letters and its values; "SURF n" begins a surface, to which the
-// lines behind it belong that have a surface's keyword. Surface 0 is the object, the last one the image.
+// Reads Zemax OpticStudio's .zmx: a line is a keyword of four letters and its values; "SURF n" begins a surface, and
+// later lines with a surface's keyword belong to it. Surface 0 is the object, the last one the image.
 
 #include <algorithm>
 
@@ -84,7 +84,8 @@ void ZemaxReader::read_line(std::string_view line) {
         return;
     }
     if (word == "SURF") return begin_surface(lines_.words(rest));
-    // Indents mean nothing: programs other than OpticStudio leave them out. What a line belongs to is told by its word.
+    // Indents are ignored, because programs other than OpticStudio omit them. The keyword tells whether a line belongs
+    // to a surface.
     const bool is_indented = line[0] == ' ' || line[0] == '\t';
     if (!out_.surfaces.empty()) {
         lines_.set_surface(out_.surfaces.back().row.number);
@@ -95,21 +96,21 @@ void ZemaxReader::read_line(std::string_view line) {
     in_surface_ = false;
     lines_.set_surface(0);
     if (read_system_line(word, rest)) return;
-    // Behind the surfaces stand the operands of the merit function, and there are hundreds. They are not indented.
+    // The surfaces are followed by hundreds of operands of the merit function, which are not indented.
     if (out_.surfaces.empty() || !has_indents_ || is_indented)
         if (out_.unknown.size() < kMostUnknown) out_.unknown.insert(printable(word.substr(0, 40)));
 }
 
 void ZemaxReader::begin_surface(const Words& words) {
     if (words.empty()) lines_.fail("SURF needs the surface's number");
-    // Exporters that put a stop between two numbered faces label it "5AS".
+    // Exporters that insert a stop between two numbered faces label it "5AS".
     const std::string_view digits = words[0].text.substr(0, words[0].text.find_first_of("ASas"));
     const bool is_between = digits.size() < words[0].text.size() && !out_.surfaces.empty();
     const int number =
         lines_.whole_number_of(is_between ? digits : words[0].text, "the number of the surface", 0, 1 << 30);
     if (out_.surfaces.size() >= kMostFileSurfaces)
         lines_.fail("the file has more than " + std::to_string(kMostFileSurfaces) + " surfaces");
-    if (number == 1 && out_.surfaces.empty()) {  // and exporters that list faces alone begin with the first of them
+    if (number == 1 && out_.surfaces.empty()) {  // exporters of faces alone begin with the first face
         out_.has_faces_alone = true;
         out_.surfaces.emplace_back();
         out_.surfaces.back().has_thickness = out_.surfaces.back().at_infinity = true;

@@ -16,36 +16,36 @@ private:
     double number(const Words& words, std::size_t i, const char* what) const;
     double number_or(const Words& words, std::size_t i, const char* what, double otherwise) const;
     double length(const Words& words, std::size_t i, const char* what) const;
-    /// The same, or infinity.
+    /// Returns a length, which may be infinite.
     double length_or_infinity(const Words& words, std::size_t i, const char* what) const;
     int whole(const Words& words, const char* what, int least, int most) const;
-    /// Notes what there is no model of, at this line and surface.
+    /// Records a feature that is not modelled, at this line and surface.
     void foreign(const std::string& what);
     int current_number() const;
 
     void read_line(std::string_view line);
     void begin_surface(const Words& words);
 
-    /// False where the keyword is not known.
+    /// Returns false if the keyword is not known.
     bool read_surface_line(const std::string& word, std::string_view rest);
     void read_tilt(ZemaxSurface& s, const Words& words);
     void read_glass(ZemaxSurface& s, const Words& words);
 
-    /// False where the keyword is not known.
+    /// Returns false if the keyword is not known.
     bool read_system_line(const std::string& word, std::string_view rest);
     void set_unit(const Words& words);
     void set_aperture(ApertureKind kind, double value);
-    /// An operand of the multi-configuration editor: NAME what configuration value.
+    /// Reads an operand of the multi-configuration editor: NAME surface configuration value.
     bool read_zoom_line(const std::string& word, std::string_view rest);
 
     LensLines lines_;
     ZemaxFile out_;
     bool in_surface_ = false, has_indents_ = false;
-    std::set<std::string> zoom_foreign_;  ///< what has been named once
-    std::set<std::pair<std::string, int>> foreign_;  ///< the same, by surface
+    std::set<std::string> zoom_foreign_;  ///< features already recorded
+    std::set<std::pair<std::string, int>> foreign_;  ///< features already recorded, by surface
 };
 
-/// Keywords that say nothing about where light goes, or repeat what others say: names, solves, tolerances, drawing.
+/// True for keywords that do not affect the path of light, or that repeat others: names, solves, tolerances, drawing.
 bool is_harmless_in_zemax(const std::string& word, bool in_surface);
 
 }  // namespace realcam::io

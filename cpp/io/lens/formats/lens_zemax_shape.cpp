@@ -1,4 +1,4 @@
-// What the types of surfaces of a .zmx file mean. The parameters are those of Zemax's manual.
+// Interprets the surface types of a .zmx file. The parameters are those of Zemax's manual.
 #include "lens_zemax_shape.hpp"
 
 #include <algorithm>
@@ -21,7 +21,7 @@ bool any_parameter(const ZemaxSurface& s, int first, int last) {
                        [&](const auto& p) { return p.first >= first && p.first <= last && p.second != 0; });
 }
 
-/// A term of the sag, value x^power in the file's unit.
+/// Adds a term of the sag, value x^power, in the file's unit.
 void add_term(ZemaxSurface& s, int power, double value, double unit) {
     if (value != 0) s.row.aspheric[power] += value * std::pow(unit, 1 - power);
 }
@@ -30,7 +30,8 @@ double curvature_of(double radius, double unit) {
     return radius == 0 ? 0.0 : 1 / (unit * radius);
 }
 
-/// Number of extra terms, whose coefficients begin at the third datum, and the radius of the second.
+/// Number of extra terms, whose coefficients begin at the third extra datum, and the normalization radius, the second
+/// one.
 struct ExtraTerms {
     int count;
     double radius;
@@ -86,7 +87,7 @@ Affine<double> zemax_break(Vec3d decentre, Vec3d tilt_deg, bool is_reversed) {
 
 std::string set_zemax_shape(ZemaxSurface& s, double unit) {
     SurfaceForm& form = s.row.form;
-    if (s.type == "STANDARD") return "";  // its parameters mean nothing
+    if (s.type == "STANDARD") return "";  // its parameters have no meaning
     if (s.type == "EVENASPH" || s.type == "ODDASPHE") {
         const int step = s.type == "EVENASPH" ? 2 : 1;
         for (const auto& [number, value] : s.parameters)
@@ -126,7 +127,7 @@ void set_zemax_aperture(ZemaxSurface& s) {
     ApertureShape& shape = s.row.aperture_shape;
     const Vec2d offset = s.aperture_offset;
     if (offset != Vec2d{0, 0}) {
-        // Of a circle, which is stated by its radii alone.
+        // A decentred circle: it is stated only by its radii.
         if (shape.kind == ApertureOutline::circle && s.row.inner_semi_diameter > 0)
             shape.obscurations.push_back({false, {s.row.inner_semi_diameter, s.row.inner_semi_diameter}, {0, 0}, 0});
         s.row.inner_semi_diameter = 0;
@@ -136,7 +137,7 @@ void set_zemax_aperture(ZemaxSurface& s) {
         shape.offset = shape.half.x > 0 ? offset : Vec2d{0, 0};
         for (Obscuration& piece : shape.obscurations) piece.offset = offset;
     }
-    // What somebody has given the surface as its aperture limits the light, and not the semi-diameter.
+    // An aperture set by the designer limits the light, and not the semi-diameter.
     if (const double reach = shape.reach(); reach > 0) s.row.clear_semi_diameter = reach;
     if (s.arms > 0)
         for (Obscuration arm : spider_arms(s.arms, s.arm_width, std::max(s.row.clear_semi_diameter, s.arm_width), 0)) {

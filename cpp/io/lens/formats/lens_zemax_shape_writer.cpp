@@ -10,7 +10,7 @@ std::string numbered(const char* word, int number, double value) {
     return std::string(word) + ' ' + std::to_string(number) + ' ' + exact_number(value);
 }
 
-/// Number of terms, the radius that they are over, and the coefficients.
+/// Writes the number of terms, the normalization radius, and the coefficients.
 void add_extra(ZemaxShape& shape, double radius, const std::vector<double>& coefficients) {
     shape.lines.push_back(numbered("XDAT", 1, static_cast<double>(coefficients.size())));
     shape.lines.push_back(numbered("XDAT", 2, radius));
@@ -18,7 +18,7 @@ void add_extra(ZemaxShape& shape, double radius, const std::vector<double>& coef
         shape.lines.push_back(numbered("XDAT", static_cast<int>(k) + 3, coefficients[k]));
 }
 
-/// In the order x, y, x^2, x y, y^2, ...
+/// Returns the coefficients in the order x, y, x^2, x y, y^2, ...
 std::vector<double> in_order(const std::vector<XyTerm>& terms, ZemaxShape& shape) {
     std::vector<double> list;
     for (const XyTerm& term : terms) {
@@ -95,7 +95,7 @@ void set_aperture(ZemaxShape& shape, const Surface& s) {
         shape.left_out.push_back("has a polygonal aperture, which realcam does not write to .zmx files");
     if (aperture.kind == ApertureOutline::circle && !is_open)
         shape.aperture = {half_widths("CLAP", {s.inner_semi_diameter, aperture.half.x})};
-    // Zemax gives a surface one aperture or one obscuration.
+    // In Zemax a surface has one aperture or one obscuration.
     const bool says_it = is_open && aperture.obscurations.size() == 1 && aperture.obscurations.front().angle_deg == 0;
     if (says_it) {
         const Obscuration& piece = aperture.obscurations.front();

@@ -1,4 +1,4 @@
-// The lines of one surface in a .zmx file.
+// Lines of a surface in a .zmx file.
 
 #include <algorithm>
 #include <cmath>
@@ -52,7 +52,8 @@ bool ZemaxReader::read_surface_line(const std::string& word, std::string_view re
             foreign("an obscuration with a hole");
         else
             s.row.inner_semi_diameter = std::max(s.row.inner_semi_diameter, length(words, 1, "the outer radius"));
-        // The complement of a circular aperture. The semi-diameter (DIAM) of a surface that has one limits nothing.
+        // An obscuration is the complement of a circular aperture. The semi-diameter (DIAM) of a surface with an
+        // obscuration does not limit light.
         s.row.is_open_outside = s.row.clear_semi_diameter == 0;
     } else if (word == "OBDC") {
         s.aperture_offset = {out_.unit * number(words, 0, "the decentre"),
@@ -92,14 +93,13 @@ bool ZemaxReader::read_surface_line(const std::string& word, std::string_view re
     return true;
 }
 
-/// Tilt and decentre of the surface itself: 1 before or 2 behind it, their order, where they come from, and five
-/// figures.
+/// Reads tilt and decentre of the surface itself: 1 before or 2 behind it, their order, their source, and five values.
 void ZemaxReader::read_tilt(ZemaxSurface& s, const Words& words) {
     const int side = whole(words, "the side of the tilt", 1, 2);
     const auto at = [&](std::size_t i) { return number_or(words, i, "the tilt or decentre", 0); };
     const Affine<double> frame = zemax_break({length(words, 3, "the decentre"), length(words, 4, "the decentre"), 0},
                                              {at(5), at(6), at(7)}, at(1) != 0);
-    // Behind the surface: 1 repeats what stands before it, 2 undoes that.
+    // Source of the tilt behind the surface: 1 repeats the one before it, and 2 reverses that.
     const double source = at(2);
     if (side == 1)
         s.row.before = frame;

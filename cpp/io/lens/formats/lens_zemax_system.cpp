@@ -1,4 +1,4 @@
-// The lines of a .zmx file that are about all of the lens: unit, aperture, fields, wavelengths, configurations.
+// Lines of a .zmx file for the whole lens: unit, aperture, fields, wavelengths, configurations.
 
 #include <algorithm>
 #include <cmath>

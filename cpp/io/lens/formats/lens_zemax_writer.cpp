@@ -23,7 +23,7 @@ public:
         write_zoom();
         std::string head = "VERS 180000 0 0\nMODE SEQ\nNAME " +
                            printable(lens_.title.empty() ? lens_.name : lens_.title) + "\nUNIT MM X W X CM MR CPMM\n";
-        // Of other lenses the stop alone says how wide the light is.
+        // For lenses without rotational symmetry only the stop defines the width of the beam.
         const bool has_pupil = lens_.is_rotational();
         const double pupil = has_pupil ? first_order(lens_, lens_.wavelength_nm).entrance_pupil_diameter : kInfinity;
         if (std::isfinite(pupil))
@@ -67,7 +67,7 @@ private:
         for (const std::string& what : shape.left_out)
             result_.warnings.push_back("surface " + std::to_string(i + 1) + ' ' + what);
         if (is_asphere) {
-            // Parameter 1 is that of r^2; there are eight, up to r^16.
+            // Parameter 1 is the term of r^2; there are eight, up to r^16.
             line("PARM 1 0");
             for (std::size_t k = 0; k < s.aspheric.size(); ++k) {
                 if (s.aspheric[k] == 0) continue;
@@ -105,20 +105,20 @@ private:
         line("DIAM 0 0 0 0 1 \"\"");
     }
 
-    /// A step along the axis goes first: behind a break it would be one along the new axis.
+    /// Writes a coordinate break. The shift along the axis comes first: after a break it would be along the new axis.
     void write_break(const SurfacePlacement& place) {
         const auto& [decentre, tilt, returns] = place;
         if (decentre.z != 0) write_break_line({0, 0, 0, 0, 0, 0}, decentre.z);
         write_break_line({decentre.x, decentre.y, tilt.x, tilt.y, tilt.z, 0}, 0);
     }
 
-    /// With order 1 a break does the same steps the other way round.
+    /// Writes the reverse of a coordinate break. With order 1 a break applies its steps in reverse order.
     void write_return(const SurfacePlacement& place, double thickness) {
         const auto& [decentre, tilt, returns] = place;
         write_break_line({-decentre.x, -decentre.y, -tilt.x, -tilt.y, -tilt.z, 1}, thickness - decentre.z);
     }
 
-    /// A stop or an aperture inside a glass has it on both sides.
+    /// Returns the medium behind a surface. A stop or an aperture inside a glass has it on both sides.
     const Glass& medium_behind(std::size_t i) const {
         for (std::size_t k = i + 1; k-- > 0;)
             if (lens_.surfaces[k].type == SurfaceType::refracting) return lens_.surfaces[k].material;
@@ -147,7 +147,8 @@ private:
         return "___BLANK 1 0 " + exact_number(pair.n_d) + ' ' + exact_number(pair.v_d) + " 0 0 0 0 0 0";
     }
 
-    /// A file lists the makers of all of its glasses. True if no other of them has another glass of this name.
+    /// True if no other maker in the file has another glass of this name. A file lists the makers of all of its glasses
+    /// together.
     bool is_unique(const CatalogueName& known) const {
         std::set<std::string> makers;
         for (const Surface& s : lens_.surfaces)
@@ -171,7 +172,7 @@ private:
                      " 0 0 0 1 1 1 0 0 \"\" 0\n";
         };
         const std::size_t count = zoom.positions.size();
-        // The lens as it stands in its own position; the others at rest.
+        // The current position has the lens unchanged; in the others it is focused at their rest distance.
         const auto state = [&](std::size_t k) {
             return static_cast<int>(k) == zoom.current ? lens_ : at_zoom_position(lens_, static_cast<int>(k));
         };
@@ -194,7 +195,7 @@ private:
     }
 
     const LensSystem& lens_;
-    int count_ = 0;  ///< of surfaces written, coordinate breaks among them
+    int count_ = 0;  ///< number of surfaces written, including coordinate breaks
     LensText result_;
     std::string surfaces_, zoom_;
     std::set<std::string> makers_, told_;
