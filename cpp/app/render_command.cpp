@@ -18,7 +18,7 @@
 #include "../io/files/readable_file.hpp"
 #include "../io/text/one_line.hpp"
 #include "../plan/plan_text.hpp"
-#include "../plan/settle_film.hpp"
+#include "../plan/resolve_film.hpp"
 #include "../render/effect_names.hpp"
 #include "../render/pixel_sum.hpp"
 #include "../render/take_picture.hpp"
@@ -77,7 +77,7 @@ void check_memory(const Film& film, LayerSet layers) {
     // Memory that the CPU's session needs while it develops its sums into a picture.
     std::size_t bytes_per_pixel = sizeof(PixelSum) + 16;
     if (layers.has_any(kSampledLayers)) bytes_per_pixel += sizeof(LayerSum);
-    if (layers.has_any(kMiddleLayers)) bytes_per_pixel += sizeof(MiddleSurface);
+    if (layers.has_any(kPixelCentreLayers)) bytes_per_pixel += sizeof(PixelCentreSurface);
     for (std::size_t i = 0; i < kLayers.size(); ++i)
         if (layers.has(static_cast<Layer>(i))) bytes_per_pixel += 4 * static_cast<std::size_t>(kLayers[i].channels);
     const double wanted = static_cast<double>(bytes_per_pixel) * film.width * film.height;
@@ -106,7 +106,7 @@ public:
         if (!(words_.frames_per_second > 0 && std::isfinite(words_.frames_per_second)))
             throw InputError("--fps: more than 0 frames in a second are wanted");
         outputs_.check(frames);
-        settle_keys(request);
+        resolve_keys(request);
         Camera camera = camera_of(request);
         const LayerSet written_layers = request.settings.layers;
         std::optional<Denoiser> denoiser = denoiser_for(request);
@@ -135,7 +135,7 @@ public:
     void plan(bool as_json) {
         shot::ShotRequest request = understand(words_);
         request.settings.effects.is_automatic = true;
-        settle_keys(request);
+        resolve_keys(request);
         Camera camera = camera_of(request);
         const auto session = make_session(words_.device, [this](const std::string& text) { warn(text); });
         shot::Shot shot = set_up_shot(request, std::move(camera));
@@ -195,9 +195,9 @@ private:
     /// Makes the decisions left to the planner, for a picture or for some frames of a film. Returns a one-line summary.
     std::string settle(Session& session, shot::Shot& shot, shot::ShotRequest& request,
                        const std::vector<Camera>& cameras) {
-        SettledFilm film = until_interrupted([&] {
+        ResolvedFilm film = until_interrupted([&] {
             ProgressBar planning("planning ", !words_.is_quiet);
-            return settle_film(session, shot.scene, cameras, request.settings, fast_pupil_tracer(), [&](double) {
+            return resolve_film(session, shot.scene, cameras, request.settings, fast_pupil_tracer(), [&](double) {
                 planning.show_seconds();
                 return is_wanted();
             });

@@ -89,7 +89,7 @@ shot::ShotRequest understand(const RenderWords& w) {
     request.lens_options = lens_options_of(w.lens_file);
     request.keeps_noise = w.keeps_noise;
     request.denoises = w.denoises && !w.keeps_noise;
-    settle_noise_goal(request);
+    resolve_noise_goal(request);
     if (writes_layers(w)) return request;
     for (const auto& [key, word] : w.changes.options)
         if (key->name == std::string_view("layers"))

@@ -53,7 +53,7 @@ std::vector<SplatFilm> splat_films_from(const py::list& splats) {
 /// Returns the exposure: 3 values per pixel, in lux seconds.
 py::array_t<float> developed_exposure(const FilmArrays& arrays, const RenderSettings& settings,
                                       double exposure_time_s) {
-    const CollectedFilm film = arrays.film();
+    const AccumulatedFilm film = arrays.film();
     const auto height = arrays.pixels.shape(0), width = arrays.pixels.shape(1);
     Image image = [&] {
         const Unlocked unlocked;
@@ -97,9 +97,9 @@ private:
 
 }  // namespace
 
-CollectedFilm FilmArrays::film() const {
+AccumulatedFilm FilmArrays::film() const {
     if (pixels.ndim() != 2) throw InputError("sums of pixels must be an array of (H, W)");
-    CollectedFilm film;
+    AccumulatedFilm film;
     film.pixels = values_of<PixelSum>(pixels);
     if (layers) film.layers = values_of<LayerSum>(*layers);
     film.splats = splat_films_from(splats);

@@ -224,7 +224,7 @@ opens_as_far_as_it_can: a lens that is not as fast as the f-number is wide open.
             "crossings",
             [](const LensSystem& lens) {
                 std::vector<std::tuple<int, int, double, double>> list;
-                for (const FaceCrossing& c : find_crossings(lens))
+                for (const FaceOverlap& c : find_overlaps(lens))
                     list.emplace_back(c.first, c.second, c.depth, c.radius);
                 return list;
             },

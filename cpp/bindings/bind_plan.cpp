@@ -4,7 +4,7 @@
 
 #include "../embree/fast_pupil_tracer.hpp"
 #include "../io/files/image_metadata.hpp"
-#include "../plan/settle_film.hpp"
+#include "../plan/resolve_film.hpp"
 #include "bindings.hpp"
 #include "owned_session.hpp"
 #include "short_text.hpp"
@@ -51,17 +51,17 @@ Planned plan(const Assembly& scene, const Camera& camera, const RenderSettings& 
 
 /// Returns the camera model, the settings, the summary and a warning for a film sequence, from the camera of its first
 /// frame and those of other frames.
-std::tuple<std::string, RenderSettings, std::string, std::string> settled_film(const Assembly& scene,
-                                                                               const Camera& camera,
-                                                                               const std::vector<Camera>& others,
-                                                                               const RenderSettings& settings,
-                                                                               const std::string& device) {
+std::tuple<std::string, RenderSettings, std::string, std::string> resolved_film(const Assembly& scene,
+                                                                                const Camera& camera,
+                                                                                const std::vector<Camera>& others,
+                                                                                const RenderSettings& settings,
+                                                                                const std::string& device) {
     if (!settings.needs_plan()) return {io::name_of(camera.model), settings, "", ""};  // avoids creating a session
     std::vector<Camera> cameras = {camera};
     cameras.insert(cameras.end(), others.begin(), others.end());
-    SettledFilm film = OwnedSession::shared(device).use([&](const auto& session) {
-        return settle_film(*session, scene, cameras, settings, fast_pupil_tracer(),
-                           [](double) { return heed_signals(); });
+    ResolvedFilm film = OwnedSession::shared(device).use([&](const auto& session) {
+        return resolve_film(*session, scene, cameras, settings, fast_pupil_tracer(),
+                            [](double) { return heed_signals(); });
     });
     return {io::name_of(film.model), std::move(film.settings), film.summary, film.warning};
 }
@@ -106,7 +106,7 @@ measured on the device; None: not measured.)")
             return "<realcam.Plan: model " + p.model + ", effects " + (names.empty() ? "none" : names) + '>';
         });
     m.def("_plan", &plan, "scene"_a, "camera"_a, "settings"_a, "device"_a, "times"_a);
-    m.def("_settle_film", &settled_film, "scene"_a, "camera"_a, "others"_a, "settings"_a, "device"_a);
+    m.def("_resolve_film", &resolved_film, "scene"_a, "camera"_a, "others"_a, "settings"_a, "device"_a);
 }
 
 }  // namespace realcam::bindings

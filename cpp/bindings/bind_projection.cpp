@@ -6,8 +6,8 @@
 #include "../camera/last_setup.hpp"
 #include "../camera/pinhole_camera.hpp"
 #include "../camera/projection.hpp"
-#include "../camera/sight_grid.hpp"
-#include "../camera/sight_lines.hpp"
+#include "../camera/projection_grid.hpp"
+#include "../camera/radial_projection.hpp"
 #include "../embree/fast_pupil_tracer.hpp"
 #include "../embree/lens_rays.hpp"
 #include "arrays.hpp"
@@ -21,26 +21,26 @@ namespace {
 
 using Doubles = InputArray<double>;
 
-SightRay sight_ray_from(const std::string& name) {
-    if (name == "light") return SightRay::light;
-    if (name == "chief") return SightRay::chief;
+ProjectionRay projection_ray_from(const std::string& name) {
+    if (name == "light") return ProjectionRay::light;
+    if (name == "chief") return ProjectionRay::chief;
     throw InputError("unknown ray \"" + name + "\"; light or chief is wanted");
 }
 
 /// Returns the projection rays of a camera; caches the last result, because most programs use the same lens and film
 /// repeatedly. Must be called without the GIL.
-std::shared_ptr<const LinesOfSight> lines_of(const Camera& camera, SightRay ray) {
+std::shared_ptr<const ProjectionRays> lines_of(const Camera& camera, ProjectionRay ray) {
     struct Last {
         LensSystem lens;
         double film_radius_mm;  ///< sufficient for a rotationally symmetric lens
         Vec2<double> film_mm, film_shift_mm;
         CameraModel model;
-        SightRay ray;
+        ProjectionRay ray;
         bool operator==(const Last&) const = default;
     };
     static std::mutex mutex;
     static std::optional<Last> last;
-    static std::shared_ptr<const LinesOfSight> lines;
+    static std::shared_ptr<const ProjectionRays> lines;
     static LastSetup setups;
     validate(camera);
     Last wanted = {camera.lens, camera.film.radius_mm(), {}, {}, camera.model, ray};
@@ -64,11 +64,11 @@ std::shared_ptr<const LinesOfSight> lines_of(const Camera& camera, SightRay ray)
     }
     const auto setup = setups.make(still, fast_pupil_tracer());
     const RayLoop loop = parallel_ray_loop(heed_signals);
-    std::shared_ptr<const LinesOfSight> made;
+    std::shared_ptr<const ProjectionRays> made;
     if (is_round)
-        made = std::make_shared<const SightLines>(*setup, ray, loop);
+        made = std::make_shared<const RadialProjection>(*setup, ray, loop);
     else
-        made = std::make_shared<const SightGrid>(*setup, ray, loop);
+        made = std::make_shared<const ProjectionGrid>(*setup, ray, loop);
     const std::lock_guard lock(mutex);
     last = std::move(wanted);
     return lines = std::move(made);
@@ -81,7 +81,7 @@ std::int64_t row_count(const Doubles& array, int columns, const char* what) {
 }
 
 py::object project(const Camera& camera, const Doubles& points, const std::string& through, bool return_status) {
-    const SightRay ray = sight_ray_from(through);
+    const ProjectionRay ray = projection_ray_from(through);
     const std::int64_t count = row_count(points, 3, "points_m");
     py::array_t<double> pixels({count, std::int64_t{2}});
     py::array_t<int> status(count);
@@ -105,7 +105,7 @@ py::object project(const Camera& camera, const Doubles& points, const std::strin
 }
 
 py::tuple rays_through(const Camera& camera, const Doubles& pixels, const std::string& through, bool return_light) {
-    const SightRay which = sight_ray_from(through);
+    const ProjectionRay which = projection_ray_from(through);
     const std::int64_t count = row_count(pixels, 2, "pixels");
     py::array_t<double> origins({count, std::int64_t{3}}), directions({count, std::int64_t{3}}), light(count);
     const double* from = pixels.data();

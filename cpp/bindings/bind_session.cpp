@@ -89,7 +89,7 @@ public:
     }
 
     py::dict picture_of(const FilmArrays& arrays, const StatNumbers& stats) {
-        CollectedFilm film = arrays.film();
+        AccumulatedFilm film = arrays.film();
         film.stats = stats_from(stats);
         film.stats.device = device_;
         LayerSet layers;

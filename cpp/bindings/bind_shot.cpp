@@ -24,7 +24,7 @@ namespace realcam::bindings {
 using namespace py::literals;
 
 template <>
-struct LastEnumerator<KeyWay> : LastIs<KeyWay::step> {};
+struct LastEnumerator<CameraKeyInterpolation> : LastIs<CameraKeyInterpolation::step> {};
 template <>
 struct RestoredCheck<CameraKey> {
     static void check(const CameraKey& key) { validate(key); }
@@ -43,9 +43,9 @@ using CurvePoint = std::tuple<double, Triple, Triple>;
 
 constexpr const char* kWays[] = {"linear", "smooth", "step"};
 
-KeyWay key_way_from(const std::string& name) {
+CameraKeyInterpolation camera_key_interpolation_from(const std::string& name) {
     for (std::size_t i = 0; i < std::size(kWays); ++i)
-        if (name == kWays[i]) return static_cast<KeyWay>(i);
+        if (name == kWays[i]) return static_cast<CameraKeyInterpolation>(i);
     throw InputError("interpolation: \"" + name + "\": linear, smooth or step is wanted");
 }
 
@@ -53,7 +53,8 @@ CameraKey make_key(double time_s, std::optional<LensSystem> lens, Number focus_m
                    Number f_number, std::optional<int> blades, Number blade_rounding, Number blade_rotation_deg,
                    Number exposure_time_s, Number iso, std::optional<std::pair<double, double>> film_shift_mm,
                    const std::string& interpolation) {
-    CameraKey key{time_s, focus_m, focal_length_mm, f_number, exposure_time_s, iso, key_way_from(interpolation)};
+    CameraKey key{
+        time_s, focus_m, focal_length_mm, f_number, exposure_time_s, iso, camera_key_interpolation_from(interpolation)};
     key.lens = std::move(lens);
     key.blades = blades;
     key.blade_rounding = blade_rounding;
@@ -247,10 +248,10 @@ py::tuple read_shot(const py::object& path, const std::string& changes, const st
         request = given ? shot::shot_of_scene(name, changed) : shot::read_shot(name, changed);
         request.lens_in_memory = std::move(lens);
         request.denoises = denoises;
-        shot::settle_noise_goal(request);
+        shot::resolve_noise_goal(request);
         request.lens_options.keep_going = heed_signals;
         request.lens_options.warn = [&](const std::string& note) { notes.push_back(note); };
-        shot::settle_keys(request);
+        shot::resolve_keys(request);
         camera = shot::camera_of(request);
         request.lens_options = {};  // its functions refer to local variables
         scene = given ? shot::scene_of(request, *given, readers, heed_signals)

@@ -6,8 +6,8 @@
 
 #include "../embree/lens_rays.hpp"
 #include "../optics/prescription/lens_checks.hpp"
-#include "../optics/tolerance/copy_judge.hpp"
 #include "../optics/tolerance/lens_error.hpp"
+#include "../optics/tolerance/tolerance_evaluator.hpp"
 #include "arrays.hpp"
 #include "bindings.hpp"
 
@@ -38,9 +38,11 @@ std::vector<LensError> errors_from(const ErrorNames& names) {
 
 using Numbers = InputArray<double>;
 
-CopyJudge make_judge(const LensSystem& lens, const Numbers& fields_rad, std::optional<double> object_distance_m,
-                     const Numbers& colours, std::vector<double> frequencies, int rings, bool refocus, bool film_tilt,
-                     std::optional<double> sharp_at, const std::optional<std::tuple<int, int, bool, double>>& shift) {
+ToleranceEvaluator make_judge(const LensSystem& lens, const Numbers& fields_rad,
+                              std::optional<double> object_distance_m, const Numbers& colours,
+                              std::vector<double> frequencies, int rings, bool refocus, bool film_tilt,
+                              std::optional<double> sharp_at,
+                              const std::optional<std::tuple<int, int, bool, double>>& shift) {
     StudyRequest request;
     for (py::ssize_t i = 0; i < fields_rad.shape(0); ++i)
         request.fields.push_back({fields_rad.at(i, 0), fields_rad.at(i, 1)});
@@ -54,7 +56,7 @@ CopyJudge make_judge(const LensSystem& lens, const Numbers& fields_rad, std::opt
         request.compensators.shift = ElementShift{first, last, along_axis, range};
     }
     const Unlocked unlocked;
-    return CopyJudge(lens, std::move(request), parallel_ray_loop(heed_signals));
+    return ToleranceEvaluator(lens, std::move(request), parallel_ray_loop(heed_signals));
 }
 
 void check_sizes(const Numbers& sizes, int dimension, std::size_t errors) {
@@ -62,7 +64,7 @@ void check_sizes(const Numbers& sizes, int dimension, std::size_t errors) {
         throw InputError("as many sizes as errors are wanted, " + std::to_string(errors));
 }
 
-py::dict judge(const CopyJudge& judge, const ErrorNames& names, const Numbers& sizes) {
+py::dict judge(const ToleranceEvaluator& judge, const ErrorNames& names, const Numbers& sizes) {
     const std::vector<LensError> errors = errors_from(names);
     check_sizes(sizes, 2, errors.size());
     const auto count = static_cast<std::size_t>(sizes.shape(0));
@@ -107,7 +109,7 @@ py::dict judge(const CopyJudge& judge, const ErrorNames& names, const Numbers& s
         "light"_a = of_fields([](const FieldFigures& f) { return f.light; }), "chief_ray_mm"_a = at, "mtf"_a = mtf);
 }
 
-LensSystem make_copy(const CopyJudge& judge, const ErrorNames& names, const Numbers& sizes, double film_shift,
+LensSystem make_copy(const ToleranceEvaluator& judge, const ErrorNames& names, const Numbers& sizes, double film_shift,
                      std::pair<double, double> film_slope, std::tuple<double, double, double> element_shift) {
     const std::vector<LensError> errors = errors_from(names);
     check_sizes(sizes, 1, errors.size());
@@ -123,7 +125,7 @@ LensSystem make_copy(const CopyJudge& judge, const ErrorNames& names, const Numb
 }  // namespace
 
 void bind_tolerance(py::module_& m) {
-    py::class_<CopyJudge>(m, "_CopyJudge")
+    py::class_<ToleranceEvaluator>(m, "_ToleranceEvaluator")
         .def(py::init(&make_judge), "lens"_a, "fields_rad"_a, "object_distance_m"_a, "colours"_a, "frequencies"_a,
              "rings"_a, "refocus"_a, "film_tilt"_a, "sharp_at"_a, "shift"_a)
         .def("judge", &judge, "errors"_a, "sizes"_a)

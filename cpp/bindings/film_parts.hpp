@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "../camera/film_region.hpp"
-#include "../render/collected_film.hpp"
+#include "../render/accumulated_film.hpp"
 #include "arrays.hpp"
 #include "bindings.hpp"
 
@@ -43,7 +43,7 @@ struct FilmArrays {
     std::optional<InputArray<LayerSum>> layers;
     py::list splats;
 
-    CollectedFilm film() const;
+    AccumulatedFilm film() const;
 };
 
 }  // namespace realcam::bindings

@@ -7,7 +7,7 @@
 namespace REALCAM_NAMESPACE {
 
 /// Interpolation between consecutive keyframes of a parameter.
-enum class KeyWay {
+enum class CameraKeyInterpolation {
     linear,  ///< linear in the parameter's scale (see CameraKey)
     smooth,  ///< MonotoneCurve through a run of smooth keys, with slope 0 at both ends of the run
     step,    ///< constant, with a jump at the next key
@@ -26,7 +26,7 @@ struct CameraKey {
     std::optional<double> f_number = {};
     std::optional<double> exposure_time_s = {};
     std::optional<double> iso = {};
-    KeyWay way = KeyWay::linear;  ///< interpolation from this key on
+    CameraKeyInterpolation way = CameraKeyInterpolation::linear;  ///< interpolation from this key on
     std::optional<LensSystem> lens = {};  ///< lens from this key on; before the first key with a lens: the camera's own
     std::optional<int> blades = {};  ///< from this key on; without a value, this and the following stay as the lens and
                                      ///< camera have them

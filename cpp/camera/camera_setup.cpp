@@ -9,9 +9,9 @@
 
 #include "../math/uniform_keys.hpp"
 #include "../optics/lens/exposure.hpp"
+#include "direct_lens_path.hpp"
 #include "exposed_rays.hpp"
 #include "field_of_view.hpp"
-#include "lens_way.hpp"
 
 namespace realcam {
 

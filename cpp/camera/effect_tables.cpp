@@ -19,7 +19,7 @@ EffectTables::EffectTables(const LensSystem& lens, double film_radius, const Len
     else if (effects.even_wavelengths)
         set_wavelengths(FilmSpectrum(*effects.even_wavelengths));
     if (effects.coatings) set_coatings(has_lens ? last : nullptr);
-    lens_way_ = has_lens ? last->lens_way_ : std::make_shared<LazyLensWay>();
+    direct_lens_path_ = has_lens ? last->direct_lens_path_ : std::make_shared<LazyDirectLensPath>();
     if (effects.ghosts)
         ghosts_ = same ? same->ghosts_
                        : std::make_shared<const GhostTables>(lens, film_radius, *effects.ghosts, tracer,
@@ -27,7 +27,7 @@ EffectTables::EffectTables(const LensSystem& lens, double film_radius, const Len
     if (!effects.diffraction) return;
     diffraction_ = same ? same->diffraction_ : std::make_shared<const DiffractionTables>(lens, film_radius, tracer);
     starbursts_ = same ? same->starbursts_
-                       : std::make_shared<const StarburstTables>(lens, film_radius, shared_lens_way(), tracer);
+                       : std::make_shared<const StarburstTables>(lens, film_radius, shared_direct_lens_path(), tracer);
 }
 
 EffectViews EffectTables::views(double film_angle) const {
@@ -96,10 +96,11 @@ void EffectTables::set_coatings(const EffectTables* same) {
     coatings_to_film_ = fit_coatings<kSpectrumTerms>(lens_, LightDirection::to_film, wavelengths, variable);
 }
 
-std::shared_ptr<const LensWay> EffectTables::shared_lens_way() const {
-    std::call_once(lens_way_->once,
-                   [&] { lens_way_->way = std::make_shared<const LensWay>(lens_, spectrum_, effects_); });
-    return lens_way_->way;
+std::shared_ptr<const DirectLensPath> EffectTables::shared_direct_lens_path() const {
+    std::call_once(direct_lens_path_->once, [&] {
+        direct_lens_path_->way = std::make_shared<const DirectLensPath>(lens_, spectrum_, effects_);
+    });
+    return direct_lens_path_->way;
 }
 
 }  // namespace realcam

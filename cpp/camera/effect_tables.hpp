@@ -6,10 +6,10 @@
 
 #include "../optics/coating/fit_coatings.hpp"
 #include "diffraction_tables.hpp"
+#include "direct_lens_path.hpp"
 #include "effect_views.hpp"
 #include "film_spectrum.hpp"
 #include "ghost_tables.hpp"
-#include "lens_way.hpp"
 #include "pupil_sampling.hpp"
 #include "starburst_tables.hpp"
 
@@ -41,7 +41,7 @@ public:
 
     /// Direct (ghost-free) lens path, on which the lights themselves are visible. Built at first use. Throws InputError
     /// as the constructor does.
-    const LensWay& lens_way() const { return *shared_lens_way(); }
+    const DirectLensPath& direct_lens_path() const { return *shared_direct_lens_path(); }
 
     /// Wavelengths at which the pupil has to be found; empty: the design wavelength alone.
     const std::vector<double>& pupil_wavelengths() const { return pupil_wavelengths_; }
@@ -53,11 +53,11 @@ private:
 
     void set_coatings(const EffectTables* same);
 
-    std::shared_ptr<const LensWay> shared_lens_way() const;
+    std::shared_ptr<const DirectLensPath> shared_direct_lens_path() const;
 
-    struct LazyLensWay {
+    struct LazyDirectLensPath {
         std::once_flag once;
-        std::shared_ptr<const LensWay> way;
+        std::shared_ptr<const DirectLensPath> way;
     };
 
     LensEffects effects_;
@@ -70,7 +70,7 @@ private:
     std::vector<CoatingPolynomials<kOneWavelengthTerms>> coatings_;
     std::vector<CoatingPolynomials<kSpectrumTerms>> coatings_to_scene_, coatings_to_film_;
     std::shared_ptr<const GhostTables> ghosts_;
-    std::shared_ptr<LazyLensWay> lens_way_;
+    std::shared_ptr<LazyDirectLensPath> direct_lens_path_;
     std::shared_ptr<const DiffractionTables> diffraction_;
     std::shared_ptr<const StarburstTables> starbursts_;
 };

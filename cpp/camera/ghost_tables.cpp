@@ -6,7 +6,7 @@
 #include "../optics/ghost/film_mirror.hpp"
 #include "../optics/ghost/ghost_coatings.hpp"
 #include "../optics/lens/axial_share.hpp"
-#include "lens_way.hpp"
+#include "direct_lens_path.hpp"
 
 namespace realcam {
 
@@ -53,9 +53,10 @@ GhostTables::GhostTables(const LensSystem& of_lens, double film_radius, const Gh
     if (choice.film_reflectance > 0) look_at(film_ghost_pairs(of_lens));
     make_crossings(lens, spectrum);
     if (is_round_lens(of_lens))
-        find_ways(EntrySearch(of_lens, film_radius, tracer), of_lens, lens, pairs, choice.least_share, tracer);
+        find_ways(EntrancePupilSearch(of_lens, film_radius, tracer), of_lens, lens, pairs, choice.least_share, tracer);
     else
-        find_ways(FreeEntrySearch(of_lens, film_radius, tracer), of_lens, lens, pairs, choice.least_share, tracer);
+        find_ways(FreeformEntrancePupilSearch(of_lens, film_radius, tracer), of_lens, lens, pairs, choice.least_share,
+                  tracer);
     set_probabilities();
     const LensPath<float> straight(of_lens, LightDirection::to_film, lens.wavelength_nm);
     iris_ = straight.view().iris;
@@ -88,14 +89,15 @@ void GhostTables::find_ways(const Search& search, const LensSystem& of_lens, con
     }
 }
 
-void GhostTables::set_range(const EntrySearch& search, const std::vector<std::vector<FoundRay>>& found) {
+void GhostTables::set_range(const EntrancePupilSearch& search, const std::vector<std::vector<FoundRay>>& found) {
     for (const std::vector<FoundRay>& rays : found)
         largest_half_tangent_ = std::max(largest_half_tangent_, largest_half_tangent_of(rays));
     entry_reach_ = search.front_reach();
     exit_reach_ = static_cast<float>(search.rear_reach());
 }
 
-void GhostTables::set_range(const FreeEntrySearch& search, const std::vector<std::vector<FreeFoundRay>>& found) {
+void GhostTables::set_range(const FreeformEntrancePupilSearch& search,
+                            const std::vector<std::vector<FreeFoundRay>>& found) {
     directions_ = grid_of_directions(found);
     film_grid_ = search.film_grid();
     entry_reach_ = search.front_reach();
@@ -114,8 +116,8 @@ void GhostTables::add_entries(const std::vector<FreeFoundRay>& found) {
     const auto append = [](std::vector<FreeGhostEntry>& to, const std::vector<FreeGhostEntry>& entries) {
         to.insert(to.end(), entries.begin(), entries.end());
     };
-    append(to_film_.free_entries, FreeEntrySearch::entries_of(found, directions_));
-    append(to_scene_.free_entries, FreeEntrySearch::exits_of(found));
+    append(to_film_.free_entries, FreeformEntrancePupilSearch::entries_of(found, directions_));
+    append(to_scene_.free_entries, FreeformEntrancePupilSearch::exits_of(found));
 }
 
 GhostView GhostTables::view_of_objects() const {

@@ -1,9 +1,9 @@
 #pragma once
 #include <vector>
 
-#include "entry_search.hpp"
+#include "entrance_pupil_search.hpp"
 #include "film_spectrum.hpp"
-#include "free_entry_search.hpp"
+#include "freeform_entrance_pupil_search.hpp"
 #include "ghost_choice.hpp"
 
 namespace REALCAM_NAMESPACE {
@@ -40,7 +40,7 @@ public:
 private:
     /// Optical paths of all ghosts, for light towards the film or from the film to the scene.
     struct Ways {
-        std::vector<GhostWay> ways;
+        std::vector<GhostLensPath> ways;
         std::vector<GhostEntry> entries;
         std::vector<FreeGhostEntry> free_entries;  ///< replaces `entries` for lenses without rotational symmetry
         std::vector<SurfaceView<float>> surfaces;
@@ -70,8 +70,8 @@ private:
 
     // set_range sets the range of directions from the rays of all paths; the last path is the lens's direct one.
     // add_entries appends the bounds where the light of one path enters and leaves the lens.
-    void set_range(const EntrySearch& search, const std::vector<std::vector<FoundRay>>& found);
-    void set_range(const FreeEntrySearch& search, const std::vector<std::vector<FreeFoundRay>>& found);
+    void set_range(const EntrancePupilSearch& search, const std::vector<std::vector<FoundRay>>& found);
+    void set_range(const FreeformEntrancePupilSearch& search, const std::vector<std::vector<FreeFoundRay>>& found);
     void add_entries(const std::vector<FoundRay>& found);
     void add_entries(const std::vector<FreeFoundRay>& found);
 

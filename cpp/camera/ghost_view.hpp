@@ -60,7 +60,7 @@ REALCAM_INLINE Vec2f half_tangents(Vec3f from) {
 }
 
 /// Optical path of one ghost through the lens.
-struct GhostWay {
+struct GhostLensPath {
     std::int32_t first, count;  ///< range of its crossings in the arrays of GhostView
     float probability;          ///< of being sampled
 };
@@ -81,7 +81,7 @@ struct GhostView {
     GhostLight light;
     Effects effects;  ///< effects that are simulated for it
     std::int32_t pixel_samples;  ///< number of pixel samples for each sample of this light
-    const GhostWay* ways;
+    const GhostLensPath* ways;
     int way_count;
     const float* cdf;  ///< cumulative probabilities of the paths, way_count + 1
     const GhostEntry* entries;  ///< kGhostBins for each path

@@ -38,7 +38,7 @@ FilmBundle MeanRays::bundle(const PupilView& pupil, double film_radius) const {
 }
 
 FilmBundle MeanRays::bundle(const PupilGridView& pupil, Vec2<double> film) const {
-    const PupilGridPlace at = pupil_grid_place(pupil, static_cast<float>(film.x), static_cast<float>(film.y));
+    const PupilGridLookup at = pupil_grid_lookup(pupil, static_cast<float>(film.x), static_cast<float>(film.y));
     const EntryRectangle in = {
         {static_cast<double>(at.sign_l * at.box.centre_l), static_cast<double>(at.sign_m * at.box.centre_m)},
         {static_cast<double>(at.box.half_width), static_cast<double>(at.box.half_height)}};

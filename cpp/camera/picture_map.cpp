@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "../math/hypotenuse.hpp"
-#include "middle_rays.hpp"
+#include "pixel_centre_rays.hpp"
 
 namespace realcam {
 
@@ -31,7 +31,7 @@ PictureMap::PictureMap(const CameraView& camera)
     // The right half of the picture shows the right half of the scene.
     for (int k = 0; k < kRadii; ++k) {
         block.column[0] = kRadii + k;
-        middle_rays(along, block, rays, time);
+        pixel_centre_rays(along, block, rays, time);
         if (!rays.passed[0]) continue;
         const Vec3d origin = static_cast<Vec3d>(rays.origin[0]), direction = static_cast<Vec3d>(rays.direction[0]);
         rays_.push_back(

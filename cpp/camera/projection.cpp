@@ -5,7 +5,7 @@
 
 namespace realcam {
 
-Projection::Projection(const Camera& camera, std::shared_ptr<const LinesOfSight> lines)
+Projection::Projection(const Camera& camera, std::shared_ptr<const ProjectionRays> lines)
     : film_(camera.film), lines_(std::move(lines)) {
     const TimeInterval exposure = camera.exposure();
     const double row_time = camera.moves() ? camera.shutter.readout_time_s / film_.height : 0;
@@ -33,7 +33,7 @@ ProjectedPoint Projection::pixel_of(Vec3d point_m) const {
 
 PixelRay Projection::ray_of(Vec2<double> pixel) const {
     const Affine<double>& place = places_[places_.size() == 1 ? 0 : static_cast<std::size_t>(row_of(pixel.y))];
-    const std::optional<FilmSight> sight = lines_->from(film_.place_of(pixel));
+    const std::optional<FilmProjection> sight = lines_->from(film_.place_of(pixel));
     if (!sight) return {kNowhere3, kNowhere3};
     return {place.point(0.001 * sight->origin), place.direction(sight->direction), sight->light};
 }

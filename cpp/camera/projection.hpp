@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "lines_of_sight.hpp"
+#include "projection_rays.hpp"
 
 namespace REALCAM_NAMESPACE {
 
@@ -33,7 +33,7 @@ struct PixelRay {
 /// row of pixels uses the camera's pose at the middle of the row's exposure.
 class Projection {
 public:
-    Projection(const Camera& camera, std::shared_ptr<const LinesOfSight> lines);
+    Projection(const Camera& camera, std::shared_ptr<const ProjectionRays> lines);
 
     ProjectedPoint pixel_of(Vec3d point_m) const;
 
@@ -50,7 +50,7 @@ private:
     ProjectedPoint seen_from(const Affine<double>& place, Vec3d point_m) const;
 
     Film film_;
-    std::shared_ptr<const LinesOfSight> lines_;
+    std::shared_ptr<const ProjectionRays> lines_;
     std::vector<Affine<double>> places_;  ///< scene-from-camera transform of each row of pixels; a single one if all
                                           ///< rows share it
 };

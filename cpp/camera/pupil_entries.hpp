@@ -1,7 +1,7 @@
 #pragma once
 #include "../optics/pupil/pupil_tracer.hpp"
 #include "../optics/pupil/pupil_view.hpp"
-#include "entry_search.hpp"
+#include "entrance_pupil_search.hpp"
 
 namespace REALCAM_NAMESPACE {
 

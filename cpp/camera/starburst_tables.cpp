@@ -4,10 +4,10 @@
 
 namespace realcam {
 
-StarburstTables::StarburstTables(const LensSystem& lens, double film_radius, std::shared_ptr<const LensWay> way,
+StarburstTables::StarburstTables(const LensSystem& lens, double film_radius, std::shared_ptr<const DirectLensPath> way,
                                  const PupilTracer& tracer)
     : way_(std::move(way)) {
-    const std::vector<FoundRay> found = EntrySearch(lens, film_radius, tracer).along(lens, crossings_of(lens));
+    const std::vector<FoundRay> found = EntrancePupilSearch(lens, film_radius, tracer).along(lens, crossings_of(lens));
     largest_half_tangent_ = largest_half_tangent_of(found);
     entries_ = entries_of(found, largest_half_tangent_);
 }

@@ -2,8 +2,8 @@
 #include <memory>
 
 #include "diffraction_view.hpp"
-#include "entry_search.hpp"
-#include "lens_way.hpp"
+#include "direct_lens_path.hpp"
+#include "entrance_pupil_search.hpp"
 
 namespace REALCAM_NAMESPACE {
 
@@ -11,13 +11,13 @@ namespace REALCAM_NAMESPACE {
 class StarburstTables {
 public:
     /// `film_radius`: radius of a circle that contains the film, mm. `way`: direct path of the same lens.
-    StarburstTables(const LensSystem& lens, double film_radius, std::shared_ptr<const LensWay> way,
+    StarburstTables(const LensSystem& lens, double film_radius, std::shared_ptr<const DirectLensPath> way,
                     const PupilTracer& tracer);
 
     GhostView view() const;
 
 private:
-    std::shared_ptr<const LensWay> way_;
+    std::shared_ptr<const DirectLensPath> way_;
     GhostEntries entries_{};
     float largest_half_tangent_ = 0;
 };

@@ -138,9 +138,9 @@ private:
         });
     }
 
-    void see_middle_surfaces(std::vector<MiddleSurface>& film, OwnStop& stop) override {
+    void see_pixel_centre_surfaces(std::vector<PixelCentreSurface>& film, OwnStop& stop) override {
         for_bands(0, height(), stop, [&](int row, int rows) {
-            front().see_middle_surfaces({row, rows, 0, 1}, &film[whole_film().place(0, row)]);
+            front().see_pixel_centre_surfaces({row, rows, 0, 1}, &film[whole_film().place(0, row)]);
         });
     }
 
@@ -234,7 +234,7 @@ private:
     int width() const { return camera().film.width; }
     int height() const { return camera().film.height; }
     bool fits() const { return rows_ == height(); }
-    FilmBalance balance() const { return film_balance(settings()); }
+    FilmControlVariates balance() const { return film_control_variates(settings()); }
     FilmView on_host(const FilmSums& film, const std::vector<SplatFilm>& splats) const {
         return view_of(film, width(), height(), settings(), splats);
     }

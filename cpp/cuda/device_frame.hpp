@@ -68,7 +68,7 @@ public:
     }
 
     /// Queues the development of the frame behind its exposure in the renderer's stream.
-    void develop(DeviceRenderer& renderer, const FilmBalance& balance, const Camera& camera, ToneCurve curve) {
+    void develop(DeviceRenderer& renderer, const FilmControlVariates& balance, const Camera& camera, ToneCurve curve) {
         renderer.develop_codes(balance, camera.exposure_time_s, camera.iso, curve, memory_->codes.data());
         renderer.stop_flag().download(memory_->stopped.data(), renderer.stream());
         end_.record(renderer.stream());

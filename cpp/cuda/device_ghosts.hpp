@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "../render/collected_film.hpp"
+#include "../render/accumulated_film.hpp"
 #include "../render/sample_range.hpp"
 #include "cuda_stream.hpp"
 #include "device_array.hpp"

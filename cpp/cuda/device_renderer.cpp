@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "../render/film_balance.hpp"
+#include "../render/film_control_variates.hpp"
 #include "../render/shares_samples.hpp"
 
 namespace realcam {
@@ -250,13 +250,13 @@ void DeviceRenderer::add(const FilmPart& part, const RenderSettings& settings) {
     launch(part, settings, sums_.data(), {}, pixels_of(part), sharing_in(rows_of(part), settings, {}), stop_.data());
 }
 
-FilmView DeviceRenderer::film(const FilmBalance& balance) const {
+FilmView DeviceRenderer::film(const FilmControlVariates& balance) const {
     const auto rows = static_cast<int>(sums_.size() / static_cast<std::size_t>(camera_.width));
     return {sums_.data(), camera_.width, rows, balance, splatted()};
 }
 
-void DeviceRenderer::develop_codes(const FilmBalance& balance, double exposure_time_s, double iso, ToneCurve curve,
-                                   std::uint8_t* codes) {
+void DeviceRenderer::develop_codes(const FilmControlVariates& balance, double exposure_time_s, double iso,
+                                   ToneCurve curve, std::uint8_t* codes) {
     const CurrentDevice current(ordinal_);
     codes_.resize(3 * sums_.size());
     launch_develop_codes(film(balance), exposure_time_s, iso, curve, codes_.data(), stream_);
@@ -285,12 +285,14 @@ void DeviceRenderer::download_film(PixelSum* to) {
     stream_.wait("copying the film from it");
 }
 
-void DeviceRenderer::develop_here(const FilmBalance& balance, double exposure_time_s, float* exposure, float* depth) {
+void DeviceRenderer::develop_here(const FilmControlVariates& balance, double exposure_time_s, float* exposure,
+                                  float* depth) {
     const CurrentDevice current(ordinal_);
     launch_develop(film(balance), exposure_time_s, exposure, depth, stream_);
 }
 
-void DeviceRenderer::develop(const FilmBalance& balance, double exposure_time_s, float* exposure, float* depth) {
+void DeviceRenderer::develop(const FilmControlVariates& balance, double exposure_time_s, float* exposure,
+                             float* depth) {
     const CurrentDevice current(ordinal_);
     exposure_.resize(3 * sums_.size());
     depth_.resize(sums_.size());
@@ -334,12 +336,12 @@ void DeviceRenderer::see_layers(const FilmPart& part, std::uint32_t seed, LayerS
     stream_.wait("copying layers from it");
 }
 
-void DeviceRenderer::see_middle_surfaces(const FilmPart& part, MiddleSurface* surfaces) {
+void DeviceRenderer::see_pixel_centre_surfaces(const FilmPart& part, PixelCentreSurface* surfaces) {
     const CurrentDevice current(ordinal_);
-    middle_surfaces_.resize(static_cast<std::size_t>(part.row_count) * static_cast<std::size_t>(camera_.width));
-    middle_surfaces_.clear(stream_);
-    launch_see_middle_surfaces(layer_job(part, 0), middle_surfaces_.data(), stream_);
-    middle_surfaces_.download(surfaces, stream_);
+    pixel_centre_surfaces_.resize(static_cast<std::size_t>(part.row_count) * static_cast<std::size_t>(camera_.width));
+    pixel_centre_surfaces_.clear(stream_);
+    launch_see_pixel_centre_surfaces(layer_job(part, 0), pixel_centre_surfaces_.data(), stream_);
+    pixel_centre_surfaces_.download(surfaces, stream_);
     stream_.wait("copying layers from it");
 }
 

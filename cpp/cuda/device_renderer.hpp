@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "../camera/film_region.hpp"
-#include "../render/collected_film.hpp"
+#include "../render/accumulated_film.hpp"
 #include "../render/render_settings.hpp"
 #include "../render/sample_range.hpp"
 #include "device_ghosts.hpp"
@@ -76,7 +76,7 @@ public:
     void add(const FilmPart& part, const RenderSettings& settings);
 
     /// Develops the film asynchronously to 8-bit sRGB, 3 values per pixel, into pinned host memory.
-    void develop_codes(const FilmBalance& balance, double exposure_time_s, double iso, ToneCurve curve,
+    void develop_codes(const FilmControlVariates& balance, double exposure_time_s, double iso, ToneCurve curve,
                        std::uint8_t* codes);
 
     /// The stream in which all work of this renderer runs.
@@ -90,10 +90,10 @@ public:
     void download_film(PixelSum* to);
 
     /// Develops the film asynchronously to exposure and depth, 3 and 1 values per pixel, in this GPU's memory.
-    void develop_here(const FilmBalance& balance, double exposure_time_s, float* exposure, float* depth);
+    void develop_here(const FilmControlVariates& balance, double exposure_time_s, float* exposure, float* depth);
 
     /// Develops the film to exposure and depth in host memory. Synchronous.
-    void develop(const FilmBalance& balance, double exposure_time_s, float* exposure, float* depth);
+    void develop(const FilmControlVariates& balance, double exposure_time_s, float* exposure, float* depth);
 
     /// Writes the number of samples of each pixel to host memory.
     void count_samples(std::int64_t* counts);
@@ -101,7 +101,7 @@ public:
     /// Trace the first hits of the part's samples, summed per pixel, and the first hits of its pixel-centre rays, into
     /// host memory. If rendering was stopped, they end early and their results are unusable. `done` counts samples.
     void see_layers(const FilmPart& part, std::uint32_t seed, LayerSum* sums, std::atomic<std::int64_t>& done);
-    void see_middle_surfaces(const FilmPart& part, MiddleSurface* surfaces);
+    void see_pixel_centre_surfaces(const FilmPart& part, PixelCentreSurface* surfaces);
 
     /// Returns the counts since clear_counts(), which is asynchronous.
     RenderCounts counts();
@@ -120,7 +120,7 @@ private:
                 std::int64_t pixels, const FilmRegion& sharing, const volatile int* stop);
 
     /// View of the film in this GPU's memory.
-    FilmView film(const FilmBalance& balance) const;
+    FilmView film(const FilmControlVariates& balance) const;
 
     /// Returns the region if its pixels share samples; otherwise an empty one.
     FilmRegion sharing_in(const FilmRegion& region, const RenderSettings& settings, const PixelCounts& counts) const;
@@ -145,7 +145,7 @@ private:
     DeviceArray<std::uint32_t> sample_counts_;
     DeviceArray<PixelPupil> known_, found_;  ///< one for each pixel; see PixelPupils
     DeviceArray<LayerSum> layer_sums_;
-    DeviceArray<MiddleSurface> middle_surfaces_;
+    DeviceArray<PixelCentreSurface> pixel_centre_surfaces_;
     DeviceArray<float> exposure_, depth_;
     DeviceArray<std::uint8_t> codes_;
     DeviceArray<RenderCounts> counts_;

@@ -48,14 +48,14 @@ __global__ void see_layers_of(const __grid_constant__ LayerJob job, int lanes_pe
 }
 
 template <bool instanced>
-__global__ void see_middle_surfaces_of(const __grid_constant__ LayerJob job, MiddleSurface* surfaces) {
+__global__ void see_pixel_centre_surfaces_of(const __grid_constant__ LayerJob job, PixelCentreSurface* surfaces) {
     const std::int64_t pixel = thread_index();
     if (pixel >= static_cast<std::int64_t>(job.row_count) * job.camera.width || *job.stop) return;
     const SampleBlock<1> block =
         block_at(job, static_cast<int>(pixel % job.camera.width), static_cast<int>(pixel / job.camera.width));
     BvhScene<SceneKind::any, instanced> scene{job.scene, job.bvh, 0};
-    MiddleSurface seen[1];
-    see_middle_surfaces(job.scene, job.camera, block, scene, seen);
+    PixelCentreSurface seen[1];
+    see_pixel_centre_surfaces(job.scene, job.camera, block, scene, seen);
     surfaces[pixel] = seen[0];
 }
 
@@ -70,9 +70,10 @@ void launch_see_layers(const LayerJob& job, LayerSum* sums, cudaStream_t stream)
     check_cuda(cudaGetLastError(), "starting to trace layers");
 }
 
-void launch_see_middle_surfaces(const LayerJob& job, MiddleSurface* surfaces, cudaStream_t stream) {
+void launch_see_pixel_centre_surfaces(const LayerJob& job, PixelCentreSurface* surfaces, cudaStream_t stream) {
     const unsigned blocks = blocks_for(static_cast<std::int64_t>(job.row_count) * job.camera.width);
-    const auto kernel = job.scene.instance_count > 0 ? see_middle_surfaces_of<true> : see_middle_surfaces_of<false>;
+    const auto kernel =
+        job.scene.instance_count > 0 ? see_pixel_centre_surfaces_of<true> : see_pixel_centre_surfaces_of<false>;
     kernel<<<blocks, kBlockSize, 0, stream>>>(job, surfaces);
     check_cuda(cudaGetLastError(), "starting to trace layers");
 }

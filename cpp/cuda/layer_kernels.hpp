@@ -18,6 +18,6 @@ struct LayerJob {
 void launch_see_layers(const LayerJob& job, LayerSum* sums, cudaStream_t stream);
 
 /// Traces the first hits of the pixel-centre rays of the rows. Throws DeviceError.
-void launch_see_middle_surfaces(const LayerJob& job, MiddleSurface* surfaces, cudaStream_t stream);
+void launch_see_pixel_centre_surfaces(const LayerJob& job, PixelCentreSurface* surfaces, cudaStream_t stream);
 
 }  // namespace realcam

@@ -124,12 +124,12 @@ private:
         });
     }
 
-    void see_middle_surfaces(std::vector<MiddleSurface>& film, OwnStop&) override {
+    void see_pixel_centre_surfaces(std::vector<PixelCentreSurface>& film, OwnStop&) override {
         for_tiles(whole_film(), {settings().seed, 0, 1}, settings(), [&](const realcam_tile& place) {
             realcam_tile tile = place;
-            std::vector<MiddleSurface> surfaces(pixels_of(tile));
+            std::vector<PixelCentreSurface> surfaces(pixels_of(tile));
             tile.sums = surfaces.data();
-            kernels().see_middle_surfaces(&tile);
+            kernels().see_pixel_centre_surfaces(&tile);
             for_pixels(tile, whole_film(), [&](std::size_t here, std::size_t there) { film[there] = surfaces[here]; });
         });
     }

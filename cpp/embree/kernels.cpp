@@ -211,15 +211,15 @@ void see_layers_of_tile(realcam_tile* tile) {
     });
 }
 
-void see_middle_surfaces_of_tile(realcam_tile* tile) {
+void see_pixel_centre_surfaces_of_tile(realcam_tile* tile) {
     const SceneView view = *static_cast<const SceneView*>(tile->scene_view);
     const CameraView camera = *static_cast<const CameraView*>(tile->camera_view);
-    MiddleSurface seen[kLanes];
-    auto* const surfaces = static_cast<MiddleSurface*>(tile->sums);
+    PixelCentreSurface seen[kLanes];
+    auto* const surfaces = static_cast<PixelCentreSurface*>(tile->sums);
     auto scene = packet_scene_of<SceneKind::any>(*tile, view);
     for_blocks_of(*tile, camera.width, [&](const SampleBlock<kLanes>& block, int lanes, const int* place) {
         scene.order = RayOrder::coherent;
-        see_middle_surfaces(view, camera, block, scene, seen);
+        see_pixel_centre_surfaces(view, camera, block, scene, seen);
         for (int k = 0; k < lanes; ++k) surfaces[place[k]] = seen[k];
     });
 }
@@ -349,16 +349,17 @@ void trace_block(const void* lens_view, void* rays) {
 #define REALCAM_TEXT(a) REALCAM_TEXT2(a)
 
 extern "C" const realcam_kernels REALCAM_JOIN(realcam_kernels_, REALCAM_ISA);
-extern "C" const realcam_kernels REALCAM_JOIN(realcam_kernels_, REALCAM_ISA) = {REALCAM_TEXT(REALCAM_ISA),
-                                                                                realcam::render_tile,
-                                                                                realcam::see_layers_of_tile,
-                                                                                realcam::see_middle_surfaces_of_tile,
-                                                                                realcam::take_splats,
-                                                                                realcam::generate_all,
-                                                                                realcam::trace_block,
-                                                                                realcam::trace_all<double>,
-                                                                                realcam::trace_all<float>,
-                                                                                realcam::expose_sensor,
-                                                                                realcam::film_points<float>,
-                                                                                realcam::film_points<double>,
-                                                                                realcam::aim_all};
+extern "C" const realcam_kernels REALCAM_JOIN(realcam_kernels_, REALCAM_ISA) = {
+    REALCAM_TEXT(REALCAM_ISA),
+    realcam::render_tile,
+    realcam::see_layers_of_tile,
+    realcam::see_pixel_centre_surfaces_of_tile,
+    realcam::take_splats,
+    realcam::generate_all,
+    realcam::trace_block,
+    realcam::trace_all<double>,
+    realcam::trace_all<float>,
+    realcam::expose_sensor,
+    realcam::film_points<float>,
+    realcam::film_points<double>,
+    realcam::aim_all};

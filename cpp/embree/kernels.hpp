@@ -17,7 +17,7 @@ struct realcam_tile {
     const void* path_settings;  // PathSettings
     int (*stopped)(const void* stop);  // called before each block of samples; if true, the remaining ones are skipped
     const void* stop;
-    void* sums;  // PixelSum, LayerSum or MiddleSurface per pixel, row by row; sums are accumulated
+    void* sums;  // PixelSum, LayerSum or PixelCentreSurface per pixel, row by row; sums are accumulated
     int adds_squares, adds_half, balances;  // PixelSum::besides holds one of these
     int shares;  // pixels share samples (SampleSharing); all sums are invalid if stopped
     double lens_seconds, scene_seconds, other_seconds;
@@ -44,7 +44,7 @@ struct realcam_kernels {
     const char* instruction_set;
     void (*render_tile)(realcam_tile*);
     void (*see_layers)(realcam_tile*);  // same samples as render_tile
-    void (*see_middle_surfaces)(realcam_tile*);  // one sample per pixel
+    void (*see_pixel_centre_surfaces)(realcam_tile*);  // one sample per pixel
     void (*splat_ghosts)(realcam_ghosts*);
     void (*generate_rays)(const void* request);  // RayRequest
     void (*trace_block)(const void* lens_view, void* rays);  // LensView<float>, LensRays<float, 256>

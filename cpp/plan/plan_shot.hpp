@@ -3,7 +3,7 @@
 #include <cstdio>
 #include <string>
 
-#include "../camera/lens_way.hpp"
+#include "../camera/direct_lens_path.hpp"
 #include "../optics/coating/coated_faces.hpp"
 #include "../render/effect_names.hpp"
 #include "../render/render_settings.hpp"

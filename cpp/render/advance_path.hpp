@@ -152,7 +152,7 @@ REALCAM_HD inline bool advance_paths(const SceneView& view, const CameraView& ca
     probe.enter(RenderStage::scene);
     scene.intersect(path.rays, hits);
     probe.enter(RenderStage::other);
-    meet_surfaces<scene_kind>(view, camera, settings, block, bounce, hits, path, results, surfaces);
+    shade_hits<scene_kind>(view, camera, settings, block, bounce, hits, path, results, surfaces);
     if (path.count == 0) return false;  // on a GPU this frees the registers of what only continuing paths need
     const int places = path.places();
     if constexpr (N == 1)

@@ -1,5 +1,5 @@
 #pragma once
-#include "film_balance.hpp"
+#include "film_control_variates.hpp"
 #include "ghost_film.hpp"
 
 namespace REALCAM_NAMESPACE {
@@ -8,7 +8,7 @@ namespace REALCAM_NAMESPACE {
 struct FilmView {
     const PixelSum* pixels;  ///< row by row
     int width, height;
-    FilmBalance balance = {};
+    FilmControlVariates balance = {};
     SplattedLight splatted = {};
 
     REALCAM_HD std::int64_t pixel_count() const { return std::int64_t{width} * height; }

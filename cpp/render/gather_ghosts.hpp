@@ -1,6 +1,6 @@
 #pragma once
 #include "advance_path.hpp"
-#include "ghost_ways.hpp"
+#include "ghost_lens_paths.hpp"
 
 namespace REALCAM_NAMESPACE {
 
@@ -112,7 +112,7 @@ REALCAM_HD inline void gather_ghosts(const SceneView& view, const CameraView& ca
         }
     }
     PassedPower<N> passed;
-    pass_ghost_way<lens_kind, has_wavelengths>(ghosts, block.way, film.rays, variable, passed);
+    pass_ghost_lens_path<lens_kind, has_wavelengths>(ghosts, block.way, film.rays, variable, passed);
     CameraRays<N> camera_rays;
     // A sample lands on one of width * height pixels, and takes this path with the given probability.
     const float scale = static_cast<float>(camera.width) * static_cast<float>(camera.height) / block.way.probability;

@@ -1,6 +1,6 @@
 #pragma once
 #include "../scene/glossy_bsdf.hpp"
-#include "meet_surfaces.hpp"
+#include "shade_hits.hpp"
 
 namespace REALCAM_NAMESPACE {
 

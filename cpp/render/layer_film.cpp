@@ -39,23 +39,23 @@ std::vector<LayerImage> developed(const LayerFilm& film, LayerSet wanted, const 
         });
     });
     add(Layer::depth_middle, [&](Layer layer) {
-        return made(layer, film.middle, [](const MiddleSurface& surface, float* out) { *out = surface.depth; });
+        return made(layer, film.middle, [](const PixelCentreSurface& surface, float* out) { *out = surface.depth; });
     });
     add(Layer::normal_middle, [&](Layer layer) {
-        return made(layer, film.middle, [](const MiddleSurface& surface, float* out) {
+        return made(layer, film.middle, [](const PixelCentreSurface& surface, float* out) {
             out[0] = surface.normal.x;
             out[1] = surface.normal.y;
             out[2] = surface.normal.z;
         });
     });
     add(Layer::object_id, [&](Layer layer) {
-        return numbered(layer, film.middle, [&](const MiddleSurface& surface) { return ids.object(surface); });
+        return numbered(layer, film.middle, [&](const PixelCentreSurface& surface) { return ids.object(surface); });
     });
     add(Layer::material_id, [&](Layer layer) {
-        return numbered(layer, film.middle, [&](const MiddleSurface& surface) { return ids.material(surface); });
+        return numbered(layer, film.middle, [&](const PixelCentreSurface& surface) { return ids.material(surface); });
     });
     add(Layer::position_middle, [&](Layer layer) {
-        return made(layer, film.middle, [&](const MiddleSurface& surface, float* out) {
+        return made(layer, film.middle, [&](const PixelCentreSurface& surface, float* out) {
             constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
             const bool is_surface = surface.triangle != kNoTriangle;
             const Vec3d at = is_surface ? static_cast<Vec3d>(surface.position) + origin_m : Vec3d{kNone, kNone, kNone};

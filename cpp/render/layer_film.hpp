@@ -11,7 +11,7 @@ namespace REALCAM_NAMESPACE {
 /// Accumulated layers of a film, row by row. A vector is empty before its layers are computed.
 struct LayerFilm {
     std::vector<LayerSum> sums;
-    std::vector<MiddleSurface> middle;
+    std::vector<PixelCentreSurface> middle;
 };
 
 namespace layer_film_detail {
@@ -26,16 +26,17 @@ LayerImage made(Layer layer, const std::vector<Pixel>& film, F&& f) {
 }
 
 template <class F>
-LayerImage numbered(Layer layer, const std::vector<MiddleSurface>& film, F&& f) {
+LayerImage numbered(Layer layer, const std::vector<PixelCentreSurface>& film, F&& f) {
     LayerImage image{layer, {}, {}};
     image.numbers.reserve(film.size());
-    for (const MiddleSurface& surface : film) image.numbers.push_back(f(surface));
+    for (const PixelCentreSurface& surface : film) image.numbers.push_back(f(surface));
     return image;
 }
 
 }  // namespace layer_film_detail
 
-/// The requested layers among kSampledLayers and kMiddleLayers, except motion. `origin_m`: origin of the placed scene.
+/// The requested layers among kSampledLayers and kPixelCentreLayers, except motion. `origin_m`: origin of the placed
+/// scene.
 std::vector<LayerImage> developed(const LayerFilm& film, LayerSet wanted, const SurfaceIds& ids, Vec3d origin_m);
 
 }  // namespace REALCAM_NAMESPACE

@@ -48,7 +48,7 @@ struct LayerSum {
 };
 
 /// Nearest surface on the ray of a pixel's centre.
-struct MiddleSurface {
+struct PixelCentreSurface {
     float depth;   ///< metres along the axis from the film; infinite: no surface; NaN: no ray passes the lens
     Vec3f normal;  ///< as in LayerResults; 0 if there is no surface
     std::uint32_t triangle;  ///< kNoTriangle if there is no surface

@@ -85,8 +85,8 @@ private:
 /// Layers for which samples are traced to their first surface a second time.
 inline constexpr LayerSet kSampledLayers = {Layer::normal, Layer::albedo, Layer::circle_of_confusion_mm};
 /// Layers of the surface on the ray of each pixel's centre.
-inline constexpr LayerSet kMiddleLayers = {Layer::depth_middle, Layer::normal_middle, Layer::object_id,
-                                           Layer::material_id,  Layer::motion,        Layer::position_middle};
+inline constexpr LayerSet kPixelCentreLayers = {Layer::depth_middle, Layer::normal_middle, Layer::object_id,
+                                                Layer::material_id,  Layer::motion,        Layer::position_middle};
 /// Layers for the denoiser, which leaves out the traced light.
 inline constexpr LayerSet kDenoiserLayers = {Layer::albedo, Layer::normal, Layer::traced_light};
 /// Exposure through the left and the right half of the exit pupil.

@@ -35,7 +35,7 @@ LightEntries::LightEntries(const SceneView& scene, const CameraView& camera, con
                            const PupilTracer& tracer)
     : scene_(scene),
       camera_(camera),
-      to_film_(setup.effects().lens_way().surfaces()),
+      to_film_(setup.effects().direct_lens_path().surfaces()),
       tracer_(tracer),
       pupil_entries_(setup.pupil_entries()),
       front_reach_(entry_reach(setup.camera().lens)) {}

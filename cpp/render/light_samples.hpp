@@ -1,7 +1,7 @@
 #pragma once
+#include "emitter_hit.hpp"
 #include "environment_samples.hpp"
 #include "light_choices.hpp"
-#include "met_light.hpp"
 #include "path_numbers.hpp"
 
 namespace REALCAM_NAMESPACE {

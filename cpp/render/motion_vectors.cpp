@@ -49,7 +49,7 @@ private:
 
 }  // namespace
 
-LayerImage motion_vectors(const std::vector<MiddleSurface>& film, const Assembly& scene, const Camera& camera,
+LayerImage motion_vectors(const std::vector<PixelCentreSurface>& film, const Assembly& scene, const Camera& camera,
                           const CameraView& placed_camera, Vec3d origin_m) {
     constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
     LayerImage image{Layer::motion, std::vector<float>(2 * film.size()), {}};
@@ -61,7 +61,7 @@ LayerImage motion_vectors(const std::vector<MiddleSurface>& film, const Assembly
     for (std::size_t row = 0; row * width < film.size(); ++row) {
         if (!motion || camera.shutter.readout_time_s > 0) motion.emplace(scene, camera, static_cast<int>(row));
         for (std::size_t i = row * width; i < (row + 1) * width; ++i) {
-            const MiddleSurface& seen = film[i];
+            const PixelCentreSurface& seen = film[i];
             const bool is_surface = seen.triangle != kNoTriangle, is_dark = std::isnan(seen.depth);
             const bool may_move =
                 camera.moves() || (is_surface && seen.instance != kNoInstance && scene.instances[seen.instance].motion);

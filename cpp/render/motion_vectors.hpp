@@ -11,7 +11,7 @@ namespace REALCAM_NAMESPACE {
 /// Motion of the surfaces on the rays of the pixel centres: pixels to the right and down by which each moves in the
 /// picture while its pixel is exposed. 0 if nothing moves; NaN if the surface leaves the image circle or no ray passes.
 /// `placed_camera`: with arrays on the host, in a scene that was placed about `origin_m`.
-LayerImage motion_vectors(const std::vector<MiddleSurface>& film, const Assembly& scene, const Camera& camera,
+LayerImage motion_vectors(const std::vector<PixelCentreSurface>& film, const Assembly& scene, const Camera& camera,
                           const CameraView& placed_camera, Vec3d origin_m);
 
 }  // namespace REALCAM_NAMESPACE

@@ -47,7 +47,7 @@ struct NoExcess {};
 template <int N, Effects effects>
 struct PathResultsWith : PathResults<N> {
     [[no_unique_address]] std::conditional_t<effects.share_pixels(), SharedResults<N>, NothingShared> shared;
-    /// Weight of the passing samples in their own pixel, less one, by channel (film_balance.hpp).
+    /// Weight of the passing samples in their own pixel, less one, by channel (film_control_variates.hpp).
     [[no_unique_address]] std::conditional_t<effects.have_wavelengths(), ColorLanes<N>, NoExcess> excess;
 };
 

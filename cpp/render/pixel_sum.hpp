@@ -13,7 +13,7 @@ struct PixelSum {
     double irradiance[3];   ///< lux, summed over the samples
     double besides[3];  ///< additional sums: squares of the samples' irradiance (Layer::variance), or the irradiance
                         ///< through the right half of the exit pupil (kHalfLayers); otherwise, for samples with
-                        ///< wavelengths, their excess (film_balance.hpp)
+                        ///< wavelengths, their excess (film_control_variates.hpp)
     double depth;  ///< metres, summed over samples that hit a surface, times their weight in the exposure
     double met;  ///< sum of these weights
     std::uint64_t samples, passed;  ///< passed: through the lens; a small picture that is never finished has more than
@@ -73,7 +73,7 @@ struct PixelSum {
     }
 
     /// Lux seconds on the film; 0 without samples. `ghosts`: irradiance that was traced apart from the samples, lux.
-    /// `balance`: factor of film_balance.hpp.
+    /// `balance`: factor of film_control_variates.hpp.
     REALCAM_HD float exposure(int channel, double exposure_time_s, double ghosts = 0, double balance = 1) const {
         if (samples == 0) return 0;
         return film_exposure((balance * irradiance[channel] / static_cast<double>(samples) + ghosts) * exposure_time_s);

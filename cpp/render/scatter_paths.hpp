@@ -1,7 +1,7 @@
 #pragma once
 #include "../scene/glossy_bsdf.hpp"
-#include "meet_surfaces.hpp"
 #include "path_numbers.hpp"
+#include "shade_hits.hpp"
 #include "shadow_rays.hpp"
 
 namespace REALCAM_NAMESPACE {

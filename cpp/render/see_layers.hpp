@@ -1,7 +1,7 @@
 #pragma once
 #include <limits>
 
-#include "../camera/middle_rays.hpp"
+#include "../camera/pixel_centre_rays.hpp"
 #include "../scene/albedo.hpp"
 #include "layer_sum.hpp"
 #include "path_state.hpp"
@@ -62,15 +62,16 @@ REALCAM_HD inline void see_layers(const SceneView& view, const CameraView& camer
     }
 }
 
-/// Nearest surface on the ray of each pixel's centre, for a block (middle_rays).
+/// Nearest surface on the ray of each pixel's centre, for a block (pixel_centre_rays).
 template <int N, class SceneT>
-REALCAM_HD inline void see_middle_surfaces(const SceneView& view, const CameraView& camera, const SampleBlock<N>& block,
-                                           SceneT&& scene, MiddleSurface (&surfaces)[N]) {
+REALCAM_HD inline void see_pixel_centre_surfaces(const SceneView& view, const CameraView& camera,
+                                                 const SampleBlock<N>& block, SceneT&& scene,
+                                                 PixelCentreSurface (&surfaces)[N]) {
     using namespace see_layers_detail;
     CameraRays<N> camera_rays;
     SceneRays<N> rays;
     Hits<N> hits;
-    middle_rays(camera, block, camera_rays, rays.time);
+    pixel_centre_rays(camera, block, camera_rays, rays.time);
     for (int i = 0; i < N; ++i) rays.number[i] = kDecidedRay;
     trace_to_surfaces(camera_rays, scene, rays, hits);
     for (int i = 0; i < N; ++i) {

@@ -167,7 +167,7 @@ std::vector<SplatFilm> Session::expose_splats(std::int64_t first, int count, con
     return films;
 }
 
-Image Session::picture_of(const CollectedFilm& film, const KeepGoing& keep_going) {
+Image Session::picture_of(const AccumulatedFilm& film, const KeepGoing& keep_going) {
     const Turn turn(mutex_, keep_going);
     if (!ready_) throw InputError("nothing is set that could be photographed; set() prepares it");
     settle(keep_going);
@@ -180,10 +180,10 @@ Image Session::picture_of(const CollectedFilm& film, const KeepGoing& keep_going
             throw InputError("the film has other pixels than the picture");
     const FilmView view = view_of(film.pixels, camera_.film.width, camera_.film.height, settings_, film.splats);
     LayerFilm layers{film.layers, {}};
-    if (wanted.has_any(kMiddleLayers)) {
+    if (wanted.has_any(kPixelCentreLayers)) {
         layers.middle.resize(pixel_count());
         OwnStop stop(*this);
-        run_heeding([&] { see_middle_surfaces(layers.middle, stop); }, keep_going, stop);
+        run_heeding([&] { see_pixel_centre_surfaces(layers.middle, stop); }, keep_going, stop);
         if (stop) throw Cancelled();
     }
     Image image = developed(view, camera_.exposure_time_s);
@@ -305,15 +305,15 @@ void Session::forget_layers() {
 
 bool Session::lacks_layers(std::int64_t most) const {
     return (settings_.layers.has_any(kSampledLayers) && layer_samples_ < std::min(mean_samples_, most)) ||
-           (settings_.layers.has_any(kMiddleLayers) && layer_film_.middle.empty());
+           (settings_.layers.has_any(kPixelCentreLayers) && layer_film_.middle.empty());
 }
 
 void Session::see_what_is_missing(std::atomic<std::int64_t>& done, OwnStop& stop, std::int64_t most) {
     if (!lacks_layers(most) || stop) return;
     try {
-        if (settings_.layers.has_any(kMiddleLayers) && layer_film_.middle.empty()) {
+        if (settings_.layers.has_any(kPixelCentreLayers) && layer_film_.middle.empty()) {
             layer_film_.middle.resize(pixel_count());
-            see_middle_surfaces(layer_film_.middle, stop);
+            see_pixel_centre_surfaces(layer_film_.middle, stop);
         }
         if (settings_.layers.has_any(kSampledLayers)) {
             layer_film_.sums.resize(pixel_count());
@@ -335,7 +335,7 @@ void Session::see_what_is_missing(std::atomic<std::int64_t>& done, OwnStop& stop
 template <class Besides, class Counts>
 void Session::add_layers(Image& image, const LayerFilm& layers, Besides&& besides, Counts&& counts) {
     const LayerSet wanted = settings_.layers;
-    if (wanted.has_any(kSampledLayers) || wanted.has_any(kMiddleLayers)) {
+    if (wanted.has_any(kSampledLayers) || wanted.has_any(kPixelCentreLayers)) {
         const SurfaceIds ids(scene_);
         const bool needs_camera = wanted.has_any({Layer::motion, Layer::position_middle});
         const PlacedCamera placed = needs_camera ? placed_camera() : PlacedCamera{};

@@ -13,7 +13,7 @@
 #include "../camera/film_region.hpp"
 #include "../camera/pupil_start.hpp"
 #include "../scene/scene_checks.hpp"
-#include "collected_film.hpp"
+#include "accumulated_film.hpp"
 #include "image.hpp"
 #include "layer_film.hpp"
 #include "live_frame.hpp"
@@ -107,7 +107,7 @@ public:
 
     /// The picture that `picture` would return if this session had accumulated all of `film`. Throws InputError if the
     /// film does not fit this picture, and Cancelled.
-    Image picture_of(const CollectedFilm& film, const KeepGoing& keep_going = {});
+    Image picture_of(const AccumulatedFilm& film, const KeepGoing& keep_going = {});
 
     /// Sample counts of the current film. Waits for frames under way.
     SampleCounts sample_counts(const KeepGoing& keep_going = {});
@@ -171,7 +171,7 @@ protected:
     virtual void see_layers(const FilmRegion& region, const SampleRange& range, std::vector<LayerSum>& sums,
                             std::atomic<std::int64_t>& done, OwnStop& stop) = 0;
     /// Finds the surface on the ray of each pixel's centre; ends early if it is stopped.
-    virtual void see_middle_surfaces(std::vector<MiddleSurface>& film, OwnStop& stop) = 0;
+    virtual void see_pixel_centre_surfaces(std::vector<PixelCentreSurface>& film, OwnStop& stop) = 0;
     virtual std::vector<std::int64_t> count_samples() = 0;
     /// The camera in the placed scene, with arrays on the host.
     struct PlacedCamera {

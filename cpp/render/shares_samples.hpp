@@ -1,6 +1,6 @@
 #pragma once
 #include "../camera/camera_view.hpp"
-#include "film_balance.hpp"
+#include "film_control_variates.hpp"
 #include "sample_range.hpp"
 
 namespace realcam {

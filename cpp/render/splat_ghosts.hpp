@@ -1,8 +1,8 @@
 #pragma once
 #include "../camera/camera_pupil.hpp"
 #include "../scene/light.hpp"
-#include "ghost_ways.hpp"
-#include "met_light.hpp"
+#include "emitter_hit.hpp"
+#include "ghost_lens_paths.hpp"
 
 namespace REALCAM_NAMESPACE {
 
@@ -273,7 +273,7 @@ REALCAM_HD inline void splat_ghosts(const SceneView& view, const CameraView& cam
     choose_entries<lens_kind>(ghosts, block, first_sample, samples);
     send_light<scene_kind>(view, camera, 1.0f / block.way.probability, samples);
     PassedPower<N> passed;
-    pass_ghost_way<lens_kind, has_wavelengths>(ghosts, block.way, samples.rays, samples.variable, passed);
+    pass_ghost_lens_path<lens_kind, has_wavelengths>(ghosts, block.way, samples.rays, samples.variable, passed);
     Lanes<std::int32_t, N> pixel, hidden;
     reach_film<lens_kind, scene_kind, has_wavelengths>(camera, ghosts, stream, first_sample, passed, samples, pixel);
     scene.occluded(samples.shadow, hidden);

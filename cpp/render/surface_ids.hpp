@@ -16,10 +16,10 @@ class SurfaceIds {
 public:
     explicit SurfaceIds(const Assembly& assembly);
 
-    std::uint32_t object(const MiddleSurface& surface) const {
+    std::uint32_t object(const PixelCentreSurface& surface) const {
         return surface.triangle == kNoTriangle ? 0 : place_of(surface) + 1;
     }
-    std::uint32_t material(const MiddleSurface& surface) const {
+    std::uint32_t material(const PixelCentreSurface& surface) const {
         return surface.triangle == kNoTriangle ? 0 : first_material_[place_of(surface)] + surface.material;
     }
 
@@ -27,7 +27,7 @@ public:
     const IdNames& names_of_materials() const { return materials_; }
 
 private:
-    static std::uint32_t place_of(const MiddleSurface& surface) {
+    static std::uint32_t place_of(const PixelCentreSurface& surface) {
         return surface.instance == kNoInstance ? 0 : surface.instance + 1;
     }
 

@@ -129,7 +129,7 @@ REALCAM_HD inline void trace_lights(const SceneView& view, const CameraView& cam
         samples.rays = entering;
         samples.color = sent;
         PassedPower<N> passed;
-        pass_ghost_way<lens_kind, has_wavelengths>(way, way.ways[0], samples.rays, samples.variable, passed);
+        pass_ghost_lens_path<lens_kind, has_wavelengths>(way, way.ways[0], samples.rays, samples.variable, passed);
         reach_film<lens_kind, scene_kind, has_wavelengths>(camera, way, round, first_sample, passed, samples,
                                                            pixels[step]);
         for (int i = 0; i < N; ++i) {

@@ -169,7 +169,8 @@ double least_lamp_share(const SceneView& scene, const CameraView& camera, const 
 
 std::vector<GhostView> splatted_lights(const CameraSetup& setup, const TracedLights& lights) {
     std::vector<GhostView> views = setup.effects().splats();
-    if (!lights.empty()) views.push_back(setup.effects().lens_way().view(GhostLight::direct, lights.pixel_samples()));
+    if (!lights.empty())
+        views.push_back(setup.effects().direct_lens_path().view(GhostLight::direct, lights.pixel_samples()));
     return views;
 }
 

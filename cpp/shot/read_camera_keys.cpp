@@ -5,10 +5,10 @@
 namespace realcam::shot {
 namespace {
 
-std::optional<KeyWay> way_named(std::string_view name) {
-    if (name == "linear") return KeyWay::linear;
-    if (name == "smooth") return KeyWay::smooth;
-    if (name == "step") return KeyWay::step;
+std::optional<CameraKeyInterpolation> way_named(std::string_view name) {
+    if (name == "linear") return CameraKeyInterpolation::linear;
+    if (name == "smooth") return CameraKeyInterpolation::smooth;
+    if (name == "step") return CameraKeyInterpolation::step;
     return std::nullopt;
 }
 

@@ -97,7 +97,7 @@ void check_blades(const ShotRequest& request) {
     }
 }
 
-void settle_noise_goal(ShotRequest& request) {
+void resolve_noise_goal(ShotRequest& request) {
     if (request.sampling == Sampling::counted) {
         if (!request.noise.says_nothing())
             throw InputError("noise, noise_codes, seconds and max_spp belong to spp \"auto\"");
@@ -112,7 +112,7 @@ void settle_noise_goal(ShotRequest& request) {
     request.settings.noise = goal_of(wanted);
 }
 
-void settle_keys(ShotRequest& request) {
+void resolve_keys(ShotRequest& request) {
     io::LensReadOptions options = request.lens_options;
     options.glasses.clear();  // these belong to the first lens
     for (std::size_t i = 0; i < request.keys.size(); ++i)

@@ -24,9 +24,9 @@ struct Shot {
 
 /// Reads the lenses of the keys, with the blades of the request. If keys zoom the request's lens, they get its
 /// f-number, which the lens need not reach at its initial zoom position. Throws InputError and LensFileError.
-void settle_keys(ShotRequest& request);
+void resolve_keys(ShotRequest& request);
 
-/// Lens, film and dials of a request after settle_keys, before the camera is placed. Throws InputError and
+/// Lens, film and dials of a request after resolve_keys, before the camera is placed. Throws InputError and
 /// LensFileError for all errors that can be found before the scene is read, which may take long.
 Camera camera_of(const ShotRequest& request);
 

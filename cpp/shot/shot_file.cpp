@@ -80,7 +80,7 @@ private:
             if (node) table_.checked(key, [&] { check_environment_change(shot.environment_change); });
         }
         table_.checked(shot.blades ? "blades" : "blade_rounding", [&] { check_blades(shot); });
-        table_.checked("spp", [&] { settle_noise_goal(shot); });
+        table_.checked("spp", [&] { resolve_noise_goal(shot); });
         if (const std::string why = illuminant_error(shot.settings); !why.empty())
             table_.fail(why, table_.find("illuminant"));
         table_.checked(shot.settings.clamp >= 0 ? "spp" : "clamp_cd_m2", [&] { validate(shot.settings); });

@@ -56,7 +56,7 @@ struct ShotRequest {
     std::vector<PoseKey> motion;  ///< motion of the camera, in place of position and look_at; empty: it does not move
     Shutter shutter;
     /// Keys of rings and dials, which replace the values in this struct. Their lenses hold only names, as `lens` does,
-    /// until settle_keys has read them.
+    /// until resolve_keys has read them.
     std::vector<CameraKey> keys;
     std::vector<std::string> key_places;  ///< position of each key in the file, for messages
     Shake shake;
@@ -82,7 +82,7 @@ struct ShotRequest {
 /// Sets the noise goal in the settings. Throws InputError if the number of samples is specified together with parts of
 /// the goal. If no noise is specified, the goal is kUnsaidGoal or, before denoising, kUnsaidNoiseToDenoise; if no time
 /// is specified either, kUnsaidGoal's limit applies.
-void settle_noise_goal(ShotRequest& request);
+void resolve_noise_goal(ShotRequest& request);
 
 /// Throws InputError if the blades of a request do not form a valid diaphragm.
 void check_blades(const ShotRequest& request);

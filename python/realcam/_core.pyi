@@ -1391,7 +1391,7 @@ class RenderStats(_Value):
     def device(self) -> str: ...
 
 @final
-class _CopyJudge:
+class _ToleranceEvaluator:
     def __init__(
         self,
         lens: Lens,
@@ -1732,7 +1732,7 @@ class Plan(_Value):
 
 def _plan(scene: Scene, camera: Camera, settings: RenderSettings, device: str, times: bool) -> Plan: ...
 def _number_text(value: float, digits: int) -> str: ...
-def _settle_film(
+def _resolve_film(
     scene: Scene, camera: Camera, others: list[Camera], settings: RenderSettings, device: str
 ) -> tuple[str, RenderSettings, str, str]: ...
 

@@ -12,7 +12,7 @@ import numpy as np
 from ._core import InputError, Lens, RayStatus, Spot
 from .roots import root_between
 
-FieldPlace = float | tuple[float, float]  #: an angle in degrees, or a film point (x, y) in mm from the film's centre
+FieldPosition = float | tuple[float, float]  #: an angle in degrees, or a film point (x, y) in mm from the film's centre
 _LARGEST_STEP_DEG = 5.0
 _STEPS_INWARDS = 160  # steps of 5%, down to 0.03% of the height
 _PROBES = np.column_stack([np.zeros(21), np.linspace(-1, 1, 21)])  # points of the stop in the meridional plane
@@ -22,12 +22,12 @@ STOP_PROBES = np.array(
 )
 
 
-def field_arguments(field: FieldPlace) -> dict[str, Any]:
+def field_arguments(field: FieldPosition) -> dict[str, Any]:
     """Keyword arguments that select a field point in Lens.spot and similar methods."""
     return {"film_mm": field} if isinstance(field, tuple) else {"field_deg": float(field)}
 
 
-def field_text(field: FieldPlace) -> str:
+def field_text(field: FieldPosition) -> str:
     """Text of a field point, for messages."""
     return f"the film point ({field[0]:.6g}, {field[1]:.6g}) mm" if isinstance(field, tuple) else f"{field:.6g} deg"
 

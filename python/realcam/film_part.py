@@ -169,7 +169,7 @@ def _is_splat(light: Any) -> bool:
     )
 
 
-class CollectedFilm:
+class AccumulatedFilm:
     """Sum of the parts of one film. Add parts in the order of their samples: floating-point sums depend on it."""
 
     def __init__(self, width: int, height: int) -> None:

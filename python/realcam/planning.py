@@ -50,7 +50,7 @@ def _with_auto(effects: str | Iterable[str] | None) -> tuple[str, ...]:
     return ("auto", *effects) if is_list else ("auto",) if effects is None else ("auto", effects)  # type: ignore
 
 
-class Settled(NamedTuple):
+class Resolved(NamedTuple):
     """Camera and settings of a picture after "auto" is resolved."""
 
     camera: Camera
@@ -58,20 +58,20 @@ class Settled(NamedTuple):
     summary: str  # Plan.summary; empty if there was nothing to resolve
 
 
-def settled(scene: Scene, camera: Camera, settings: RenderSettings, device: str, stacklevel: int) -> Settled:
+def resolved(scene: Scene, camera: Camera, settings: RenderSettings, device: str, stacklevel: int) -> Resolved:
     """Resolves the settings "auto" by the planner.
 
     Warns, `stacklevel` calls up, if the camera sees nothing to plan for. Otherwise raises what plan raises.
     """
-    return settled_film(scene, [camera], settings, device, stacklevel + 1)
+    return resolved_film(scene, [camera], settings, device, stacklevel + 1)
 
 
-def settled_film(
+def resolved_film(
     scene: Scene, cameras: Sequence[Camera], settings: RenderSettings, device: str, stacklevel: int
-) -> Settled:
+) -> Resolved:
     """Resolves "auto" once for all frames of a film. The returned camera is the first frame's."""
     camera, *others = cameras
-    model, settings, summary, warning = _core._settle_film(scene, camera, others, settings, device)
+    model, settings, summary, warning = _core._resolve_film(scene, camera, others, settings, device)
     if warning:
         warnings.warn(warning, stacklevel=stacklevel + 1)
-    return Settled(camera if model == camera.model else camera.replace(model=model), settings, summary)
+    return Resolved(camera if model == camera.model else camera.replace(model=model), settings, summary)

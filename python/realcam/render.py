@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from . import _core
 from ._core import Camera, InputError, RenderSettings, Scene
 from .image import Image
-from .planning import settled
+from .planning import resolved
 from .settings import settings_of
 
 if TYPE_CHECKING:
@@ -62,7 +62,7 @@ def render(
     if on_stop not in ("raise", "keep"):
         raise InputError(f'on_stop must be "raise" or "keep"; it is {on_stop!r:.60}')
     warn_of_no_light(scene)
-    camera, wanted, plan = settled(scene, camera, settings_of(settings, changes), device, stacklevel=2)
+    camera, wanted, plan = resolved(scene, camera, settings_of(settings, changes), device, stacklevel=2)
     warn_of_effects(camera, wanted)
 
     def taken(callback: ProgressCallback | None) -> Image:

@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 
 from . import _core
 from ._core import Camera, RenderSettings, Scene
-from .film_part import NO_STATS, CollectedFilm, FilmPart
+from .film_part import NO_STATS, AccumulatedFilm, FilmPart
 from .image import Image
-from .planning import Settled, settled
+from .planning import Resolved, resolved
 from .render import warn_of_effects, warn_of_no_light
 from .settings import setting, settings_of
 
@@ -63,13 +63,13 @@ class Session:
         **changes: Unpack[_SettingWords],
     ) -> None:
         self._asked_settings, self._asked_camera, self._device = settings_of(settings, changes), camera, device
-        self._settled = self._plan(scene, camera)  # raises if scene or camera have the wrong type
-        self._core = _core._Session(scene, self._settled.camera, self._settled.settings, device)
+        self._resolved = self._plan(scene, camera)  # raises if scene or camera have the wrong type
+        self._core = _core._Session(scene, self._resolved.camera, self._resolved.settings, device)
         warn_of_no_light(scene)
-        warn_of_effects(camera, self._settled.settings)
+        warn_of_effects(camera, self._resolved.settings)
 
-    def _plan(self, scene: Scene, camera: Camera) -> Settled:
-        return settled(scene, camera, self._asked_settings, self._device, stacklevel=4)
+    def _plan(self, scene: Scene, camera: Camera) -> Resolved:
+        return resolved(scene, camera, self._asked_settings, self._device, stacklevel=4)
 
     @property
     def scene(self) -> Scene:
@@ -84,7 +84,7 @@ class Session:
     @property
     def settings(self) -> RenderSettings:
         """The picture's settings, with "auto" replaced by what was planned."""
-        return self._settled.settings
+        return self._resolved.settings
 
     effects = setting("effects")
 
@@ -109,19 +109,19 @@ class Session:
             if asked.model == self.camera.model:  # derived from self.camera, whose model was planned
                 asked = asked.replace(model=self._asked_camera.model)
             if scene is None and settings is None:
-                now = self._settled_for(new_scene, asked)
+                now = self._resolved_for(new_scene, asked)
             else:
-                now = settled(new_scene, asked, wanted, self._device, stacklevel=2)
+                now = resolved(new_scene, asked, wanted, self._device, stacklevel=2)
         elif settings is None:
-            now = self._settled._replace(camera=asked)
+            now = self._resolved._replace(camera=asked)
         else:
-            now = Settled(asked, wanted, "")
+            now = Resolved(asked, wanted, "")
         self._core.set(new_scene, now.camera, now.settings)
-        self._asked_settings, self._asked_camera, self._settled = wanted, asked, now
+        self._asked_settings, self._asked_camera, self._resolved = wanted, asked, now
         if scene is not None:
             warn_of_no_light(scene)
 
-    def _settled_for(self, scene: Scene, asked: Camera) -> Settled:
+    def _resolved_for(self, scene: Scene, asked: Camera) -> Resolved:
         """Plans again, unless only exposure time or ISO have changed."""
 
         def exposed_alike(camera: Camera) -> Camera:
@@ -129,7 +129,7 @@ class Session:
 
         if asked != exposed_alike(self._asked_camera):
             return self._plan(scene, asked)
-        return self._settled._replace(camera=exposed_alike(self._settled.camera))
+        return self._resolved._replace(camera=exposed_alike(self._resolved.camera))
 
     def add(self, spp: int = 1) -> None:
         """Takes spp more samples per pixel, 1 to 16777216, and returns when they are done.
@@ -163,7 +163,7 @@ class Session:
         """
         picture = self._core.picture() | {"spp": round(float(self.samples.mean()))}
         settings = self.settings
-        return Image(**picture, camera=self.camera, seed=settings.seed, settings=settings, plan=self._settled.summary)
+        return Image(**picture, camera=self.camera, seed=settings.seed, settings=settings, plan=self._resolved.summary)
 
     def expose(
         self, region: _Region, first: int = 0, spp: int = 256, counts: NDArray[np.uint32] | None = None
@@ -199,18 +199,18 @@ class Session:
 
         Raises InputError for parts of another picture.
         """
-        film = CollectedFilm(*self.camera.film.resolution)
+        film = AccumulatedFilm(*self.camera.film.resolution)
         for part in parts:
             film.add(part)
         return self._image_of(film)
 
-    def _image_of(self, film: CollectedFilm) -> Image:
+    def _image_of(self, film: AccumulatedFilm) -> Image:
         layers = film.layers
         if layers is None and self.has_sampled_layers:
             layers = np.zeros(film.pixels.shape, _core._LAYER_SUM)
         picture = self._core.picture_of(film.pixels, layers, film.splats, NO_STATS | film.stats)
         settings = self.settings
-        return Image(**picture, camera=self.camera, seed=settings.seed, settings=settings, plan=self._settled.summary)
+        return Image(**picture, camera=self.camera, seed=settings.seed, settings=settings, plan=self._resolved.summary)
 
     @property
     def has_sampled_layers(self) -> bool:

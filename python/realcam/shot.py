@@ -14,7 +14,7 @@ from . import _core, denoiser
 from ._core import Camera, CameraKey, InputError, Lens, RenderSettings, Scene, Shake
 from .bundled_scenes import bundled_file
 from .image import Image
-from .planning import settled_film
+from .planning import resolved_film
 from .render import ProgressCallback, render
 from .settings import setting
 
@@ -122,7 +122,7 @@ class Shot:
 
         cameras = {number: camera_of(number) for number in numbers}
         some = _core._frames_to_plan(numbers, self.camera, self.keys, frames_per_second)
-        planned = settled_film(self.scene, [cameras[n] for n in some], self.settings, device, stacklevel=2)
+        planned = resolved_film(self.scene, [cameras[n] for n in some], self.settings, device, stacklevel=2)
         settings = planned.settings
         cameras = {number: camera.replace(model=planned.camera.model) for number, camera in cameras.items()}
         if self.iso_follows_s is not None:

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import realcam as rc
-from realcam._core import _CopyJudge
+from realcam._core import _ToleranceEvaluator
 
 PEER = json.loads(gzip.decompress((Path(__file__).parent / "tolerance_peer.json.gz").read_bytes()))
 
@@ -38,7 +38,7 @@ def judged() -> tuple[rc.Lens, np.ndarray]:
     lens = lens.stopped_down(lens.first_order().effective_focal_length_mm / PEER["aperture_mm"])
     fields = np.column_stack([np.zeros(3), np.deg2rad(PEER["fields_deg"])])
     colours = np.array([[PEER["wavelength_nm"], 1.0]])
-    judge = _CopyJudge(lens, fields, np.inf, colours, [PEER["frequency_per_mm"]], 16, True, False, None, None)
+    judge = _ToleranceEvaluator(lens, fields, np.inf, colours, [PEER["frequency_per_mm"]], 16, True, False, None, None)
     errors = [(kind, place[row], place[row]) for kind, row in PEER["errors"]]
     return lens, judge.judge(errors, np.array(PEER["sizes"]))["mtf"][..., 0]
 

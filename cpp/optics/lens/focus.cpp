@@ -143,7 +143,7 @@ LensSystem moved_by_group(const LensSystem& lens, double focus_distance) {
     const double forth = last + 1 < s.size() ? s[last].thickness : lens.film_distance;
     const double start = error(0), tolerance = kFocusTolerance * std::fabs(lens.film_position());
     if (start == 0) return lens;
-    std::optional<FaceCrossing> crossing;
+    std::optional<FaceOverlap> crossing;
     // The nearest root is the right one, as some groups also image a plane at a second, distant position, at which the
     // lens is quite another one. The search therefore proceeds outwards on both sides, by distance. A sign change at
     // which the image passes through infinity, or the last ray vanishes, is no root.

@@ -23,12 +23,12 @@ struct Face {
 
 /// Returns the deepest overlap of two faces at distances `from` to `to` from the axis; its depth is negative if they
 /// are apart. Beyond its rim a face is edged flat, at the sag of the rim.
-FaceCrossing deepest(const LensSystem& lens, const Face& first, const Face& second, double direction, double from,
-                     double to) {
+FaceOverlap deepest(const LensSystem& lens, const Face& first, const Face& second, double direction, double from,
+                    double to) {
     const Surface &a = lens.surfaces[static_cast<std::size_t>(first.index)],
                   &b = lens.surfaces[static_cast<std::size_t>(second.index)];
     const double rim = std::min(a.clear_semi_diameter, b.clear_semi_diameter);
-    FaceCrossing result{first.index, second.index, from, -kInfinity};
+    FaceOverlap result{first.index, second.index, from, -kInfinity};
     const auto look_at = [&](double radius) {
         const double gap = second.vertex + b.sag(std::min(radius, b.clear_semi_diameter)) - first.vertex -
                            a.sag(std::min(radius, a.clear_semi_diameter));
@@ -57,7 +57,7 @@ bool is_sunk(const Surface& front, const Surface& back, double direction) {
 /// Appends the overlaps of a run of faces until `crossings` has `most` entries. `in_glass`: for each face, true if
 /// glass lies between it and the next one.
 void append_crossings(const LensSystem& lens, const std::vector<Face>& run, const std::vector<bool>& in_glass,
-                      double direction, std::size_t most, std::vector<FaceCrossing>& crossings) {
+                      double direction, std::size_t most, std::vector<FaceOverlap>& crossings) {
     const auto surface = [&](std::size_t i) -> const Surface& {
         return lens.surfaces[static_cast<std::size_t>(run[i].index)];
     };
@@ -73,7 +73,7 @@ void append_crossings(const LensSystem& lens, const std::vector<Face>& run, cons
                                       : std::min(a.clear_semi_diameter, b.clear_semi_diameter);
             const double touch = kPrintedDigits * std::min(a.clear_semi_diameter, b.clear_semi_diameter);
             if (from < to) {
-                const FaceCrossing found = deepest(lens, run[i], run[j], direction, from, to);
+                const FaceOverlap found = deepest(lens, run[i], run[j], direction, from, to);
                 if (found.depth > touch) crossings.push_back(found);
                 if (crossings.size() >= most) return;
             }
@@ -85,9 +85,9 @@ void append_crossings(const LensSystem& lens, const std::vector<Face>& run, cons
 
 }  // namespace
 
-std::vector<FaceCrossing> find_crossings(const LensSystem& lens, std::size_t most) {
+std::vector<FaceOverlap> find_overlaps(const LensSystem& lens, std::size_t most) {
     const std::vector<double> z = lens.vertices();
-    std::vector<FaceCrossing> crossings;
+    std::vector<FaceOverlap> crossings;
     std::vector<Face> run;
     std::vector<bool> in_glass;
     double direction = 1;
@@ -122,8 +122,8 @@ std::vector<FaceCrossing> find_crossings(const LensSystem& lens, std::size_t mos
     return crossings;
 }
 
-std::optional<FaceCrossing> find_crossing(const LensSystem& lens) {
-    const std::vector<FaceCrossing> first = find_crossings(lens, 1);
+std::optional<FaceOverlap> find_crossing(const LensSystem& lens) {
+    const std::vector<FaceOverlap> first = find_overlaps(lens, 1);
     return first.empty() ? std::nullopt : std::optional(first.front());
 }
 

@@ -9,7 +9,7 @@
 namespace REALCAM_NAMESPACE {
 
 /// Overlap of two faces: light meets the second one in front of the first, so that the lens cannot be made.
-struct FaceCrossing {
+struct FaceOverlap {
     int first, second;  ///< surfaces, from 0
     double radius;  ///< distance from the axis, mm
     double depth;  ///< overlap there along the axis, mm
@@ -22,11 +22,11 @@ struct FaceCrossing {
 /// edged flat unless it is concave. Stops and apertures are planes without thickness and may cross a face: a stop may
 /// be specified at the vertex of one. Faces of revolution are compared only with those on the same axis, not across a
 /// tilt or a decentre.
-std::vector<FaceCrossing> find_crossings(const LensSystem& lens,
-                                         std::size_t most = std::numeric_limits<std::size_t>::max());
+std::vector<FaceOverlap> find_overlaps(const LensSystem& lens,
+                                       std::size_t most = std::numeric_limits<std::size_t>::max());
 
-/// Returns the first overlap of find_crossings; std::nullopt if no faces overlap.
-std::optional<FaceCrossing> find_crossing(const LensSystem& lens);
+/// Returns the first overlap of find_overlaps; std::nullopt if no faces overlap.
+std::optional<FaceOverlap> find_crossing(const LensSystem& lens);
 
 /// True if the film of a centred lens cuts through the last face, up to the smaller of the face's rim and the film's
 /// half diagonal. Always false for lenses without rotational symmetry.

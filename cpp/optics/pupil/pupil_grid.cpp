@@ -198,7 +198,7 @@ PupilGridNode PupilGrid::node_of(const DirectionBox& box) {
 PupilGridNode PupilGrid::box_at(double column, double row) const {
     const PupilGridView grid = view();
     const Vec2<double> film = film_point(column, row);
-    return pupil_grid_place(grid, static_cast<float>(film.x), static_cast<float>(film.y)).box;
+    return pupil_grid_lookup(grid, static_cast<float>(film.x), static_cast<float>(film.y)).box;
 }
 
 std::vector<PupilOutline> PupilGrid::outlines(const std::vector<PupilOutline>& of_nodes) const {

@@ -35,13 +35,13 @@ inline constexpr int kPupilGridSectors = 32;  ///< sectors of half a region
 inline constexpr int kCellsPerPupilNode = 2;
 
 /// Lookup of a film point: its cell, and the interpolated box of its region.
-struct PupilGridPlace {
+struct PupilGridLookup {
     PupilGridNode box;
     int cell;
     float sign_l, sign_m;  ///< -1: the region is mirrored
 };
 
-REALCAM_INLINE PupilGridPlace pupil_grid_place(const PupilGridView& pupil, float film_x, float film_y) {
+REALCAM_INLINE PupilGridLookup pupil_grid_lookup(const PupilGridView& pupil, float film_x, float film_y) {
     // Film points outside the grid use its edge.
     const auto within = [](float place, int cells) {
         const float last = static_cast<float>(cells);
@@ -72,7 +72,7 @@ REALCAM_INLINE PupilGridPlace pupil_grid_place(const PupilGridView& pupil, float
 }
 
 /// Inverse density in a sector, steradians of projected solid angle; 0 in a dark cell.
-REALCAM_INLINE float pupil_weight(const PupilGridPlace& place, const PupilGridCell& cell, const PupilSector& sector,
+REALCAM_INLINE float pupil_weight(const PupilGridLookup& place, const PupilGridCell& cell, const PupilSector& sector,
                                   bool lower) {
     const float area = (sector.x * sector.dy - sector.y * sector.dx) * (1.0f - sector.hole_squared);
     return select(lower, cell.lower_weight, cell.upper_weight) * area * place.box.half_width * place.box.half_height;
@@ -80,7 +80,7 @@ REALCAM_INLINE float pupil_weight(const PupilGridPlace& place, const PupilGridCe
 
 /// Samples a direction for a film point (x, y) in mm, from u and v in [0, 1). Uniform over each sector of the cell.
 REALCAM_INLINE PupilSample sample_pupil(const PupilGridView& pupil, float film_x, float film_y, float u, float v) {
-    const PupilGridPlace place = pupil_grid_place(pupil, film_x, film_y);
+    const PupilGridLookup place = pupil_grid_lookup(pupil, film_x, film_y);
     const PupilGridCell cell = pupil.cells[place.cell];
     const bool lower = u >= cell.upper_share;
     const float share = select(lower, 1.0f - cell.upper_share, cell.upper_share);
@@ -102,7 +102,7 @@ REALCAM_INLINE PupilSample sample_pupil(const PupilGridView& pupil, float film_x
 
 /// Density of sample_pupil at the optical direction cosines (l, m), per unit of their area.
 REALCAM_INLINE float pupil_pdf(const PupilGridView& pupil, float film_x, float film_y, float l, float m) {
-    const PupilGridPlace place = pupil_grid_place(pupil, film_x, film_y);
+    const PupilGridLookup place = pupil_grid_lookup(pupil, film_x, film_y);
     const float x = (place.sign_l * l - place.box.centre_l) / place.box.half_width;
     const float signed_y = (place.sign_m * m - place.box.centre_m) / place.box.half_height;
     const bool lower = signed_y < 0.0f;

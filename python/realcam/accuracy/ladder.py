@@ -13,7 +13,7 @@ import numpy as np
 from .._core import Camera, InputError, RenderSettings, Scene
 from ..image import Image
 from ..number_text import counted
-from ..planning import settled
+from ..planning import resolved
 from ..render import ProgressCallback, render
 from .errors import Codes, codes, flip, mean_square
 from .measurements import Measured, Measurements, Rung
@@ -77,7 +77,7 @@ def accuracy_cost(
     small = (max(1, round(columns * scale)), max(1, round(rows * scale)))
     camera = camera.replace(film=film.replace(resolution=small), model="full")
     asked = RenderSettings(effects=(), max_bounces=max_bounces)
-    bounces = settled(scene, camera, asked, device, stacklevel=2).settings.max_bounces
+    bounces = resolved(scene, camera, asked, device, stacklevel=2).settings.max_bounces
     settings = {"device": device, "threads": threads, "max_bounces": bounces}
     wanted = tuple(known_effects(camera) if effects is None else effects)
 

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from .._core import Lens
-from ..fields import FieldPlace, field_arguments
+from ..fields import FieldPosition, field_arguments
 from ..short_text import ShortText
 from .fields import Doubles
 
@@ -33,7 +33,7 @@ class ExitRays(ShortText):
 def exit_rays(
     lens: Lens,
     pupil: ArrayLike,
-    field: FieldPlace,
+    field: FieldPosition,
     wavelength_nm: float,
     object_distance_m: float | None = None,
 ) -> ExitRays:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .._core import InputError, Lens, RayBundle
-from ..fields import FieldPlace, field_arguments
+from ..fields import FieldPosition, field_arguments
 
 Doubles = NDArray[np.float64]
 LINE_F_NM, LINE_D_NM, LINE_C_NM = 486.1327, 587.5618, 656.2725
@@ -25,9 +25,9 @@ class Bundles:
     def __init__(self, lens: Lens, object_distance_m: float | None = None) -> None:
         self.lens = lens
         self.object_distance_m = object_distance_m
-        self._kept: dict[tuple[FieldPlace, float, int, int], RayBundle] = {}
+        self._kept: dict[tuple[FieldPosition, float, int, int], RayBundle] = {}
 
-    def at(self, field: FieldPlace, wavelength_nm: float, spokes: int = 32, nodes: int = 6) -> RayBundle:
+    def at(self, field: FieldPosition, wavelength_nm: float, spokes: int = 32, nodes: int = 6) -> RayBundle:
         """Ray bundle of a field point. Raises InputError if no light passes."""
         key = (field, float(wavelength_nm), spokes, nodes)
         if key not in self._kept:
@@ -40,7 +40,7 @@ class Bundles:
             )
         return self._kept[key]
 
-    def chief(self, field: FieldPlace, wavelength_nm: float) -> RayBundle:
+    def chief(self, field: FieldPosition, wavelength_nm: float) -> RayBundle:
         """A small ray bundle, sufficient for chief-ray data."""
         return self.at(field, wavelength_nm, 8, 2)
 
@@ -101,7 +101,7 @@ def three_of(values: Sequence[float], middle: float | None = None) -> Doubles:
     return np.unique([least, middle, largest])
 
 
-def film_points_of(film_mm: ArrayLike) -> list[FieldPlace]:
+def film_points_of(film_mm: ArrayLike) -> list[FieldPosition]:
     """(x, y) of each of (F, 2) film points. Raises InputError."""
     points = np.asarray(film_mm, dtype=float)
     if points.ndim != 2 or points.shape[1] != 2 or points.size == 0 or not np.isfinite(points).all():

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from numpy.typing import ArrayLike
 
 from .._core import InputError, Lens, RayBundle
-from ..fields import FieldPlace
+from ..fields import FieldPosition
 from ..short_text import ShortText
 from . import style
 from .fields import (
@@ -113,7 +113,7 @@ def _shares(weights: ArrayLike | None, count: int) -> Doubles:
     return shares
 
 
-def by_waves(source: Bundles, field: FieldPlace, colour: float, frequencies: Doubles, planes: Doubles) -> Transfer:
+def by_waves(source: Bundles, field: FieldPosition, colour: float, frequencies: Doubles, planes: Doubles) -> Transfer:
     """Diffraction MTF, by the autocorrelation of the pupil function."""
     pupil = pupil_function(source, field, colour)
     ways = [lines_of(pupil, tangential=tangential) for tangential in (True, False)]

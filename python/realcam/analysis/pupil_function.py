@@ -10,7 +10,7 @@ import numpy as np
 import scipy.linalg
 
 from .._core import InputError, RayBundle
-from ..fields import FieldPlace, field_text
+from ..fields import FieldPosition, field_text
 from ..short_text import ShortText
 from .fields import Bundles, Doubles
 
@@ -51,7 +51,7 @@ class PupilFunction(ShortText):
     mirrored: bool
 
 
-def pupil_function(bundles: Bundles, field: FieldPlace, wavelength_nm: float) -> PupilFunction:
+def pupil_function(bundles: Bundles, field: FieldPosition, wavelength_nm: float) -> PupilFunction:
     """Fits polynomials of the least sufficient degree. Raises UnevenWavefrontError if the largest does not suffice."""
     for degree, spokes, nodes in FITS:
         fitted = fit_pupil(bundles.at(field, wavelength_nm, spokes, nodes), degree)

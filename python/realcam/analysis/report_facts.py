@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from .. import lens_tables
 from .._core import InputError
-from ..fields import FieldPlace
+from ..fields import FieldPosition
 from .fields import Bundles, Doubles
 from .seidel_bars import SYMBOLS, seidel_bars, seidel_table
 
@@ -28,7 +28,7 @@ class ReportFacts:
     note: str
 
 
-def facts_of(source: Bundles, fields: Sequence[FieldPlace], colours: Doubles) -> ReportFacts:
+def facts_of(source: Bundles, fields: Sequence[FieldPosition], colours: Doubles) -> ReportFacts:
     lens = source.lens
     columns: tuple[str, ...] = lens_tables.PRESCRIPTION
     rows = list(lens_tables.prescription(lens))

@@ -15,7 +15,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from .._core import InputError
-from ..fields import FieldPlace, field_arguments
+from ..fields import FieldPosition, field_arguments
 from .bokeh import bokeh, plot_bokeh
 from .distortion import distortion, distortion_grid, plot_distortion, plot_distortion_grid
 from .field_curves import field_curves, plot_field_curves
@@ -169,7 +169,7 @@ class ReportPlots:
             self.mtf_method = "geometric"
             return compute(self.lens, method=self.mtf_method, **given)
 
-    def _psf(self, field: FieldPlace) -> Any:
+    def _psf(self, field: FieldPosition) -> Any:
         """Point spread function; geometric for wide spots, for which diffraction would take seconds."""
         bundle = self.source.at(field, self.lens.wavelength_nm)
         spot = float(np.ptp(bundle.points_mm, axis=0).max())

@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from numpy.typing import ArrayLike
 
 from .._core import InputError, Lens
-from ..fields import FieldPlace, field_arguments, field_text
+from ..fields import FieldPosition, field_arguments, field_text
 from ..short_text import ShortText
 from . import style
 from .exit_rays import exit_rays, hexapolar
@@ -58,7 +58,7 @@ def spot_diagram(
     no light passes.
     """
     angles: Doubles
-    fields: list[FieldPlace]
+    fields: list[FieldPosition]
     if film_mm is None:
         source, angles, colours = light_of(lens, fields_deg, wavelengths_nm, object_distance_m, bundles)
         fields = [float(angle) for angle in angles]
@@ -90,7 +90,7 @@ def spot_diagram(
     )
 
 
-def _chief_line(source: Bundles, field: FieldPlace) -> tuple[Doubles, Doubles]:
+def _chief_line(source: Bundles, field: FieldPosition) -> tuple[Doubles, Doubles]:
     """Film point and slopes dx/dz, dy/dz of the chief ray at the design wavelength, even if it is blocked."""
     lens = source.lens
     step = 1e-3 * max(abs(lens.film_distance_mm), 1.0)

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._core import Lens, RayStatus
-from ..fields import Field, FieldPlace, field_arguments
+from ..fields import Field, FieldPosition, field_arguments
 from ..short_text import ShortText
 from .cut import Cut, on_film
 
@@ -86,7 +86,7 @@ def _aimed(
 ) -> tuple[Array, Array]:
     pupil = np.zeros((len(_FAN), 2))
     pupil[:, cut.axis] = _FAN
-    place: FieldPlace = field.angle_deg
+    place: FieldPosition = field.angle_deg
     if not cut.lens.is_rotational or cut.axis == 0:
         place = (field.film_height_mm, 0.0) if cut.axis == 0 else (0.0, field.film_height_mm)
     named = field_arguments(place)

@@ -10,7 +10,7 @@ from pathlib import Path
 from .._core import InputError, Scene
 from ..archive import digest_of, write_archive
 from ..files import system_name
-from ..planning import settled
+from ..planning import resolved
 from ..session import Session
 from ..shot import Shot
 from .engine import Engine, probe_of
@@ -57,7 +57,7 @@ def _written(path: Path, shots: Mapping[str, Shot], device: str, tile: tuple[int
     for index, (name, shot) in enumerate(shots.items()):
         # A limit of seconds would give each machine a different number of samples.
         settings = shot.settings.with_(seconds=None) if shot.settings.spp == "auto" else shot.settings
-        camera, settings, plan = settled(shot.scene, shot.camera, settings, device, stacklevel=5)
+        camera, settings, plan = resolved(shot.scene, shot.camera, settings, device, stacklevel=5)
         if session is None:
             session = Session(shot.scene, camera, settings, device=device)
         else:

@@ -16,7 +16,7 @@ from .. import _core
 from .._core import Camera, InputError, RealcamError, RenderSettings, Scene
 from ..archive import packed, read_archive, write_archive
 from ..executing import Outcome
-from ..film_part import CollectedFilm
+from ..film_part import AccumulatedFilm
 from ..pickling import described, from_description
 from ..session import Session
 from .engine import probe_of
@@ -61,7 +61,7 @@ class ShotFilm:
     def __init__(self, folder: JobFolder, shot: int, stored: StoredShot) -> None:
         self._folder, self._shot, self._stored = folder, shot, stored
         self._record = folder.shots[shot]
-        self.film = CollectedFilm(*self._record.resolution)
+        self.film = AccumulatedFilm(*self._record.resolution)
         self.rounds = 0
         self._noise: _core._Rounds | None = None
         self._mean_spp = 0

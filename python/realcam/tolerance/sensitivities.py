@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .._core import InputError, _CopyJudge
+from .._core import InputError, _ToleranceEvaluator
 from .figures import CopyFigures, Doubles
 from .tolerances import MOST, TILTS_MOST_ARCMIN, Tolerance, errors_of
 
@@ -43,7 +43,9 @@ class Sensitivity:
         return {"tolerance": t.label, "limit": t.limit, "unit": t.unit, **dataclasses.asdict(self), "loss": self.loss}
 
 
-def sensitivities(judge: _CopyJudge, items: list[Tolerance], nominal: CopyFigures, frequency: int) -> list[Sensitivity]:
+def sensitivities(
+    judge: _ToleranceEvaluator, items: list[Tolerance], nominal: CopyFigures, frequency: int
+) -> list[Sensitivity]:
     rows = _rows(items, np.array([item.limit for item in items]))
     figures = CopyFigures.joined([judge.judge(errors_of(items), rows)])
     before = nominal.mean_mtf(frequency)[0]
@@ -64,7 +66,7 @@ def sensitivities(judge: _CopyJudge, items: list[Tolerance], nominal: CopyFigure
 
 
 def inverse_sensitivities(
-    judge: _CopyJudge, items: list[Tolerance], nominal: CopyFigures, frequency: int, loss: float
+    judge: _ToleranceEvaluator, items: list[Tolerance], nominal: CopyFigures, frequency: int, loss: float
 ) -> list[Tolerance]:
     """Returns the tolerances with the limits at which each alone costs `loss` of the mean MTF; inf if it never does.
 

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .._core import InputError, Lens, _CopyJudge
+from .._core import InputError, Lens, _ToleranceEvaluator
 from .compensators import Chosen, Compensator, chosen
 from .figures import CopyFigures, Doubles
 from .sensitivities import Sensitivity, inverse_sensitivities, sensitivities
@@ -47,7 +47,7 @@ class ToleranceStudy:
     sizes: Doubles
     is_whole: bool
     compensators: Chosen
-    _judge: _CopyJudge = field(repr=False, compare=False)
+    _judge: _ToleranceEvaluator = field(repr=False, compare=False)
 
     def __len__(self) -> int:
         return len(self.figures)
@@ -230,7 +230,7 @@ def tolerance_study(
         raise InputError("frequencies_per_mm must be positive numbers")
     colours = wavelengths_of(lens, wavelengths_nm)
     how = chosen(lens, compensators, fields)
-    judge = _CopyJudge(
+    judge = _ToleranceEvaluator(
         lens,
         np.deg2rad(fields),
         object_distance_m,
@@ -261,7 +261,7 @@ def random_copy(lens: Lens, tolerances: Tolerances | str, *, seed: int | None = 
 
 
 def _judged(
-    judge: _CopyJudge, errors: list[tuple[str, int, int]], sizes: Doubles, progress: Progress | None
+    judge: _ToleranceEvaluator, errors: list[tuple[str, int, int]], sizes: Doubles, progress: Progress | None
 ) -> list[dict[str, Doubles]]:
     parts: list[dict[str, Doubles]] = []
     for first in range(0, len(sizes), BLOCK):

@@ -107,7 +107,7 @@ TEST_CASE("pixels of which not all samples pass have the right light in the mean
             const double light = static_cast<double>(passed);
             pixel = {{light, light, light}, {}, 0, 0, samples, passed};
         }
-        const auto mean_and_variance = [&](const FilmBalance& balance) {
+        const auto mean_and_variance = [&](const FilmControlVariates& balance) {
             const Image image = developed({film.data(), kSide, kSide, balance}, 1);
             double sum = 0, squares = 0;
             for (const float e : image.exposure) {

@@ -98,9 +98,9 @@ private:
         for (LayerSum& sum : film) sum.weight += range.count;
         done += range.count;
     }
-    void see_middle_surfaces(std::vector<MiddleSurface>& film, OwnStop&) override {
+    void see_pixel_centre_surfaces(std::vector<PixelCentreSurface>& film, OwnStop&) override {
         notes.push_back("see middle");
-        for (MiddleSurface& surface : film) surface = {1.5f, {0, 0, 1}, 0, kNoInstance, 0, {0, 0, -1.5f}};
+        for (PixelCentreSurface& surface : film) surface = {1.5f, {0, 0, 1}, 0, kNoInstance, 0, {0, 0, -1.5f}};
     }
     std::vector<std::int64_t> count_samples() override { return {samples()}; }
     PlacedCamera placed_camera() const override { return {}; }
@@ -422,7 +422,7 @@ TEST_CASE("a picture is developed of what was collected elsewhere") {
     RenderSettings settings{.layers = {Layer::variance, Layer::sample_count, Layer::depth_middle}, .effects = {}};
     NotedSession session;
     session.set(Assembly(test::bare_scene()), camera, settings);
-    CollectedFilm film{FilmSums(1), {}, {}, {}};
+    AccumulatedFilm film{FilmSums(1), {}, {}, {}};
     film.pixels[0] = {{9, 0, 3}, {41, 0, 3}, 0, 0, 3, 3};
     film.stats.sampled_rays = 77;
     const Image image = session.picture_of(film);

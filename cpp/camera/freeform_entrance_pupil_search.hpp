@@ -19,14 +19,14 @@ struct FreeFoundRay {
     float etendue;  ///< mm^2 sr
 };
 
-/// EntrySearch for lenses without rotational symmetry: rays are traced back from a grid over the film through points of
-/// a plane in front of it.
-class FreeEntrySearch {
+/// EntrancePupilSearch for lenses without rotational symmetry: rays are traced back from a grid over the film through
+/// points of a plane in front of it.
+class FreeformEntrancePupilSearch {
 public:
     using Found = FreeFoundRay;
 
     /// `film_radius`: radius of a circle about the film's vertex that contains the film, mm.
-    FreeEntrySearch(const LensSystem& lens, double film_radius, const PupilTracer& tracer);
+    FreeformEntrancePupilSearch(const LensSystem& lens, double film_radius, const PupilTracer& tracer);
 
     /// Rays that pass along an optical path. `way`: its crossings, in the direction of light to the film; `lens`: the
     /// lens whose surfaces they index.

@@ -54,7 +54,7 @@ struct RegionSums {
 };
 
 /// Accumulated samples of a whole film, merged from all its parts, wherever they were exposed.
-struct CollectedFilm {
+struct AccumulatedFilm {
     FilmSums pixels;
     std::vector<LayerSum> layers;  ///< one for each pixel; empty if no requested layer needs them
     std::vector<SplatFilm> splats;

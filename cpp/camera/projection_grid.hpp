@@ -5,20 +5,20 @@
 #include "../optics/analysis/scene_bundle.hpp"
 #include "../optics/pupil/pupil_grid.hpp"
 #include "../optics/trace/ray_loop.hpp"
-#include "lines_of_sight.hpp"
+#include "projection_rays.hpp"
 
 namespace REALCAM_NAMESPACE {
 
 /// Projection rays of a lens without rotational symmetry: computed at the nodes of a grid over the film, with smooth
 /// interpolation in between. Cells of the grid with a corner that receives no light have no rays.
-class SightGrid : public LinesOfSight {
+class ProjectionGrid : public ProjectionRays {
 public:
     /// `setup`: set-up of the camera, with a PupilGrid. Covers the camera's film and a margin. Throws InputError.
-    SightGrid(const CameraSetup& setup, SightRay ray, const RayLoop& loop = {});
+    ProjectionGrid(const CameraSetup& setup, ProjectionRay ray, const RayLoop& loop = {});
 
     bool ends_in_film() const override { return ends_in_film_; }
     bool is_in_front(Vec3d point) const override { return point.z + film_z_ < reference_.z; }
-    std::optional<FilmSight> from(Vec2<double> place) const override;
+    std::optional<FilmProjection> from(Vec2<double> place) const override;
     std::optional<Vec2<double>> place_of(Vec3d point) const override;
 
 private:

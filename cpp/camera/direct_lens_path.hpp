@@ -5,7 +5,7 @@
 
 #include "../optics/ghost/ghost_coatings.hpp"
 #include "../optics/trace/lens_path.hpp"
-#include "entry_search.hpp"
+#include "entrance_pupil_search.hpp"
 #include "film_spectrum.hpp"
 #include "ghost_view.hpp"
 
@@ -15,10 +15,10 @@ namespace REALCAM_NAMESPACE {
 bool is_round_lens(const LensSystem& lens);
 
 /// Direct (ghost-free) lens path of light to the film, on which only mirrors reflect. Owns the memory of its views.
-class LensWay {
+class DirectLensPath {
 public:
     /// `spectrum`: for pictures whose samples have wavelengths. Throws InputError if a refractive index is unknown.
-    LensWay(const LensSystem& lens, const std::optional<FilmSpectrum>& spectrum, const Effects& effects);
+    DirectLensPath(const LensSystem& lens, const std::optional<FilmSpectrum>& spectrum, const Effects& effects);
 
     /// `pixel_samples`: see GhostView.
     GhostView view(GhostLight light, std::int32_t pixel_samples) const;
@@ -31,7 +31,7 @@ private:
     Effects effects_;
     LensPath<float> path_;
     LensKind kind_;
-    GhostWay way_;
+    GhostLensPath way_;
     float reach_;
     std::vector<IndexCubic> indices_;
     std::vector<GhostCoating<kOneWavelengthTerms>> coatings_;

@@ -1,4 +1,4 @@
-#include "sight_lines.hpp"
+#include "radial_projection.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -65,7 +65,8 @@ private:
 
 }  // namespace
 
-SightLines::SightLines(const CameraSetup& setup, SightRay ray, const RayLoop& loop) : lines_(kSteps + 1) {
+RadialProjection::RadialProjection(const CameraSetup& setup, ProjectionRay ray, const RayLoop& loop)
+    : lines_(kSteps + 1) {
     const Camera& camera = setup.camera();
     const LensSystem& lens = camera.lens;
     const FirstOrder data = first_order(lens, lens.wavelength_nm);
@@ -82,7 +83,7 @@ SightLines::SightLines(const CameraSetup& setup, SightRay ray, const RayLoop& lo
         ends_in_film_ = lit < reach_;
         if (ends_in_film_) reach_ = (1 - 1e-4) * lit;  // at the very edge the bundle has no width
         follow_light(with_round_stop(lens), view.pupil, loop);
-        if (ray == SightRay::chief) follow_chief_rays(with_round_stop(lens), view.pupil);
+        if (ray == ProjectionRay::chief) follow_chief_rays(with_round_stop(lens), view.pupil);
     } else {
         const double image_distance = camera_detail::ideal_lens_of(lens, data).image_distance;
         for (int k = 0; k <= kSteps; ++k) set_ideal(k, view, {pupil, image_distance});
@@ -98,7 +99,7 @@ SightLines::SightLines(const CameraSetup& setup, SightRay ray, const RayLoop& lo
     }
 }
 
-std::optional<FilmSight> SightLines::from(Vec2<double> place) const {
+std::optional<FilmProjection> RadialProjection::from(Vec2<double> place) const {
     const auto [x, y] = place;
     const double radius = hypotenuse(x, y);
     if (!(radius <= reach_)) return std::nullopt;
@@ -108,10 +109,10 @@ std::optional<FilmSight> SightLines::from(Vec2<double> place) const {
     const double cosine = std::cos(line->angle), sine = std::sin(line->angle);
     const double away = line->offset * cosine + line->start * sine;
     const double ahead = reference_ + line->start * cosine - line->offset * sine;
-    return FilmSight{{c * away, s * away, -ahead}, {c * sine, s * sine, -cosine}, line->light};
+    return FilmProjection{{c * away, s * away, -ahead}, {c * sine, s * sine, -cosine}, line->light};
 }
 
-std::optional<Vec2<double>> SightLines::place_of(Vec3d point) const {
+std::optional<Vec2<double>> RadialProjection::place_of(Vec3d point) const {
     const double away = hypotenuse(point.x, point.y);
     const std::optional<double> radius = radius_towards({away, -point.z - reference_});
     if (!radius) return std::nullopt;
@@ -119,7 +120,7 @@ std::optional<Vec2<double>> SightLines::place_of(Vec3d point) const {
     return Vec2<double>{share * point.x, share * point.y};
 }
 
-std::optional<SightLine> SightLines::at(double film_radius) const {
+std::optional<SightLine> RadialProjection::at(double film_radius) const {
     const double place = film_radius / reach_ * kSteps;
     const auto k = static_cast<std::size_t>(std::min(static_cast<int>(place), kSteps - 1));
     const double share = place - static_cast<double>(k), angle = angle_.at(place).value;
@@ -129,7 +130,7 @@ std::optional<SightLine> SightLines::at(double film_radius) const {
                      a.light + share * (b.light - a.light)};
 }
 
-std::optional<double> SightLines::radius_towards(Place place) const {
+std::optional<double> RadialProjection::radius_towards(Place place) const {
     if (place.away == 0 && place.ahead > lines_[0].start) return 0.0;
     double before = place.away;
     for (int k = 1; k <= kSteps; ++k) {
@@ -142,13 +143,13 @@ std::optional<double> SightLines::radius_towards(Place place) const {
     return std::nullopt;
 }
 
-OddCurve SightLines::curve_of(double SightLine::* value, bool rises) const {
+OddCurve RadialProjection::curve_of(double SightLine::* value, bool rises) const {
     std::vector<double> values;
     for (const SightLine& line : lines_) values.push_back(line.*value);
     return OddCurve(std::move(values), rises);
 }
 
-void SightLines::set(int k, const std::optional<SceneRay>& ray, double light) {
+void RadialProjection::set(int k, const std::optional<SceneRay>& ray, double light) {
     SightLine& line = lines_[static_cast<std::size_t>(k)];
     line = {kNone, kNone, kNone, light};
     if (!ray) return;
@@ -159,7 +160,7 @@ void SightLines::set(int k, const std::optional<SceneRay>& ray, double light) {
     line.start = away * sine + ahead * cosine;
 }
 
-void SightLines::follow_light(const LensSystem& lens, const PupilView& pupil, const RayLoop& loop) {
+void RadialProjection::follow_light(const LensSystem& lens, const PupilView& pupil, const RayLoop& loop) {
     // Adaptive refinement: the step halfway between two known ones is traced, too. If the cubics through the known
     // steps predict its ray, cubics that include it are some ten times more accurate, and the interval is not refined
     // further.
@@ -206,7 +207,7 @@ void SightLines::follow_light(const LensSystem& lens, const PupilView& pupil, co
     }
 }
 
-void SightLines::follow_chief_rays(const LensSystem& lens, const PupilView& pupil) {
+void RadialProjection::follow_chief_rays(const LensSystem& lens, const PupilView& pupil) {
     const RaysFromFilm from_film(lens, lens.wavelength_nm);
     double cosine = 0, change = 0;
     for (int k = 0; k <= kSteps; ++k) {
@@ -228,7 +229,7 @@ void SightLines::follow_chief_rays(const LensSystem& lens, const PupilView& pupi
     }
 }
 
-void SightLines::set_ideal(int k, const CameraView& view, ThinLensPlace thin) {
+void RadialProjection::set_ideal(int k, const CameraView& view, ThinLensPlace thin) {
     const Vec2f film = {0, static_cast<float>(radius_of(k))}, middle = {0, 0};
     if (view.model == CameraModel::thick_lens) {
         const LensFrameRay ray = thick_lens_ray(view, film, middle);
@@ -246,7 +247,7 @@ void SightLines::set_ideal(int k, const CameraView& view, ThinLensPlace thin) {
     set(k, light > 0 ? std::optional(ray) : std::nullopt, light);
 }
 
-void SightLines::end_where_lines_turn_back() {
+void RadialProjection::end_where_lines_turn_back() {
     const auto first =
         std::find_if(lines_.begin() + 1, lines_.end(), [](const SightLine& line) { return std::isfinite(line.angle); });
     sign_ = first != lines_.end() && (first->angle < 0 || (first->angle == 0 && first->offset < 0)) ? -1 : 1;
@@ -263,7 +264,7 @@ void SightLines::end_where_lines_turn_back() {
     }
 }
 
-double SightLines::root(int k, Place place) const {
+double RadialProjection::root(int k, Place place) const {
     double low = 0, high = 1, share = 0.5;
     for (int i = 0; i < 60 && high - low > 1e-15; ++i) {
         const OddCurve::Point angle = angle_.between(k, share), offset = offset_.between(k, share);

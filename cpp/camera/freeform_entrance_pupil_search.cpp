@@ -1,11 +1,11 @@
-#include "free_entry_search.hpp"
+#include "freeform_entrance_pupil_search.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "../math/hypotenuse.hpp"
 #include "../math/random.hpp"
-#include "entry_search.hpp"
+#include "entrance_pupil_search.hpp"
 
 namespace realcam {
 
@@ -62,7 +62,8 @@ std::vector<FreeGhostEntry> entries_around(const std::vector<FreeFoundRay>& rays
 
 }  // namespace
 
-FreeEntrySearch::FreeEntrySearch(const LensSystem& lens, double film_radius, const PupilTracer& tracer)
+FreeformEntrancePupilSearch::FreeformEntrancePupilSearch(const LensSystem& lens, double film_radius,
+                                                         const PupilTracer& tracer)
     : lens_(lens),
       to_scene_(film_path_ends(lens, LightDirection::to_scene)),
       film_{static_cast<float>(lens.film_distance), static_cast<float>(1 / lens.film_radius_of_curvature)},
@@ -83,7 +84,8 @@ FreeEntrySearch::FreeEntrySearch(const LensSystem& lens, double film_radius, con
     rear_reach_ = static_cast<float>(beside + share * (beside + film_radius));
 }
 
-std::vector<FreeFoundRay> FreeEntrySearch::along(const LensSystem& lens, const std::vector<Crossing>& way) const {
+std::vector<FreeFoundRay> FreeformEntrancePupilSearch::along(const LensSystem& lens,
+                                                             const std::vector<Crossing>& way) const {
     const LensSystem round = with_stop_around_blades(lens);
     LensSystem open = round;
     open.stop_semi_diameter = open.stop().clear_semi_diameter;
@@ -95,8 +97,8 @@ std::vector<FreeFoundRay> FreeEntrySearch::along(const LensSystem& lens, const s
 }
 
 template <int kRows>
-std::vector<FreeFoundRay> FreeEntrySearch::traced(const LensSystem& lens, const std::vector<Crossing>& way,
-                                                  const Rears& rears) const {
+std::vector<FreeFoundRay> FreeformEntrancePupilSearch::traced(const LensSystem& lens, const std::vector<Crossing>& way,
+                                                              const Rears& rears) const {
     constexpr int kPerCell = kRows * kRows, kCount = kGhostCells * kPerCell;
     static_assert(kCount % PupilTracer::kBlock == 0);
     const LensPath<float> back(lens, way, LightDirection::to_scene, lens.wavelength_nm, to_scene_);
@@ -137,7 +139,8 @@ std::vector<FreeFoundRay> FreeEntrySearch::traced(const LensSystem& lens, const 
     return found;
 }
 
-FreeEntrySearch::Rears FreeEntrySearch::around(const std::vector<FreeFoundRay>& rays, const Rears& before) {
+FreeformEntrancePupilSearch::Rears FreeformEntrancePupilSearch::around(const std::vector<FreeFoundRay>& rays,
+                                                                       const Rears& before) {
     struct Own {
         Rectangle in;
         bool is_known = false;
@@ -166,13 +169,13 @@ FreeEntrySearch::Rears FreeEntrySearch::around(const std::vector<FreeFoundRay>& 
     return around;
 }
 
-std::vector<FreeGhostEntry> FreeEntrySearch::entries_of(const std::vector<FreeFoundRay>& rays,
-                                                        const GhostGrid& directions) {
+std::vector<FreeGhostEntry> FreeformEntrancePupilSearch::entries_of(const std::vector<FreeFoundRay>& rays,
+                                                                    const GhostGrid& directions) {
     return entries_around(rays, &FreeFoundRay::front,
                           [&](const FreeFoundRay& ray) { return directions.cell_of(ray.half_tangents); });
 }
 
-std::vector<FreeGhostEntry> FreeEntrySearch::exits_of(const std::vector<FreeFoundRay>& rays) {
+std::vector<FreeGhostEntry> FreeformEntrancePupilSearch::exits_of(const std::vector<FreeFoundRay>& rays) {
     return entries_around(rays, &FreeFoundRay::rear, [](const FreeFoundRay& ray) { return ray.film_cell; });
 }
 

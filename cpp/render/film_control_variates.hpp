@@ -16,7 +16,7 @@ namespace REALCAM_NAMESPACE {
 // developed.
 
 /// Selects the control variates.
-struct FilmBalance {
+struct FilmControlVariates {
     bool passes = false;  ///< for the number of samples that pass
     bool wavelengths = false;  ///< for their weights in each channel
 
@@ -31,7 +31,7 @@ inline bool balances_wavelengths(const RenderSettings& settings) {
 
 /// If pixels learn their pupils, their pass rates differ, because each samples other pupil points; `passes` is then
 /// off.
-inline FilmBalance film_balance(const RenderSettings& settings) {
+inline FilmControlVariates film_control_variates(const RenderSettings& settings) {
     return {settings.pupil_sampling != PupilSampling::pixel, balances_wavelengths(settings)};
 }
 

@@ -1,4 +1,4 @@
-#include "entry_search.hpp"
+#include "entrance_pupil_search.hpp"
 
 #include <numbers>
 
@@ -27,7 +27,7 @@ float entry_reach(const LensSystem& lens) {
     return static_cast<float>(length(front.origin) + reach_of(lens.surfaces.front()));
 }
 
-EntrySearch::EntrySearch(const LensSystem& lens, double film_radius, const PupilTracer& tracer)
+EntrancePupilSearch::EntrancePupilSearch(const LensSystem& lens, double film_radius, const PupilTracer& tracer)
     : film_radius(film_radius),
       film_distance(lens.film_distance),
       film_index(lens.indices(lens.wavelength_nm).back()),
@@ -35,7 +35,7 @@ EntrySearch::EntrySearch(const LensSystem& lens, double film_radius, const Pupil
       rear_reach_(reach_of(lens.surfaces.back())),
       tracer(tracer) {}
 
-std::vector<FoundRay> EntrySearch::along(const LensSystem& lens, const std::vector<Crossing>& way) const {
+std::vector<FoundRay> EntrancePupilSearch::along(const LensSystem& lens, const std::vector<Crossing>& way) const {
     const LensSystem round = with_stop_around_blades(lens);
     LensSystem open = round;
     open.stop_semi_diameter = open.stop().clear_semi_diameter;
@@ -46,14 +46,14 @@ std::vector<FoundRay> EntrySearch::along(const LensSystem& lens, const std::vect
     return traced<kMany>(round, way, directions);
 }
 
-EntrySearch::Rectangle EntrySearch::all_directions(int ring) const {
+EntrancePupilSearch::Rectangle EntrancePupilSearch::all_directions(int ring) const {
     const double r = radius_of(ring);
     const auto cosine_to = [&](double away) { return away / hypotenuse(away, film_distance); };
     return {cosine_to(-rear_reach_ - r), cosine_to(rear_reach_ - r), cosine_to(rear_reach_)};
 }
 
-void EntrySearch::start(const Rectangle& in, int rows, int square, int lane, PupilTracer::Rays& rays,
-                        FoundRay& ray) const {
+void EntrancePupilSearch::start(const Rectangle& in, int rows, int square, int lane, PupilTracer::Rays& rays,
+                                FoundRay& ray) const {
     const double r = radius_of(ray.film_ring), ring = film_radius / kGhostBins;
     const double column = (in.high - in.low) / (2 * rows), row = in.across / rows;
     const double x = in.low + (square % (2 * rows) + 0.5) * column, y = (square / (2 * rows) + 0.5) * row;
@@ -75,7 +75,8 @@ void set_front(Vec3f o, Vec3f d, FoundRay& ray) {
     ray.front = {dot(o, Vec3f{-d.z * away.x, -d.z * away.y, sine}), -away.y * o.x + away.x * o.y};
 }
 
-EntrySearch::Directions EntrySearch::around(const std::vector<FoundRay>& rays, const Directions& before) {
+EntrancePupilSearch::Directions EntrancePupilSearch::around(const std::vector<FoundRay>& rays,
+                                                            const Directions& before) {
     Directions own{}, around{};
     const auto unite = [](Rectangle& a, const Rectangle& b) {
         if (b.across == 0) return;
@@ -113,14 +114,14 @@ float largest_half_tangent_of(const std::vector<FoundRay>& rays) {
 }
 
 GhostEntries entries_of(const std::vector<FoundRay>& rays, float largest_half_tangent) {
-    return entry_search_detail::entries_around(rays, &FoundRay::front, [&](const FoundRay& ray) {
+    return entrance_pupil_search_detail::entries_around(rays, &FoundRay::front, [&](const FoundRay& ray) {
         return static_cast<int>(ray.half_tangent / largest_half_tangent * static_cast<float>(kGhostBins));
     });
 }
 
 GhostEntries exits_of(const std::vector<FoundRay>& rays) {
-    return entry_search_detail::entries_around(rays, &FoundRay::rear,
-                                               [](const FoundRay& ray) { return ray.film_ring; });
+    return entrance_pupil_search_detail::entries_around(rays, &FoundRay::rear,
+                                                        [](const FoundRay& ray) { return ray.film_ring; });
 }
 
 double etendue_of(const std::vector<FoundRay>& rays) {

@@ -22,7 +22,7 @@ struct GhostRange {
 
 /// Properties that the samples of a block share.
 struct GhostBlock {
-    GhostWay way;
+    GhostLensPath way;
     std::int32_t number;  ///< index of that path
     std::uint32_t stream, first_sample;
 };
@@ -35,13 +35,13 @@ REALCAM_INLINE GhostBlock ghost_block(const GhostView& ghosts, GhostRange range)
     return {ghosts.ways[number], number, hash32(static_cast<std::uint32_t>(number), round), block * kGhostBlock};
 }
 
-namespace ghost_ways_detail {
+namespace ghost_lens_paths_detail {
 
 /// Fractions of the samples that enter in an enlarged entry rectangle, and anywhere on the plane, to find light that
 /// the rectangles have missed. The rectangle is enlarged kAroundScale times.
 inline constexpr float kAround = 1.0f / 16, kAnywhere = 1.0f / 64, kAroundScale = 3;
 
-}  // namespace ghost_ways_detail
+}  // namespace ghost_lens_paths_detail
 
 /// Point in the plane of a GhostEntry.
 struct EntryPlace {
@@ -51,7 +51,7 @@ struct EntryPlace {
 
 template <class Entry>
 REALCAM_INLINE EntryPlace entry_place(const Entry& entry, float reach, Vec2f u) {
-    using namespace ghost_ways_detail;
+    using namespace ghost_lens_paths_detail;
     constexpr bool is_free = std::is_same_v<Entry, FreeGhostEntry>;
     const bool known = entry.half_width > 0.0f;
     const float middle = 0.5f * (entry.low + entry.high), half_length = 0.5f * (entry.high - entry.low);
@@ -80,8 +80,8 @@ REALCAM_INLINE EntryPlace entry_place(const Entry& entry, float reach, Vec2f u) 
 
 /// Traces rays along a ghost path. `variable`: dispersion variable of each ray's wavelength.
 template <LensKind lens_kind, bool has_wavelengths, int N>
-REALCAM_INLINE void pass_ghost_way(const GhostView& ghosts, const GhostWay& way, LensRays<float, N>& rays,
-                                   const float (&variable)[N], PassedPower<N>& passed) {
+REALCAM_INLINE void pass_ghost_lens_path(const GhostView& ghosts, const GhostLensPath& way, LensRays<float, N>& rays,
+                                         const float (&variable)[N], PassedPower<N>& passed) {
     LensView<float> lens{ghosts.surfaces + way.first, way.count, ghosts.kind, ghosts.iris};
     if constexpr (lens_kind == LensKind::any) lens.free = ghosts.free.from(way.first);
     if constexpr (has_wavelengths) {

@@ -24,13 +24,13 @@ struct CopyFigures {
 
 /// Monte Carlo tolerance evaluation: computes the image quality of copies that differ little from a nominal lens, also
 /// tilted and decentred ones. Rays are aimed once, in the nominal lens. operator() may be called from several threads.
-class CopyJudge {
+class ToleranceEvaluator {
 public:
     /// Throws InputError if the request is invalid or no light of a field passes; passes on what `loop` throws to stop
     /// it.
-    CopyJudge(const LensSystem& nominal, StudyRequest request, const RayLoop& loop = {});
-    ~CopyJudge();
-    CopyJudge(CopyJudge&&) noexcept;
+    ToleranceEvaluator(const LensSystem& nominal, StudyRequest request, const RayLoop& loop = {});
+    ~ToleranceEvaluator();
+    ToleranceEvaluator(ToleranceEvaluator&&) noexcept;
 
     CopyFigures operator()(const LensSystem& copy) const;
 

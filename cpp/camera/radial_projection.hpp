@@ -6,7 +6,7 @@
 #include "../math/odd_curve.hpp"
 #include "../optics/analysis/scene_bundle.hpp"
 #include "../optics/trace/ray_loop.hpp"
-#include "lines_of_sight.hpp"
+#include "projection_rays.hpp"
 
 namespace REALCAM_NAMESPACE {
 
@@ -22,14 +22,14 @@ struct SightLine {
 /// Projection rays by film radius, in front of the camera's lens or of the ideal model that replaces it. The lens is
 /// rotationally symmetric, and an iris with blades is replaced by a circle of equal area, so one meridional plane
 /// represents all azimuths.
-class SightLines : public LinesOfSight {
+class RadialProjection : public ProjectionRays {
 public:
     /// `setup`: set-up of the camera. Rays are computed out to the corners of its film. Throws InputError.
-    SightLines(const CameraSetup& setup, SightRay ray, const RayLoop& loop = {});
+    RadialProjection(const CameraSetup& setup, ProjectionRay ray, const RayLoop& loop = {});
 
     bool ends_in_film() const override { return ends_in_film_; }
     bool is_in_front(Vec3d point) const override { return -point.z > reference_; }
-    std::optional<FilmSight> from(Vec2<double> place) const override;
+    std::optional<FilmProjection> from(Vec2<double> place) const override;
     std::optional<Vec2<double>> place_of(Vec3d point) const override;
 
 private:

@@ -1,4 +1,4 @@
-#include "lens_way.hpp"
+#include "direct_lens_path.hpp"
 
 #include "../optics/pupil/pupil_grid.hpp"
 #include "../optics/trace/film_frame.hpp"
@@ -10,7 +10,8 @@ bool is_round_lens(const LensSystem& lens) {
            LensPath<float>(lens, LightDirection::to_film, lens.wavelength_nm).view().kind != LensKind::any;
 }
 
-LensWay::LensWay(const LensSystem& lens, const std::optional<FilmSpectrum>& spectrum, const Effects& effects)
+DirectLensPath::DirectLensPath(const LensSystem& lens, const std::optional<FilmSpectrum>& spectrum,
+                               const Effects& effects)
     : effects_(effects),
       path_(lens, LightDirection::to_film, lens.wavelength_nm, film_path_ends(lens, LightDirection::to_film)),
       kind_(is_round_lens(lens) ? path_.view().kind : LensKind::any),
@@ -32,7 +33,7 @@ LensWay::LensWay(const LensSystem& lens, const std::optional<FilmSpectrum>& spec
             ghost_coatings(lens, way, fit_coatings<kGhostSpectrumTerms>(lens, way, all, variable), refracted, variable);
 }
 
-GhostView LensWay::view(GhostLight light, std::int32_t pixel_samples) const {
+GhostView DirectLensPath::view(GhostLight light, std::int32_t pixel_samples) const {
     const auto data_of = [](const auto& list) { return list.empty() ? nullptr : list.data(); };
     const LensView<float> lens = path_.view();
     GhostView view{};

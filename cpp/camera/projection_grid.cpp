@@ -1,4 +1,4 @@
-#include "sight_grid.hpp"
+#include "projection_grid.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -25,7 +25,7 @@ FilmArea folded_out(FilmArea area, MirrorPlanes planes) {
 
 }  // namespace
 
-SightGrid::SightGrid(const CameraSetup& setup, SightRay ray, const RayLoop& loop)
+ProjectionGrid::ProjectionGrid(const CameraSetup& setup, ProjectionRay ray, const RayLoop& loop)
     : planes_(mirror_planes(setup.camera().lens)) {
     const LensSystem& lens = setup.camera().lens;
     area_ = folded_out(setup.film_area(), planes_);
@@ -37,7 +37,7 @@ SightGrid::SightGrid(const CameraSetup& setup, SightRay ray, const RayLoop& loop
     if (!(length(reference_ - middle.chief.scene) < kFar)) reference_ = middle.chief.scene;
     const PupilGridView pupil = setup.pupil_grid()->view();
     const MeanRays mean(lens, lens.focus_distance - film_z_ + reference_.z);
-    if (ray == SightRay::chief) {
+    if (ray == ProjectionRay::chief) {
         const std::vector<SeenGrid::Values> nodes = nodes_by(
             [&](Vec2<double> film) -> std::optional<Seen> {
                 const double light = MeanRays::light_of(mean.bundle(pupil, film));
@@ -64,23 +64,23 @@ SightGrid::SightGrid(const CameraSetup& setup, SightRay ray, const RayLoop& loop
     finish(shown_where_light_lands(seen));
 }
 
-SightGrid::Seen SightGrid::seen_along(const SceneRay& ray, double light, Vec2<double> shift) const {
+ProjectionGrid::Seen ProjectionGrid::seen_along(const SceneRay& ray, double light, Vec2<double> shift) const {
     const Vec3d from = ray.origin - reference_, direction = normalized(ray.direction);
     const double start = dot(from, direction);
     return {direction, from - start * direction, start, light, shift};
 }
 
-Vec2<double> SightGrid::cell_size() const {
+Vec2<double> ProjectionGrid::cell_size() const {
     return {(area_.most.x - area_.least.x) / kColumns, (area_.most.y - area_.least.y) / kRows};
 }
 
-Vec2<double> SightGrid::film_point(int column, int row) const {
+Vec2<double> ProjectionGrid::film_point(int column, int row) const {
     const Vec2<double> size = cell_size();
     return {area_.least.x + column * size.x, area_.least.y + row * size.y};
 }
 
 template <class Look>
-std::vector<SightGrid::SeenGrid::Values> SightGrid::nodes_by(Look&& look, const RayLoop& loop) const {
+std::vector<ProjectionGrid::SeenGrid::Values> ProjectionGrid::nodes_by(Look&& look, const RayLoop& loop) const {
     const auto is_image = [&](int column, int row) {
         return (planes_.x && 2 * column < kColumns) || (planes_.y && 2 * row < kRows);
     };
@@ -109,7 +109,7 @@ std::vector<SightGrid::SeenGrid::Values> SightGrid::nodes_by(Look&& look, const 
     return nodes;
 }
 
-std::vector<SightGrid::Grid::Values> SightGrid::shown_where_light_lands(const SeenGrid& seen) const {
+std::vector<ProjectionGrid::Grid::Values> ProjectionGrid::shown_where_light_lands(const SeenGrid& seen) const {
     constexpr int kMost = 20;
     const Vec2<double> size = cell_size();
     std::vector<Grid::Values> lines;
@@ -134,7 +134,7 @@ std::vector<SightGrid::Grid::Values> SightGrid::shown_where_light_lands(const Se
     return lines;
 }
 
-void SightGrid::finish(std::vector<Grid::Values> lines) {
+void ProjectionGrid::finish(std::vector<Grid::Values> lines) {
     const Vec2<double> size = cell_size();
     const double column = std::clamp(-area_.least.x / size.x, 0.0, static_cast<double>(kColumns));
     const double row = std::clamp(-area_.least.y / size.y, 0.0, static_cast<double>(kRows));
@@ -150,7 +150,7 @@ void SightGrid::finish(std::vector<Grid::Values> lines) {
     lines_.emplace(kColumns + 1, kRows + 1, lines);
 }
 
-std::optional<FilmSight> SightGrid::from(Vec2<double> place) const {
+std::optional<FilmProjection> ProjectionGrid::from(Vec2<double> place) const {
     const Vec2<double> size = cell_size();
     const double column = (-place.x - area_.least.x) / size.x, row = (-place.y - area_.least.y) / size.y;
     // Margin that keeps the film's corners inside despite rounding.
@@ -162,10 +162,10 @@ std::optional<FilmSight> SightGrid::from(Vec2<double> place) const {
     const Vec3d direction = normalized(Vec3d{line[0], line[1], line[2]}), foot = {line[3], line[4], line[5]};
     Vec3d origin = reference_ + foot + line[6] * direction;
     origin.z -= film_z_;
-    return FilmSight{origin, direction, line[kLight]};
+    return FilmProjection{origin, direction, line[kLight]};
 }
 
-std::optional<Vec2<double>> SightGrid::place_of(Vec3d point) const {
+std::optional<Vec2<double>> ProjectionGrid::place_of(Vec3d point) const {
     const Vec3d from = point + Vec3d{0, 0, film_z_} - reference_;
     std::optional<GridPlace> at = nearest_node(from);
     if (!at || !follow(from, *at)) return std::nullopt;
@@ -173,7 +173,7 @@ std::optional<Vec2<double>> SightGrid::place_of(Vec3d point) const {
     return Vec2<double>{-(area_.least.x + at->column * size.x), -(area_.least.y + at->row * size.y)};
 }
 
-std::optional<SightGrid::GridPlace> SightGrid::nearest_node(Vec3d from) const {
+std::optional<ProjectionGrid::GridPlace> ProjectionGrid::nearest_node(Vec3d from) const {
     constexpr int kEvery = 2;
     std::optional<GridPlace> nearest;
     double least = std::numeric_limits<double>::infinity();
@@ -189,7 +189,7 @@ std::optional<SightGrid::GridPlace> SightGrid::nearest_node(Vec3d from) const {
     return nearest;
 }
 
-bool SightGrid::follow(Vec3d from, GridPlace& at) const {
+bool ProjectionGrid::follow(Vec3d from, GridPlace& at) const {
     constexpr int kMostSteps = 30, kMostHalvings = 8;
     constexpr double kClose = 1e-11, kLargestStep = 4;
     Grid::Point line = lines_->at(at.column, at.row);

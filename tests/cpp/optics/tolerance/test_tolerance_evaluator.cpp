@@ -1,7 +1,7 @@
 // Figures of copies. Truth: a surface that images infinity perfectly, out of focus by known lengths; diffraction's
 // limit; and symmetries.
 
-#include "optics/tolerance/copy_judge.hpp"
+#include "optics/tolerance/tolerance_evaluator.hpp"
 
 #include <cmath>
 #include <numbers>
@@ -69,7 +69,7 @@ struct Copies {
 }  // namespace
 
 TEST_CASE("a perfect image has the contrast that diffraction leaves, and no spot") {
-    const CopyFigures found = CopyJudge(perfect(), one_colour({{0, 0}}))(perfect());
+    const CopyFigures found = ToleranceEvaluator(perfect(), one_colour({{0, 0}}))(perfect());
     CHECK(found.fields[0].rms_spot < 1e-12);
     CHECK(found.fields[0].light == about(1, 1e-14));
     CHECK(found.fields[0].distortion == 0);
@@ -88,8 +88,8 @@ TEST_CASE("a perfect image has the contrast that diffraction leaves, and no spot
 
 TEST_CASE("out of focus, the spot and the contrast of rays are those of an even cone of light") {
     const double defocus = 0.4;
-    const CopyFigures sharp = CopyJudge(perfect(), one_colour({{0, 0}}))(perfect());
-    const CopyFigures blurred = CopyJudge(perfect(defocus), one_colour({{0, 0}}))(perfect(defocus));
+    const CopyFigures sharp = ToleranceEvaluator(perfect(), one_colour({{0, 0}}))(perfect());
+    const CopyFigures blurred = ToleranceEvaluator(perfect(defocus), one_colour({{0, 0}}))(perfect(defocus));
     const double slope = kRim / (kFocus - perfect().surfaces[1].sag(kRim));
     CHECK(blurred.fields[0].rms_spot == about(defocus * slope / std::sqrt(2), slope * slope));
     for (std::size_t i = 0; i < 2; ++i) {
@@ -102,22 +102,22 @@ TEST_CASE("out of focus, the spot and the contrast of rays are those of an even 
 TEST_CASE("refocusing brings the film back to the focus") {
     for (const double defocus : {-0.3, 0.05}) {
         const LensSystem lens = perfect(defocus);
-        const CopyFigures by_spot = CopyJudge(lens, one_colour({{0, 0}}, {.refocus = true}))(lens);
+        const CopyFigures by_spot = ToleranceEvaluator(lens, one_colour({{0, 0}}, {.refocus = true}))(lens);
         CHECK(by_spot.settings.film_shift == about(-defocus, 1e-10));
         // Its square is a difference: of the spot that was, rounding leaves 1e-15 of the square.
         CHECK(by_spot.fields[0].rms_spot < 1e-7 * std::fabs(defocus) * kSlope);
         const Compensators by_contrast{.frequency = 40, .refocus = true};
-        const CopyFigures sharp = CopyJudge(lens, one_colour({{0, 0}}, by_contrast))(lens);
+        const CopyFigures sharp = ToleranceEvaluator(lens, one_colour({{0, 0}}, by_contrast))(lens);
         // At a distance z from the focus the contrast is less by (pi f s z)^2 / 2, s the slope at the rim.
         const double off = std::numbers::pi * 40 * kSlope * (sharp.settings.film_shift + defocus);
         CHECK(off * off / 2 < 1e-4);
-        const CopyFigures best = CopyJudge(perfect(), one_colour({{0, 0}}))(perfect());
+        const CopyFigures best = ToleranceEvaluator(perfect(), one_colour({{0, 0}}))(perfect());
         CHECK(sharp.fields[0].mtf[1] == about(best.fields[0].mtf[1], 1e-4));
     }
 }
 
 TEST_CASE("a copy with another radius is refocused to its own focus") {
-    const CopyJudge judge(perfect(), one_colour({{0, 0}}, {.refocus = true}));
+    const ToleranceEvaluator judge(perfect(), one_colour({{0, 0}}, {.refocus = true}));
     const double size = 0.5;
     const CopyFigures found = judge(with_errors(perfect(), {{ErrorKind::radius, 1, 1}}, &size));
     CHECK(found.settings.film_shift == about(kIndex * size / (kIndex - 1), 1e-9));
@@ -131,7 +131,7 @@ TEST_CASE("a copy with another radius is refocused to its own focus") {
 
 TEST_CASE("a chief ray through the vertex is refracted there, which is all of the distortion") {
     const double angle = 0.2;
-    const CopyFigures found = CopyJudge(perfect(), one_colour({{0, angle}, {angle, 0}}))(perfect());
+    const CopyFigures found = ToleranceEvaluator(perfect(), one_colour({{0, angle}, {angle, 0}}))(perfect());
     const double inside = std::asin(std::sin(angle) / kIndex);
     for (const FieldFigures& field : found.fields) {
         CHECK(std::hypot(field.at.x, field.at.y) == about(kFocus * std::tan(inside), 1e-9));
@@ -172,7 +172,8 @@ TEST_CASE("a film is set on three foci that do not lie on one line") {
 TEST_CASE("an element off the axis is found and moved back") {
     const LensSystem lens = io::read_lens("double-gauss-50mm");
     const Compensators compensators{.refocus = true, .shift = ElementShift{0, 1, false, 0.5}};
-    const CopyJudge judge(lens, one_colour({{0, 0}, {0.1, 0.1}, {-0.1, 0.1}, {0.1, -0.1}, {-0.1, -0.1}}, compensators));
+    const ToleranceEvaluator judge(
+        lens, one_colour({{0, 0}, {0.1, 0.1}, {-0.1, 0.1}, {0.1, -0.1}, {-0.1, -0.1}}, compensators));
     const std::vector<LensError> errors = {{ErrorKind::element_decentre_x, 0, 1},
                                            {ErrorKind::element_decentre_y, 0, 1}};
     const double sizes[] = {0.15, -0.08};
@@ -185,10 +186,10 @@ TEST_CASE("an element off the axis is found and moved back") {
 
 TEST_CASE("a lens that is turned about its axis by 90 degrees has the same figures") {
     const LensSystem lens = io::read_lens("double-gauss-50mm");
-    const CopyJudge along_x(lens, one_colour({{0.15, 0}}, {.refocus = true}));
-    const CopyJudge along_y(lens, one_colour({{0, 0.15}}, {.refocus = true}));
+    const ToleranceEvaluator along_x(lens, one_colour({{0.15, 0}}, {.refocus = true}));
+    const ToleranceEvaluator along_y(lens, one_colour({{0, 0.15}}, {.refocus = true}));
     const double size = 0.2, back = -0.2;
-    const auto figures = [&](const CopyJudge& judge, ErrorKind kind, double by) {
+    const auto figures = [&](const ToleranceEvaluator& judge, ErrorKind kind, double by) {
         return judge(with_errors(lens, {{kind, 2, 4}}, &by)).fields[0];
     };
     const FieldFigures x = figures(along_x, ErrorKind::element_decentre_x, size);
@@ -203,7 +204,7 @@ TEST_CASE("a lens that is turned about its axis by 90 degrees has the same figur
 
 TEST_CASE("a copy without errors is the lens as drawn, and copies are the same on any thread") {
     const Copies copies;
-    const CopyJudge judge(copies.lens, one_colour({{0, 0}, {0.15, 0.1}}, {.frequency = 20, .refocus = true}));
+    const ToleranceEvaluator judge(copies.lens, one_colour({{0, 0}, {0.15, 0.1}}, {.frequency = 20, .refocus = true}));
     CHECK(same_bits(judge(copies[0]), judge(copies.lens)));
     std::vector<CopyFigures> once, again(copies.sizes.size());
     for (std::size_t i = 0; i < again.size(); ++i) once.push_back(judge(copies[i]));
@@ -215,5 +216,5 @@ TEST_CASE("a copy without errors is the lens as drawn, and copies are the same o
 }
 
 TEST_CASE("a field from which no light comes is refused") {
-    CHECK(contains(message_of([] { CopyJudge(perfect(), one_colour({{0, 1.6}})); }), "field angle"));
+    CHECK(contains(message_of([] { ToleranceEvaluator(perfect(), one_colour({{0, 1.6}})); }), "field angle"));
 }

@@ -1,5 +1,5 @@
 #pragma once
-#include "met_light.hpp"
+#include "emitter_hit.hpp"
 #include "path_settings.hpp"
 
 namespace REALCAM_NAMESPACE {
@@ -37,7 +37,7 @@ struct PlainSurfaces {
     REALCAM_INLINE bool is_in_lanes(int) const { return true; }
 };
 
-namespace meet_surfaces_detail {
+namespace shade_hits_detail {
 
 REALCAM_INLINE Color absorbed(Color absorption, float way) {
     return {std::exp(-way * absorption.r), std::exp(-way * absorption.g), std::exp(-way * absorption.b)};
@@ -82,15 +82,15 @@ REALCAM_INLINE void end_at_image(const SceneView& view, const PathSettings& sett
     }
 }
 
-}  // namespace meet_surfaces_detail
+}  // namespace shade_hits_detail
 
 /// Adds the light of hit emitters and of the environment, and sets the surface points from which paths continue.
 /// Continuing paths move to the first slots.
 template <SceneKind scene_kind, int N, class SurfacesT>
-REALCAM_INLINE void meet_surfaces(const SceneView& view, const CameraView& camera, const PathSettings& settings,
-                                  const SampleBlock<N>& block, int bounce, const Hits<N>& hits, PathState<N>& path,
-                                  PathResults<N>& results, SurfacesT& surfaces) {
-    using namespace meet_surfaces_detail;
+REALCAM_INLINE void shade_hits(const SceneView& view, const CameraView& camera, const PathSettings& settings,
+                               const SampleBlock<N>& block, int bounce, const Hits<N>& hits, PathState<N>& path,
+                               PathResults<N>& results, SurfacesT& surfaces) {
+    using namespace shade_hits_detail;
     if constexpr (N > 1) {
         if (view.has_environment && view.environment.pixels)
             end_at_image<scene_kind>(view, settings, bounce, hits, path, results);

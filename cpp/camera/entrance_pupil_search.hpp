@@ -43,11 +43,11 @@ void set_front(Vec3f o, Vec3f d, FoundRay& ray);
 /// symmetric, so one azimuth of the film is enough; blades are replaced by the circumcircle of their opening. A ghost's
 /// bundle may be narrow: it is searched with the stop wide open first, then with the actual stop, and finally within
 /// the bounds of the rays found.
-struct EntrySearch {
+struct EntrancePupilSearch {
     using Found = FoundRay;
 
     /// `film_radius`: radius of a circle that contains the film, mm.
-    EntrySearch(const LensSystem& lens, double film_radius, const PupilTracer& tracer);
+    EntrancePupilSearch(const LensSystem& lens, double film_radius, const PupilTracer& tracer);
 
     /// Rays that pass along an optical path. `way`: its crossings, in the direction of light to the film; `lens`: the
     /// lens whose surfaces they index.
@@ -116,7 +116,7 @@ float largest_half_tangent_of(const std::vector<FoundRay>& rays);
 
 using GhostEntries = std::array<GhostEntry, kGhostBins>;
 
-namespace entry_search_detail {
+namespace entrance_pupil_search_detail {
 
 /// Bounding rectangles of the points of each bin and its neighbours. A margin of a sixteenth on each side covers the
 /// gaps between the rays.
@@ -149,7 +149,7 @@ GhostEntries entries_around(const std::vector<FoundRay>& rays, Vec2f FoundRay::*
     return entries;
 }
 
-}  // namespace entry_search_detail
+}  // namespace entrance_pupil_search_detail
 
 /// Entrance-pupil bounds of the rays, in uniform steps of the half tangent up to the largest one.
 GhostEntries entries_of(const std::vector<FoundRay>& rays, float largest_half_tangent);

@@ -1,4 +1,4 @@
-#include "collected_film.hpp"
+#include "accumulated_film.hpp"
 
 #include <algorithm>
 
@@ -12,7 +12,7 @@ SplattedLight view_of(const std::vector<SplatFilm>& films) {
 
 FilmView view_of(const FilmSums& pixels, int width, int height, const RenderSettings& settings,
                  const std::vector<SplatFilm>& splats) {
-    return {pixels.data(), width, height, film_balance(settings), view_of(splats)};
+    return {pixels.data(), width, height, film_control_variates(settings), view_of(splats)};
 }
 
 std::vector<float> traced_exposure(const std::vector<SplatFilm>& films, double exposure_time_s) {

@@ -1,4 +1,4 @@
-#include "copy_judge.hpp"
+#include "tolerance_evaluator.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -61,7 +61,7 @@ LensSystem with_settings(const LensSystem& lens, const CopySettings& settings, c
     return result;
 }
 
-struct CopyJudge::Parts {
+struct ToleranceEvaluator::Parts {
     LensSystem nominal;
     StudyRequest request;
     std::vector<double> wavelengths;
@@ -151,7 +151,7 @@ struct CopyJudge::Parts {
     }
 };
 
-CopyJudge::CopyJudge(const LensSystem& nominal, StudyRequest request, const RayLoop& loop)
+ToleranceEvaluator::ToleranceEvaluator(const LensSystem& nominal, StudyRequest request, const RayLoop& loop)
     : parts_(std::make_unique<Parts>()) {
     Parts& p = *parts_;
     p.nominal = nominal;
@@ -194,18 +194,18 @@ CopyJudge::CopyJudge(const LensSystem& nominal, StudyRequest request, const RayL
     }
 }
 
-CopyJudge::~CopyJudge() = default;
-CopyJudge::CopyJudge(CopyJudge&&) noexcept = default;
+ToleranceEvaluator::~ToleranceEvaluator() = default;
+ToleranceEvaluator::ToleranceEvaluator(ToleranceEvaluator&&) noexcept = default;
 
-const LensSystem& CopyJudge::nominal() const {
+const LensSystem& ToleranceEvaluator::nominal() const {
     return parts_->nominal;
 }
 
-const StudyRequest& CopyJudge::request() const {
+const StudyRequest& ToleranceEvaluator::request() const {
     return parts_->request;
 }
 
-CopyFigures CopyJudge::operator()(const LensSystem& copy) const {
+CopyFigures ToleranceEvaluator::operator()(const LensSystem& copy) const {
     const Parts& p = *parts_;
     CopyFigures result;
     Vec3d shift{0, 0, 0};

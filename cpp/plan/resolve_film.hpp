@@ -10,7 +10,7 @@
 namespace REALCAM_NAMESPACE {
 
 /// Settings of a picture, or of all frames of a film, after planning.
-struct SettledFilm {
+struct ResolvedFilm {
     CameraModel model = CameraModel::full_lens;
     RenderSettings settings;
     std::vector<Plan> plans;  ///< one for each frame that was planned
@@ -22,9 +22,10 @@ struct SettledFilm {
 /// comes and goes would be visible, unless the lens of another frame cannot show it. The camera model is the planned
 /// one, or that of the cameras if the plans differ. Frames that see nothing are ignored. Throws what make_plan throws,
 /// except NothingToPlan.
-inline SettledFilm settle_film(Session& session, const Assembly& scene, const std::vector<Camera>& cameras,
-                               const RenderSettings& asked, const PupilTracer& tracer, const Progress& progress = {}) {
-    SettledFilm film{cameras.front().model, asked, {}, "", ""};
+inline ResolvedFilm resolve_film(Session& session, const Assembly& scene, const std::vector<Camera>& cameras,
+                                 const RenderSettings& asked, const PupilTracer& tracer,
+                                 const Progress& progress = {}) {
+    ResolvedFilm film{cameras.front().model, asked, {}, "", ""};
     if (!asked.needs_plan()) return film;
     for (const Camera& camera : cameras) {
         try {

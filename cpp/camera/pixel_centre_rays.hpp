@@ -7,7 +7,7 @@ namespace REALCAM_NAMESPACE {
 /// pupil's radius.
 inline constexpr int kMiddlePlaces = 2048;
 
-namespace middle_rays_detail {
+namespace pixel_centre_rays_detail {
 
 /// Point of Vogel's spiral, in units of the half sizes of the pupil's box: uniformly spread, in order of increasing
 /// radius. The first is the centre.
@@ -28,7 +28,7 @@ REALCAM_INLINE Vec3f optical_direction(float l, float m, float index_squared) {
 /// Optical direction from a film point to a point in the box around its pupil.
 REALCAM_INLINE Vec3f direction_to(const CameraView& camera, Vec2f film, Vec2f place) {
     if (camera.pupil_grid.nodes) {
-        const PupilGridPlace at = pupil_grid_place(camera.pupil_grid, film.x, film.y);
+        const PupilGridLookup at = pupil_grid_lookup(camera.pupil_grid, film.x, film.y);
         return optical_direction(at.sign_l * (at.box.centre_l + at.box.half_width * place.x),
                                  at.sign_m * (at.box.centre_m + at.box.half_height * place.y),
                                  camera.pupil_grid.index_squared);
@@ -42,7 +42,7 @@ REALCAM_INLINE Vec3f direction_to(const CameraView& camera, Vec2f film, Vec2f pl
 /// False if no light can reach a film point.
 REALCAM_INLINE bool may_be_lit(const CameraView& camera, Vec2f film) {
     if (camera.pupil_grid.nodes)
-        return camera.pupil_grid.cells[pupil_grid_place(camera.pupil_grid, film.x, film.y).cell].upper_weight > 0.0f;
+        return camera.pupil_grid.cells[pupil_grid_lookup(camera.pupil_grid, film.x, film.y).cell].upper_weight > 0.0f;
     return pupil_row_position(camera.pupil, film.x, film.y).lit > 0.0f;
 }
 
@@ -112,16 +112,16 @@ REALCAM_HD inline void still_rays(const CameraView& camera, const SampleBlock<N>
     }
 }
 
-}  // namespace middle_rays_detail
+}  // namespace pixel_centre_rays_detail
 
 /// Pixel-centre rays: from the centre of each pixel through the centre of the pupil as seen from there. If that ray is
 /// blocked (mirror lenses have a central obstruction), the nearest ray in the pupil that passes replaces it. Weights
 /// are 1, or 0 if no ray passes. `times`: the middle of the exposure of each pixel. Streams and samples of the block
 /// are not used.
 template <int N>
-REALCAM_HD inline void middle_rays(const CameraView& camera, const SampleBlock<N>& block, CameraRays<N>& rays,
-                                   float (&times)[N]) {
-    middle_rays_detail::still_rays(camera, block, rays);
+REALCAM_HD inline void pixel_centre_rays(const CameraView& camera, const SampleBlock<N>& block, CameraRays<N>& rays,
+                                         float (&times)[N]) {
+    pixel_centre_rays_detail::still_rays(camera, block, rays);
     set_times(camera, block, times, [](int) { return 0.5f; });
     move_rays(camera, times, rays);
 }
