@@ -32,31 +32,31 @@ CUTS = {
     "camera/rays_with_effects.hpp": [
         (r'#include "diffracted_rays.hpp"', '#include "generate_rays.hpp"'),
         (r"template <int N, Effects effects>\n    requires\(effects\.diffraction\).*?\n\};\n", ""),
-        (r"/// generate_rays_from of a full lens whose.*?(?=/// generate_rays_from with effects)", ""),
+        (r"/// generate_rays_from for a full lens with.*?(?=/// generate_rays_from with effects)", ""),
         (r"    if constexpr \(may_lack_coatings.*?    \} else \{\n(.*?;\n).*?    \}\n\}\n", r"\1}\n"),
         (r"std::conditional_t<.*?>;", "NoWavelengths;"),
     ],
     "render/advance_path.hpp": [
         (r"    if constexpr \(effects\.have_wavelengths\(\)\) draw_wavelengths.*?\n", ""),
-        (r"    // The edges of the aperture spread.*?\n    \}\n", ""),
+        (r"    // Diffraction at the edges of the aperture.*?\n    \}\n", ""),
     ],
     "render/path_state.hpp": [
         (r"template <int N>\nstruct SharedResults.*?(?=template <int N, Effects effects>)", ""),
         (r"    \[\[no_unique_address\]\] .* shared;\n(.*\n){2}", ""),
     ],
     "render/render_samples.hpp": [
-        (r"/// Turns the light of a sample.*?(?=/// Takes one block)", ""),
+        (r"/// Converts the light of a sample.*?(?=/// Takes one block)", ""),
         (r"    if constexpr \(effects\.have_wavelengths\(\)\)\n.*?(?=\}\n\n\}  // namespace)", ""),
     ],
     "cuda/render_kernel_template.hpp": [
-        (r"/// What neighbours bring to a pixel.*?(?=/// How many samples)", ""),
+        (r"/// Adds a contribution from a neighbouring pixel.*?(?=/// Number of samples)", ""),
         (r"    if constexpr \(effects\.have_wavelengths\(\)\) \{.*?\n    \}\n", ""),
         (r"    const bool shares = .*?;\n", ""),
         (r"            if constexpr \(effects\.share_pixels\(\)\)\n.*\n", ""),
         (r"        if \(shares\) \{.*?\} else \{\n(.*?)        \}\n", r"\1"),
     ],
     "render/splat_ghosts.hpp": [
-        (r"/// Where light that geometrical optics brings to .*?(?=\}  // namespace splat_ghosts_detail)", ""),
+        (r"/// Diffracts light that geometrical optics brings to .*?(?=\}  // namespace splat_ghosts_detail)", ""),
         (r"template <LensKind lens_kind, SceneKind scene_kind, bool has_wavelengths.*?\n\}\n", ""),
     ],
 }
