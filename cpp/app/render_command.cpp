@@ -124,7 +124,7 @@ public:
         meter_exposure(*session, shot, request);
         if (!frames.empty()) return film(darkroom, shot, request, frames);
         shot.camera = shaken(std::move(shot.camera), request.shake);
-        const std::string decisions = settle(*session, shot, request, {shot.camera});
+        const std::string decisions = settle(*session, shot, request, {});
         for (const std::string& notice : effect_notices(request.settings.effects, shot.camera.lens)) warn(notice);
         const std::string figures = take(darkroom, shot, request, decisions, words_.outputs, is_to_be_finished);
         if (!words_.is_quiet || words_.as_json) std::fputs(figures.c_str(), stdout);
@@ -192,9 +192,12 @@ private:
         return shot;
     }
 
-    /// Makes the decisions left to the planner, for a picture or for some frames of a film. Returns a one-line summary.
-    std::string settle(Session& session, shot::Shot& shot, shot::ShotRequest& request,
-                       const std::vector<Camera>& cameras) {
+    /// Makes the decisions left to the planner, for the frames of a film or, without frames, for a picture. Returns a
+    /// one-line summary.
+    std::string settle(Session& session, shot::Shot& shot, shot::ShotRequest& request, const std::vector<int>& frames) {
+        if (!request.settings.needs_plan()) return "";
+        const std::vector<Camera> cameras =
+            frames.empty() ? std::vector{shot.camera} : cameras_to_plan(shot, request, frames);
         ResolvedFilm film = until_interrupted([&] {
             ProgressBar planning("planning ", !words_.is_quiet);
             return resolve_film(session, shot.scene, cameras, request.settings, fast_pupil_tracer(), [&](double) {
@@ -233,7 +236,7 @@ private:
 
     /// Takes the frames of a film that are not done yet, and encodes its videos.
     void film(const Darkroom& darkroom, shot::Shot& shot, shot::ShotRequest& request, const std::vector<int>& frames) {
-        const std::string decisions = settle(darkroom.session, shot, request, cameras_to_plan(shot, request, frames));
+        const std::string decisions = settle(darkroom.session, shot, request, frames);
         const Camera camera = shot.camera;
         // Checks all frames before the first is taken, so that a lens that cannot follow its keys is not reported at
         // the last.

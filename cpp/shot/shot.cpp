@@ -69,8 +69,10 @@ LensSystem with_shot_rings(const ShotRequest& request, const LensSystem& lens) {
     rings.f_number = request.f_number;
     rings.opens_as_far_as_it_can = request.f_number_is_of_other_lens;
     LensSystem set = with_rings(lens, rings);
-    if (rings.f_number && *rings.f_number < (1 - kEngravingError) * f_number_at_infinity(set))
-        tell(request, "the lens opens to f/" + number_text(f_number_at_infinity(set), 3) + ", and the shot has f/" +
+    if (!request.f_number_is_of_other_lens) return set;
+    const double opens_to = f_number_at_infinity(set);
+    if (*rings.f_number < (1 - kEngravingError) * opens_to)
+        tell(request, "the lens opens to f/" + number_text(opens_to, 3) + ", and the shot has f/" +
                           number_text(*rings.f_number, 3) + ": it is wide open");
     return set;
 }
