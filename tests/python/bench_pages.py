@@ -205,8 +205,8 @@ _TO_THE_TOP = """
 """
 # Clicks the tab of the panel that holds an element.
 _REVEAL = """
-(element) => {
-    const panel = element.closest("[role=tabpanel]");
+([element]) => {
+    const panel = element?.closest("[role=tabpanel]");
     if (panel && panel.style.display === "none") document.getElementById(panel.getAttribute("aria-labelledby")).click();
 }
 """
@@ -310,8 +310,7 @@ class BenchPage:
 
     def revealed(self, found: Any) -> Any:
         """A locator, after the tab of its panel was clicked if that is not the one that is shown."""
-        if found.count():
-            found.first.evaluate(_REVEAL)
+        found.evaluate_all(_REVEAL)  # unlike evaluate, does not wait for an element that is not there, or goes
         return found
 
     def test_id(self, name: str) -> Any:
@@ -328,8 +327,7 @@ class BenchPage:
 
     @property
     def status(self) -> str:
-        found = self._named("status")
-        return (found.text_content() or "") if found.count() else ""
+        return "".join(self._named("status").all_text_contents())
 
     def picture(self) -> np.ndarray:
         """The picture of all that was done on this page before, as soon as nothing will be added: (H, W, 3) codes."""
