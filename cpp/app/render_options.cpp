@@ -22,8 +22,7 @@ CLI::Validator not_empty() {
 
 void add_option_of(CLI::App& command, RenderWords& words, const shot::ShotKey& key) {
     const auto keep = [&words, &key](const std::string& word) { words.changes.options.emplace_back(&key, word); };
-    const std::string initial = *key.initial ? std::string(" [") + key.initial + ']' : "";
-    command.add_option_function<std::string>(key.option, keep, key.text + initial)
+    command.add_option_function<std::string>(key.option, keep, key.help())
         ->type_name(key.placeholder)
         ->group(key.group)
         ->check(not_empty());

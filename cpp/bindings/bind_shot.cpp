@@ -218,7 +218,7 @@ z_m; but for the time any may be missing. Raises InputError naming file and line
 py::list listed_shot_keys() {
     py::list keys;
     for (const shot::ShotKey& key : shot::shot_keys())
-        keys.append(py::make_tuple(key.name, key.option, key.group, key.placeholder, key.text, key.initial));
+        keys.append(py::make_tuple(key.name, key.option, key.group, key.placeholder, key.help()));
     return keys;
 }
 

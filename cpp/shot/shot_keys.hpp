@@ -37,6 +37,9 @@ struct ShotKey {
     const char* initial;  ///< default value, in words
     std::vector<std::string_view> replaces;  ///< keys that a change of this key removes
     void (*read)(const ShotTable&, const ShotKey&, ShotRequest&);  ///< called if the table has the key
+
+    /// Description with the default value, as help texts show it.
+    std::string help() const { return *initial ? text + " [" + initial + ']' : text; }
 };
 
 /// All keys, in the order in which they are read and listed.

@@ -210,10 +210,7 @@ def photograph(
 
 
 def _keys_as_text() -> str:
-    return "\n".join(
-        f"    {name}: {text[0].lower()}{text[1:]}{f' [{initial}]' if initial else ''}"
-        for name, _, _, _, text, initial in _core._shot_keys()
-    )
+    return "\n".join(f"    {name}: {text[0].lower()}{text[1:]}" for name, *_, text in _core._shot_keys())
 
 
 for _function in (Shot.load.__func__, photograph):  # type: ignore[attr-defined]

@@ -68,7 +68,7 @@ def compare(
     name = name.replace("-", "_")
     if f_number is not None and name == "f_number":
         raise InputError("--f-number: the f-number is what --vary names")
-    described = load_shot(shot, changes, device, **_goal(changes))
+    described = load_shot(shot, changes, device)
     if f_number is not None:  # keeps the brightness of the shot
         described = variations(described, "f_number", [str(f_number)])[0].shot
     settings = described.settings.with_(layers=GUIDES) if denoise else described.settings
@@ -125,14 +125,6 @@ def compare(
         if len(pictures) < len(varied):
             warnings.warn(f"the sheet has {len(pictures)} of {len(varied)} pictures", stacklevel=1)
         raise KeyboardInterrupt
-
-
-def _goal(changes: Any) -> dict[str, str]:
-    """The noise of each picture in the words of the command line, as far as the options leave it out."""
-    if changes.spp is not None:
-        return {}
-    noise = {} if changes.noise or changes.noise_codes else {"noise_codes": "2"}
-    return {**noise, "seconds": "60"}
 
 
 def sized(variation: Variation, longer_side_px: int) -> Camera:

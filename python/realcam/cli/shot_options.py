@@ -20,13 +20,13 @@ def shot_options(name: str, without: Collection[str] = (), panels: Collection[st
     panels: only those with these headings in help texts.
     """
     group = []
-    for key, option, panel, placeholder, text, initial in _core._shot_keys():
+    for key, option, panel, placeholder, text in _core._shot_keys():
         if option is None or key in without or (panels is not None and panel not in panels):
             continue
         wanted = typer.Option(
             option,
             metavar=placeholder,
-            help=f"{text} [{initial}]" if initial else text,
+            help=text,
             rich_help_panel=panel,
             autocompletion=completion_of(placeholder),
         )
@@ -34,9 +34,9 @@ def shot_options(name: str, without: Collection[str] = (), panels: Collection[st
     return make_dataclass(name, group, frozen=True)
 
 
-def load_shot(path: Path, options: Any, device: str, **unless_said: str) -> Shot:
-    """The shot with what the options say of it. unless_said: words of keys of which they say nothing."""
-    return shot_with_words(path, {**unless_said, **words_of(options)}, device)
+def load_shot(path: Path, options: Any, device: str) -> Shot:
+    """Loads a shot with the values of the options in place of its own."""
+    return shot_with_words(path, words_of(options), device)
 
 
 def words_of(options: Any) -> dict[str, str]:
