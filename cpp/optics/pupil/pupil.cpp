@@ -11,7 +11,7 @@ namespace realcam {
 
 Pupil::Pupil(const LensSystem& lens, double film_radius, PupilTracer tracer, const std::vector<double>& wavelengths_nm,
              const Pupil* similar)
-    : search_(lens, std::move(tracer), wavelengths_nm),
+    : search_(lens, FilmMap::radial, std::move(tracer), wavelengths_nm),
       film_radius_(film_radius * (1 + 1e-6)),
       image_radius_(film_radius_) {
     lens.require_rotational("the search for a pupil");
@@ -99,7 +99,7 @@ void Pupil::find_nodes() {
     ends_inside_film_ = !sight.dark.empty();
     if (ends_inside_film_) end_image(sight);
     const PupilRowBoxes boxes = rows().look_between(sight.lit);
-    std::optional<PupilBox> box =
+    std::optional<DirectionBox> box =
         *std::find_if(boxes.begin(), boxes.end(), [](const auto& found) { return found.has_value(); });
     for (const auto& found : boxes) {
         if (found) box = found;  // a node without light takes its inner neighbour's box
@@ -114,8 +114,9 @@ void Pupil::end_image(PupilRowSearch::Sight& sight) {
     sight.lit.push_back({image_radius_, last_box_});
 }
 
-PupilNode Pupil::node_of(const PupilBox& box) {
-    return {static_cast<float>(box.l()), static_cast<float>(box.half_width()), static_cast<float>(box.m_max)};
+PupilNode Pupil::node_of(const DirectionBox& box) {
+    return {static_cast<float>(box.centre().l), static_cast<float>(box.half_width()),
+            static_cast<float>(box.half_height())};
 }
 
 void Pupil::widen_last_nodes() {
@@ -133,9 +134,9 @@ bool Pupil::nodes_follow() const {
     for (int row = 0; row < kRows; ++row) {
         const PupilNode node = node_at(row + 0.5);
         if (node.half_width < 0.5f * on_axis) continue;
-        const std::optional<PupilBox> box = search_.look(radius_at(row + 0.5), track);
+        const std::optional<DirectionBox> box = track.look(search_, radius_at(row + 0.5));
         const double width = static_cast<double>(node.half_width);
-        if (!box || !(std::fabs(box->l() - static_cast<double>(node.centre)) < 0.5 * width) ||
+        if (!box || !(std::fabs(box->centre().l - static_cast<double>(node.centre)) < 0.5 * width) ||
             !(box->half_width() < 1.4 * width))
             return false;
     }
@@ -234,7 +235,7 @@ void Pupil::add_row(int row, PupilRow sectors, double reach, int clean_rounds) {
             const Vec2f u = sample_2d(stream, static_cast<std::uint32_t>(i), 0);
             places[i] = is_beside ? sectors.beside(static_cast<std::size_t>(i) % kSectors, u)
                                   : Vec2f{static_cast<float>(reach) * (2 * u.x - 1), static_cast<float>(reach) * u.y};
-            rays.set(i, radius,
+            rays.set(i, {radius, 0},
                      {static_cast<double>(node.centre + node.half_width * places[i].x),
                       static_cast<double>(node.half_height * places[i].y)});
         }

@@ -62,7 +62,7 @@ private:
     /// Ends the image at the innermost dark radius, with the box of the outermost lit one.
     void end_image(PupilRowSearch::Sight& sight);
 
-    static PupilNode node_of(const PupilBox& box);
+    static PupilNode node_of(const DirectionBox& box);
 
     /// Limits how fast the boxes shrink at the edge of the image: the search grid misses the thin ends of the crescent
     /// there.
@@ -109,7 +109,7 @@ private:
     double film_radius_, image_radius_;
     bool ends_inside_film_ = false, follows_ = false, is_moved_ = false;
     std::vector<PupilNode> nodes_;
-    PupilBox last_box_{};  ///< box of the outermost lit radius
+    DirectionBox last_box_{};  ///< box of the outermost lit radius
     /// Outlines in the boxes of the nodes: this pupil's own, or those of the similar one from which it was found.
     std::shared_ptr<const OutlinesByEighth> seen_;
     std::vector<PupilSector> outline_;

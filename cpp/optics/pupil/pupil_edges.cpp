@@ -9,7 +9,7 @@ namespace realcam {
 PupilEdgeSearch::PupilEdgeSearch(const LensSystem& lens, const PupilTracer& tracer)
     : path_(lens, LightDirection::to_scene, lens.wavelength_nm), film_distance_(lens.film_distance), tracer_(tracer) {}
 
-std::optional<PupilEdges> PupilEdgeSearch::at(double radius, double azimuth, const PupilBox& box) const {
+std::optional<PupilEdges> PupilEdgeSearch::at(double radius, double azimuth, const DirectionBox& box) const {
     const Spokes spokes(radius, azimuth, box, film_distance_);
     // Outer edges in the first half of the block, inner ones in the second.
     std::array<double, 2 * kSpokes> lit{}, dark{};
@@ -31,12 +31,13 @@ std::optional<PupilEdges> PupilEdgeSearch::at(double radius, double azimuth, con
     return edges;
 }
 
-PupilEdgeSearch::Spokes::Spokes(double radius, double azimuth, const PupilBox& box, double film_distance)
+PupilEdgeSearch::Spokes::Spokes(double radius, double azimuth, const DirectionBox& box, double film_distance)
     : box(box), cos(std::cos(azimuth)), sin(std::sin(azimuth)), film{radius * cos, radius * sin, film_distance} {}
 
 Vec2<double> PupilEdgeSearch::Spokes::direction(int spoke, double reach) const {
     const double angle = 2 * std::numbers::pi * (spoke % kSpokes) / kSpokes;
-    const double l = box.l() + reach * box.half_width() * std::cos(angle), m = reach * box.m_max * std::sin(angle);
+    const double l = box.centre().l + reach * box.half_width() * std::cos(angle),
+                 m = reach * box.half_height() * std::sin(angle);
     return {l * cos - m * sin, l * sin + m * cos};
 }
 

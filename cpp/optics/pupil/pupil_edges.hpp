@@ -5,7 +5,7 @@
 
 #include "../../math/vec3.hpp"
 #include "../trace/lens_path.hpp"
-#include "pupil_box.hpp"
+#include "direction_box.hpp"
 #include "pupil_tracer.hpp"
 
 namespace REALCAM_NAMESPACE {
@@ -25,20 +25,20 @@ public:
     /// Returns the edges for the film point at this radius (mm) and azimuth (rad). `box`: bounding box of the light for
     /// azimuth 0, from whose centre the spokes start. Returns std::nullopt if a spoke meets no light, as in a crescent
     /// at the edge of the image.
-    std::optional<PupilEdges> at(double radius, double azimuth, const PupilBox& box) const;
+    std::optional<PupilEdges> at(double radius, double azimuth, const DirectionBox& box) const;
 
 private:
     static constexpr int kSteps = 48, kHalvings = 16;
     static constexpr double kReach = 1.5;  ///< past the corner of the box
 
     struct Spokes {
-        Spokes(double radius, double azimuth, const PupilBox& box, double film_distance);
+        Spokes(double radius, double azimuth, const DirectionBox& box, double film_distance);
 
         /// Direction on a spoke; `reach` is 0 at the centre of the box and 1 on the ellipse inscribed in it. Indices
         /// run over the spokes twice.
         Vec2<double> direction(int spoke, double reach) const;
 
-        PupilBox box;
+        DirectionBox box;
         double cos, sin;
         Vec3d film;
     };

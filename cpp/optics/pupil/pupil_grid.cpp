@@ -60,7 +60,7 @@ MirrorPlanes mirror_planes(const LensSystem& lens) {
 
 PupilGrid::PupilGrid(const LensSystem& lens, const FilmArea& film, MirrorPlanes planes, PupilTracer tracer,
                      const std::vector<double>& wavelengths_nm)
-    : search_(lens, std::move(tracer), wavelengths_nm), film_(film), planes_(planes) {
+    : search_(lens, FilmMap::planar, std::move(tracer), wavelengths_nm), film_(film), planes_(planes) {
     const auto fold = [](double& least, double& most, int& cells) {
         most = std::max(std::fabs(least), std::fabs(most));
         least = 0;
@@ -146,7 +146,7 @@ std::optional<DirectionBox> PupilGrid::look(int column, int row, const std::vect
                             before_row < node_rows();
     if (expected && has_before)
         if (const auto& before = found[node_index(before_column, before_row)])
-            expected = expected->joined_with(expected->moved_on_from(*before));
+            expected = expected->joined_with(expected->moved_on_from(*before, 1));
     return search_.look(node_point(column, row), expected);
 }
 

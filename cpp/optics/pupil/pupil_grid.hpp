@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "direction_search.hpp"
 #include "moved_outline.hpp"
 #include "pupil_grid_view.hpp"
 #include "pupil_outline_search.hpp"
+#include "pupil_search.hpp"
 
 namespace REALCAM_NAMESPACE {
 
@@ -119,7 +119,7 @@ private:
     void set_rays(int column, int row, const Vec2Lanes<float, kBlock>& in_cell, const Vec2Lanes<float, kBlock>& places,
                   PupilRays& rays) const;
 
-    DirectionSearch search_;
+    PupilSearch search_;
     FilmArea film_;  ///< the part that the grid covers
     MirrorPlanes planes_;
     int columns_ = 24, rows_ = 16;  ///< cells

@@ -9,6 +9,13 @@
 
 namespace REALCAM_NAMESPACE {
 
+/// The film points over which a pupil is tabulated.
+enum class FilmMap {
+    radial,  ///< one dimension, the film radius: points on the +x axis of a lens with a radial pupil, where the region
+             ///< of passing directions is symmetric in m
+    planar,  ///< two dimensions, x and y: all points of any film
+};
+
 /// A block of rays from film points, with their optical direction cosines.
 struct PupilRays {
     static constexpr int kBlock = PupilTracer::kBlock;
@@ -17,8 +24,6 @@ struct PupilRays {
     double l[kBlock], m[kBlock];
 
     void set(int lane, Vec2<double> film, PupilDirection d);
-    /// Sets a ray from a film point on the +x axis.
-    void set(int lane, double radius, PupilDirection d) { set(lane, Vec2<double>{radius, 0}, d); }
 };
 
 /// A lens as the pupil search traces it, with a circular stop, and its tracer.
@@ -45,10 +50,9 @@ public:
         tracer_.for_each(count, std::ref(task));
     }
 
-    /// Box of the directions from a film point on the +x axis to the last surface's clear aperture.
-    PupilBox box_of_last_surface(double radius) const;
-    /// Box of the directions from any film point to the last surface's clear aperture.
-    DirectionBox box_of_last_surface(Vec2<double> film) const;
+    /// Box of the directions from a film point to the last surface's clear aperture; for a radial map, to its half
+    /// y >= 0.
+    DirectionBox box_of_last_surface(Vec2<double> film, FilmMap film_map) const;
 
 private:
     /// Replaces the blades by the circle around their opening, which contains all rays that pass; blades reject rays

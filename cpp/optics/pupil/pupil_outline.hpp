@@ -2,7 +2,7 @@
 #include <optional>
 #include <vector>
 
-#include "pupil_box.hpp"
+#include "direction_box.hpp"
 #include "pupil_view.hpp"
 
 namespace REALCAM_NAMESPACE {
