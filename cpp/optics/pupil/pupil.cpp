@@ -68,7 +68,6 @@ PupilView Pupil::view() const {
     return {nodes_.data(),
             outline_.data(),
             kRows,
-            kSectors,
             radius,
             radius > 0 ? 1 / radius : 0.0f,
             static_cast<float>(search_.lens().index_squared())};
@@ -218,37 +217,25 @@ std::vector<PupilOutline> Pupil::outlines_of(int row, const OutlinesByEighth& se
 }
 
 void Pupil::add_row(int row, PupilRow sectors, double reach, int clean_rounds) {
-    constexpr int kMostRounds = 256, kBlock = PupilSearch::kBlock;
-    int rounds = 0, passing = 0;
-    for (int clean = 0; rounds < kMostRounds && clean < clean_rounds; ++rounds) {
-        const auto stream = static_cast<std::uint32_t>(kMostRounds * row + rounds);
+    PupilHalves upper{std::move(sectors)};
+    const auto set_rays = [&](int round, std::uint32_t stream, const StraySearch::Places& places, PupilRays& rays) {
         // Starts with both ends of the row.
-        const double position = row + (rounds < 2   ? 0.9999
-                                       : rounds < 4 ? 0.0
-                                                    : static_cast<double>(sample_2d(stream, 0, 1).x));
+        const double position = row + (round < 2   ? 0.9999
+                                       : round < 4 ? 0.0
+                                                   : static_cast<double>(sample_2d(stream, 0, 1).x));
         const PupilNode node = node_at(position);
         const double radius = radius_at(position);
-        const bool is_beside = rounds % 2 != 0;
-        Vec2f places[kBlock];
-        PupilRays rays;
-        for (int i = 0; i < kBlock; ++i) {
-            const Vec2f u = sample_2d(stream, static_cast<std::uint32_t>(i), 0);
-            places[i] = is_beside ? sectors.beside(static_cast<std::size_t>(i) % kSectors, u)
-                                  : Vec2f{static_cast<float>(reach) * (2 * u.x - 1), static_cast<float>(reach) * u.y};
+        for (int i = 0; i < StraySearch::kBlock; ++i)
             rays.set(i, {radius, 0},
-                     {static_cast<double>(node.centre + node.half_width * places[i].x),
-                      static_cast<double>(node.half_height * places[i].y)});
-        }
-        bool passes[kBlock], strayed = false;
-        search_.lens().trace(rays, passes);
-        for (int i = 0; i < kBlock; ++i) strayed |= passes[i] && sectors.take_in(places[i]);
-        if (!is_beside) passing += static_cast<int>(std::count(passes, passes + kBlock, true));
-        clean = strayed ? 0 : clean + 1;
-    }
-    // Expected number of the uniform rays inside the sectors: their share of the scanned area.
-    const double held = (rounds + 1) / 2 * kBlock * sectors.area() / (2 * reach * reach);
-    if (passing < held / 4) sectors = PupilRow(box_outline());
-    std::copy(sectors.sectors().begin(), sectors.sectors().end(), outline_.begin() + row * kSectors);
+                     {static_cast<double>(node.centre + node.half_width * places.x[i]),
+                      static_cast<double>(node.half_height * places.y[i])});
+    };
+    const StraySearch search{256, static_cast<std::uint32_t>(row), 0, reach, clean_rounds};
+    const StraySearch::Traced traced = search.widen(search_.lens(), set_rays, upper);
+    // Expected number of the rays all over the surroundings inside the sectors: their share of the scanned area.
+    const double held = traced.around * upper[0].area() / (2 * reach * reach);
+    if (traced.around_passed < held / 4) upper[0] = PupilRow(box_outline());
+    std::copy(upper[0].sectors().begin(), upper[0].sectors().end(), outline_.begin() + row * kSectors);
 }
 
 }  // namespace realcam

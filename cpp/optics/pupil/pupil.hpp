@@ -7,6 +7,7 @@
 #include "pupil_outline_search.hpp"
 #include "pupil_row_search.hpp"
 #include "pupil_view.hpp"
+#include "stray_search.hpp"
 
 namespace REALCAM_NAMESPACE {
 
@@ -99,10 +100,8 @@ private:
     /// Outlines from the beginning of a row to its end.
     static std::vector<PupilOutline> outlines_of(int row, const OutlinesByEighth& seen);
 
-    /// Adds a row. Traces rays all over its surroundings in one round and just beside the sectors in the next, and
-    /// widens the sectors that do not contain a passing ray, until `clean_rounds` rounds in succession find no ray to
-    /// add. This catches corners of slivers between spokes, and ends of crescents between grid points. Sectors that few
-    /// rays pass do not describe the light, which may form several rings: the whole box replaces them.
+    /// Adds a row, whose sectors StraySearch widens. Sectors that few rays pass do not describe the light, which may
+    /// form several rings: the whole box replaces them.
     void add_row(int row, PupilRow sectors, double reach, int clean_rounds);
 
     PupilSearch search_;
