@@ -12,13 +12,13 @@ DiffractionTables::DiffractionTables(const LensSystem& lens, double film_radius,
     : film_radius_(film_radius),
       radii_(has_blades(lens) ? kRadiiWithBlades : kRadii),
       azimuths_(has_blades(lens) ? kAzimuths : 1) {
-    const PupilEdgeSearch edges(lens, tracer);
+    const PupilLens with_blades = PupilLens::with_blades(lens, tracer);
     const std::vector<DirectionBox> boxes = boxes_of(lens, tracer);
     std::vector<std::optional<ApertureDiffraction>> found(static_cast<std::size_t>(radii_ * azimuths_));
     tracer.for_each(radii_ * azimuths_, [&](int node) {
         const int row = node / azimuths_;
-        if (const auto seen =
-                edges.at(radius_of(row), azimuth_of(node % azimuths_), boxes[static_cast<std::size_t>(row)]))
+        if (const auto seen = pupil_edges(with_blades, radius_of(row), azimuth_of(node % azimuths_),
+                                          boxes[static_cast<std::size_t>(row)]))
             found[static_cast<std::size_t>(node)] = diffraction_of(*seen);
     });
     for (int node = 0; node < radii_ * azimuths_; ++node) {

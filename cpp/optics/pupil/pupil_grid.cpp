@@ -166,10 +166,7 @@ std::vector<PupilOutline> PupilGrid::sharpen_nodes() {
         for (const std::size_t half : {2 * node, 2 * node + 1})
             for (int a = 0; a <= PupilOutline::kAzimuths; ++a) {
                 const double reach = outlines[half].outer[a];
-                const PupilDirection unit = PupilOutline::direction(a);
-                if (reach > 0)
-                    box = box.with({looks[half].centre.l + reach * looks[half].half_width * unit.l,
-                                    looks[half].centre.m + reach * looks[half].half_height * unit.m});
+                if (reach > 0) box = box.with(looks[half].direction(a, reach));
             }
         if (!(box.l_max > box.l_min && box.m_max > box.m_min)) continue;
         nodes_[node] = node_of(box);

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <utility>
 
 #include "../trace/open_iris.hpp"
 
@@ -17,8 +16,9 @@ void PupilRays::set(int lane, Vec2<double> film, PupilDirection d) {
     m[lane] = d.m;
 }
 
-PupilLens::PupilLens(const LensSystem& lens, PupilTracer tracer, const std::vector<double>& wavelengths_nm)
-    : lens_(round_iris(lens)),
+PupilLens::PupilLens(const LensSystem& lens, LensSystem traced, PupilTracer tracer,
+                     const std::vector<double>& wavelengths_nm)
+    : lens_(std::move(traced)),
       ends_(film_path_ends(lens_, LightDirection::to_scene)),
       path_(lens_, LightDirection::to_scene, wavelengths_nm.empty() ? lens.wavelength_nm : wavelengths_nm.front(),
             ends_),

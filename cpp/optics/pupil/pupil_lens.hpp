@@ -1,5 +1,6 @@
 #pragma once
 #include <functional>
+#include <utility>
 #include <vector>
 
 #include "../trace/film_frame.hpp"
@@ -26,13 +27,21 @@ struct PupilRays {
     void set(int lane, Vec2<double> film, PupilDirection d);
 };
 
-/// A lens as the pupil search traces it, with a circular stop, and its tracer.
+/// A lens as the pupil search traces it, and its tracer.
 class PupilLens {
 public:
     static constexpr int kBlock = PupilTracer::kBlock;
 
-    /// `wavelengths_nm`: a ray passes if it leaves the lens at any of these; empty: the design wavelength.
-    PupilLens(const LensSystem& lens, PupilTracer tracer, const std::vector<double>& wavelengths_nm = {});
+    /// `wavelengths_nm`: a ray passes if it leaves the lens at any of these; empty: the design wavelength. The blades
+    /// of the iris are replaced by the circle around their opening, which contains all rays that pass; blades reject
+    /// rays later.
+    PupilLens(const LensSystem& lens, PupilTracer tracer, const std::vector<double>& wavelengths_nm = {})
+        : PupilLens(lens, round_iris(lens), std::move(tracer), wavelengths_nm) {}
+
+    /// The lens with its blades, at the design wavelength.
+    static PupilLens with_blades(const LensSystem& lens, PupilTracer tracer) {
+        return {lens, lens, std::move(tracer), {}};
+    }
 
     /// Radius of the stop's bounding circle, mm.
     double stop_radius() const { return lens_.open_stop_radius(); }
@@ -55,8 +64,9 @@ public:
     DirectionBox box_of_last_surface(Vec2<double> film, FilmMap film_map) const;
 
 private:
-    /// Replaces the blades by the circle around their opening, which contains all rays that pass; blades reject rays
-    /// later.
+    /// `traced`: the lens with the iris that blocks rays.
+    PupilLens(const LensSystem& lens, LensSystem traced, PupilTracer tracer, const std::vector<double>& wavelengths_nm);
+
     static LensSystem round_iris(LensSystem lens);
 
     void trace(const LensView<float>& view, const PupilRays& from, PupilTracer::Rays& rays) const;
