@@ -49,7 +49,7 @@ struct PupilGridLookup {
         const float scaled = in_half * static_cast<float>(kSectors);
         int index = static_cast<int>(scaled);
         index = select(index < kSectors, index, kSectors - 1);
-        return {half(pupil, lower) + index, scaled - static_cast<float>(index), lower};
+        return {half(pupil, lower) + index, scaled - static_cast<float>(index), select(lower, 1, 0)};
     }
     /// Index of the first sector of a half.
     REALCAM_INLINE int half(const PupilGridView&, bool lower) const {

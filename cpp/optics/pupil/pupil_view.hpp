@@ -26,7 +26,7 @@ struct PupilSector {
 struct PupilSectorDraw {
     int index;  ///< in the view's outline
     float along;
-    bool lower;  ///< true: in the lower half of the region, whose y points down
+    int lower;  ///< 1: in the lower half of the region, whose y points down. No bool: GCC vectorises no loop over it
 };
 
 /// Sampled direction of a ray at a film point.
@@ -46,14 +46,15 @@ REALCAM_INLINE PupilSample sample_pupil(const View& pupil, float film_x, float f
     const auto place = pupil_lookup(pupil, film_x, film_y);
     const PupilSectorDraw drawn = place.draw(pupil, u);
     const PupilSector& sector = pupil.outline[drawn.index];
+    const bool lower = drawn.lower != 0;
     const float reach = sqrt_or_zero(sector.hole_squared + v * (1.0f - sector.hole_squared));
     const float x = reach * (sector.x + drawn.along * sector.dx);
     const float y = reach * (sector.y + drawn.along * sector.dy);
-    const Vec2f d = place.from_box({x, select(drawn.lower, -y, y)}), film = place.to_film(d);
+    const Vec2f d = place.from_box({x, select(lower, -y, y)}), film = place.to_film(d);
     // There are no directions beyond the half-space, which the sectors of a film point far outside the lens may exceed.
     const float rest = pupil.index_squared - d.x * d.x - d.y * d.y;
     return {{film.x, film.y, -sqrt_or_zero(rest)},
-            select(rest > 0.0f, pupil_weight(pupil, place, sector, drawn.lower), 0.0f)};
+            select(rest > 0.0f, pupil_weight(pupil, place, sector, lower), 0.0f)};
 }
 
 /// Index of the sector of a point in the box, by its azimuth, which runs from 0 to pi.
@@ -125,7 +126,8 @@ struct PupilRowPosition {
         index = select(index < kBoth, index, kBoth - 1);
         const float along = scaled - static_cast<float>(index);
         const bool lower = index >= PupilView::kSectors;
-        return {row * PupilView::kSectors + select(lower, index - PupilView::kSectors, index), along, lower};
+        return {row * PupilView::kSectors + (index - select(lower, PupilView::kSectors, 0)), along,
+                select(lower, 1, 0)};
     }
     /// Index of the first sector of a half; both halves share them.
     REALCAM_INLINE int half(const PupilView&, bool) const { return row * PupilView::kSectors; }
