@@ -48,9 +48,9 @@ void unite(std::optional<TargetRectangle<T>>& a, const TargetRectangle<T>& b) {
 }
 
 /// Bounds, for each cell of a map, of all that is in it and its neighbours.
-template <class FilmMap, class Bounds>
+template <class Map, class Bounds>
 std::vector<std::optional<Bounds>> with_neighbours(const std::vector<std::optional<Bounds>>& own) {
-    constexpr int kColumns = FilmMap::kColumns, kRows = FilmMap::kRows;
+    constexpr int kColumns = Map::kColumns, kRows = Map::kRows;
     std::vector<std::optional<Bounds>> all(own.size());
     for (int row = 0; row < kRows; ++row)
         for (int column = 0; column < kColumns; ++column)
@@ -63,18 +63,18 @@ std::vector<std::optional<Bounds>> with_neighbours(const std::vector<std::option
 
 /// Bounding rectangles of the points of each cell and its neighbours. A margin of a sixteenth on each side covers the
 /// gaps between the rays.
-template <class FilmMap, class CellOf>
+template <class Map, class CellOf>
 std::vector<GhostEntry> entries_around(const std::vector<FoundRay>& rays, Vec2f FoundRay::* place, CellOf&& cell_of) {
-    std::vector<std::optional<TargetRectangle<float>>> own(FilmMap::kColumns * FilmMap::kRows);
+    std::vector<std::optional<TargetRectangle<float>>> own(Map::kColumns * Map::kRows);
     for (const FoundRay& ray : rays) {
         const int cell = cell_of(ray);
-        const Vec2f at = ray.*place, image = {at.x, FilmMap::kMirrored ? -at.y : at.y};
+        const Vec2f at = ray.*place, image = {at.x, Map::kMirrored ? -at.y : at.y};
         if (cell < 0) continue;
         unite(own[static_cast<std::size_t>(cell)], {at, at});
         unite(own[static_cast<std::size_t>(cell)], {image, image});
     }
     std::vector<GhostEntry> entries;
-    for (const auto& box : with_neighbours<FilmMap>(own)) {
+    for (const auto& box : with_neighbours<Map>(own)) {
         GhostEntry& entry = entries.emplace_back();
         if (!box) continue;
         const float half_width = 0.5f * (box->high.y - box->low.y);
@@ -189,24 +189,23 @@ GhostGrid FilmCells::directions_of(const FoundRays& rays) {
     return {{all->low.x - 0.5f / scale.x, all->low.y - 0.5f / scale.y}, scale};
 }
 
-template <class FilmMap>
-std::vector<FoundRay> EntrancePupilSearch<FilmMap>::along(const LensSystem& lens,
-                                                          const std::vector<Crossing>& way) const {
+template <class Map>
+std::vector<FoundRay> EntrancePupilSearch<Map>::along(const LensSystem& lens, const std::vector<Crossing>& way) const {
     const LensSystem round = with_stop_around_blades(lens);
     LensSystem open = round;
     open.stop_semi_diameter = open.stop().clear_semi_diameter;
     Targets targets;
     for (int cell = 0; cell < kCells; ++cell) targets[static_cast<std::size_t>(cell)] = map_.all_targets(cell);
-    targets = around(traced<FilmMap::kFew>(open, way, targets), targets);
-    targets = around(traced<FilmMap::kFew>(round, way, targets), targets);
-    return traced<FilmMap::kMany>(round, way, targets);
+    targets = around(traced<Map::kFew>(open, way, targets), targets);
+    targets = around(traced<Map::kFew>(round, way, targets), targets);
+    return traced<Map::kMany>(round, way, targets);
 }
 
-template <class FilmMap>
+template <class Map>
 template <int kStrataRows>
-std::vector<FoundRay> EntrancePupilSearch<FilmMap>::traced(const LensSystem& lens, const std::vector<Crossing>& way,
-                                                           const Targets& targets) const {
-    constexpr int kStrataColumns = FilmMap::kColumnsPerRow * kStrataRows, kPerCell = kStrataColumns * kStrataRows;
+std::vector<FoundRay> EntrancePupilSearch<Map>::traced(const LensSystem& lens, const std::vector<Crossing>& way,
+                                                       const Targets& targets) const {
+    constexpr int kStrataColumns = Map::kColumnsPerRow * kStrataRows, kPerCell = kStrataColumns * kStrataRows;
     constexpr int kCount = kCells * kPerCell;
     static_assert(kCount % PupilTracer::kBlock == 0);
     const LensPath<float> back(lens, way, LightDirection::to_scene, lens.wavelength_nm, map_.ends());
@@ -227,25 +226,25 @@ std::vector<FoundRay> EntrancePupilSearch<FilmMap>::traced(const LensSystem& len
         tracer_.trace(back.view(), rays);
         for (int k = 0; k < PupilTracer::kBlock; ++k) {
             if (rays.status[k] != 0) continue;
-            FilmMap::set_front(rays.origin[k], normalized(rays.direction[k]), looked[k]);
+            Map::set_front(rays.origin[k], normalized(rays.direction[k]), looked[k]);
             found.push_back(looked[k]);
         }
     }
     return found;
 }
 
-template <class FilmMap>
-typename EntrancePupilSearch<FilmMap>::Targets EntrancePupilSearch<FilmMap>::around(const std::vector<FoundRay>& rays,
-                                                                                    const Targets& before) {
+template <class Map>
+typename EntrancePupilSearch<Map>::Targets EntrancePupilSearch<Map>::around(const std::vector<FoundRay>& rays,
+                                                                            const Targets& before) {
     std::vector<std::optional<Rectangle>> own(kCells);
     for (const FoundRay& ray : rays) {
         const auto x = static_cast<Real>(ray.target.x), y = static_cast<Real>(ray.target.y);
         const Real wide = Real(1.5) * static_cast<Real>(ray.stratum.x),
                    high = Real(1.5) * static_cast<Real>(ray.stratum.y);
         unite(own[static_cast<std::size_t>(ray.film_cell)],
-              {{x - wide, FilmMap::kMirrored ? 0 : y - high}, {x + wide, y + high}});
+              {{x - wide, Map::kMirrored ? 0 : y - high}, {x + wide, y + high}});
     }
-    const std::vector<std::optional<Rectangle>> all = with_neighbours<FilmMap>(own);
+    const std::vector<std::optional<Rectangle>> all = with_neighbours<Map>(own);
     Targets around = before;
     for (std::size_t cell = 0; cell < around.size(); ++cell)
         if (all[cell]) around[cell] = *all[cell];
@@ -255,18 +254,18 @@ typename EntrancePupilSearch<FilmMap>::Targets EntrancePupilSearch<FilmMap>::aro
 template class EntrancePupilSearch<FilmRings>;
 template class EntrancePupilSearch<FilmCells>;
 
-template <class FilmMap, class Directions>
+template <class Map, class Directions>
 std::vector<GhostEntry> entries_of(const std::vector<FoundRay>& rays, const Directions& directions) {
-    return entries_around<FilmMap>(rays, &FoundRay::front,
-                                   [&](const FoundRay& ray) { return directions.cell_of(ray.half_tangents); });
+    return entries_around<Map>(rays, &FoundRay::front,
+                               [&](const FoundRay& ray) { return directions.cell_of(ray.half_tangents); });
 }
 
 template std::vector<GhostEntry> entries_of<FilmRings>(const std::vector<FoundRay>&, const HalfTangentBins&);
 template std::vector<GhostEntry> entries_of<FilmCells>(const std::vector<FoundRay>&, const GhostGrid&);
 
-template <class FilmMap>
+template <class Map>
 std::vector<GhostEntry> exits_of(const std::vector<FoundRay>& rays) {
-    return entries_around<FilmMap>(rays, &FoundRay::rear, [](const FoundRay& ray) { return ray.film_cell; });
+    return entries_around<Map>(rays, &FoundRay::rear, [](const FoundRay& ray) { return ray.film_cell; });
 }
 
 template std::vector<GhostEntry> exits_of<FilmRings>(const std::vector<FoundRay>&);

@@ -114,21 +114,21 @@ struct FilmCells {
 /// the front of a fisheye they cover only a hundredth of its first surface. Blades are replaced by the circumcircle of
 /// their opening. A ghost's bundle may be narrow: it is searched with the stop wide open first, then with the actual
 /// stop, and finally within the bounds of the rays found.
-template <class FilmMap>
+template <class Map>
 class EntrancePupilSearch {
 public:
     EntrancePupilSearch(const LensSystem& lens, double film_radius, const PupilTracer& tracer)
         : map_(lens, film_radius), tracer_(tracer) {}
 
-    const FilmMap& map() const { return map_; }
+    const Map& map() const { return map_; }
 
     /// Rays that pass along an optical path. `way`: its crossings, in the direction of light to the film; `lens`: the
     /// lens whose surfaces they index.
     std::vector<FoundRay> along(const LensSystem& lens, const std::vector<Crossing>& way) const;
 
 private:
-    static constexpr int kCells = FilmMap::kColumns * FilmMap::kRows;
-    using Real = typename FilmMap::Real;
+    static constexpr int kCells = Map::kColumns * Map::kRows;
+    using Real = typename Map::Real;
     using Rectangle = TargetRectangle<Real>;
     using Targets = std::array<Rectangle, kCells>;  ///< of each cell
 
@@ -139,16 +139,16 @@ private:
     /// Bounds of the strata of all rays found in a cell and its neighbours; those of `before` if there are no rays.
     static Targets around(const std::vector<FoundRay>& rays, const Targets& before);
 
-    FilmMap map_;
+    Map map_;
     const PupilTracer& tracer_;
 };
 
 /// Entrance-pupil bounds of the light of an optical path, for each cell of the directions.
-template <class FilmMap, class Directions>
+template <class Map, class Directions>
 std::vector<GhostEntry> entries_of(const std::vector<FoundRay>& rays, const Directions& directions);
 
 /// Bounds of the rays where they leave the lens towards the film (FoundRay::rear), for each cell of the film map.
-template <class FilmMap>
+template <class Map>
 std::vector<GhostEntry> exits_of(const std::vector<FoundRay>& rays);
 
 double etendue_of(const std::vector<FoundRay>& rays);

@@ -64,17 +64,16 @@ GhostTables::GhostTables(const LensSystem& of_lens, double film_radius, const Gh
     kind_ = is_round_lens(of_lens) ? straight.view().kind : LensKind::any;
 }
 
-template <class FilmMap>
-void GhostTables::find_ways(const EntrancePupilSearch<FilmMap>& search, const LensSystem& of_lens,
-                            const LensSystem& lens, const std::vector<AxialPair>& pairs, double least_share,
-                            const PupilTracer& tracer) {
+template <class Map>
+void GhostTables::find_ways(const EntrancePupilSearch<Map>& search, const LensSystem& of_lens, const LensSystem& lens,
+                            const std::vector<AxialPair>& pairs, double least_share, const PupilTracer& tracer) {
     FoundRays found(pairs.size() + 1);  // the last element: the lens's direct path
     tracer.for_each(static_cast<int>(found.size()), [&](int i) {
         const auto k = static_cast<std::size_t>(i);
         const auto way = k < pairs.size() ? crossings_of(of_lens, pairs[k].pair) : crossings_of(of_lens);
         found[k] = search.along(lens, way);
     });
-    const auto directions = FilmMap::directions_of(found);
+    const auto directions = Map::directions_of(found);
     set_maps(directions, search.map());
     entry_reach_ = entry_reach(of_lens);
     exit_reach_ = static_cast<float>(search.map().rear_reach);
@@ -92,8 +91,8 @@ void GhostTables::find_ways(const EntrancePupilSearch<FilmMap>& search, const Le
         };
         add(to_film_, path(LightDirection::to_film), way);
         add(to_scene_, path(LightDirection::to_scene), reversed(way));
-        append(to_film_.entries, entries_of<FilmMap>(found[k], directions));
-        append(to_scene_.entries, exits_of<FilmMap>(found[k]));
+        append(to_film_.entries, entries_of<Map>(found[k], directions));
+        append(to_scene_.entries, exits_of<Map>(found[k]));
     }
 }
 

@@ -62,8 +62,8 @@ private:
     };
 
     /// Finds the optical paths of these pairs. `lens`: `of_lens` with the film as a mirror surface.
-    template <class FilmMap>
-    void find_ways(const EntrancePupilSearch<FilmMap>& search, const LensSystem& of_lens, const LensSystem& lens,
+    template <class Map>
+    void find_ways(const EntrancePupilSearch<Map>& search, const LensSystem& of_lens, const LensSystem& lens,
                    const std::vector<AxialPair>& pairs, double least_share, const PupilTracer& tracer);
 
     // Store the maps of directions and of the film.
