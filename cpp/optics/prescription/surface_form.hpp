@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "forbes_terms.hpp"
+#include "superconic_terms.hpp"
 #include "zernike_terms.hpp"
 
 namespace REALCAM_NAMESPACE {
@@ -29,6 +30,7 @@ struct SurfaceForm {
     std::vector<XyTerm> xy;
     std::optional<ZernikeTerms> zernike;
     std::optional<ForbesTerms> forbes;
+    std::optional<SuperconicTerms> superconic;
 
     bool operator==(const SurfaceForm&) const = default;
 
@@ -47,7 +49,7 @@ struct SurfaceForm {
 
 /// The registry of forms: one row for each kind of terms. A row's type names its terms, checks them and converts them
 /// to what is traced (see form_row.hpp). Readers, writers, checks, derivatives and bindings go by this table.
-inline constexpr std::tuple kFormTerms{&SurfaceForm::zernike, &SurfaceForm::forbes};
+inline constexpr std::tuple kFormTerms{&SurfaceForm::zernike, &SurfaceForm::forbes, &SurfaceForm::superconic};
 inline constexpr std::size_t kFormTermsCount = std::tuple_size_v<decltype(kFormTerms)>;
 
 /// Type of the terms that a std::optional of a form holds.
