@@ -15,10 +15,6 @@
 namespace realcam::io {
 namespace {
 
-std::string short_name(const std::string& name, std::size_t most = 40) {
-    return printable(name).substr(0, most);
-}
-
 class OptilandReader : PrescriptionJson {
 public:
     using PrescriptionJson::PrescriptionJson;
@@ -46,9 +42,11 @@ public:
 private:
     static const Json& z_of(const Json& surface) { return surface["geometry"]["cs"]["z"]; }
 
+    double curvature_of_radius(const Json& radius, const char* name) const {
+        return is_infinite(radius) ? 0 : curvature_of(number(radius, name));
+    }
     double curvature_of_geometry(const Json& geometry) const {
-        const Json& radius = geometry["radius"];
-        return radius.is_null() || is_infinite(radius) ? 0 : curvature_of(number(radius, "the radius"));
+        return geometry["radius"].is_null() ? 0 : curvature_of_radius(geometry["radius"], "the radius");
     }
 
     /// Returns the frame of a surface. Optiland's coordinate systems have a common origin, and rotate about fixed axes:
@@ -144,12 +142,9 @@ private:
         row.curvature = curvature_of_geometry(geometry);
         row.conic = number_or(geometry["conic"], "the conic", 0);
         if (type == "ToroidalGeometry") {
-            const auto curvature = [&](const char* key) {
-                return is_infinite(geometry[key]) ? 0.0 : 1 / number(geometry[key], key);
-            };
             row.form.base = BaseForm::toroid;
-            row.curvature = curvature("radius_y");
-            row.form.curvature_x = curvature("radius_x");
+            row.curvature = curvature_of_radius(geometry["radius_y"], "radius_y");
+            row.form.curvature_x = curvature_of_radius(geometry["radius_x"], "radius_x");
             row.conic = number_or(geometry["conic_yz"], "conic_yz", 0);
             add_terms(geometry["coeffs_poly_y"], 2, "a coefficient of y", row);
         } else if (type == "ForbesQNormalSlopeGeometry" || type == "ForbesQbfsGeometry") {

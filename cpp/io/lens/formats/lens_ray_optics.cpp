@@ -72,8 +72,7 @@ private:
         PrescriptionSurface row;
         row.number = ++surface_;
         row.is_stop = is_stop;
-        if (class_of(interface) != "Surface")
-            foreign("a surface of the class " + printable(class_of(interface)).substr(0, 40));
+        if (class_of(interface) != "Surface") foreign("a surface of the class " + short_name(class_of(interface)));
         if (!a["phase_element"].is_null()) foreign("a diffractive surface");
         read_place(a["decenter"], row);
         row.is_mirror = a["interact_mode"].text() == "reflect";
@@ -97,8 +96,7 @@ private:
         const Json& type = member(a, "dtype");
         std::size_t kind = type.is_number() ? type.index(kinds.size()) : 0;
         while (!type.is_number() && kind < kinds.size() && kinds[kind].first != type.text()) ++kind;
-        if (kind >= kinds.size())
-            return foreign("a decentre of the kind " + in_quotes(printable(type.text()).substr(0, 20)));
+        if (kind >= kinds.size()) return foreign("a decentre of the kind " + in_quotes(short_name(type.text(), 20)));
         const auto values = [&](const char* key) {
             const auto value = [&](std::size_t i) {
                 return number_or(list_of(a[key])[i], std::string("a decentre or tilt (") + key + ')', 0);
@@ -127,7 +125,7 @@ private:
             add_terms(list_of(shape["coefs"]), type == "RadialPolynomial" ? 1 : 2, "an aspheric coefficient", row,
                       unit_);
         else
-            foreign("a surface of type " + printable(type).substr(0, 40));
+            foreign("a surface of type " + short_name(type));
     }
 
     Glass material_of(const Json& medium) {
@@ -164,7 +162,7 @@ private:
             const std::string& kind = class_of(list[i]);
             const bool is_circle = kind == "Circular", blocks = shape["is_obscuration"].is_true();
             if (!is_circle && kind != "Rectangular" && kind != "Elliptical") {
-                foreign("an aperture that is no circle (" + printable(kind).substr(0, 40) + ")");
+                foreign("an aperture that is no circle (" + short_name(kind) + ")");
                 continue;
             }
             const Vec2d offset{length("x_offset"), length("y_offset")};

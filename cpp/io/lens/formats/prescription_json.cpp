@@ -3,8 +3,6 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "../../text/printable.hpp"
-
 namespace realcam::io {
 
 PrescriptionJson::PrescriptionJson(const char* format, std::string_view text, const std::string& file,

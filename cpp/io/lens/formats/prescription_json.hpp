@@ -5,9 +5,15 @@
 #include <vector>
 
 #include "../../text/json.hpp"
+#include "../../text/printable.hpp"
 #include "prescription_reader.hpp"
 
 namespace realcam::io {
+
+/// Returns a name of a file for a message, as one line that is cut to a length.
+inline std::string short_name(const std::string& name, std::size_t most = 40) {
+    return printable(name).substr(0, most);
+}
 
 /// Base of the readers of JSON files: access to members, with error messages that name file and surface.
 class PrescriptionJson : protected PrescriptionReader {
