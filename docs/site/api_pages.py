@@ -58,7 +58,7 @@ GROUPS = {
 }  # fmt: skip
 MODULES = {
     "realcam.analysis": "Aberrations and MTF, as arrays and as plots",
-    "realcam.draw": "Drawings of lenses",
+    "realcam.drawing": "Drawings of lenses",
     "realcam.dataset": "Labelled pictures",
 }
 

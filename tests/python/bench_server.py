@@ -13,8 +13,8 @@ import threading
 from functools import partial
 
 from nicegui import app
-from realcam.viewer import server
-from realcam.viewer.windows import Windows
+from realcam.viewer.server import server
+from realcam.viewer.server.windows import Windows
 from realcam_command.main import main
 
 _opened: list[Windows] = []

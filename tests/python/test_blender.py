@@ -14,8 +14,8 @@ from typing import Any
 import numpy as np
 import pytest
 import realcam as rc
-from realcam import cli
 from realcam.blender import write_extension
+from realcam.cli import app as cli
 from typer.testing import CliRunner
 
 

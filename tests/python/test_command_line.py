@@ -16,7 +16,7 @@ from typing import Any
 import pytest
 import realcam as rc
 import typer
-from realcam import cli
+from realcam.cli import app as cli
 from realcam.cli.examples import EXAMPLES
 from realcam.cli.help_texts import finish
 

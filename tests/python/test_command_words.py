@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 import realcam as rc
-from realcam.command_words import Grammar, plain_number, spelled, understood
+from realcam.cli.command_words import Grammar, plain_number, spelled, understood
 
 from .programs import Command
 

@@ -10,8 +10,8 @@ import matplotlib.image
 import numpy as np
 import pytest
 import realcam as rc
-from realcam.sheet import _wrapped, save_sheet
-from realcam.variations import variations
+from realcam.cli.sheet import _wrapped, save_sheet
+from realcam.cli.variations import variations
 
 from .programs import Command
 from .scenes import quad, scene_of

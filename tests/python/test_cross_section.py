@@ -9,8 +9,8 @@ import math
 import numpy as np
 import pytest
 import realcam as rc
-from realcam.drawing import CrossSection, Element, cross_section
 from realcam.fields import fields_at
+from realcam.section import CrossSection, Element, cross_section
 
 from ..centred_lenses import CENTRED
 

@@ -118,8 +118,8 @@ def test_libraries_in_the_current_folder_are_not_loaded(tmp_path: Path, is_names
         if not is_namespace:
             (tmp_path / package / "__init__.py").write_text("")
     script = (
-        f"{beginning}import realcam_command, realcam.cuda_plugin as plugin\n"
-        "print([realcam_command.denoiser_library(), plugin.path_of_plugin()])"
+        f"{beginning}from realcam.installation import cuda_plugin, denoiser_library\n"
+        "print([denoiser_library(), cuda_plugin()])"
     )
     environment = {name: value for name, value in os.environ.items() if name != "REALCAM_OIDN"}
     done = subprocess.run(

@@ -14,7 +14,7 @@ import pytest
 import realcam as rc
 from frame_scene import frame_scene
 from realcam.denoiser import opened
-from realcam_command import denoiser_library
+from realcam.installation import denoiser_library
 
 from . import scenes
 from .programs import PROGRAM

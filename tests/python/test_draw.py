@@ -17,8 +17,8 @@ import pytest
 import realcam as rc
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from PIL import Image, ImageChops, ImageStat
-from realcam import cli
-from realcam.draw import draw_cross_section, draw_states, save_cross_section, save_states, states_of
+from realcam.cli import app as cli
+from realcam.drawing import draw_cross_section, draw_states, save_cross_section, save_states, states_of
 from realcam.drawing.inset import draw_inset
 from realcam.drawing.style import Style
 from realcam.drawing.themes import DARK, LIGHT, THEMES, colours_of_wavelengths
@@ -376,8 +376,8 @@ def test_a_drawing_takes_less_than_a_second(tmp_path: Path) -> None:
 def test_titles_have_the_engraved_f_number_at_any_focus() -> None:
     """A group that has moved to focus makes another lens, whose own f-number is not the one of the ring."""
     from realcam.cli.options import title_of
-    from realcam.drawing.section import cross_section
     from realcam.drawing.style import data_of
+    from realcam.section.section import cross_section
 
     name = next(n for n in rc.lens_names() if rc.Lens.load(n).focus_group is not None)
     lens = rc.Lens.load(name)

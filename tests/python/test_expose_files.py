@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import realcam as rc
-from realcam import cli
+from realcam.cli import app as cli
 from typer.testing import CliRunner
 
 from .sky_files import write_exr

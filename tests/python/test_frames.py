@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import realcam as rc
-from realcam import cli
+from realcam.cli import app as cli
 from realcam.image_file import read_film
 from realcam.video import write_video
 

@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 import realcam as rc
-from realcam import cli
+from realcam.cli import app as cli
+from realcam.drawing.gallery import save_gallery
 from realcam.drawing.themes import theme_named
-from realcam.gallery import save_gallery
 from typer.testing import CliRunner
 
 

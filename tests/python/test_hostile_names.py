@@ -18,7 +18,7 @@ from typing import Any
 import pytest
 import realcam as rc
 import tomllib
-from realcam.figure_files import figure_bytes
+from realcam.drawing.figure_files import figure_bytes
 from realcam.job.farm_files import array_script, openjd_template
 from realcam.osl.shader import _heading
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 import realcam
-from realcam.import_advice import advised
+from realcam.installation import advised
 
 PACKAGES = Path(realcam.__file__).parents[1]
 

@@ -20,7 +20,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 import realcam as rc
-from realcam import archive, cli
+from realcam import archive
+from realcam.cli import app as cli
 from realcam.job.folder import FORMAT
 
 from .job_programs import command, picture, run, shot, units

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 import realcam as rc
-from realcam import cli
+from realcam.cli import app as cli
 
 
 def said(words: list[str], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> tuple[int, str, str]:
@@ -36,7 +36,7 @@ def test_a_sharper_lens_is_written_and_keeps_its_focal_length(
 def test_an_interruption_writes_the_best_lens_and_ends_in_130(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    from realcam import optimisation
+    from realcam.optimisation import optimiser as optimisation
 
     looks = optimisation._Search.residuals
 

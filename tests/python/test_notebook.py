@@ -14,9 +14,9 @@ import matplotlib.image
 import numpy as np
 import pytest
 import realcam as rc
-import realcam.notebook
 from realcam.analysis import KINDS, Bundles, notebook
 from realcam.analysis.kinds import Asked
+from realcam.drawing import lens_drawings
 
 from .picklable_values import image, plan
 
@@ -88,7 +88,7 @@ def test_a_lens_that_cannot_be_drawn_is_shown_as_text(monkeypatch: pytest.Monkey
     def refuse(*words: Any, **options: Any) -> None:
         raise rc.InputError("no light passes the lens")
 
-    monkeypatch.setattr(realcam.notebook, "cross_section", refuse)
+    monkeypatch.setattr(lens_drawings, "cross_section", refuse)
     assert LENS._repr_png_() is None  # type: ignore[attr-defined]
 
 

@@ -115,7 +115,7 @@ def triplet_search(**more: object) -> dict[str, object]:
 
 
 def test_the_jacobian_is_that_of_differences() -> None:
-    from realcam.optimisation import _Search
+    from realcam.optimisation.optimiser import _Search
 
     operands = [
         rc.Operand("distortion_percent", weight=0.01, field_deg=14),
@@ -147,7 +147,7 @@ def test_the_jacobian_is_that_of_differences() -> None:
     ],
 )
 def test_lenses_that_are_not_of_revolution_have_exact_slopes_too(name: str, surfaces: tuple[int, int, int]) -> None:
-    from realcam.optimisation import _Search
+    from realcam.optimisation.optimiser import _Search
 
     lens = rc.Lens.load(name)
     assert not lens.is_rotational

@@ -10,7 +10,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 import realcam as rc
-from realcam import _core, cli
+from realcam import _core
+from realcam.cli import app as cli
 from scipy.stats import qmc
 from typer.testing import CliRunner
 

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 import realcam as rc
 from matplotlib.figure import Figure
-from realcam import cli
 from realcam.analysis import DepthOverFocus, depth_over_focus, plot_depth_over_focus
+from realcam.cli import app as cli
 from realcam.photography import (
     angle_of_view_deg,
     blur_diameter_mm,

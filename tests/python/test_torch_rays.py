@@ -7,7 +7,7 @@ import realcam as rc
 
 torch = pytest.importorskip("torch", reason="torch is an extra")
 
-from realcam.torch_rays import trace_with_torch  # noqa: E402
+from realcam.derivatives.torch_rays import trace_with_torch  # noqa: E402
 
 
 def test_autograd_agrees_with_differences() -> None:

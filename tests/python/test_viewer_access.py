@@ -11,7 +11,7 @@ import realcam as rc
 
 pytest.importorskip("starlette")
 
-from realcam.viewer.access import BodyLimit, Folders, Gate, is_local
+from realcam.viewer.server.access import BodyLimit, Folders, Gate, is_local
 from starlette.applications import Starlette
 from starlette.requests import Request
 from starlette.responses import PlainTextResponse

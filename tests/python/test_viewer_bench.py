@@ -16,11 +16,12 @@ import realcam as rc
 
 pytest.importorskip("simplejpeg")
 
-from realcam.viewer import lens_edits, messages, saving
+from realcam.viewer import lens_edits, saving
 from realcam.viewer.camera_controls import CameraControls
 from realcam.viewer.effect_switches import EFFECTS
 from realcam.viewer.lens_bench import LensBench
 from realcam.viewer.listeners import Problem
+from realcam.viewer.server import messages
 from realcam.viewer.shot_source import ShotSource
 
 from . import bench_shots

@@ -11,8 +11,8 @@ import pytest
 import realcam as rc
 from realcam.fields import angle_of_height
 from realcam.viewer.camera_controls import CameraControls
-from realcam.viewer.focus_scale import distance_texts, focus_scale_svg
 from realcam.viewer.lens_view import ray_view
+from realcam.viewer.page.focus_scale import distance_texts, focus_scale_svg
 from realcam.viewer.pose import Pose
 from realcam.viewer.ring_scales import ISO, SHUTTER_S, aperture_ring, zoom_ring
 

@@ -16,8 +16,8 @@ pytest.importorskip("simplejpeg")
 from realcam.denoiser import GUIDES
 from realcam.viewer import saving
 from realcam.viewer.lens_bench import LensBench
-from realcam.viewer.picture_request import PictureRequest
-from realcam.viewer.preview_denoiser import PreviewDenoiser, why_missing
+from realcam.viewer.pictures.picture_request import PictureRequest
+from realcam.viewer.pictures.preview_denoiser import PreviewDenoiser, why_missing
 
 from . import bench_shots
 from .bench_pages import until

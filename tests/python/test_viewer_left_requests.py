@@ -8,7 +8,7 @@ import pytest
 
 pytest.importorskip("starlette")
 
-from realcam.viewer.left_requests import LeftRequests
+from realcam.viewer.server.left_requests import LeftRequests
 
 from .event_loops import run_apart
 

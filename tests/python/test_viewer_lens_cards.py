@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 import realcam as rc
-from realcam.lens_kinds import KINDS, year_of
-from realcam.viewer.lens_cards import lens_cards
+from realcam.photography.lens_kinds import KINDS, year_of
+from realcam.viewer.page.lens_cards import lens_cards
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,7 @@ import pytest
 import realcam as rc
 from realcam.viewer.camera_controls import CameraControls
 from realcam.viewer.lens_bench import LensBench
-from realcam.viewer.messages import MOST_BYTES, BadMessage, json_text, merged, parsed, perform
+from realcam.viewer.server.messages import MOST_BYTES, BadMessage, json_text, merged, parsed, perform
 
 
 def bench() -> Mock:

@@ -12,10 +12,10 @@ import numpy as np
 import pytest
 import realcam as rc
 from frame_scene import frame_scene
-from realcam.viewer.noise_measurement import NoiseMeasurement
-from realcam.viewer.pace import Pace
-from realcam.viewer.picture_loop import PictureLoop
-from realcam.viewer.picture_request import Frame, PictureRequest
+from realcam.viewer.pictures.noise_measurement import NoiseMeasurement
+from realcam.viewer.pictures.pace import Pace
+from realcam.viewer.pictures.picture_loop import PictureLoop
+from realcam.viewer.pictures.picture_request import Frame, PictureRequest
 
 simplejpeg = pytest.importorskip("simplejpeg")
 

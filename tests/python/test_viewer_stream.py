@@ -20,8 +20,8 @@ pytest.importorskip("starlette")
 from realcam import InputError
 from realcam.viewer.lens_bench import LensBench
 from realcam.viewer.listeners import Listeners, Problem
-from realcam.viewer.picture_request import Frame
-from realcam.viewer.stream import PictureStream
+from realcam.viewer.pictures.picture_request import Frame
+from realcam.viewer.server.stream import PictureStream
 
 from .event_loops import run_apart
 

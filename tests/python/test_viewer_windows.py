@@ -13,7 +13,7 @@ import pytest
 
 pytest.importorskip("nicegui")
 
-from realcam.viewer.windows import Windows
+from realcam.viewer.server.windows import Windows
 
 from .event_loops import run_apart
 
