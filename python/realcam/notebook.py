@@ -50,3 +50,7 @@ def table_html(rows: Iterable[Sequence[str]], head: Sequence[str] = ()) -> str:
     body = "".join(f"<tr>{line(row, 'td')}</tr>" for row in rows)
     top = f"<thead><tr>{line(head, 'th')}</tr></thead>" if head else ""
     return f"<table>{top}<tbody>{body}</tbody></table>"
+
+
+# setattr because the class belongs to the extension.
+setattr(Plan, "_repr_html_", plan_html)  # noqa: B010
