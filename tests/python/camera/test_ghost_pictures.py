@@ -88,24 +88,27 @@ def test_ghost_of_a_singlet_is_where_first_order_puts_it() -> None:
 
 
 class SequentialTrace:
-    """Rays of light through bare spheres in the order that a ghost meets them, by the textbook: vectors, Snell, and
-    Fresnel's formulas for s and p. It shares no code with realcam."""
+    """Rays of light through bare spheres and cylinders in the order that a ghost meets them, by the textbook: vectors,
+    Snell, and Fresnel's formulas for s and p. It shares no code with realcam."""
 
     def __init__(self, lens: rc.Lens, film_reflectance: float = 0.0, film_radius: float = 0.0) -> None:
-        """The film is the surface behind the last one: a plane mirror."""
-        self.lens = lens
-        self.film = len(lens.surfaces)
-        self.film_reflectance = film_reflectance
-        self.z = np.append(lens.vertices_mm, lens.film_position_mm)
-        self.c = np.append([surface.curvature_per_mm for surface in lens.surfaces], 0.0)
-        self.rim = np.append([surface.clear_semi_diameter_mm for surface in lens.surfaces], film_radius)
-        self.n = [1.0]
-        for i, surface in enumerate(lens.surfaces):
-            refracts = surface.type == "refracting"
-            self.n.append(surface.material.index(lens.wavelength_nm) if refracts else self.n[-1])
-            if not refracts:
-                self.rim[i] = lens.stop_semi_diameter_mm
-        self.n.append(self.n[-1])
+        """The film is the surface behind the last one: a plane mirror. Faces may be tilted about x; toroids are
+        cylinders with their power in the xz plane."""
+        self.film, self.film_z, self.film_reflectance = len(lens.surfaces), lens.film_position_mm, film_reflectance
+        self.stop_mm = lens.stop_semi_diameter_mm
+        # Vertex, axes as rows, curvature, the coordinates in which it curves, index in front and behind, rim.
+        self.surfaces: list[tuple[float, np.ndarray, float, np.ndarray, float, float, float]] = []
+        index = 1.0
+        for z, surface in zip(lens.vertices_mm, lens.surfaces, strict=True):
+            refracts, is_cylinder = surface.type == "refracting", surface.form == "toroid"
+            cos, sin = (f(np.radians(surface.tilt_deg[0])) for f in (np.cos, np.sin))
+            axes = np.array([[1, 0, 0], [0, cos, sin], [0, -sin, cos]])
+            c = 1 / surface.radius_of_curvature_x_mm if is_cylinder else surface.curvature_per_mm
+            behind = surface.material.index(lens.wavelength_nm) if refracts else index
+            rim = surface.clear_semi_diameter_mm if refracts else self.stop_mm
+            self.surfaces.append((z, axes, c, np.array([1, not is_cylinder, 1]), index, behind, rim))
+            index = behind
+        self.surfaces.append((self.film_z, np.eye(3), 0.0, np.ones(3), index, index, film_radius))
         self.refracting = [i for i, surface in enumerate(lens.surfaces) if surface.type == "refracting"]
 
     def way(self, first: int, second: int) -> list[tuple[int, int, bool]]:
@@ -114,27 +117,23 @@ class SequentialTrace:
         back = [(i, -1, i == second) for i in range(first - 1, second - 1, -1)]
         return there + back + [(i, 1, False) for i in range(second + 1, self.film)]
 
-    def to_film(
-        self, origin: np.ndarray, direction: np.ndarray, way: list[tuple[int, int, bool]]
-    ) -> tuple[np.ndarray, np.ndarray]:
+    def to_film(self, o: np.ndarray, d: np.ndarray, way: list[tuple[int, int, bool]]) -> tuple[np.ndarray, np.ndarray]:
         """Places on the film and shares of the power; 0 where a ray is lost."""
-        o, d = origin.copy(), direction.copy()
         s = p = np.ones(len(o))
         with np.errstate(all="ignore"):
             for surface, sign, reflected in way:
-                c, centre = self.c[surface], self.z[surface]
+                z, axes, c, curved, in_front, beyond, rim = self.surfaces[surface]
                 # |o + t d - C|^2 = R^2 in curvatures: A t^2 - 2 G t + F = 0.
-                local = o - [0, 0, centre]
-                F = c * (local**2).sum(1) - 2 * local[:, 2]
-                G = d[:, 2] - c * (local * d).sum(1)
-                root = np.sqrt(G * G - c * F)
-                t = F / (G + sign * root)
-                o = o + t[:, None] * d
-                local = o - [0, 0, centre]
-                normal = sign * np.stack([-c * local[:, 0], -c * local[:, 1], 1 - c * local[:, 2]], axis=1)
-                inside = np.hypot(local[:, 0], local[:, 1]) <= self.rim[surface]
-                before, behind = (self.n[surface], self.n[surface + 1])[::sign]
-                cos1 = (d * normal).sum(1)
+                local, along = (o - [0, 0, z]) @ axes.T, d @ axes.T
+                F = c * (curved * local**2).sum(1) - 2 * local[:, 2]
+                G = along[:, 2] - c * (curved * local * along).sum(1)
+                A = c * (curved * along**2).sum(1)
+                local = local + (F / (G + sign * np.sqrt(G * G - A * F)))[:, None] * along
+                normal = np.array([0.0, 0.0, 1.0]) - c * curved * local
+                normal *= sign / np.linalg.norm(normal, axis=1, keepdims=True)
+                inside = np.hypot(local[:, 0], local[:, 1]) <= rim
+                before, behind = (in_front, beyond)[::sign]
+                cos1 = (along * normal).sum(1)
                 ratio = before / behind
                 squared = 1 - ratio**2 * (1 - cos1**2)
                 cos2 = np.sqrt(np.maximum(squared, 0))
@@ -143,20 +142,20 @@ class SequentialTrace:
                 if surface == self.film:
                     rs = rp = np.full(len(o), self.film_reflectance)
                 if reflected:
-                    d = d - 2 * cos1[:, None] * normal
+                    along = along - 2 * cos1[:, None] * normal
                     s, p = s * rs * inside, p * rp * inside
                 else:
-                    d = ratio * d + (cos2 - ratio * cos1)[:, None] * normal
-                    passes = inside & (squared > 0)
-                    s, p = s * (1 - rs) * passes, p * (1 - rp) * passes
-            place = o + ((self.lens.film_position_mm - o[:, 2]) / d[:, 2])[:, None] * d
+                    along = ratio * along + (cos2 - ratio * cos1)[:, None] * normal
+                    s, p = s * (1 - rs) * inside * (squared > 0), p * (1 - rp) * inside * (squared > 0)
+                o, d = local @ axes + [0, 0, z], along @ axes
+            place = o + ((self.film_z - o[:, 2]) / d[:, 2])[:, None] * d
         return place[:, :2], np.nan_to_num((s + p) / 2)
 
     def flux(self, pair: tuple[int, int], tangent: float, film_mm: float, grid: int, *, disc: bool = False) -> float:
         """lux mm^2 on a square film, or the disc in it, of a lamp of 1 lux at this tangent. `grid`: points along x, and
         half as many along y, of which one side is the mirror image of the other."""
         d = np.array([-tangent, 0.0, 1.0]) / np.sqrt(1 + tangent**2)
-        reach = self.rim[0] * 1.3
+        reach = self.surfaces[0][-1] * 1.3
         edge = (np.arange(grid) + 0.5) / grid * 2 * reach - reach
         x, y = (a.ravel() for a in np.meshgrid(edge, edge[grid // 2 :]))
         start = np.stack([x, y, np.zeros(len(x))], axis=1) - 30 * d
