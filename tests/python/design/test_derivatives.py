@@ -11,6 +11,8 @@ import pytest
 import realcam as rc
 from mpmath import mpf
 
+from .fifty_digits import Face, ObjectRays, traced
+
 WAVELENGTH_NM = 587.5618
 NUMBERS = {"c0": 1 / 30, "k": -0.6, "a4": 2e-6, "t0": 4.0, "n": 1.6, "c1": -1 / 80, "t1": 6.0, "film": 41.0}
 VARIABLES = {
@@ -24,7 +26,6 @@ VARIABLES = {
     "film": rc.Variable.film_distance(),
 }
 STOP = 4.0
-ENOUGH = mpf(10) ** -25  # the last step of Newton's method, mm: the next one would be 1e-20 of it or less
 
 
 def singlet() -> rc.Lens:
@@ -48,36 +49,18 @@ def singlet() -> rc.Lens:
     )
 
 
-def traced(of: dict[str, Any], origin: list[Any], direction: list[Any]) -> tuple[list[Any], list[Any], Any]:
-    """On the stop: position, unit direction, optical path. By Newton's method on the sag, and Snell's law."""
-    o, d, path = list(origin), list(direction), mpf(0)
-    surfaces = [(of["c0"], of["k"], of["a4"], mpf(0), 1, of["n"]), (of["c1"], 0, 0, of["t0"], of["n"], 1)]
-    for c, k, a4, z0, before, after in surfaces:
-        t = (z0 - o[2]) / d[2]
-        for _ in range(9):
-            x, y, z = (o[i] + t * d[i] for i in range(3))
-            r2 = x * x + y * y
-            root = mpmath.sqrt(1 - (1 + k) * c * c * r2)
-            slope = c / root + 4 * a4 * r2  # d sag / dr over r
-            change = (z - z0 - c * r2 / (1 + root) - a4 * r2 * r2) / (d[2] - slope * (x * d[0] + y * d[1]))
-            t -= change
-            if abs(change) < ENOUGH:
-                break
-        o = [o[i] + t * d[i] for i in range(3)]
-        path += before * t
-        normal = [-slope * o[0], -slope * o[1], mpf(1)]
-        size = mpmath.sqrt(sum(v * v for v in normal))
-        normal = [v / size for v in normal]
-        mu, cosine = mpf(before) / after, sum(a * b for a, b in zip(d, normal, strict=True))
-        turn = mpmath.sqrt(1 - mu * mu * (1 - cosine * cosine)) - mu * cosine
-        d = [mu * a + turn * b for a, b in zip(d, normal, strict=True)]
-    t = (of["t0"] + of["t1"] - o[2]) / d[2]
-    return [o[i] + t * d[i] for i in range(3)], d, path + t
+def faces_of(of: dict[str, Any]) -> list[Face]:
+    """The last one is the film's plane."""
+    return [
+        Face(1, of["n"], of["t0"], of["c0"], of["k"], of["a4"]),
+        Face(of["n"], 1, of["t1"], of["c1"]),
+        Face(1, 1, of["film"]),
+        Face(1, 1, 0),
+    ]
 
 
-class Truth:
-    """The rays of one object point through given places on the stop. `near`: the same for nearly the same lens, from
-    which they are looked for."""
+class Truth(ObjectRays):
+    """The rays of one object point through given places on the stop. `near`: the same for nearly the same lens."""
 
     def __init__(
         self,
@@ -88,7 +71,6 @@ class Truth:
         near: Truth | None = None,
     ) -> None:
         self.of, field = of, mpmath.radians(mpf(field_deg))
-        self.field = field
 
         # The middle of the paraxial entrance pupil: a ray from there with slope 1 meets the middle of the stop.
         def at_stop(y: Any, u: Any) -> Any:
@@ -99,72 +81,22 @@ class Truth:
             return y + of["t1"] * u
 
         pupil_z = at_stop(mpf(0), mpf(1)) / at_stop(mpf(1), mpf(0))
-        self.towards = [mpf(0), mpmath.sin(field), mpmath.cos(field)]
-        self.point = None
+        point = None
         if object_mm is not None:
             distance = object_mm + pupil_z
-            self.point = [mpf(0), -distance * mpmath.tan(field), pupil_z - distance]
-        places = [[STOP * (1 - mpf(5e-11)) * mpf(v) for v in place] for place in (*pupil, (0, 0))]
-        starts = near.entries if near else [(mpf(0), mpf(0))] * len(places)
-        self.entries = [self._entry(place, start) for place, start in zip(places, starts, strict=True)]
-        *self.rays, self.chief = (self._ray(*entry) for entry in self.entries)
-
-    def _ray(self, x: Any, y: Any) -> tuple[list[Any], list[Any], Any]:
-        """By where it crosses the plane z = 0, with the path from the wavefront through the origin, or the object."""
-        at = [x, y, mpf(0)]
-        if self.point is None:
-            d = self.towards
-            before = sum(a * b for a, b in zip(at, d, strict=True))
-        else:
-            d = [a - b for a, b in zip(at, self.point, strict=True)]
-            before = mpmath.sqrt(sum(v * v for v in d))
-            d = [v / before for v in d]
-        o, d, path = traced(self.of, at, d)
-        return o, d, path + before
-
-    def _entry(self, place: list[Any], start: tuple[Any, Any]) -> tuple[Any, Any]:
-        (x, y), h = start, mpf(10) ** -20
-        for _ in range(7):
-            o = self._ray(x, y)[0]
-            ox, oy = self._ray(x + h, y)[0], self._ray(x, y + h)[0]
-            a, b = (ox[0] - o[0]) / h, (oy[0] - o[0]) / h
-            c, d = (ox[1] - o[1]) / h, (oy[1] - o[1]) / h
-            ex, ey = place[0] - o[0], place[1] - o[1]
-            change = (d * ex - b * ey) / (a * d - b * c), (a * ey - c * ex) / (a * d - b * c)
-            x, y = x + change[0], y + change[1]
-            if abs(change[0]) + abs(change[1]) < ENOUGH:
-                break
-        return x, y
-
-    def on_film(self, ray: tuple[list[Any], list[Any], Any]) -> tuple[Any, Any]:
-        o, d, _ = ray
-        return o[0] + self.of["film"] * d[0] / d[2], o[1] + self.of["film"] * d[1] / d[2]
-
-    def spot_mm(self) -> Any:
-        at = [self.on_film(ray) for ray in self.rays]
-        middle = [sum(p[i] for p in at) / len(at) for i in (0, 1)]
-        return mpmath.sqrt(sum((p[0] - middle[0]) ** 2 + (p[1] - middle[1]) ** 2 for p in at) / len(at))
-
-    def chief_ray_height_mm(self) -> Any:
-        return self.on_film(self.chief)[1]
+            point = [mpf(0), -distance * mpmath.tan(field), pupil_z - distance]
+        zero, one = mpf(0), mpf(1)
+        start = [zero] * 3, [one, zero, zero], [zero, one, zero]
+        towards = [zero, mpmath.sin(field), mpmath.cos(field)]
+        super().__init__(faces_of(of), 2, STOP, start, towards, point, pupil, near)
 
     def mtf_tangential(self) -> Any:
-        waves = [mpmath.expjpi(2 * 15 * self.on_film(ray)[1]) for ray in self.rays]
-        return abs(sum(waves) / len(waves))
+        return self.contrast([0, 1])
 
     def wavefront_waves(self) -> Any:
-        """Paths to the sphere about the chief ray's film point through the chief ray's point in the exit pupil, which
-        is the stop itself."""
-        stop = self.of["t0"] + self.of["t1"]
-        centre = [*self.on_film(self.chief), stop + self.of["film"]]
-        radius = mpmath.sqrt(sum((a - b) ** 2 for a, b in zip(centre, [0, 0, stop], strict=True)))
-        paths = []
-        for o, d, path in self.rays:
-            b = [p - q for p, q in zip(o, centre, strict=True)]
-            along = sum(p * q for p, q in zip(b, d, strict=True))
-            paths.append(path - along - mpmath.sqrt(along**2 - sum(p * p for p in b) + radius**2))
-        mean = sum(paths) / len(paths)
-        return mpmath.sqrt(sum((p - mean) ** 2 for p in paths) / len(paths)) * 1e6 / mpf(WAVELENGTH_NM)
+        """The sphere goes through the middle of the exit pupil, which is the stop itself."""
+        x, y, _ = self.chief[1]
+        return self.rms_waves(mpmath.sqrt(x * x + y * y + self.of["film"] ** 2), WAVELENGTH_NM)
 
 
 @pytest.mark.parametrize(("field_deg", "object_m"), [(6.0, np.inf), (4.0, 0.3)])
@@ -299,7 +231,9 @@ def test_a_function_of_rays_has_the_gradient_of_its_central_differences() -> Non
             given = [mpf(v) for v in origins[ray] + directions[ray]]
             given[moved] += step
             size = mpmath.sqrt(sum(v * v for v in given[3:]))
-            o, d, path = traced(numbers | change, given[:3], [v / size for v in given[3:]])
+            of = numbers | change
+            _, o, d, path = traced(faces_of(of)[:3], 2, given[:3], [v / size for v in given[3:]])
+            o[2] += of["t0"] + of["t1"]  # in the lens's frame
             weights = of_at[ray] + of_way[ray]
             return sum(mpf(w) * v for w, v in zip(weights, o + d, strict=True)) + mpf(of_path[ray]) * path
 

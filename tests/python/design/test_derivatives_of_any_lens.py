@@ -10,6 +10,8 @@ import pytest
 import realcam as rc
 from mpmath import mpf
 
+from .fifty_digits import Face, ObjectRays, cross, dot, plus, traced, unit
+
 WAVELENGTH_NM = 587.5618
 STOP = 3.0
 NUMBERS = {
@@ -31,7 +33,6 @@ VARIABLES = {
     "film": rc.Variable.film_distance(),
 }
 N3 = 1.5
-ENOUGH = mpf(10) ** -25  # the last step of Newton's method, mm: the next one would be 1e-20 of it or less
 
 
 def tilted_anamorphic() -> rc.Lens:
@@ -53,142 +54,30 @@ def tilted_anamorphic() -> rc.Lens:
     )  # fmt: skip
 
 
-def dot(a: list[Any], b: list[Any]) -> Any:
-    return sum(p * q for p, q in zip(a, b, strict=True))
+def faces_of(of: dict[str, Any]) -> list[Face]:
+    """The last one is the film's plane."""
+    tilt, decentre = (of["tilt_x"], of["tilt_y"]), (of["dx"], of["dy"])
+    return [
+        Face(1, of["n0"], of["t0"], of["c0"]),
+        Face(of["n0"], 1, of["t1"], of["c1"], tilt_deg=tilt, decentre=decentre),
+        Face(1, 1, of["t2"]),
+        Face(1, mpf(N3), of["t3"], of["cylinder"], is_cylinder=True),
+        Face(mpf(N3), 1, of["film"], of["c4"]),
+        Face(1, 1, 0),
+    ]
 
 
-def plus(a: list[Any], factor: Any, b: list[Any]) -> list[Any]:
-    return [p + factor * q for p, q in zip(a, b, strict=True)]
-
-
-def unit(a: list[Any]) -> list[Any]:
-    size = mpmath.sqrt(dot(a, a))
-    return [p / size for p in a]
-
-
-def cross(a: list[Any], b: list[Any]) -> list[Any]:
-    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-
-
-def met(o: list[Any], d: list[Any], cx: Any, cy: Any) -> tuple[Any, list[Any]]:
-    """Where a ray meets z = s(cx, x) or s(cy, y), or the sphere where both are one: by Newton's method. The parameter
-    and the normal."""
-    t = -o[2] / d[2]
-    for _ in range(7):
-        x, y, z = plus(o, t, d)
-        r2 = x * x + y * y if cx else y * y
-        root = mpmath.sqrt(1 - cy * cy * r2)
-        normal = [-cy * x / root if cx else mpf(0), -cy * y / root, mpf(1)]
-        change = (z - cy * r2 / (1 + root)) / dot(normal, d)
-        t -= change
-        if abs(change) < ENOUGH:
-            break
-    return t, unit(normal)
-
-
-def refracted(d: list[Any], normal: list[Any], mu: Any) -> list[Any]:
-    cosine = dot(d, normal)
-    return plus([mu * a for a in d], mpmath.sqrt(1 - mu * mu * (1 - cosine * cosine)) - mu * cosine, normal)
-
-
-def turned(v: list[Any], tilt: list[Any], sign: int) -> list[Any]:
-    """From the frame of the tilted face to the axis's (1), or back (-1): about x, then about the y that is turned."""
-    cos_a, sin_a, cos_b, sin_b = tilt
-
-    def about_x(w: list[Any], sin: Any) -> list[Any]:
-        return [w[0], cos_a * w[1] - sin * w[2], sin * w[1] + cos_a * w[2]]
-
-    def about_y(w: list[Any], sin: Any) -> list[Any]:
-        return [cos_b * w[0] + sin * w[2], w[1], -sin * w[0] + cos_b * w[2]]
-
-    return about_x(about_y(v, sin_b), sin_a) if sign > 0 else about_y(about_x(v, -sin_a), -sin_b)
-
-
-def traced(of: dict[str, Any], o: list[Any], d: list[Any]) -> tuple[list[Any], list[Any], list[Any], Any]:
-    """Place on the stop; point and direction on the film's plane, which is z = 0; optical path."""
-    path, z = mpf(0), mpf(0)
-    tilt = [f(mpmath.radians(of[angle])) for angle in ("tilt_x", "tilt_y") for f in (mpmath.cos, mpmath.sin)]
-    stop: list[Any] = []
-    for k, (cx, cy, before, after, thickness) in enumerate(
-        [
-            (of["c0"], of["c0"], 1, of["n0"], of["t0"]),
-            (of["c1"], of["c1"], of["n0"], 1, of["t1"]),
-            (0, 0, 1, 1, of["t2"]),
-            (0, of["cylinder"], 1, mpf(N3), of["t3"]),
-            (of["c4"], of["c4"], mpf(N3), 1, of["film"]),
-            (0, 0, 1, 1, 0),
-        ]
-    ):
-        vertex = [of["dx"], of["dy"], z] if k == 1 else [mpf(0), mpf(0), z]
-        o = plus(o, -1, vertex)
-        if k == 1:
-            o, d = turned(o, tilt, -1), turned(d, tilt, -1)
-        t, normal = met(o, d, cx, cy)
-        o, path = plus(o, t, d), path + before * t
-        d = refracted(d, normal, mpf(before) / after)
-        if k == 2:
-            stop = o[:2]
-        if k == 1:
-            o, d = turned(o, tilt, 1), turned(d, tilt, 1)
-        if k < 5:
-            o = plus(o, 1, vertex)
-        z += thickness
-    return stop, o, d, path
-
-
-class Truth:
+class Truth(ObjectRays):
     """The rays of one object point, which stays in its place, through given places on the stop. `near`: the same for
-    nearly the same lens, from which they are looked for."""
+    nearly the same lens."""
 
     def __init__(
         self, of: dict[str, Any], chief: rc.AimedRays, object_mm: float, pupil: np.ndarray, near: Truth | None = None
     ) -> None:
-        self.of = of
-        self.from_ = [mpf(v) for v in chief.origins_mm[0]]
-        self.towards = unit([mpf(v) for v in chief.directions[0]])
-        self.x = unit(cross([mpf(0), mpf(1), mpf(0)], self.towards))
-        self.y = cross(self.towards, self.x)
-        self.point = None
-        if np.isfinite(object_mm):
-            self.point = plus(self.from_, (-object_mm - self.from_[2]) / self.towards[2], self.towards)
-        # Rays at the edge are aimed at 5e-11 inside of it.
-        places = [[STOP * (1 - mpf(5e-11)) * mpf(v) for v in place] for place in (*pupil, (0, 0))]
-        starts = near.entries if near else [(mpf(0), mpf(0))] * len(places)
-        self.entries = [self._entry(place, start) for place, start in zip(places, starts, strict=True)]
-        *self.rays, self.chief = (self._ray(*entry)[1] for entry in self.entries)
-        self.start = self._ray(*self.entries[-1])[0]
-
-    def _ray(self, x: Any, y: Any) -> tuple[Any, Any]:
-        at = plus(plus(self.from_, x, self.x), y, self.y)
-        if self.point is None:
-            d, before = self.towards, dot(plus(at, -1, self.from_), self.towards)
-        else:
-            off = plus(at, -1, self.point)
-            d, before = unit(off), mpmath.sqrt(dot(off, off))
-        stop, o, p, path = traced(self.of, at, d)
-        return (at, d), (stop, o, p, path + before)
-
-    def _entry(self, place: list[Any], start: tuple[Any, Any]) -> tuple[Any, Any]:
-        (x, y), h = start, mpf(10) ** -20
-        for _ in range(7):
-            s, sx, sy = (self._ray(*at)[1][0] for at in ((x, y), (x + h, y), (x, y + h)))
-            slope = mpmath.matrix([[(sx[i] - s[i]) / h, (sy[i] - s[i]) / h] for i in (0, 1)])
-            change = mpmath.lu_solve(slope, mpmath.matrix([place[i] - s[i] for i in (0, 1)]))
-            x, y = x + change[0], y + change[1]
-            if mpmath.norm(change) < ENOUGH:
-                break
-        return x, y
-
-    def spot_mm(self) -> Any:
-        at = [o for _, o, _, _ in self.rays]
-        middle = [sum(p[i] for p in at) / len(at) for i in (0, 1)]
-        return mpmath.sqrt(sum((p[0] - middle[0]) ** 2 + (p[1] - middle[1]) ** 2 for p in at) / len(at))
-
-    def chief_ray_height_mm(self) -> Any:
-        return self.chief[1][1]
-
-    def contrast(self, along: Any) -> Any:
-        return abs(sum(mpmath.expjpi(2 * 15 * dot(o[:2], along)) for _, o, _, _ in self.rays)) / len(self.rays)
+        at, towards = [mpf(v) for v in chief.origins_mm[0]], unit([mpf(v) for v in chief.directions[0]])
+        x = unit(cross([mpf(0), mpf(1), mpf(0)], towards))
+        point = plus(at, (-object_mm - at[2]) / towards[2], towards) if np.isfinite(object_mm) else None
+        super().__init__(faces_of(of), 2, STOP, (at, x, cross(towards, x)), towards, point, pupil, near)
 
     def mtf_tangential(self) -> Any:
         return self.contrast(unit([mpf(v) for v in FILM_MM]))
@@ -206,7 +95,9 @@ class Truth:
         for k in range(4):
             at, d = self.start
             step = (self.x, self.y)[k % 2]
-            stop, o, p, _ = traced(self.of, plus(at, h if k < 2 else 0, step), unit(plus(d, 0 if k < 2 else h, step)))
+            stop, o, p, _ = traced(
+                self.faces, 2, plus(at, h if k < 2 else 0, step), unit(plus(d, 0 if k < 2 else h, step))
+            )
             off = plus(o, -1, self.chief[1])
             off = plus(off, -dot(off, z) / dot(p, z), p)
             columns.append([v / h for v in (*stop, *(dot(off, a) for a in axes), *(dot(p, a) for a in axes))])
@@ -217,14 +108,7 @@ class Truth:
         return -(quotient[0, 0] + quotient[1, 1]) / 2
 
     def wavefront_waves(self) -> Any:
-        radius, centre = self.exit_pupil_distance(), self.chief[1]
-        paths = []
-        for _, o, d, path in self.rays:
-            b = plus(o, -1, centre)
-            along = dot(b, d)
-            paths.append(path - along - mpmath.sqrt(along**2 - dot(b, b) + radius**2))
-        mean = sum(paths) / len(paths)
-        return mpmath.sqrt(sum((p - mean) ** 2 for p in paths) / len(paths)) * 1e6 / mpf(WAVELENGTH_NM)
+        return self.rms_waves(self.exit_pupil_distance(), WAVELENGTH_NM)
 
 
 FILM_MM = (5.0, -4.0)
@@ -266,7 +150,7 @@ def focal_length_and_f_number(of: dict[str, Any], near: rc.AimedRays) -> tuple[A
     """Of both meridians together, about the ray from the middle of the film to that of the stop, which is looked for
     from a ray near to it. The determinants of how directions behind the lens, and places on the stop, change with the
     place of parallel rays in front of it, by differences."""
-    h = mpf(10) ** -18
+    h, faces = mpf(10) ** -18, faces_of(of)
     at, d = [mpf(v) for v in near.origins_mm[0]], unit([mpf(v) for v in near.directions[0]])
 
     def beside(k: int, step: Any) -> tuple[list[Any], list[Any]]:
@@ -275,20 +159,20 @@ def focal_length_and_f_number(of: dict[str, Any], near: rc.AimedRays) -> tuple[A
         return (plus(at, step, axis), d) if k < 2 else (at, unit(plus(d, step, axis)))
 
     for _ in range(6):
-        stop, place, _, _ = traced(of, at, d)
+        stop, place, _, _ = traced(faces, 2, at, d)
         here = mpmath.matrix([*stop, *place[:2]])
         slopes = mpmath.matrix(4, 4)
         for k in range(4):
-            stop, place, _, _ = traced(of, *beside(k, h))
+            stop, place, _, _ = traced(faces, 2, *beside(k, h))
             slopes[:, k] = (mpmath.matrix([*stop, *place[:2]]) - here) / h
         steps = mpmath.lu_solve(slopes, -here)
         for k in range(4):
             at, d = beside(k, steps[k])
-    stop, _, behind, _ = traced(of, at, d)
+    stop, _, behind, _ = traced(faces, 2, at, d)
     x = unit(cross([mpf(0), mpf(1), mpf(0)], behind))
     axes, power, pupil = (x, cross(behind, x)), mpmath.matrix(2, 2), mpmath.matrix(2, 2)
     for k in range(2):
-        stop_beside, _, way, _ = traced(of, *beside(k, h))
+        stop_beside, _, way, _ = traced(faces, 2, *beside(k, h))
         for i in range(2):
             power[i, k], pupil[i, k] = dot(axes[i], way) / h, (stop_beside[i] - stop[i]) / h
     length = 1 / mpmath.sqrt(abs(mpmath.det(power)))
