@@ -55,14 +55,6 @@ double filling_distance(const Subject& subject, const Camera& camera, Vec3d targ
     return distance;
 }
 
-/// Largest distance of the camera from its target at which no surface lies between camera and subject; infinite if
-/// nothing is in front of the subject.
-double free_distance(const Assembly& assembly, const BoundingBox& subject, Vec3d target, Vec3d backward) {
-    double edge = 0;
-    for (int corner = 0; corner < 8; ++corner) edge = std::max(edge, dot(subject.corner(corner) - target, backward));
-    return 0.99 * first_hit(assembly, target, backward, edge + 1e-6 * subject.diagonal());
-}
-
 /// The scene's camera whose view is used; null: choose a view. Throws InputError if the scene has no camera of the
 /// requested name.
 const SceneCamera* chosen_camera(const Assembly& assembly, const ViewRequest& request) {
@@ -156,7 +148,10 @@ void choose_view(Camera& camera, const Assembly& assembly, const Subject& subjec
             backward = std::cos(elevation) * (std::cos(azimuth) * front + std::sin(azimuth) * aside) +
                        std::sin(elevation) * up;
         }
-        limit = free_distance(assembly, box, target, backward);
+        // No surface lies between the camera and the nearest corner of the subject.
+        double edge = 0;
+        for (int corner = 0; corner < 8; ++corner) edge = std::max(edge, dot(box.corner(corner) - target, backward));
+        limit = 0.99 * first_hit(assembly, target, backward, edge + 1e-6 * box.diagonal());
     }
     camera.pose = {target + backward, target, request.up};
     validate(camera);
@@ -164,8 +159,7 @@ void choose_view(Camera& camera, const Assembly& assembly, const Subject& subjec
     double distance = 0, least = 0;
     const auto pose_of_lens = [&](const LensSystem& lens) {
         camera.lens = lens;
-        distance = is_closed ? limit : std::min(limit, filling_distance(subject, camera, target, is_open));
-        distance = std::max(distance, least);
+        distance = std::max(least, std::min(limit, filling_distance(subject, camera, target, is_open)));
         return Pose{target + (distance + film_to_pupil_m(lens)) * backward, target, request.up};
     };
     for (int i = 0;; ++i) {
@@ -175,6 +169,7 @@ void choose_view(Camera& camera, const Assembly& assembly, const Subject& subjec
         } catch (const InputError&) {
             if (request.focus_distance_m || i == 99) throw;
             least = 1.2 * distance;
+            limit = kInfinity;  // the lens does not fit into the room, which is then seen from outside
             camera = unplaced;
         }
     }

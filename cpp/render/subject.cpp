@@ -147,6 +147,7 @@ bool choose_carried(std::vector<Part*>& chosen, Facets& facets, const std::vecto
             any_is_near |= length(subject.box.nearest(near) - near) < subject.size();
         });
         if (any_is_near) continue;
+        for (Part* part : chosen) part->must_stay_away = false;
         chosen = carried;
         return true;
     }
@@ -211,21 +212,16 @@ Subject::Subject(const Assembly& assembly, Vec3d up) {
         is_lit_within |= length(box.nearest(light.position_m) - light.position_m) == 0;
     const bool is_lit_outside = !lights.suns.empty() || lights.environment.emits();
     if (!(inwards_m2 > 0.5 * all_m2) && !(is_lit_within && !is_lit_outside)) return;
+    constexpr std::array<Vec3d, 6> kNormals = {{{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}}};
     const auto size = coordinates(box.size());
     for (std::size_t side = 0; side < 6; ++side) {
         const double whole_m2 = size[(side / 2 + 1) % 3] * size[(side / 2 + 2) % 3];
-        walls_[side] = whole_m2 > 0 && covered_m2[side] >= 0.5 * whole_m2;
+        if (whole_m2 > 0 && covered_m2[side] >= 0.5 * whole_m2) walls.push_back(kNormals[side]);
     }
 }
 
 bool Subject::has_wall(Vec3d direction) const {
-    const auto along = coordinates(direction);
-    const auto largest = std::ranges::max_element(along, {}, [](double c) { return std::fabs(c); });
-    return walls_[static_cast<std::size_t>(2 * (largest - along.begin()) + (*largest > 0))];
-}
-
-bool Subject::is_room() const {
-    return std::ranges::count(walls_, true) >= 5;
+    return std::ranges::any_of(walls, [&](Vec3d normal) { return dot(normal, direction) > 0.8; });
 }
 
 }  // namespace realcam

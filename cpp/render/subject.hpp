@@ -1,5 +1,4 @@
 #pragma once
-#include <array>
 #include <vector>
 
 #include "../scene/bounding_box.hpp"
@@ -16,8 +15,7 @@ namespace REALCAM_NAMESPACE {
 ///   quarter of the triangles of the subject. Carriers and skies that are not flat have fewer triangles than the
 ///   subject, or keep away from it.
 /// - Small parts are removed if they are farther away than eight times the length of the large parts.
-class Subject {
-public:
+struct Subject {
     /// `up`: unit.
     Subject(const Assembly& assembly, Vec3d up);
 
@@ -25,14 +23,13 @@ public:
     std::vector<BoundingBox> part_boxes;
     BoundingBox content;  ///< bounds of all triangles that do not lie in a side of `box`
 
-    /// True if the side of the box towards `direction` is a wall: triangles cover at least half of it, and face inwards
-    /// or enclose the only light. A cube that is seen from outside has no walls. `direction` is nearly along an axis.
-    bool has_wall(Vec3d direction) const;
-    /// True if there are at least five walls.
-    bool is_room() const;
+    /// Outward unit normals of the sides of the box that are walls: triangles cover at least half of the side, and face
+    /// inwards or enclose the only light. A cube that is seen from outside has no walls.
+    std::vector<Vec3d> walls;
 
-private:
-    std::array<bool, 6> walls_{};  ///< low and high side of the box along each axis
+    /// True if the side towards `direction`, which is nearly along an axis, is a wall.
+    bool has_wall(Vec3d direction) const;
+    bool is_room() const { return walls.size() >= 5; }
 };
 
 }  // namespace REALCAM_NAMESPACE
