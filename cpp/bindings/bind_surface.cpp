@@ -37,9 +37,9 @@ Vec3d triple_from(const std::vector<double>& values, std::size_t least, const ch
     return {values[0], values[1], values.size() > 2 ? values[2] : 0};
 }
 
-Surface make_surface(double radius_of_curvature, double thickness, const py::object& material,
+Surface make_surface(double radius_of_curvature, double thickness, const MediumLike& material,
                      double clear_semi_diameter, double conic, const std::map<int, double>& aspheric,
-                     double inner_semi_diameter, const std::string& type, const py::object& coating,
+                     double inner_semi_diameter, const std::string& type, const CoatingLike& coating,
                      const std::vector<double>& decentre, const std::vector<double>& tilt, bool returns,
                      const SurfaceChanges::Name& form, SurfaceChanges::Number radius_x, SurfaceChanges::Number conic_x,
                      const SurfaceChanges::RadialTerms& radial, const SurfaceChanges::XyTerms& xy,

@@ -70,7 +70,7 @@ Terms terms_from(const py::dict& given, const std::string& what) {
 }
 
 template <class Terms>
-void change_terms(std::optional<Terms>& terms, const std::optional<py::dict>& to, const std::string& what) {
+void change_terms(std::optional<Terms>& terms, const std::optional<FormDict>& to, const std::string& what) {
     if (!to) return;
     if (to->empty())
         terms.reset();
@@ -202,21 +202,21 @@ std::map<std::pair<int, int>, double> xy_terms_of(const Surface& surface) {
     return terms;
 }
 
-py::dict zernike_of(const Surface& surface) {
+FormDict zernike_of(const Surface& surface) {
     const auto& terms = surface.form.zernike;
     if (!terms) return {};
     return py::dict("order"_a = terms->order == ZernikeOrder::noll ? "noll" : "fringe", "radius_mm"_a = terms->radius,
                     "coefficients_mm"_a = terms->coefficients);
 }
 
-py::dict forbes_of(const Surface& surface) {
+FormDict forbes_of(const Surface& surface) {
     const auto& terms = surface.form.forbes;
     if (!terms) return {};
     return py::dict("kind"_a = terms->kind == ForbesKind::bfs ? "bfs" : "con", "radius_mm"_a = terms->radius,
                     "coefficients_mm"_a = terms->coefficients);
 }
 
-py::dict aperture_of(const Surface& surface) {
+FormDict aperture_of(const Surface& surface) {
     const ApertureShape& shape = surface.aperture_shape;
     py::dict result;
     switch (shape.kind) {
@@ -236,8 +236,8 @@ py::dict aperture_of(const Surface& surface) {
     return result;
 }
 
-std::vector<py::dict> obscurations_of(const Surface& surface) {
-    std::vector<py::dict> list;
+std::vector<FormDict> obscurations_of(const Surface& surface) {
+    std::vector<FormDict> list;
     for (const Obscuration& piece : surface.aperture_shape.obscurations) {
         py::dict plain;
         plain[piece.is_rectangle ? "rectangle_mm" : "ellipse_mm"] = pair_of(piece.half);

@@ -19,8 +19,8 @@ struct FormChanges {
     Number radius_of_curvature_x_mm, conic_x;
     std::optional<std::map<int, double>> radial_terms;
     std::optional<std::map<std::pair<int, int>, double>> xy_terms;
-    std::optional<py::dict> zernike, forbes, aperture;
-    std::optional<std::vector<py::dict>> obscurations;
+    std::optional<FormDict> zernike, forbes, aperture;
+    std::optional<std::vector<FormDict>> obscurations;
 };
 
 /// Applies changes to a surface. An empty dict removes the respective form or aperture. Throws InputError for an
@@ -31,9 +31,9 @@ void change_form(Surface& surface, const FormChanges& to);
 std::string form_name(const Surface& surface);
 std::map<int, double> radial_terms_of(const Surface& surface);
 std::map<std::pair<int, int>, double> xy_terms_of(const Surface& surface);
-py::dict zernike_of(const Surface& surface);
-py::dict forbes_of(const Surface& surface);
-py::dict aperture_of(const Surface& surface);
-std::vector<py::dict> obscurations_of(const Surface& surface);
+FormDict zernike_of(const Surface& surface);
+FormDict forbes_of(const Surface& surface);
+FormDict aperture_of(const Surface& surface);
+std::vector<FormDict> obscurations_of(const Surface& surface);
 
 }  // namespace realcam::bindings

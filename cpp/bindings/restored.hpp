@@ -1,5 +1,6 @@
 #pragma once
 #include <algorithm>
+#include <concepts>
 #include <cstring>
 #include <type_traits>
 
@@ -21,6 +22,9 @@ struct AnyMembers {
     template <class T>
     static void check(const T&) {}
 };
+
+template <class T, class... Types>
+concept OneOf = (std::same_as<T, Types> || ...);
 
 /// `value`: the last enumerator of an enumeration that starts at 0 and has no gaps.
 template <class E>

@@ -7,18 +7,20 @@
 #include <utility>
 #include <vector>
 
-#include "coating_from.hpp"
 #include "form_from.hpp"
 
 namespace realcam::bindings {
+
+/// Medium of a changed surface; `...`: unchanged, because None is air.
+using MediumChange = Typed<"float | tuple[float, float] | str | Glass | types.EllipsisType | None">;
 
 /// Changes of a surface; omitted ones are left unchanged.
 struct SurfaceChanges {
     using Number = std::optional<double>;
     using Numbers = std::optional<std::vector<double>>;
     using Name = std::optional<std::string>;
-    using Dict = std::optional<py::dict>;
-    using Dicts = std::optional<std::vector<py::dict>>;
+    using Dict = std::optional<FormDict>;
+    using Dicts = std::optional<std::vector<FormDict>>;
     using RadialTerms = std::optional<std::map<int, double>>;
     using XyTerms = std::optional<std::map<std::pair<int, int>, double>>;
 
@@ -49,11 +51,12 @@ void def_surface_changes(py::class_<T>& type, const char* name, Function functio
     type.def(
         name,
         [function](const T& self, Index<First>... place, C::Number radius, C::Number thickness,
-                   const py::object& material, C::Number clear, C::Number conic, const C::RadialTerms& aspheric,
-                   C::Number inner, const C::Name& surface_type, const py::object& coating, const C::Numbers& decentre,
-                   const C::Numbers& tilt, std::optional<bool> returns, const C::Name& form, C::Number radius_x,
-                   C::Number conic_x, const C::RadialTerms& radial, const C::XyTerms& xy, const C::Dict& zernike,
-                   const C::Dict& forbes, const C::Dict& aperture, const C::Dicts& obscurations) {
+                   const MediumChange& material, C::Number clear, C::Number conic, const C::RadialTerms& aspheric,
+                   C::Number inner, const C::Name& surface_type, const Typed<"str | Coating | None">& coating,
+                   const C::Numbers& decentre, const C::Numbers& tilt, std::optional<bool> returns, const C::Name& form,
+                   C::Number radius_x, C::Number conic_x, const C::RadialTerms& radial, const C::XyTerms& xy,
+                   const C::Dict& zernike, const C::Dict& forbes, const C::Dict& aperture,
+                   const C::Dicts& obscurations) {
             const bool stays = material.is(py::ellipsis());
             const SurfaceChanges changes{
                 radius,

@@ -87,7 +87,6 @@ from .live_view import LiveView
 from .operands import Operand
 from .optimisation import Optimisation, Targets, optimised
 from .photography import DepthOfField, PhotographicFigures, depth_of_field, photographic_figures
-from .pickling import name_static_functions as _name_static_functions
 from .planning import plan
 from .raw_image import RawImage
 from .render import render
@@ -111,7 +110,6 @@ if TYPE_CHECKING:
     from . import analysis
 
 _core._name_cuda_plugin(_path_of_plugin())
-_name_static_functions()
 
 __all__ = [
     "PSF",

@@ -127,7 +127,7 @@ def table_html(rows: Iterable[Sequence[str]], head: Sequence[str] = ()) -> str:
     return f"<table>{top}<tbody>{body}</tbody></table>"
 
 
-# setattr because the classes belong to the extension; _core.pyi declares the public names.
+# setattr because the classes belong to the extension; the stub finds the public names there.
 for _type, _name, _function in (
     (Lens, "draw", draw),
     (Lens, "_repr_png_", lens_png),
