@@ -419,7 +419,7 @@ class Surface:
     @property
     def zernike(self) -> dict[str, Any]: ...
 
-def _form_terms() -> tuple:
+def _form_terms() -> tuple[str, ...]:
     """
     Keywords of Surface for terms of the sag, which are variables, too.
     """
@@ -2970,7 +2970,7 @@ def _followed_isos(
     smoothing_s: float,
     device: str,
 ) -> list[float]: ...
-def _shot_keys() -> list[tuple[str, str | None, str, str, str, str]]: ...
+def _shot_keys() -> list[tuple[str, str | None, str, str, str]]: ...
 def _read_shot(
     path: str | os.PathLike[str],
     changes: str,

@@ -58,7 +58,7 @@ std::string surface_text(const Surface& s) {
 }
 
 /// The keys of kFormTerms.
-py::tuple form_terms() {
+Typed<"tuple[str, ...]", py::tuple> form_terms() {
     py::tuple keys(kFormTermsCount);
     for (std::size_t row = 0; row < kFormTermsCount; ++row) keys[row] = kFormWords[row].key;
     return keys;

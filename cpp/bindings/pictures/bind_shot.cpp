@@ -218,7 +218,7 @@ z_m; but for the time any may be missing. Raises InputError naming file and line
 }
 
 /// Returns the shot keys that are command line options.
-Typed<"list[tuple[str, str | None, str, str, str, str]]", py::list> listed_shot_keys() {
+Typed<"list[tuple[str, str | None, str, str, str]]", py::list> listed_shot_keys() {
     py::list keys;
     for (const shot::ShotKey& key : shot::shot_keys())
         keys.append(py::make_tuple(key.name, key.option, key.group, key.placeholder, key.help()));

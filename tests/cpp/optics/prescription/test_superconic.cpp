@@ -5,7 +5,7 @@
 #include "../oracle.hpp"
 #include "about.hpp"
 #include "doctest/doctest.h"
-#include "io/lens/lens_writers.hpp"
+#include "io/lens/lens_toml.hpp"
 #include "optics/derivatives/dual_surface.hpp"
 #include "optics/prescription/lens_checks.hpp"
 #include "optics/trace/traced_shape.hpp"
