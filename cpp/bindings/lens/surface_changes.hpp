@@ -90,9 +90,9 @@ void def(std::index_sequence<row...>, py::class_<T>& type, const char* name, Fun
         name,
         [function](const T& self, Index<First>... indices, C::Number radius, C::Number thickness,
                    const MediumChange& material, C::Number clear, C::Number conic, const C::RadialTerms& aspheric,
-                   C::Number inner, const C::Name& surface_type, const Typed<"str | Coating | None">& coating, const C::Numbers& decentre,
-                   const C::Numbers& tilt, std::optional<bool> returns, const C::Name& form, C::Number radius_x,
-                   C::Number conic_x, const C::RadialTerms& radial, const C::XyTerms& xy,
+                   C::Number inner, const C::Name& surface_type, const Typed<"str | Coating | None">& coating,
+                   const C::Numbers& decentre, const C::Numbers& tilt, std::optional<bool> returns, const C::Name& form,
+                   C::Number radius_x, C::Number conic_x, const C::RadialTerms& radial, const C::XyTerms& xy,
                    const TermsDict<row>&... terms, const C::Dict& aperture, const C::Dicts& obscurations) {
             const bool stays = material.is(py::ellipsis());
             const SurfaceChanges changes{radius,

@@ -2,8 +2,8 @@
 #include "../device/cuda_error.hpp"
 #include "../device/launch_grid.hpp"
 #include "bvh_scene.hpp"
-#include "layer_kernels.hpp"
 #include "lanes_per_pixel.hpp"
+#include "layer_kernels.hpp"
 #include "warp_tiles.hpp"
 
 namespace realcam {
