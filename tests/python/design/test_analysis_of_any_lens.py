@@ -119,7 +119,7 @@ def test_fields_that_are_none() -> None:
         LENS.spot(10.0, film_mm=(0, 1))
     with pytest.raises(rc.InputError, match=r"at the film point \(0, 500\) mm reaches"):
         LENS.spot(film_mm=(0, 500))
-    with pytest.raises(rc.InputError, match="place on the film"):
+    with pytest.raises(rc.InputError, match="point of the film"):
         LENS.spot(film_mm=(math.nan, 0))
     with pytest.raises(rc.InputError, match='unknown quantity "sharpness"'):
         analysis.field_map(LENS, "sharpness")
