@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from .._core import InputError, Lens, Surface
-from ..variable import FORM_TERMS
+from ..derivatives.variable import FORM_TERMS
 
 
 def check_expressible(lens: Lens) -> None:
