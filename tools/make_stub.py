@@ -137,7 +137,18 @@ SPELLINGS = (
     (r"__hash__: typing\.ClassVar\[None\] = None", "__hash__: ClassVar[None]  # type: ignore[assignment]"),
 )
 # Methods that say nothing to type checkers.
-LEFT_OUT = {"__new__", "__reduce__", "__repr__", "__str__", "__eq__", "__hash__", "_restored", "_pybind11_conduit_v1_"}
+LEFT_OUT = {
+    "__new__",
+    "__reduce__",
+    "__repr__",
+    "__str__",
+    "__eq__",
+    "__hash__",
+    "_restored",
+    "_pybind11_conduit_v1_",
+    "_repr_html_",
+    "_repr_png_",
+}
 
 
 class Parser(

@@ -496,11 +496,6 @@ class Lens:
     @staticmethod
     def _load_with_notes(path: str | os.PathLike[str]) -> tuple[Lens, list[str]]: ...
     @staticmethod
-    def _repr_png_(lens: Lens) -> bytes | None:
-        """
-        PNG of the lens; None if it cannot be drawn because no light passes, so that the notebook shows its text.
-        """
-    @staticmethod
     def load(
         name_or_path: str | os.PathLike[str],
         *,
@@ -1583,11 +1578,6 @@ class PSF:
     """
 
     __hash__: ClassVar[None]  # type: ignore[assignment]
-    @staticmethod
-    def _repr_png_(psf: PSF) -> bytes:
-        """
-        PNG of a point spread function on a logarithmic scale, for notebooks.
-        """
     def __copy__(self) -> Self: ...
     def __deepcopy__(self, memo: object) -> Self: ...
     def energy_inside(self, radius_um: float, about_um: tuple[float, float] = (0.0, 0.0)) -> float:
@@ -2822,8 +2812,6 @@ class Plan:
     """
 
     __hash__: ClassVar[None]  # type: ignore[assignment]
-    @staticmethod
-    def _repr_html_(plan: Plan) -> str: ...
     def __copy__(self) -> Self: ...
     def __deepcopy__(self, memo: object) -> Self: ...
     @property
