@@ -30,10 +30,10 @@ struct SuperconicTerms {
     std::string error(const Surface& surface) const {
         if (!surface.form.has_conic_base()) return "superconic terms depart from a conic of revolution";
         if (surface.form.forbes) return "has both superconic and Forbes terms, which are traced by one polynomial";
-        return is_followed({surface.curvature, surface.conic}, surface.clear_semi_diameter)
-                   ? ""
-                   : "its superconic terms bend it more than the polynomial in r^" +
-                         std::to_string(2 * kMaxForbesTerms + 2) + " follows by which they are traced";
+        const ConicNumbers<double> conic = {surface.curvature, surface.conic};
+        if (is_followed(conic, surface.clear_semi_diameter)) return "";
+        return "its superconic terms bend it more than the polynomial in r^" + std::to_string(2 * kMaxForbesTerms + 2) +
+               " follows by which they are traced";
     }
     void negate() {
         for (std::size_t i = 1; i < coefficients.size(); i += 2) coefficients[i] = -coefficients[i];
