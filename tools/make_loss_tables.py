@@ -38,7 +38,7 @@ def gauss(nodes: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 class GgxTable:
-    """What cpp/scene/materials/ggx_albedo.hpp reads: for all cosines at one alpha."""
+    """The table that cpp/scene/materials/ggx_albedo.hpp reads: the albedo for all cosines at one alpha."""
 
     def __init__(self) -> None:
         text = Path("cpp/scene/materials/ggx_tables.hpp").read_text()

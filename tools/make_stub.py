@@ -129,7 +129,7 @@ OVERLOADS: dict[str, list[tuple[dict[str, str], str]]] = {
     ],
     "RayChunks.__next__": [({}, "CameraRays[_Doubles, _Floats, _Integers]")],
 }
-# What pybind11 and stubgen write (patterns), and what the stub says.
+# Patterns in the output of pybind11 and stubgen, and their replacements in the stub.
 SPELLINGS = (
     (r"NDArray\[(?=\w+\])(?!Any)", "NDArray[np."),
     (r"\(self: \w+", "(self"),

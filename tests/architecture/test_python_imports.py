@@ -111,7 +111,7 @@ def package_of(module: str) -> str:
 
 
 def test_importing_realcam_loads_no_package_of_tools() -> None:
-    """What they bring is there nevertheless, imported on first use."""
+    """Public names of the tools are available nevertheless; their packages are imported on first use."""
     script = """
 import sys, realcam as rc
 print(*sys.modules)

@@ -131,7 +131,7 @@ private:
     static constexpr int kCells = Map::kColumns * Map::kRows;
     using Real = typename Map::Real;
     using Rectangle = TargetRectangle<Real>;
-    using Targets = std::array<Rectangle, kCells>;  ///< of each cell
+    using Targets = std::array<Rectangle, kCells>;  ///< one rectangle for each cell of the film map
 
     template <int kStrataRows>
     std::vector<FoundRay> traced(const LensSystem& lens, const std::vector<Crossing>& crossings,

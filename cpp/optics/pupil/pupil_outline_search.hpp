@@ -12,7 +12,7 @@ struct OutlineLook {
     Vec2<double> film;  ///< mm
     PupilDirection centre;
     double half_width, half_height;
-    double cos = 1, sin = 0;  ///< of the azimuth by which the box is rotated about its centre
+    double cos = 1, sin = 0;  ///< cosine and sine of the angle by which the box is rotated about its centre
 
     /// Direction at an azimuth of the outline (PupilOutline::direction) and a radius.
     PupilDirection direction(int azimuth, double reach) const;

@@ -57,7 +57,7 @@ private:
     DirectionBox searched(const DirectionBox& box) const {
         return {box.l_min, box.l_max, is_symmetric() ? 0 : box.m_min, box.m_max};
     }
-    /// The box of which this is the searched part.
+    /// Returns the whole box for its searched part: the inverse of `searched`.
     DirectionBox whole_of(const DirectionBox& part) const {
         return {part.l_min, part.l_max, is_symmetric() ? -part.m_max : part.m_min, part.m_max};
     }

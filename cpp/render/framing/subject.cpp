@@ -35,7 +35,7 @@ struct Components {
     std::size_t count;
 };
 
-/// A triangle, or an instance of which only the box is known.
+/// A triangle, or an instance, which is represented by its bounding box.
 struct Facet {
     BoundingBox box;
     Vec3d area_m2 = {0, 0, 0};  ///< area vector along the normal
@@ -81,7 +81,7 @@ private:
     std::unordered_map<const Scene*, Components> components_;
 };
 
-/// A connected component, or an instance of which only the box is known.
+/// A connected component, or an instance, which is represented by its bounding box.
 struct Part {
     static constexpr double kFlat = 0.05;  // thickness over length
 

@@ -156,7 +156,7 @@ class ObjectRays:
         return abs(sum(waves)) / len(waves)
 
     def rms_waves(self, radius: Any, wavelength_nm: float) -> Any:
-        """Of paths to the sphere of that radius about the chief ray's film point."""
+        """RMS of the path lengths to the sphere of this radius about the chief ray's film point, in wavelengths."""
         paths = []
         for _, o, d, path in self.rays:
             b = plus(o, -1, self.chief[1])

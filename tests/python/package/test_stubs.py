@@ -48,7 +48,7 @@ def test_every_public_function_says_what_it_does() -> None:
         assert len(lines) >= (1 if isinstance(thing, type) else 2), name
 
 
-# What pybind11 makes of every class, which no stub says.
+# Findings of stubtest that pybind11 causes in every class, and that no stub can avoid.
 PYBIND11 = re.compile(r"metaclass differs$|__init__ is inconsistent, stub does not have \*args parameter")
 
 

@@ -1,4 +1,4 @@
-"""What tests of the lens bench share; those that ask for it say where nicegui, playwright or chromium is missing.
+"""Fixtures of the tests of the lens bench. A test that uses one says if nicegui, playwright or chromium is missing.
 
 Servers, browsers and their first pages take seconds to begin.
 """
@@ -46,7 +46,7 @@ def kept_page(browser: Any) -> Iterator[BenchPage]:
 
 @pytest.fixture(scope="session")
 def first_state(server: Server) -> dict[str, Any]:
-    """Of a bench that shows the server's shot."""
+    """The state of a bench that shows the server's shot, before any change."""
     from realcam.viewer.bench_state import state_of
     from realcam.viewer.camera_controls import CameraControls
     from realcam.viewer.effect_switches import Switches

@@ -388,7 +388,7 @@ private:
     }
     PrescriptionSurface& row_of(C& c) { return surface_of(c).row; }
 
-    /// Reads decentres and tilts, of which the first two are positive clockwise.
+    /// Reads decentres and tilts. CODE V counts the first two tilts positive clockwise.
     void read_place(C& c) {
         SurfacePlacement& place = surface_of(c).place;
         const double value = c.number(0, "the decentre or tilt");

@@ -214,7 +214,7 @@ private:
         return text + '\n';
     }
 
-    std::string commands_;  ///< of the current surface
+    std::string commands_;  ///< commands that follow the line of the current surface
     std::vector<Glass> private_;
 };
 

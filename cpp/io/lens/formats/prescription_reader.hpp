@@ -124,7 +124,7 @@ protected:
     void tell_unknown(const std::string& what);
     /// Returns all values of a command for fields.
     std::vector<double> field_values(const LensCommand& command) const;
-    /// Throws LensFileError if a file has so many surfaces that another one is too many.
+    /// Throws LensFileError if a file with this many surfaces may not have another one.
     void check_count(std::size_t surfaces) const;
 
     LensLines lines_;

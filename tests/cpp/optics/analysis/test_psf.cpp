@@ -189,7 +189,7 @@ TEST_CASE("light is the same by halves and by more rays") {
         worst_more = std::max(worst_more, largest_difference(psf_of(lens, more), psf));
     }
     CHECK(worst_half < 1e-8);
-    // Where two rims cut the light there are corners, at which the sum over the arms has an error of second order.
+    // The sum over the arms has an error of second order at the corners where two rims cut the light.
     hold({"Truth", "PSF with the number of rays that is chosen against four times as many", "4 lenses", "core",
           "float64", worst_more, 1e-4, "of the peak"});
 }

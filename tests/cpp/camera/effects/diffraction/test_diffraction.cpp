@@ -21,7 +21,7 @@ using namespace realcam::test;
 constexpr double kPi = std::numbers::pi;
 
 /// A regular polygon or, with no corners, a circle, of radius 0.1, as the search for edges finds it: along scan lines,
-/// of which few meet a corner.
+/// few of which meet a corner.
 std::vector<Vec2<double>> outline(int corners, double radius = 0.1) {
     std::vector<Vec2<double>> points;
     for (int scan_line = 0; scan_line < kPupilEdgeCorners; ++scan_line) {
