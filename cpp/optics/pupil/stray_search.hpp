@@ -13,7 +13,7 @@ namespace REALCAM_NAMESPACE {
 using PupilHalves = std::vector<PupilRow>;
 
 /// Traces random rays through the surroundings of a region, which is described by sectors, and widens the sectors that
-/// do not contain a passing ray. This catches corners of slivers between spokes, and ends of crescents between grid
+/// do not contain a passing ray. This catches corners of slivers between scan lines, and ends of crescents between grid
 /// points.
 class StraySearch {
 public:
