@@ -30,12 +30,12 @@ PupilArrays pupil_arrays(const LensSystem& lens, double film_radius_mm, const st
     for (const double nm : wavelengths_nm) check_glasses_known(lens, {nm, nm}, "dispersion");
     const Pupil pupil(lens, film_radius_mm, fast_pupil_tracer(), wavelengths_nm);
     const PupilView view = pupil.view();
-    PupilArrays arrays{{}, {}, view.rows, view.sectors, pupil.image_radius()};
+    PupilArrays arrays{{}, {}, view.rows, PupilView::kSectors, pupil.image_radius()};
     for (int i = 0; i <= view.rows; ++i) {
         const PupilNode& node = view.nodes[i];
         arrays.nodes.insert(arrays.nodes.end(), {node.centre, node.half_width, node.half_height});
     }
-    for (int i = 0; i < view.rows * view.sectors; ++i) {
+    for (int i = 0; i < view.rows * PupilView::kSectors; ++i) {
         const PupilSector& s = view.outline[i];
         arrays.outline.insert(arrays.outline.end(), {s.x, s.y, s.dx, s.dy, s.hole_squared});
     }

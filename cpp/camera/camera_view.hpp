@@ -120,11 +120,11 @@ CameraView with_copied_arrays(CameraView view, Copy&& copy) {
     view.move_arrays(view.lens.count, move);
     view.traced_lights.move_arrays(move);
     move(view.pupil.nodes, view.pupil.rows + 1);
-    move(view.pupil.outline, view.pupil.rows * view.pupil.sectors);
+    move(view.pupil.outline, view.pupil.rows * PupilView::kSectors);
     const PupilGridView& grid = view.pupil_grid;
     move(view.pupil_grid.nodes, (grid.columns / kCellsPerPupilNode + 1) * (grid.rows / kCellsPerPupilNode + 1));
     move(view.pupil_grid.cells, grid.columns * grid.rows);
-    move(view.pupil_grid.sectors, grid.columns * grid.rows * 2 * kPupilGridSectors);
+    move(view.pupil_grid.outline, grid.columns * grid.rows * 2 * PupilGridView::kSectors);
     return view;
 }
 

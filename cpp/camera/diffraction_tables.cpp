@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "../math/append_alias_table.hpp"
-#include "../optics/pupil/pupil_search.hpp"
+#include "../optics/pupil/pupil_track.hpp"
 
 namespace realcam {
 
@@ -12,13 +12,13 @@ DiffractionTables::DiffractionTables(const LensSystem& lens, double film_radius,
     : film_radius_(film_radius),
       radii_(has_blades(lens) ? kRadiiWithBlades : kRadii),
       azimuths_(has_blades(lens) ? kAzimuths : 1) {
-    const PupilEdgeSearch edges(lens, tracer);
-    const std::vector<PupilBox> boxes = boxes_of(lens, tracer);
+    const PupilLens with_blades = PupilLens::with_blades(lens, tracer);
+    const std::vector<DirectionBox> boxes = boxes_of(lens, tracer);
     std::vector<std::optional<ApertureDiffraction>> found(static_cast<std::size_t>(radii_ * azimuths_));
     tracer.for_each(radii_ * azimuths_, [&](int node) {
         const int row = node / azimuths_;
-        if (const auto seen =
-                edges.at(radius_of(row), azimuth_of(node % azimuths_), boxes[static_cast<std::size_t>(row)]))
+        if (const auto seen = pupil_edges(with_blades, radius_of(row), azimuth_of(node % azimuths_),
+                                          boxes[static_cast<std::size_t>(row)]))
             found[static_cast<std::size_t>(node)] = diffraction_of(*seen);
     });
     for (int node = 0; node < radii_ * azimuths_; ++node) {
@@ -47,12 +47,12 @@ double DiffractionTables::azimuth_of(int sector) const {
     return std::atan2(1 - std::fabs(std::remainder(angle - 1, 4)), 1 - std::fabs(std::remainder(angle, 4)));
 }
 
-std::vector<PupilBox> DiffractionTables::boxes_of(const LensSystem& lens, const PupilTracer& tracer) const {
-    const PupilSearch search(lens, tracer);
+std::vector<DirectionBox> DiffractionTables::boxes_of(const LensSystem& lens, const PupilTracer& tracer) const {
+    const PupilSearch search(lens, FilmMap::radial, tracer);
     PupilTrack track;
-    std::vector<PupilBox> boxes;
+    std::vector<DirectionBox> boxes;
     for (int row = 0; row < radii_; ++row) {
-        const std::optional<PupilBox> box = search.look(radius_of(row), track);
+        const std::optional<DirectionBox> box = track.look(search, radius_of(row));
         if (!box && boxes.empty()) throw no_light(lens);
         boxes.push_back(box ? *box : boxes.back());
     }

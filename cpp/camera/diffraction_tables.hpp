@@ -28,7 +28,7 @@ private:
     /// Azimuth of a sector, at uniform steps of the view's azimuth parameter, which runs from 0 to 4 along a square.
     double azimuth_of(int sector) const;
 
-    std::vector<PupilBox> boxes_of(const LensSystem& lens, const PupilTracer& tracer) const;
+    std::vector<DirectionBox> boxes_of(const LensSystem& lens, const PupilTracer& tracer) const;
 
     void add(const ApertureDiffraction& diffraction);
 

@@ -1,161 +1,155 @@
 #pragma once
-#include <algorithm>
 #include <array>
-#include <cmath>
+#include <cstdint>
 #include <vector>
 
+#include "../optics/pupil/film_surface.hpp"
 #include "../optics/pupil/pupil_tracer.hpp"
-#include "../optics/trace/lens_path.hpp"
+#include "../optics/trace/film_frame.hpp"
 #include "ghost_view.hpp"
 
 namespace REALCAM_NAMESPACE {
 
 /// Ray from the film that has left the lens along some optical path.
 struct FoundRay {
-    float half_tangent;  ///< tangent of half its angle to the axis
-    Vec2f front;  ///< point in the plane perpendicular to it through the front vertex: away from the axis, and across,
-                  ///< mm
-    int film_ring;  ///< index of the film ring of its origin, of kGhostBins
-    Vec2f rear;  ///< point in the plane of the last vertex: towards its film point, and across, mm
-    Vec2f cosines, square;  ///< direction cosines at the film, along the film radius and across; size of its stratum in
-                            ///< them
+    Vec2f half_tangents;  ///< half_tangents() of its direction; for a rotationally symmetric lens, their length and 0
+    Vec2f front;  ///< where it leaves the lens, in the plane of a GhostEntry, mm
+    int film_cell;  ///< index of the cell of the film map that contains its origin
+    Vec2f target, stratum;  ///< point that it was sent to, see EntrancePupilSearch, and the size of its stratum
+    Vec2f rear;  ///< point in the plane of the last vertex, mm: towards its film point, and across; for a lens without
+                 ///< rotational symmetry, point in the plane z = 0 of the film's frame
     float etendue;  ///< mm^2 sr
 };
-
-/// Largest distance of a surface's rim from its vertex plane, mm.
-double rim_depth(const Surface& surface);
-
-/// Radius of a circle in the vertex plane through which all light passes that hits the surface, mm.
-double reach_of(const Surface& surface);
 
 /// Radius of a disc about the origin of the camera's frame (film_path_ends), perpendicular to light from any direction,
 /// that contains all points where light enters a lens of any kind, mm.
 float entry_reach(const LensSystem& lens);
 
-/// The lens with a circular stop: the circumcircle of the opening that its blades leave.
-LensSystem with_stop_around_blades(LensSystem lens);
+/// Rectangle of points in the coordinates of FoundRay::target.
+template <class T>
+struct TargetRectangle {
+    Vec2<T> low, high;
+};
 
-/// Sets half_tangent and front of a ray that has left the lens with origin o and unit direction d.
-void set_front(Vec3f o, Vec3f d, FoundRay& ray);
+/// Stratum of a TargetRectangle: its column and row, the size of a stratum, and its index among all strata.
+template <class T>
+struct TargetStratum {
+    int column, row;
+    Vec2<T> size;
+    std::uint32_t index;
+};
 
-/// Entrance-pupil search: finds the entrance-pupil bounds by rays traced back from the film, where bundles are wide. At
-/// the front of a fisheye they cover only a hundredth of its first surface. Lens and film circle are rotationally
-/// symmetric, so one azimuth of the film is enough; blades are replaced by the circumcircle of their opening. A ghost's
-/// bundle may be narrow: it is searched with the stop wide open first, then with the actual stop, and finally within
-/// the bounds of the rays found.
-struct EntrancePupilSearch {
-    using Found = FoundRay;
+/// Directions of the light of a rotationally symmetric lens, in uniform steps of the tangent of half the angle to the
+/// axis.
+struct HalfTangentBins {
+    float largest;  ///< upper bound of the tangents
+
+    /// Index of the bin of a tangent; beyond the largest tangent, that of the last bin.
+    int bin_of(float half_tangent) const;
+    int cell_of(Vec2f half_tangents) const { return bin_of(half_tangents.x); }
+};
+
+using FoundRays = std::vector<std::vector<FoundRay>>;
+
+// Film maps of EntrancePupilSearch: a division of the film into cells, kColumns x kRows, and the targets of the rays
+// from each cell.
+
+/// Film map of a rotationally symmetric lens: rings of the film radius. One azimuth of the film is enough, and one half
+/// of each bundle. Targets are direction cosines at the film, along the film radius and across it, so that rays are
+/// evenly spread over the light.
+struct FilmRings {
+    static constexpr int kColumns = kGhostBins, kRows = 1;
+    static constexpr bool kMirrored = true;  ///< light is symmetric in the y of targets, and only y > 0 is searched
+    /// Rows of strata of a target rectangle, in the first searches and in the last; and columns for each row.
+    static constexpr int kFew = 8, kMany = 12, kColumnsPerRow = 2;
+    using Real = double;
 
     /// `film_radius`: radius of a circle that contains the film, mm.
-    EntrancePupilSearch(const LensSystem& lens, double film_radius, const PupilTracer& tracer);
+    FilmRings(const LensSystem& lens, double film_radius);
+
+    double radius_of(int ring) const { return (ring + 0.5) * film_radius / kGhostBins; }
+    /// Rectangle of all targets of a cell from which light reaches the film.
+    TargetRectangle<double> all_targets(int ring) const;
+    PathEnds ends() const { return {}; }
+    /// Starts a ray from its cell, `ray.film_cell`, to a stratum.
+    void start(const TargetRectangle<double>& in, const TargetStratum<double>& stratum, int lane,
+               PupilTracer::Rays& rays, FoundRay& ray) const;
+    /// Sets half_tangents and front of a ray that has left the lens with origin o and unit direction d.
+    static void set_front(Vec3f o, Vec3f d, FoundRay& ray);
+    /// Map that covers the directions of all these rays.
+    static HalfTangentBins directions_of(const FoundRays& rays);
+
+    double film_radius, film_distance;  ///< mm
+    double film_index;  ///< refractive index of the medium in front of the film
+    double rear_reach;  ///< radius of a circle that contains all points where light leaves the lens, mm
+};
+
+/// Film map of a lens without rotational symmetry: a square grid. Targets are points of the plane z = 0 of the film's
+/// frame.
+struct FilmCells {
+    static constexpr int kColumns = kGhostColumns, kRows = kGhostColumns;
+    static constexpr bool kMirrored = false;
+    static constexpr int kFew = 8, kMany = 10, kColumnsPerRow = 1;
+    using Real = float;
+
+    /// `film_radius`: radius of a circle about the film's vertex that contains the film, mm.
+    FilmCells(const LensSystem& lens, double film_radius);
+
+    TargetRectangle<float> all_targets(int) const { return {{-rear_reach, -rear_reach}, {rear_reach, rear_reach}}; }
+    const PathEnds& ends() const { return to_scene; }
+    void start(const TargetRectangle<float>& in, const TargetStratum<float>& stratum, int lane, PupilTracer::Rays& rays,
+               FoundRay& ray) const;
+    static void set_front(Vec3f o, Vec3f d, FoundRay& ray);
+    static GhostGrid directions_of(const FoundRays& rays);
+
+    PathEnds to_scene;
+    FilmSurface<float> film;
+    float cell_size;  ///< mm
+    float film_index;
+    GhostGrid grid;
+    float rear_reach;  ///< radius of a circle in the plane z = 0 that contains all light from the last surface, mm
+};
+
+/// Entrance-pupil search: finds the entrance-pupil bounds by rays traced back from the film, where bundles are wide. At
+/// the front of a fisheye they cover only a hundredth of its first surface. Blades are replaced by the circumcircle of
+/// their opening. A ghost's bundle may be narrow: it is searched with the stop wide open first, then with the actual
+/// stop, and finally within the bounds of the rays found.
+template <class Map>
+class EntrancePupilSearch {
+public:
+    EntrancePupilSearch(const LensSystem& lens, double film_radius, const PupilTracer& tracer)
+        : map_(lens, film_radius), tracer_(tracer) {}
+
+    const Map& map() const { return map_; }
 
     /// Rays that pass along an optical path. `way`: its crossings, in the direction of light to the film; `lens`: the
     /// lens whose surfaces they index.
     std::vector<FoundRay> along(const LensSystem& lens, const std::vector<Crossing>& way) const;
 
-    /// Radii of circles that contain all points where light enters the lens, and where it leaves it, mm.
-    float front_reach() const { return front_reach_; }
-    double rear_reach() const { return rear_reach_; }
-
 private:
-    /// Rows of traced directions; there are twice as many columns.
-    static constexpr int kFew = 8, kMany = 12;
+    static constexpr int kCells = Map::kColumns * Map::kRows;
+    using Real = typename Map::Real;
+    using Rectangle = TargetRectangle<Real>;
+    using Targets = std::array<Rectangle, kCells>;  ///< of each cell
 
-    /// Bounds of direction cosines: low to high along the film point's radius, 0 to `across` perpendicular to it. Empty
-    /// if `across` is 0.
-    struct Rectangle {
-        double low, high, across;
-    };
-    using Directions = std::array<Rectangle, kGhostBins>;  ///< one for each film ring
-
-    double radius_of(int ring) const { return (ring + 0.5) * film_radius / kGhostBins; }
-
-    /// Directions from a film ring to the circle behind the lens.
-    Rectangle all_directions(int ring) const;
-
-    template <int kRows>
+    template <int kStrataRows>
     std::vector<FoundRay> traced(const LensSystem& lens, const std::vector<Crossing>& way,
-                                 const Directions& directions) const {
-        constexpr int kPerRing = 2 * kRows * kRows, kCount = kGhostBins * kPerRing;
-        static_assert(kCount % PupilTracer::kBlock == 0);
-        const LensPath<float> back(lens, way, LightDirection::to_scene, lens.wavelength_nm);
-        std::vector<FoundRay> found;
-        for (int first = 0; first < kCount; first += PupilTracer::kBlock) {
-            PupilTracer::Rays rays;
-            FoundRay looked[PupilTracer::kBlock];
-            for (int k = 0; k < PupilTracer::kBlock; ++k) {
-                const int ring = (first + k) / kPerRing, square = (first + k) % kPerRing;
-                looked[k].film_ring = ring;
-                start(directions[static_cast<std::size_t>(ring)], kRows, square, k, rays, looked[k]);
-            }
-            tracer.trace(back.view(), rays);
-            for (int k = 0; k < PupilTracer::kBlock; ++k) {
-                if (rays.status[k] != 0) continue;
-                set_front(rays.origin[k], normalized(rays.direction[k]), looked[k]);
-                found.push_back(looked[k]);
-            }
-        }
-        return found;
-    }
+                                 const Targets& targets) const;
 
-    /// Starts a ray at the middle of a film ring, through the centre of one stratum of a rectangle of directions.
-    void start(const Rectangle& in, int rows, int square, int lane, PupilTracer::Rays& rays, FoundRay& ray) const;
+    /// Bounds of the strata of all rays found in a cell and its neighbours; those of `before` if there are no rays.
+    static Targets around(const std::vector<FoundRay>& rays, const Targets& before);
 
-    /// Bounds of the strata of all rays found in a ring and its neighbours; those of `before` if there are no rays.
-    static Directions around(const std::vector<FoundRay>& rays, const Directions& before);
-
-    double film_radius, film_distance;  ///< mm
-    double film_index;  ///< refractive index of the medium in front of the film
-    float front_reach_;
-    double rear_reach_;
-    const PupilTracer& tracer;
+    Map map_;
+    const PupilTracer& tracer_;
 };
 
-/// Upper bound of the tangents of half the angles of these rays to the axis.
-float largest_half_tangent_of(const std::vector<FoundRay>& rays);
+/// Entrance-pupil bounds of the light of an optical path, for each cell of the directions.
+template <class Map, class Directions>
+std::vector<GhostEntry> entries_of(const std::vector<FoundRay>& rays, const Directions& directions);
 
-using GhostEntries = std::array<GhostEntry, kGhostBins>;
-
-namespace entrance_pupil_search_detail {
-
-/// Bounding rectangles of the points of each bin and its neighbours. A margin of a sixteenth on each side covers the
-/// gaps between the rays.
-template <class BinOf>
-GhostEntries entries_around(const std::vector<FoundRay>& rays, Vec2f FoundRay::* place, BinOf&& bin_of) {
-    GhostEntries own{}, entries{};
-    for (const FoundRay& ray : rays) {
-        const Vec2f at = ray.*place;
-        GhostEntry& entry = own[static_cast<std::size_t>(std::clamp(bin_of(ray), 0, kGhostBins - 1))];
-        if (entry.half_width == 0) entry = {at.x, at.x, 0};
-        entry.low = std::min(entry.low, at.x);
-        entry.high = std::max(entry.high, at.x);
-        // Positive, because 0 marks an empty entry.
-        entry.half_width = std::max({entry.half_width, std::fabs(at.y), 1e-6f});
-    }
-    for (int i = 0; i < kGhostBins; ++i) {
-        GhostEntry& entry = entries[static_cast<std::size_t>(i)];
-        for (int j = std::max(0, i - 1); j <= std::min(kGhostBins - 1, i + 1); ++j) {
-            const GhostEntry& other = own[static_cast<std::size_t>(j)];
-            if (other.half_width == 0) continue;
-            if (entry.half_width == 0) entry = other;
-            entry = {std::min(entry.low, other.low), std::max(entry.high, other.high),
-                     std::max(entry.half_width, other.half_width)};
-        }
-        const float margin = 0.0625f * std::max(entry.high - entry.low, entry.half_width);
-        entry.low -= margin;
-        entry.high += margin;
-        entry.half_width += entry.half_width > 0 ? margin : 0;
-    }
-    return entries;
-}
-
-}  // namespace entrance_pupil_search_detail
-
-/// Entrance-pupil bounds of the rays, in uniform steps of the half tangent up to the largest one.
-GhostEntries entries_of(const std::vector<FoundRay>& rays, float largest_half_tangent);
-
-/// Bounds of the rays in the plane of the last vertex, in uniform steps of the film radius.
-GhostEntries exits_of(const std::vector<FoundRay>& rays);
+/// Bounds of the rays where they leave the lens towards the film (FoundRay::rear), for each cell of the film map.
+template <class Map>
+std::vector<GhostEntry> exits_of(const std::vector<FoundRay>& rays);
 
 double etendue_of(const std::vector<FoundRay>& rays);
 

@@ -53,27 +53,33 @@ GhostTables::GhostTables(const LensSystem& of_lens, double film_radius, const Gh
     if (choice.film_reflectance > 0) look_at(film_ghost_pairs(of_lens));
     make_crossings(lens, spectrum);
     if (is_round_lens(of_lens))
-        find_ways(EntrancePupilSearch(of_lens, film_radius, tracer), of_lens, lens, pairs, choice.least_share, tracer);
+        find_ways(EntrancePupilSearch<FilmRings>(of_lens, film_radius, tracer), of_lens, lens, pairs,
+                  choice.least_share, tracer);
     else
-        find_ways(FreeformEntrancePupilSearch(of_lens, film_radius, tracer), of_lens, lens, pairs, choice.least_share,
-                  tracer);
+        find_ways(EntrancePupilSearch<FilmCells>(of_lens, film_radius, tracer), of_lens, lens, pairs,
+                  choice.least_share, tracer);
     set_probabilities();
     const LensPath<float> straight(of_lens, LightDirection::to_film, lens.wavelength_nm);
     iris_ = straight.view().iris;
     kind_ = is_round_lens(of_lens) ? straight.view().kind : LensKind::any;
 }
 
-template <class Search>
-void GhostTables::find_ways(const Search& search, const LensSystem& of_lens, const LensSystem& lens,
+template <class Map>
+void GhostTables::find_ways(const EntrancePupilSearch<Map>& search, const LensSystem& of_lens, const LensSystem& lens,
                             const std::vector<AxialPair>& pairs, double least_share, const PupilTracer& tracer) {
-    // The last element: the lens's direct path.
-    std::vector<std::vector<typename Search::Found>> found(pairs.size() + 1);
+    FoundRays found(pairs.size() + 1);  // the last element: the lens's direct path
     tracer.for_each(static_cast<int>(found.size()), [&](int i) {
         const auto k = static_cast<std::size_t>(i);
         const auto way = k < pairs.size() ? crossings_of(of_lens, pairs[k].pair) : crossings_of(of_lens);
         found[k] = search.along(lens, way);
     });
-    set_range(search, found);
+    const auto directions = Map::directions_of(found);
+    set_maps(directions, search.map());
+    entry_reach_ = entry_reach(of_lens);
+    exit_reach_ = static_cast<float>(search.map().rear_reach);
+    const auto append = [](std::vector<GhostEntry>& to, const std::vector<GhostEntry>& entries) {
+        to.insert(to.end(), entries.begin(), entries.end());
+    };
     for (std::size_t k = 0; k < pairs.size(); ++k) {
         const double share = pairs[k].share * etendue_of(found[k]) / etendue_of(found.back());
         if (!(share > least_share)) continue;
@@ -85,39 +91,9 @@ void GhostTables::find_ways(const Search& search, const LensSystem& of_lens, con
         };
         add(to_film_, path(LightDirection::to_film), way);
         add(to_scene_, path(LightDirection::to_scene), reversed(way));
-        add_entries(found[k]);
+        append(to_film_.entries, entries_of<Map>(found[k], directions));
+        append(to_scene_.entries, exits_of<Map>(found[k]));
     }
-}
-
-void GhostTables::set_range(const EntrancePupilSearch& search, const std::vector<std::vector<FoundRay>>& found) {
-    for (const std::vector<FoundRay>& rays : found)
-        largest_half_tangent_ = std::max(largest_half_tangent_, largest_half_tangent_of(rays));
-    entry_reach_ = search.front_reach();
-    exit_reach_ = static_cast<float>(search.rear_reach());
-}
-
-void GhostTables::set_range(const FreeformEntrancePupilSearch& search,
-                            const std::vector<std::vector<FreeFoundRay>>& found) {
-    directions_ = grid_of_directions(found);
-    film_grid_ = search.film_grid();
-    entry_reach_ = search.front_reach();
-    exit_reach_ = search.rear_reach();
-}
-
-void GhostTables::add_entries(const std::vector<FoundRay>& found) {
-    const auto append = [](std::vector<GhostEntry>& to, const GhostEntries& entries) {
-        to.insert(to.end(), entries.begin(), entries.end());
-    };
-    append(to_film_.entries, entries_of(found, largest_half_tangent_));
-    append(to_scene_.entries, exits_of(found));
-}
-
-void GhostTables::add_entries(const std::vector<FreeFoundRay>& found) {
-    const auto append = [](std::vector<FreeGhostEntry>& to, const std::vector<FreeGhostEntry>& entries) {
-        to.insert(to.end(), entries.begin(), entries.end());
-    };
-    append(to_film_.free_entries, FreeformEntrancePupilSearch::entries_of(found, directions_));
-    append(to_scene_.free_entries, FreeformEntrancePupilSearch::exits_of(found));
 }
 
 GhostView GhostTables::view_of_objects() const {
@@ -148,7 +124,6 @@ GhostView GhostTables::view_of(const Ways& of, GhostLight light, std::int32_t pi
             reach,
             iris_,
             kind_,
-            data_of(of.free_entries),
             grid,
             {data_of(of.frames), data_of(of.freeforms), data_of(of.apertures)}};
 }

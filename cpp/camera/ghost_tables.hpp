@@ -3,7 +3,6 @@
 
 #include "entrance_pupil_search.hpp"
 #include "film_spectrum.hpp"
-#include "freeform_entrance_pupil_search.hpp"
 #include "ghost_choice.hpp"
 
 namespace REALCAM_NAMESPACE {
@@ -42,7 +41,6 @@ private:
     struct Ways {
         std::vector<GhostLensPath> ways;
         std::vector<GhostEntry> entries;
-        std::vector<FreeGhostEntry> free_entries;  ///< replaces `entries` for lenses without rotational symmetry
         std::vector<SurfaceView<float>> surfaces;
         // One element for each crossing of all paths, or empty:
         std::vector<FrameChanges<float>> frames;
@@ -64,16 +62,16 @@ private:
     };
 
     /// Finds the optical paths of these pairs. `lens`: `of_lens` with the film as a mirror surface.
-    template <class Search>
-    void find_ways(const Search& search, const LensSystem& of_lens, const LensSystem& lens,
+    template <class Map>
+    void find_ways(const EntrancePupilSearch<Map>& search, const LensSystem& of_lens, const LensSystem& lens,
                    const std::vector<AxialPair>& pairs, double least_share, const PupilTracer& tracer);
 
-    // set_range sets the range of directions from the rays of all paths; the last path is the lens's direct one.
-    // add_entries appends the bounds where the light of one path enters and leaves the lens.
-    void set_range(const EntrancePupilSearch& search, const std::vector<std::vector<FoundRay>>& found);
-    void set_range(const FreeformEntrancePupilSearch& search, const std::vector<std::vector<FreeFoundRay>>& found);
-    void add_entries(const std::vector<FoundRay>& found);
-    void add_entries(const std::vector<FreeFoundRay>& found);
+    // Store the maps of directions and of the film.
+    void set_maps(const HalfTangentBins& directions, const FilmRings&) { largest_half_tangent_ = directions.largest; }
+    void set_maps(const GhostGrid& directions, const FilmCells& film) {
+        directions_ = directions;
+        film_grid_ = film.grid;
+    }
 
     /// Computes indices and coatings for each crossing that a path may have.
     void make_crossings(const LensSystem& lens, const FilmSpectrum* spectrum);

@@ -12,16 +12,13 @@ namespace REALCAM_NAMESPACE {
 inline constexpr int kGhostBins = 64;
 
 /// Entrance-pupil bounds of one ghost's path for one direction of light: a rectangle in the plane perpendicular to the
-/// light through the front vertex, mm. `low`, `high`: away from the axis; across, it extends from -half_width to
-/// half_width. Also the bounds in the plane of the last vertex of light that reaches one film point.
+/// light through the front vertex, mm. Also the bounds, in the plane of the last vertex, of light that reaches one film
+/// point. Its x points away from the axis; for a lens without rotational symmetry, the axes are those of light_axes, or
+/// of the plane z = 0 of the film's frame.
 struct GhostEntry {
-    float low, high, half_width;  ///< half_width 0: empty
-};
-
-/// GhostEntry of a lens without rotational symmetry. For light, in the axes given by light_axes; for film points, in
-/// the plane z = 0 of the film's frame.
-struct FreeGhostEntry : GhostEntry {
-    float across;  ///< y of the centre line between -half_width and half_width; low and high are in x
+    float low, high;  ///< in x
+    float half_width;  ///< half the size in y; 0: empty
+    float across;  ///< y of the centre; 0 for a rotationally symmetric lens
 };
 
 /// Grid of directions or film points for lenses without rotational symmetry.
@@ -62,15 +59,15 @@ REALCAM_INLINE Vec2f half_tangents(Vec3f from) {
 /// Optical path of one ghost through the lens.
 struct GhostLensPath {
     std::int32_t first, count;  ///< range of its crossings in the arrays of GhostView
-    float probability;          ///< of being sampled
+    float probability;  ///< of being sampled
 };
 
 /// Light that is traced separately from the pixel samples, and the end that it is traced from.
 enum class GhostLight : std::int32_t {
-    of_lights,   ///< ghosts of the scene's lights, traced from the lights
+    of_lights,  ///< ghosts of the scene's lights, traced from the lights
     starbursts,  ///< the lights themselves, spread by the edges of the aperture; traced from the lights
     of_objects,  ///< ghosts of light that objects reflect, traced from the film
-    direct,      ///< the lights themselves, traced from the lights (TracedLightsView)
+    direct,  ///< the lights themselves, traced from the lights (TracedLightsView)
 };
 
 /// Largest number of GhostViews of a picture.
@@ -84,19 +81,18 @@ struct GhostView {
     const GhostLensPath* ways;
     int way_count;
     const float* cdf;  ///< cumulative probabilities of the paths, way_count + 1
-    const GhostEntry* entries;  ///< kGhostBins for each path
+    const GhostEntry* entries;  ///< kGhostBins for each path, or kGhostCells without rotational symmetry
     int crossing_count;
     const SurfaceView<float>* surfaces;  ///< crossings of all paths, as the next three
     const GhostCoating<kOneWavelengthTerms>* coatings;
     const IndexCubic* indices;  ///< only if samples have wavelengths, as the next
     const GhostCoating<kGhostSpectrumTerms>* spectral_coatings;  ///< only if surfaces do not transmit all light
     float largest_half_tangent;  ///< largest tangent of half the angle to the axis of light that causes a ghost
-    float film_radius;           ///< radius of a circle that contains the film
-    float film_index;            ///< refractive index of the medium in front of the film
+    float film_radius;  ///< radius of a circle that contains the film
+    float film_index;  ///< refractive index of the medium in front of the film
     float reach;  ///< radius of a circle that contains all points where samples enter the lens
     Iris<float> iris;
-    LensKind kind;  ///< any: the next three replace `entries`, largest_half_tangent and film_radius
-    const FreeGhostEntry* free_entries;  ///< kGhostCells for each path
+    LensKind kind;  ///< any: the next replaces largest_half_tangent and film_radius
     GhostGrid grid;  ///< of half_tangents, or of film points in mm
     FreeParts<float> free;  ///< crossings of all paths
 };
@@ -109,10 +105,9 @@ GhostView with_copied_arrays(GhostView view, Copy&& copy) {
     };
     move(view.ways, view.way_count);
     move(view.cdf, view.way_count + 1);
-    move(view.entries, view.way_count * kGhostBins);
+    move(view.entries, view.way_count * (view.kind == LensKind::any ? kGhostCells : kGhostBins));
     move(view.surfaces, view.crossing_count);
     move(view.coatings, view.crossing_count);
-    move(view.free_entries, view.way_count * kGhostCells);
     view.free.move_arrays(view.crossing_count, move);
     move(view.indices, view.crossing_count);
     move(view.spectral_coatings, view.crossing_count);

@@ -20,30 +20,23 @@ REALCAM_INLINE Vec2f spiral(int index) {
     return {reach * azimuth.x, reach * azimuth.y};
 }
 
-/// Optical direction with these direction cosines, towards the scene.
-REALCAM_INLINE Vec3f optical_direction(float l, float m, float index_squared) {
-    return {l, m, -sqrt_or_zero(index_squared - l * l - m * m)};
+/// Optical direction from a film point to a point in the box around its pupil.
+template <class View>
+REALCAM_INLINE Vec3f direction_to(const View& pupil, Vec2f film, Vec2f place) {
+    const auto at = pupil_lookup(pupil, film.x, film.y);
+    const Vec2f d = at.from_box(place), cosines = at.to_film(d);
+    return {cosines.x, cosines.y, -sqrt_or_zero(pupil.index_squared - d.x * d.x - d.y * d.y)};
 }
 
-/// Optical direction from a film point to a point in the box around its pupil.
 REALCAM_INLINE Vec3f direction_to(const CameraView& camera, Vec2f film, Vec2f place) {
-    if (camera.pupil_grid.nodes) {
-        const PupilGridLookup at = pupil_grid_lookup(camera.pupil_grid, film.x, film.y);
-        return optical_direction(at.sign_l * (at.box.centre_l + at.box.half_width * place.x),
-                                 at.sign_m * (at.box.centre_m + at.box.half_height * place.y),
-                                 camera.pupil_grid.index_squared);
-    }
-    const PupilRowPosition row = pupil_row_position(camera.pupil, film.x, film.y);
-    const float l = row.centre + row.half_width * place.x, m = row.half_height * place.y;
-    const Vec3f on_x_axis = optical_direction(l, m, camera.pupil.index_squared);
-    return {l * row.cos - m * row.sin, l * row.sin + m * row.cos, on_x_axis.z};
+    if (camera.pupil_grid.nodes) return direction_to(camera.pupil_grid, film, place);
+    return direction_to(camera.pupil, film, place);
 }
 
 /// False if no light can reach a film point.
 REALCAM_INLINE bool may_be_lit(const CameraView& camera, Vec2f film) {
-    if (camera.pupil_grid.nodes)
-        return camera.pupil_grid.cells[pupil_grid_lookup(camera.pupil_grid, film.x, film.y).cell].upper_weight > 0.0f;
-    return pupil_row_position(camera.pupil, film.x, film.y).lit > 0.0f;
+    if (camera.pupil_grid.nodes) return may_be_lit(camera.pupil_grid, pupil_lookup(camera.pupil_grid, film.x, film.y));
+    return may_be_lit(camera.pupil, pupil_lookup(camera.pupil, film.x, film.y));
 }
 
 /// Index of the next point, from `first` on, that lies in the tabulated pupil; kMiddlePlaces if there is none.

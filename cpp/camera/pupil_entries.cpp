@@ -1,7 +1,5 @@
 #include "pupil_entries.hpp"
 
-#include <algorithm>
-
 namespace realcam {
 namespace {
 
@@ -30,7 +28,7 @@ std::vector<FoundRay> rays_of(const PupilView& pupil, const LensView<float>& len
         for (int k = 0; k < kBlock; ++k) {
             if (rays.status[k] != 0) continue;
             FoundRay ray{};
-            set_front(rays.origin[k], normalized(rays.direction[k]), ray);
+            FilmRings::set_front(rays.origin[k], normalized(rays.direction[k]), ray);
             found.push_back(ray);
         }
     return found;
@@ -41,13 +39,8 @@ std::vector<FoundRay> rays_of(const PupilView& pupil, const LensView<float>& len
 PupilEntries::PupilEntries(const PupilView& pupil, const LensView<float>& lens, double film_radius,
                            double film_distance, const PupilTracer& tracer) {
     const std::vector<FoundRay> found = rays_of(pupil, lens, film_radius, film_distance, tracer);
-    largest_half_tangent_ = largest_half_tangent_of(found);
-    entries_ = entries_of(found, largest_half_tangent_);
-}
-
-const GhostEntry& PupilEntries::at(float half_tangent) const {
-    const int bin = static_cast<int>(half_tangent / largest_half_tangent_ * kGhostBins);
-    return entries_[static_cast<std::size_t>(std::min(bin, kGhostBins - 1))];
+    directions_ = FilmRings::directions_of({found});
+    entries_ = entries_of<FilmRings>(found, directions_);
 }
 
 }  // namespace realcam

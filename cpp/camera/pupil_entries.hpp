@@ -15,13 +15,15 @@ public:
                  const PupilTracer& tracer);
 
     /// Upper bound of the tangents of half the angles to the axis of light that reaches the film.
-    float largest_half_tangent() const { return largest_half_tangent_; }
+    float largest_half_tangent() const { return directions_.largest; }
     /// Bounds for the tangent of half the angle to the axis; beyond the largest tangent, those of the last bin.
-    const GhostEntry& at(float half_tangent) const;
+    const GhostEntry& at(float half_tangent) const {
+        return entries_[static_cast<std::size_t>(directions_.bin_of(half_tangent))];
+    }
 
 private:
-    float largest_half_tangent_;
-    GhostEntries entries_;
+    HalfTangentBins directions_;
+    std::vector<GhostEntry> entries_;
 };
 
 }  // namespace REALCAM_NAMESPACE

@@ -7,15 +7,16 @@ namespace realcam {
 StarburstTables::StarburstTables(const LensSystem& lens, double film_radius, std::shared_ptr<const DirectLensPath> way,
                                  const PupilTracer& tracer)
     : way_(std::move(way)) {
-    const std::vector<FoundRay> found = EntrancePupilSearch(lens, film_radius, tracer).along(lens, crossings_of(lens));
-    largest_half_tangent_ = largest_half_tangent_of(found);
-    entries_ = entries_of(found, largest_half_tangent_);
+    const EntrancePupilSearch<FilmRings> search(lens, film_radius, tracer);
+    const std::vector<FoundRay> found = search.along(lens, crossings_of(lens));
+    directions_ = FilmRings::directions_of({found});
+    entries_ = entries_of<FilmRings>(found, directions_);
 }
 
 GhostView StarburstTables::view() const {
     GhostView view = way_->view(GhostLight::starbursts, kSamplesPerSplat);
     view.entries = entries_.data();
-    view.largest_half_tangent = largest_half_tangent_;
+    view.largest_half_tangent = directions_.largest;
     return view;
 }
 

@@ -18,8 +18,8 @@ public:
 
 private:
     std::shared_ptr<const DirectLensPath> way_;
-    GhostEntries entries_{};
-    float largest_half_tangent_ = 0;
+    HalfTangentBins directions_;
+    std::vector<GhostEntry> entries_;
 };
 
 }  // namespace REALCAM_NAMESPACE

@@ -46,7 +46,7 @@ REALCAM_INLINE FilmRay round_film_ray(const CameraView& camera, const GhostView&
             ghosts.film_index * ghosts.film_index * cosine2 / (squared * at.density)};
 }
 
-REALCAM_INLINE FilmRay free_film_ray(const CameraView& camera, const GhostView& ghosts, const FreeGhostEntry* entries,
+REALCAM_INLINE FilmRay free_film_ray(const CameraView& camera, const GhostView& ghosts, const GhostEntry* entries,
                                      Vec2f film, Vec2f u) {
     const int cell = ghosts.grid.cell_of(film);
     const EntryPlace at = entry_place(entries[select(cell < 0, 0, cell)], ghosts.reach, u);
@@ -62,7 +62,7 @@ REALCAM_INLINE FilmRay free_film_ray(const CameraView& camera, const GhostView& 
 template <LensKind lens_kind>
 REALCAM_INLINE FilmRay film_ray(const CameraView& camera, const GhostView& ghosts, int way, Vec2f film, Vec2f u) {
     if constexpr (lens_kind == LensKind::any)
-        return free_film_ray(camera, ghosts, ghosts.free_entries + way * kGhostCells, film, u);
+        return free_film_ray(camera, ghosts, ghosts.entries + way * kGhostCells, film, u);
     else
         return round_film_ray(camera, ghosts, ghosts.entries + way * kGhostBins, film, u);
 }

@@ -1,5 +1,4 @@
 #pragma once
-#include <type_traits>
 
 #include "../camera/ghost_view.hpp"
 #include "../math/cdf.hpp"
@@ -49,10 +48,8 @@ struct EntryPlace {
     float density;  ///< per mm^2
 };
 
-template <class Entry>
-REALCAM_INLINE EntryPlace entry_place(const Entry& entry, float reach, Vec2f u) {
+REALCAM_INLINE EntryPlace entry_place(const GhostEntry& entry, float reach, Vec2f u) {
     using namespace ghost_lens_paths_detail;
-    constexpr bool is_free = std::is_same_v<Entry, FreeGhostEntry>;
     const bool known = entry.half_width > 0.0f;
     const float middle = 0.5f * (entry.low + entry.high), half_length = 0.5f * (entry.high - entry.low);
     const float anywhere = select(known, kAnywhere, 1.0f), around = select(known, kAround, 0.0f);
@@ -62,11 +59,9 @@ REALCAM_INLINE EntryPlace entry_place(const Entry& entry, float reach, Vec2f u) 
     const float scale = select(is_around, kAroundScale, 1.0f), fresh = (u.x - begin) / share;
     const float along =
         select(is_anywhere, 0.0f, middle) + (2.0f * fresh - 1.0f) * select(is_anywhere, reach, scale * half_length);
-    float across = (2.0f * u.y - 1.0f) * select(is_anywhere, reach, scale * entry.half_width), beside = across;
-    if constexpr (is_free) {
-        across += select(is_anywhere, 0.0f, entry.across);
-        beside = across - entry.across;
-    }
+    const float across = select(is_anywhere, 0.0f, entry.across) +
+                         (2.0f * u.y - 1.0f) * select(is_anywhere, reach, scale * entry.half_width);
+    const float beside = across - entry.across;
     const auto is_within = [&](float factor) {
         return (std::fabs(along - middle) <= factor * half_length) & (std::fabs(beside) <= factor * entry.half_width);
     };

@@ -131,8 +131,7 @@ REALCAM_INLINE LightEntry round_light_entry(const GhostView& ghosts, const Ghost
             seen};
 }
 
-REALCAM_INLINE LightEntry free_light_entry(const GhostView& ghosts, const FreeGhostEntry* entries, Vec3f from,
-                                           Vec2f u) {
+REALCAM_INLINE LightEntry free_light_entry(const GhostView& ghosts, const GhostEntry* entries, Vec3f from, Vec2f u) {
     const bool ahead = from.z < 0.9f;
     const Vec3f light = select(ahead, from, Vec3f{0, 0, -1});
     const int cell = ghosts.grid.cell_of(half_tangents(light));
@@ -144,7 +143,7 @@ REALCAM_INLINE LightEntry free_light_entry(const GhostView& ghosts, const FreeGh
 template <LensKind lens_kind>
 REALCAM_INLINE LightEntry light_entry(const GhostView& ghosts, int way, Vec3f from, Vec2f u) {
     if constexpr (lens_kind == LensKind::any)
-        return free_light_entry(ghosts, ghosts.free_entries + way * kGhostCells, from, u);
+        return free_light_entry(ghosts, ghosts.entries + way * kGhostCells, from, u);
     else
         return round_light_entry(ghosts, ghosts.entries + way * kGhostBins, from, u);
 }

@@ -60,8 +60,8 @@ public:
     bool contains(double l, double m, double slack = 0) const {
         if (!lit_) return false;
         const double x = (l - centre) / half_width, y = std::fabs(m) / half_height;
-        for (int s = 0; s < pupil_.sectors; ++s) {
-            const PupilSector& t = pupil_.outline[row_ * pupil_.sectors + s];
+        for (int s = 0; s < PupilView::kSectors; ++s) {
+            const PupilSector& t = pupil_.outline[row_ * PupilView::kSectors + s];
             const double px = static_cast<double>(t.x), py = static_cast<double>(t.y);
             const double dx = static_cast<double>(t.dx), dy = static_cast<double>(t.dy);
             // (x, y) = reach * (p + along * d).

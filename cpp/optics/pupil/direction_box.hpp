@@ -2,9 +2,14 @@
 #include <algorithm>
 #include <limits>
 
-#include "pupil_box.hpp"
+#include "../../platform.hpp"
 
 namespace REALCAM_NAMESPACE {
+
+/// Optical direction cosines of a ray that travels from the film to the scene.
+struct PupilDirection {
+    double l, m;
+};
 
 /// Bounding box of a set of directions.
 struct DirectionBox {
@@ -25,9 +30,9 @@ struct DirectionBox {
         return {std::min(l_min, d.l), std::max(l_max, d.l), std::min(m_min, d.m), std::max(m_max, d.m)};
     }
     DirectionBox joined_with(const DirectionBox& other) const {
-        return with({other.l_min, other.m_min}).with({other.l_max, other.m_max});
+        return {std::min(l_min, other.l_min), std::max(l_max, other.l_max), std::min(m_min, other.m_min),
+                std::max(m_max, other.m_max)};
     }
-    DirectionBox grown(double share) const { return grown_by(share * 2 * half_width(), share * 2 * half_height()); }
     DirectionBox grown_by(double width, double height) const {
         return {l_min - width, l_max + width, m_min - height, m_max + height};
     }
@@ -38,9 +43,11 @@ struct DirectionBox {
                (m_min > searched.m_min || searched.m_min <= widest.m_min) &&
                (m_max < searched.m_max || searched.m_max >= widest.m_max);
     }
-    /// Linear extrapolation: this box, moved on from `before` by the same step once more.
-    DirectionBox moved_on_from(const DirectionBox& before) const {
-        return {2 * l_min - before.l_min, 2 * l_max - before.l_max, 2 * m_min - before.m_min, 2 * m_max - before.m_max};
+    /// Linear extrapolation: this box, moved on from `before` by `steps` times the step between the two.
+    DirectionBox moved_on_from(const DirectionBox& before, double steps) const {
+        const auto ahead = [steps](double now, double then) { return now + steps * (now - then); };
+        return {ahead(l_min, before.l_min), ahead(l_max, before.l_max), ahead(m_min, before.m_min),
+                ahead(m_max, before.m_max)};
     }
 };
 

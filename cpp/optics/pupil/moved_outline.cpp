@@ -2,8 +2,6 @@
 
 #include <vector>
 
-#include "../../math/vec3.hpp"
-
 namespace realcam {
 
 namespace {
@@ -13,18 +11,6 @@ constexpr int kAzimuths = PupilOutline::kAzimuths, kTurn = 2 * kAzimuths;
 double cross(Vec2<double> a, Vec2<double> b) {
     return a.x * b.y - a.y * b.x;
 }
-
-/// An azimuth over a whole turn: its half of the outline, its index in that half, and its direction.
-struct TurnAzimuth {
-    std::size_t half;
-    int azimuth;
-    Vec2<double> direction;
-
-    explicit TurnAzimuth(int i) : half(i > kAzimuths), azimuth(half ? kTurn - i : i) {
-        const PupilDirection d = PupilOutline::direction(azimuth);
-        direction = {d.l, half ? -d.m : d.m};
-    }
-};
 
 using Reaches = double (PupilOutline::*)[kAzimuths + 1];
 
@@ -63,6 +49,11 @@ bool has_hole(const OutlineHalves& outline) {
 }
 
 }  // namespace
+
+TurnAzimuth::TurnAzimuth(int i) : half(i > kAzimuths), azimuth(half ? kTurn - i : i) {
+    const PupilDirection d = PupilOutline::direction(azimuth);
+    direction = {d.l, half ? -d.m : d.m};
+}
 
 OutlineHalves moved_outline(const OutlineHalves& outline, const DirectionBox& from, const DirectionBox& to) {
     OutlineHalves moved;

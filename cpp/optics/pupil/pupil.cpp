@@ -11,7 +11,7 @@ namespace realcam {
 
 Pupil::Pupil(const LensSystem& lens, double film_radius, PupilTracer tracer, const std::vector<double>& wavelengths_nm,
              const Pupil* similar)
-    : search_(lens, std::move(tracer), wavelengths_nm),
+    : search_(lens, FilmMap::radial, std::move(tracer), wavelengths_nm),
       film_radius_(film_radius * (1 + 1e-6)),
       image_radius_(film_radius_) {
     lens.require_rotational("the search for a pupil");
@@ -68,7 +68,6 @@ PupilView Pupil::view() const {
     return {nodes_.data(),
             outline_.data(),
             kRows,
-            kSectors,
             radius,
             radius > 0 ? 1 / radius : 0.0f,
             static_cast<float>(search_.lens().index_squared())};
@@ -99,7 +98,7 @@ void Pupil::find_nodes() {
     ends_inside_film_ = !sight.dark.empty();
     if (ends_inside_film_) end_image(sight);
     const PupilRowBoxes boxes = rows().look_between(sight.lit);
-    std::optional<PupilBox> box =
+    std::optional<DirectionBox> box =
         *std::find_if(boxes.begin(), boxes.end(), [](const auto& found) { return found.has_value(); });
     for (const auto& found : boxes) {
         if (found) box = found;  // a node without light takes its inner neighbour's box
@@ -114,8 +113,9 @@ void Pupil::end_image(PupilRowSearch::Sight& sight) {
     sight.lit.push_back({image_radius_, last_box_});
 }
 
-PupilNode Pupil::node_of(const PupilBox& box) {
-    return {static_cast<float>(box.l()), static_cast<float>(box.half_width()), static_cast<float>(box.m_max)};
+PupilNode Pupil::node_of(const DirectionBox& box) {
+    return {static_cast<float>(box.centre().l), static_cast<float>(box.half_width()),
+            static_cast<float>(box.half_height())};
 }
 
 void Pupil::widen_last_nodes() {
@@ -133,9 +133,9 @@ bool Pupil::nodes_follow() const {
     for (int row = 0; row < kRows; ++row) {
         const PupilNode node = node_at(row + 0.5);
         if (node.half_width < 0.5f * on_axis) continue;
-        const std::optional<PupilBox> box = search_.look(radius_at(row + 0.5), track);
+        const std::optional<DirectionBox> box = track.look(search_, radius_at(row + 0.5));
         const double width = static_cast<double>(node.half_width);
-        if (!box || !(std::fabs(box->l() - static_cast<double>(node.centre)) < 0.5 * width) ||
+        if (!box || !(std::fabs(box->centre().l - static_cast<double>(node.centre)) < 0.5 * width) ||
             !(box->half_width() < 1.4 * width))
             return false;
     }
@@ -217,37 +217,25 @@ std::vector<PupilOutline> Pupil::outlines_of(int row, const OutlinesByEighth& se
 }
 
 void Pupil::add_row(int row, PupilRow sectors, double reach, int clean_rounds) {
-    constexpr int kMostRounds = 256, kBlock = PupilSearch::kBlock;
-    int rounds = 0, passing = 0;
-    for (int clean = 0; rounds < kMostRounds && clean < clean_rounds; ++rounds) {
-        const auto stream = static_cast<std::uint32_t>(kMostRounds * row + rounds);
+    PupilHalves upper{std::move(sectors)};
+    const auto set_rays = [&](int round, std::uint32_t stream, const StraySearch::Places& places, PupilRays& rays) {
         // Starts with both ends of the row.
-        const double position = row + (rounds < 2   ? 0.9999
-                                       : rounds < 4 ? 0.0
-                                                    : static_cast<double>(sample_2d(stream, 0, 1).x));
+        const double position = row + (round < 2   ? 0.9999
+                                       : round < 4 ? 0.0
+                                                   : static_cast<double>(sample_2d(stream, 0, 1).x));
         const PupilNode node = node_at(position);
         const double radius = radius_at(position);
-        const bool is_beside = rounds % 2 != 0;
-        Vec2f places[kBlock];
-        PupilRays rays;
-        for (int i = 0; i < kBlock; ++i) {
-            const Vec2f u = sample_2d(stream, static_cast<std::uint32_t>(i), 0);
-            places[i] = is_beside ? sectors.beside(static_cast<std::size_t>(i) % kSectors, u)
-                                  : Vec2f{static_cast<float>(reach) * (2 * u.x - 1), static_cast<float>(reach) * u.y};
-            rays.set(i, radius,
-                     {static_cast<double>(node.centre + node.half_width * places[i].x),
-                      static_cast<double>(node.half_height * places[i].y)});
-        }
-        bool passes[kBlock], strayed = false;
-        search_.lens().trace(rays, passes);
-        for (int i = 0; i < kBlock; ++i) strayed |= passes[i] && sectors.take_in(places[i]);
-        if (!is_beside) passing += static_cast<int>(std::count(passes, passes + kBlock, true));
-        clean = strayed ? 0 : clean + 1;
-    }
-    // Expected number of the uniform rays inside the sectors: their share of the scanned area.
-    const double held = (rounds + 1) / 2 * kBlock * sectors.area() / (2 * reach * reach);
-    if (passing < held / 4) sectors = PupilRow(box_outline());
-    std::copy(sectors.sectors().begin(), sectors.sectors().end(), outline_.begin() + row * kSectors);
+        for (int i = 0; i < StraySearch::kBlock; ++i)
+            rays.set(i, {radius, 0},
+                     {static_cast<double>(node.centre + node.half_width * places.x[i]),
+                      static_cast<double>(node.half_height * places.y[i])});
+    };
+    const StraySearch search{256, static_cast<std::uint32_t>(row), 0, reach, clean_rounds};
+    const StraySearch::Traced traced = search.widen(search_.lens(), set_rays, upper);
+    // Expected number of the rays all over the surroundings inside the sectors: their share of the scanned area.
+    const double held = traced.around * upper[0].area() / (2 * reach * reach);
+    if (traced.around_passed < held / 4) upper[0] = PupilRow(box_outline());
+    std::copy(upper[0].sectors().begin(), upper[0].sectors().end(), outline_.begin() + row * kSectors);
 }
 
 }  // namespace realcam

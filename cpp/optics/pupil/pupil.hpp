@@ -7,6 +7,7 @@
 #include "pupil_outline_search.hpp"
 #include "pupil_row_search.hpp"
 #include "pupil_view.hpp"
+#include "stray_search.hpp"
 
 namespace REALCAM_NAMESPACE {
 
@@ -62,7 +63,7 @@ private:
     /// Ends the image at the innermost dark radius, with the box of the outermost lit one.
     void end_image(PupilRowSearch::Sight& sight);
 
-    static PupilNode node_of(const PupilBox& box);
+    static PupilNode node_of(const DirectionBox& box);
 
     /// Limits how fast the boxes shrink at the edge of the image: the search grid misses the thin ends of the crescent
     /// there.
@@ -99,17 +100,15 @@ private:
     /// Outlines from the beginning of a row to its end.
     static std::vector<PupilOutline> outlines_of(int row, const OutlinesByEighth& seen);
 
-    /// Adds a row. Traces rays all over its surroundings in one round and just beside the sectors in the next, and
-    /// widens the sectors that do not contain a passing ray, until `clean_rounds` rounds in succession find no ray to
-    /// add. This catches corners of slivers between spokes, and ends of crescents between grid points. Sectors that few
-    /// rays pass do not describe the light, which may form several rings: the whole box replaces them.
+    /// Adds a row, whose sectors StraySearch widens. Sectors that few rays pass do not describe the light, which may
+    /// form several rings: the whole box replaces them.
     void add_row(int row, PupilRow sectors, double reach, int clean_rounds);
 
     PupilSearch search_;
     double film_radius_, image_radius_;
     bool ends_inside_film_ = false, follows_ = false, is_moved_ = false;
     std::vector<PupilNode> nodes_;
-    PupilBox last_box_{};  ///< box of the outermost lit radius
+    DirectionBox last_box_{};  ///< box of the outermost lit radius
     /// Outlines in the boxes of the nodes: this pupil's own, or those of the similar one from which it was found.
     std::shared_ptr<const OutlinesByEighth> seen_;
     std::vector<PupilSector> outline_;

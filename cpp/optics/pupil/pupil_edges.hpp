@@ -1,12 +1,10 @@
 #pragma once
-#include <array>
 #include <optional>
 #include <vector>
 
-#include "../../math/vec3.hpp"
-#include "../trace/lens_path.hpp"
-#include "pupil_box.hpp"
-#include "pupil_tracer.hpp"
+#include "direction_box.hpp"
+#include "pupil_lens.hpp"
+#include "pupil_outline.hpp"
 
 namespace REALCAM_NAMESPACE {
 
@@ -14,46 +12,13 @@ namespace REALCAM_NAMESPACE {
 /// around the light, clockwise around a central obstruction.
 using PupilEdges = std::vector<std::vector<Vec2<double>>>;
 
-/// Finds pupil edges by tracing real rays along radial scan lines (spokes), at the design wavelength: rims, blades and
-/// all else that blocks light.
-class PupilEdgeSearch {
-public:
-    static constexpr int kSpokes = PupilTracer::kBlock / 2;
+/// Number of corners of the polygons.
+inline constexpr int kPupilEdgeCorners = 2 * PupilOutline::kAzimuths;
 
-    PupilEdgeSearch(const LensSystem& lens, const PupilTracer& tracer);
-
-    /// Returns the edges for the film point at this radius (mm) and azimuth (rad). `box`: bounding box of the light for
-    /// azimuth 0, from whose centre the spokes start. Returns std::nullopt if a spoke meets no light, as in a crescent
-    /// at the edge of the image.
-    std::optional<PupilEdges> at(double radius, double azimuth, const PupilBox& box) const;
-
-private:
-    static constexpr int kSteps = 48, kHalvings = 16;
-    static constexpr double kReach = 1.5;  ///< past the corner of the box
-
-    struct Spokes {
-        Spokes(double radius, double azimuth, const PupilBox& box, double film_distance);
-
-        /// Direction on a spoke; `reach` is 0 at the centre of the box and 1 on the ellipse inscribed in it. Indices
-        /// run over the spokes twice.
-        Vec2<double> direction(int spoke, double reach) const;
-
-        PupilBox box;
-        double cos, sin;
-        Vec3d film;
-    };
-
-    std::array<bool, 2 * kSpokes> trace(const Spokes& spokes, const std::array<double, 2 * kSpokes>& reach) const;
-
-    /// Sets, for both edges of each spoke, the last lit step and the dark one beyond. Returns false if a spoke meets no
-    /// light. The inner edge of a spoke that starts in light is at the centre.
-    bool scan(const Spokes& spokes, std::array<double, 2 * kSpokes>& lit, std::array<double, 2 * kSpokes>& dark) const;
-
-    static double reach_at(int step) { return kReach * step / kSteps; }
-
-    LensPath<float> path_;
-    double film_distance_;
-    const PupilTracer& tracer_;
-};
+/// Finds the edges for the film point at this radius (mm) and azimuth (rad): rims, and blades if the lens has them, and
+/// all else that blocks light. `box`: bounding box of the light for azimuth 0, from whose centre the edges are
+/// searched. Returns std::nullopt if there is a direction from there without light, as in a crescent at the edge of the
+/// image.
+std::optional<PupilEdges> pupil_edges(const PupilLens& lens, double radius, double azimuth, const DirectionBox& box);
 
 }  // namespace REALCAM_NAMESPACE

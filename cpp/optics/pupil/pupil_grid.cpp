@@ -60,7 +60,7 @@ MirrorPlanes mirror_planes(const LensSystem& lens) {
 
 PupilGrid::PupilGrid(const LensSystem& lens, const FilmArea& film, MirrorPlanes planes, PupilTracer tracer,
                      const std::vector<double>& wavelengths_nm)
-    : search_(lens, std::move(tracer), wavelengths_nm), film_(film), planes_(planes) {
+    : search_(lens, FilmMap::planar, std::move(tracer), wavelengths_nm), film_(film), planes_(planes) {
     const auto fold = [](double& least, double& most, int& cells) {
         most = std::max(std::fabs(least), std::fabs(most));
         least = 0;
@@ -70,7 +70,7 @@ PupilGrid::PupilGrid(const LensSystem& lens, const FilmArea& film, MirrorPlanes 
     if (planes.y) fold(film_.least.y, film_.most.y, rows_);
     find_nodes();
     cells_.resize(static_cast<std::size_t>(columns_ * rows_));
-    sectors_.resize(cells_.size() * 2 * kPupilGridSectors);
+    sectors_.resize(cells_.size() * 2 * PupilGridView::kSectors);
     if (!is_lit_) return;
     find_cells(sharpen_nodes());
 }
@@ -146,7 +146,7 @@ std::optional<DirectionBox> PupilGrid::look(int column, int row, const std::vect
                             before_row < node_rows();
     if (expected && has_before)
         if (const auto& before = found[node_index(before_column, before_row)])
-            expected = expected->joined_with(expected->moved_on_from(*before));
+            expected = expected->joined_with(expected->moved_on_from(*before, 1));
     return search_.look(node_point(column, row), expected);
 }
 
@@ -166,10 +166,7 @@ std::vector<PupilOutline> PupilGrid::sharpen_nodes() {
         for (const std::size_t half : {2 * node, 2 * node + 1})
             for (int a = 0; a <= PupilOutline::kAzimuths; ++a) {
                 const double reach = outlines[half].outer[a];
-                const PupilDirection unit = PupilOutline::direction(a);
-                if (reach > 0)
-                    box = box.with({looks[half].centre.l + reach * looks[half].half_width * unit.l,
-                                    looks[half].centre.m + reach * looks[half].half_height * unit.m});
+                if (reach > 0) box = box.with(looks[half].direction(a, reach));
             }
         if (!(box.l_max > box.l_min && box.m_max > box.m_min)) continue;
         nodes_[node] = node_of(box);
@@ -198,7 +195,7 @@ PupilGridNode PupilGrid::node_of(const DirectionBox& box) {
 PupilGridNode PupilGrid::box_at(double column, double row) const {
     const PupilGridView grid = view();
     const Vec2<double> film = film_point(column, row);
-    return pupil_grid_lookup(grid, static_cast<float>(film.x), static_cast<float>(film.y)).box;
+    return pupil_lookup(grid, static_cast<float>(film.x), static_cast<float>(film.y)).box;
 }
 
 std::vector<PupilOutline> PupilGrid::outlines(const std::vector<PupilOutline>& of_nodes) const {
@@ -255,59 +252,34 @@ void PupilGrid::set_cell(int column, int row, const std::vector<PupilOutline>& o
         }
     const bool changes = is_partly_dark || std::max(largest_spread(seen[0]), largest_spread(seen[1])) > 0.2;
     const double reach = changes ? 1.5 : 1.2;
-    Halves halves = is_partly_dark ? Halves{PupilRow(box_outline()), PupilRow(box_outline())}
-                                   : Halves{PupilRow(holding_all(seen[0])), PupilRow(holding_all(seen[1]))};
-    const int passed = take_in_strays(column, row, reach, changes ? 6 : 2, halves);
+    PupilHalves halves;
+    for (const std::vector<PupilOutline>& half : seen)
+        halves.emplace_back(is_partly_dark ? box_outline() : holding_all(half));
+    const auto start = [&](int, std::uint32_t stream, const StraySearch::Places& places, PupilRays& rays) {
+        set_rays(column, row, stream, places, rays);
+    };
+    const StraySearch search{128, static_cast<std::uint32_t>(row * columns_ + column), 1, reach, changes ? 6 : 2};
+    const StraySearch::Traced traced = search.widen(search_.lens(), start, halves);
     PupilGridCell& cell = cells_[static_cast<std::size_t>(row * columns_ + column)];
-    PupilSector* const sectors = sectors_.data() + (&cell - cells_.data()) * 2 * kPupilGridSectors;
+    PupilSector* const sectors = sectors_.data() + (&cell - cells_.data()) * 2 * PupilGridView::kSectors;
     double areas[2] = {0, 0};
     for (int half = 0; half < 2; ++half) {
-        std::copy(halves[half].sectors().begin(), halves[half].sectors().end(), sectors + half * kPupilGridSectors);
+        std::copy(halves[half].sectors().begin(), halves[half].sectors().end(),
+                  sectors + half * PupilGridView::kSectors);
         areas[half] = halves[half].area();
     }
     // At least 1%: rounding may still select a half without light.
     const double share = std::clamp(areas[0] / (areas[0] + areas[1]), 0.01, 0.99);
     cell.upper_share = static_cast<float>(share);
-    if (passed == 0) return;  // a dark cell's weights stay 0
-    cell.upper_weight = static_cast<float>(0.5 * kPupilGridSectors / share);
-    cell.lower_weight = static_cast<float>(0.5 * kPupilGridSectors / (1 - share));
+    if (traced.around_passed + traced.beside_passed == 0) return;  // a dark cell's weights stay 0
+    cell.upper_weight = static_cast<float>(0.5 * PupilGridView::kSectors / share);
+    cell.lower_weight = static_cast<float>(0.5 * PupilGridView::kSectors / (1 - share));
 }
 
-int PupilGrid::take_in_strays(int column, int row, double reach, int clean_rounds, Halves& halves) const {
-    constexpr int kMostRounds = 128;
-    int passed = 0;
-    for (int round = 0, clean = 0; round < kMostRounds && clean < clean_rounds; ++round) {
-        const auto stream = static_cast<std::uint32_t>(kMostRounds * (row * columns_ + column) + round);
-        Vec2Lanes<float, kBlock> in_cell, places;
-        for (int i = 0; i < kBlock; ++i) {
-            const Vec2f u = sample_2d(stream, static_cast<std::uint32_t>(i), 1);
-            in_cell.set(i, sample_2d(stream, static_cast<std::uint32_t>(i), 0));
-            places.set(i, round % 2 == 0 ? Vec2f{static_cast<float>(reach) * (2 * u.x - 1),
-                                                 static_cast<float>(reach) * (2 * u.y - 1)}
-                                         : beside_edge(halves, i, u));
-        }
-        PupilRays rays;
-        set_rays(column, row, in_cell, places, rays);
-        bool passes[kBlock], strayed = false;
-        search_.lens().trace(rays, passes);
-        for (int i = 0; i < kBlock; ++i) {
-            if (!passes[i]) continue;
-            ++passed;
-            strayed |= halves[places.y[i] < 0].take_in({places.x[i], std::fabs(places.y[i])});
-        }
-        clean = strayed ? 0 : clean + 1;
-    }
-    return passed;
-}
-
-Vec2f PupilGrid::beside_edge(const Halves& halves, int i, Vec2f u) {
-    const int half = i % 2, sector = i / 2 % kPupilGridSectors;
-    const Vec2f place = halves[static_cast<std::size_t>(half)].beside(static_cast<std::size_t>(sector), u);
-    return {place.x, half == 0 ? place.y : -place.y};
-}
-
-void PupilGrid::set_rays(int column, int row, const Vec2Lanes<float, kBlock>& in_cell,
-                         const Vec2Lanes<float, kBlock>& places, PupilRays& rays) const {
+void PupilGrid::set_rays(int column, int row, std::uint32_t stream, const StraySearch::Places& places,
+                         PupilRays& rays) const {
+    Vec2Lanes<float, kBlock> in_cell;
+    for (int i = 0; i < kBlock; ++i) in_cell.set(i, sample_2d(stream, static_cast<std::uint32_t>(i), 0));
     const int node_column = column / kCellsPerPupilNode, node_row = row / kCellsPerPupilNode;
     const PupilGridNode* const near = nodes_.data() + node_index(node_column, node_row);
     const PupilGridNode* const far = near + node_columns();

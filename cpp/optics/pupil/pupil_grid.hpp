@@ -1,13 +1,14 @@
 #pragma once
-#include <array>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "direction_search.hpp"
 #include "moved_outline.hpp"
 #include "pupil_grid_view.hpp"
 #include "pupil_outline_search.hpp"
+#include "pupil_search.hpp"
+#include "stray_search.hpp"
 
 namespace REALCAM_NAMESPACE {
 
@@ -47,9 +48,6 @@ public:
 
 private:
     static constexpr int kBlock = PupilTracer::kBlock;
-
-    /// Sectors above and below the centre of the box.
-    using Halves = std::array<PupilRow, 2>;
 
     int node_columns() const { return columns_ / kCellsPerPupilNode + 1; }
     int node_rows() const { return rows_ / kCellsPerPupilNode + 1; }
@@ -107,19 +105,10 @@ private:
 
     void set_cell(int column, int row, const std::vector<PupilOutline>& outlines);
 
-    /// Traces rays all over a cell and its surroundings, and widens the sectors that do not contain a passing ray,
-    /// until `clean_rounds` rounds in succession find no ray to add. Returns the number of rays that passed.
-    int take_in_strays(int column, int row, double reach, int clean_rounds, Halves& halves) const;
+    /// Sets rays from random positions in a cell to points in units of the box interpolated there.
+    void set_rays(int column, int row, std::uint32_t stream, const StraySearch::Places& places, PupilRays& rays) const;
 
-    /// A point close to the edge of the i-th sector of the region.
-    static Vec2f beside_edge(const Halves& halves, int i, Vec2f u);
-
-    /// Sets rays from positions in a cell, both coordinates from 0 to 1, to points in units of the box interpolated
-    /// there.
-    void set_rays(int column, int row, const Vec2Lanes<float, kBlock>& in_cell, const Vec2Lanes<float, kBlock>& places,
-                  PupilRays& rays) const;
-
-    DirectionSearch search_;
+    PupilSearch search_;
     FilmArea film_;  ///< the part that the grid covers
     MirrorPlanes planes_;
     int columns_ = 24, rows_ = 16;  ///< cells

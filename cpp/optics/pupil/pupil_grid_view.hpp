@@ -20,17 +20,17 @@ struct PupilGridCell {
 };
 
 struct PupilGridView {
+    static constexpr int kSectors = PupilView::kSectors;  ///< sectors of half a region
+
     const PupilGridNode* nodes;  ///< at the corners of each 2 x 2 cells, row by row; null: a PupilView is used instead
     const PupilGridCell* cells;  ///< columns x rows
-    const PupilSector* sectors;  ///< 2 x kPupilGridSectors for each cell
+    const PupilSector* outline;  ///< 2 x kSectors for each cell
     int columns, rows;  ///< even
     Vec2f corner;  ///< corner of the grid with the smallest x and y, mm
     Vec2f cells_per_mm;
     bool mirrors_x, mirrors_y;  ///< the region at x < 0, or y < 0, is the mirror image of the one beyond 0
     float index_squared;  ///< n^2 of the medium before the film
 };
-
-inline constexpr int kPupilGridSectors = 32;  ///< sectors of half a region
 
 inline constexpr int kCellsPerPupilNode = 2;
 
@@ -39,9 +39,33 @@ struct PupilGridLookup {
     PupilGridNode box;
     int cell;
     float sign_l, sign_m;  ///< -1: the region is mirrored
+
+    REALCAM_INLINE PupilSectorDraw draw(const PupilGridView& pupil, float u) const {
+        constexpr int kSectors = PupilGridView::kSectors;
+        const float upper_share = pupil.cells[cell].upper_share;
+        const bool lower = u >= upper_share;
+        const float in_half =
+            quotient(select(lower, u - upper_share, u), select(lower, 1.0f - upper_share, upper_share));
+        const float scaled = in_half * static_cast<float>(kSectors);
+        int index = static_cast<int>(scaled);
+        index = select(index < kSectors, index, kSectors - 1);
+        return {half(pupil, lower) + index, scaled - static_cast<float>(index), select(lower, 1, 0)};
+    }
+    /// Index of the first sector of a half.
+    REALCAM_INLINE int half(const PupilGridView&, bool lower) const {
+        return (2 * cell + select(lower, 1, 0)) * PupilGridView::kSectors;
+    }
+    REALCAM_INLINE Vec2f from_box(Vec2f place) const {
+        return {box.centre_l + box.half_width * place.x, box.centre_m + box.half_height * place.y};
+    }
+    REALCAM_INLINE Vec2f to_film(Vec2f d) const { return {sign_l * d.x, sign_m * d.y}; }
+    /// Point in the box, in units of its half-widths, of direction cosines at the film.
+    REALCAM_INLINE Vec2f in_box(Vec2f film) const {
+        return {(sign_l * film.x - box.centre_l) / box.half_width, (sign_m * film.y - box.centre_m) / box.half_height};
+    }
 };
 
-REALCAM_INLINE PupilGridLookup pupil_grid_lookup(const PupilGridView& pupil, float film_x, float film_y) {
+REALCAM_INLINE PupilGridLookup pupil_lookup(const PupilGridView& pupil, float film_x, float film_y) {
     // Film points outside the grid use its edge.
     const auto within = [](float place, int cells) {
         const float last = static_cast<float>(cells);
@@ -72,45 +96,16 @@ REALCAM_INLINE PupilGridLookup pupil_grid_lookup(const PupilGridView& pupil, flo
 }
 
 /// Inverse density in a sector, steradians of projected solid angle; 0 in a dark cell.
-REALCAM_INLINE float pupil_weight(const PupilGridLookup& place, const PupilGridCell& cell, const PupilSector& sector,
+REALCAM_INLINE float pupil_weight(const PupilGridView& pupil, const PupilGridLookup& place, const PupilSector& sector,
                                   bool lower) {
-    const float area = (sector.x * sector.dy - sector.y * sector.dx) * (1.0f - sector.hole_squared);
-    return select(lower, cell.lower_weight, cell.upper_weight) * area * place.box.half_width * place.box.half_height;
+    const PupilGridCell& cell = pupil.cells[place.cell];
+    return select(lower, cell.lower_weight, cell.upper_weight) * twice_area(sector) * place.box.half_width *
+           place.box.half_height;
 }
 
-/// Samples a direction for a film point (x, y) in mm, from u and v in [0, 1). Uniform over each sector of the cell.
-REALCAM_INLINE PupilSample sample_pupil(const PupilGridView& pupil, float film_x, float film_y, float u, float v) {
-    const PupilGridLookup place = pupil_grid_lookup(pupil, film_x, film_y);
-    const PupilGridCell cell = pupil.cells[place.cell];
-    const bool lower = u >= cell.upper_share;
-    const float share = select(lower, 1.0f - cell.upper_share, cell.upper_share);
-    const float in_half = quotient(select(lower, u - cell.upper_share, u), share);
-    const float scaled = in_half * static_cast<float>(kPupilGridSectors);
-    int index = static_cast<int>(scaled);
-    index = select(index < kPupilGridSectors, index, kPupilGridSectors - 1);
-    const float along = scaled - static_cast<float>(index);
-    const PupilSector& sector = pupil.sectors[(2 * place.cell + select(lower, 1, 0)) * kPupilGridSectors + index];
-    const float reach = sqrt_or_zero(sector.hole_squared + v * (1.0f - sector.hole_squared));
-    const float x = reach * (sector.x + along * sector.dx);
-    const float y = reach * (sector.y + along * sector.dy);
-    const float l = place.box.centre_l + place.box.half_width * x;
-    const float m = place.box.centre_m + place.box.half_height * select(lower, -y, y);
-    const float rest = pupil.index_squared - l * l - m * m;
-    return {{place.sign_l * l, place.sign_m * m, -sqrt_or_zero(rest)},
-            select(rest > 0.0f, pupil_weight(place, cell, sector, lower), 0.0f)};
-}
-
-/// Density of sample_pupil at the optical direction cosines (l, m), per unit of their area.
-REALCAM_INLINE float pupil_pdf(const PupilGridView& pupil, float film_x, float film_y, float l, float m) {
-    const PupilGridLookup place = pupil_grid_lookup(pupil, film_x, film_y);
-    const float x = (place.sign_l * l - place.box.centre_l) / place.box.half_width;
-    const float signed_y = (place.sign_m * m - place.box.centre_m) / place.box.half_height;
-    const bool lower = signed_y < 0.0f;
-    const float y = std::fabs(signed_y);
-    const PupilSector* const half = pupil.sectors + (2 * place.cell + select(lower, 1, 0)) * kPupilGridSectors;
-    const PupilSector& s = half[sector_at(half, kPupilGridSectors, x, y)];
-    const float weight = pupil_weight(place, pupil.cells[place.cell], s, lower);
-    return select(holds(s, x, y) && l * l + m * m < pupil.index_squared && weight > 0.0f, 1.0f / weight, 0.0f);
+/// False if no light can reach a film point.
+REALCAM_INLINE bool may_be_lit(const PupilGridView& pupil, const PupilGridLookup& place) {
+    return pupil.cells[place.cell].upper_weight > 0.0f;
 }
 
 }  // namespace REALCAM_NAMESPACE

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <utility>
 
 #include "../trace/open_iris.hpp"
 
@@ -17,8 +16,9 @@ void PupilRays::set(int lane, Vec2<double> film, PupilDirection d) {
     m[lane] = d.m;
 }
 
-PupilLens::PupilLens(const LensSystem& lens, PupilTracer tracer, const std::vector<double>& wavelengths_nm)
-    : lens_(round_iris(lens)),
+PupilLens::PupilLens(const LensSystem& lens, LensSystem traced, PupilTracer tracer,
+                     const std::vector<double>& wavelengths_nm)
+    : lens_(std::move(traced)),
       ends_(film_path_ends(lens_, LightDirection::to_scene)),
       path_(lens_, LightDirection::to_scene, wavelengths_nm.empty() ? lens.wavelength_nm : wavelengths_nm.front(),
             ends_),
@@ -55,35 +55,21 @@ void PupilLens::trace_to_stop(const PupilRays& from, PupilTracer::Rays& rays) co
     trace(view, from, rays);
 }
 
-PupilBox PupilLens::box_of_last_surface(double radius) const {
-    const Surface& last = lens_.surfaces.back();
-    PupilBox box = PupilBox::none();
-    for (int ring = 0; ring <= 8; ++ring) {
-        const double r = last.clear_semi_diameter * ring / 8, z = last.sag(r) - lens_.film_distance;
-        for (int spoke = 0; spoke <= 16; ++spoke) {
-            const double angle = std::numbers::pi * spoke / 16;
-            const Vec3d d = path_.entry_index * normalized(Vec3d{r * std::cos(angle) - radius, r * std::sin(angle), z});
-            box = box.with({d.x, d.y});
-        }
-    }
-    return box.grown(0.02);
-}
-
-DirectionBox PupilLens::box_of_last_surface(Vec2<double> at) const {
+DirectionBox PupilLens::box_of_last_surface(Vec2<double> at, FilmMap film_map) const {
     const Surface& last = lens_.surfaces.back();
     const FilmSurface<double> film{lens_.film_distance, 1 / lens_.film_radius_of_curvature};
     const Vec3d from = film.place(at), x = film.direction(at, {1, 0, 0}), y = film.direction(at, {0, 1, 0});
     DirectionBox box = DirectionBox::none();
     for (int ring = 0; ring <= 8; ++ring) {
         const double r = last.clear_semi_diameter * ring / 8, z = last.sag(r);
-        for (int spoke = 0; spoke < 32; ++spoke) {
+        for (int spoke = 0; spoke < (film_map == FilmMap::radial ? 17 : 32); ++spoke) {
             const double angle = std::numbers::pi * spoke / 16;
             const Vec3d d = path_.entry_index *
                             normalized(last_surface_.point({r * std::cos(angle), r * std::sin(angle), z}) - from);
             box = box.with({dot(d, x), dot(d, y)});
         }
     }
-    return box.grown(0.02);
+    return box;
 }
 
 LensSystem PupilLens::round_iris(LensSystem lens) {

@@ -1,5 +1,6 @@
 #pragma once
 #include <functional>
+#include <utility>
 #include <vector>
 
 #include "../trace/film_frame.hpp"
@@ -9,6 +10,13 @@
 
 namespace REALCAM_NAMESPACE {
 
+/// The film points over which a pupil is tabulated.
+enum class FilmMap {
+    radial,  ///< one dimension, the film radius: points on the +x axis of a lens with a radial pupil, where the region
+             ///< of passing directions is symmetric in m
+    planar,  ///< two dimensions, x and y: all points of any film
+};
+
 /// A block of rays from film points, with their optical direction cosines.
 struct PupilRays {
     static constexpr int kBlock = PupilTracer::kBlock;
@@ -17,17 +25,23 @@ struct PupilRays {
     double l[kBlock], m[kBlock];
 
     void set(int lane, Vec2<double> film, PupilDirection d);
-    /// Sets a ray from a film point on the +x axis.
-    void set(int lane, double radius, PupilDirection d) { set(lane, Vec2<double>{radius, 0}, d); }
 };
 
-/// A lens as the pupil search traces it, with a circular stop, and its tracer.
+/// A lens as the pupil search traces it, and its tracer.
 class PupilLens {
 public:
     static constexpr int kBlock = PupilTracer::kBlock;
 
-    /// `wavelengths_nm`: a ray passes if it leaves the lens at any of these; empty: the design wavelength.
-    PupilLens(const LensSystem& lens, PupilTracer tracer, const std::vector<double>& wavelengths_nm = {});
+    /// `wavelengths_nm`: a ray passes if it leaves the lens at any of these; empty: the design wavelength. The blades
+    /// of the iris are replaced by the circle around their opening, which contains all rays that pass; blades reject
+    /// rays later.
+    PupilLens(const LensSystem& lens, PupilTracer tracer, const std::vector<double>& wavelengths_nm = {})
+        : PupilLens(lens, round_iris(lens), std::move(tracer), wavelengths_nm) {}
+
+    /// The lens with its blades, at the design wavelength.
+    static PupilLens with_blades(const LensSystem& lens, PupilTracer tracer) {
+        return {lens, lens, std::move(tracer), {}};
+    }
 
     /// Radius of the stop's bounding circle, mm.
     double stop_radius() const { return lens_.open_stop_radius(); }
@@ -45,14 +59,14 @@ public:
         tracer_.for_each(count, std::ref(task));
     }
 
-    /// Box of the directions from a film point on the +x axis to the last surface's clear aperture.
-    PupilBox box_of_last_surface(double radius) const;
-    /// Box of the directions from any film point to the last surface's clear aperture.
-    DirectionBox box_of_last_surface(Vec2<double> film) const;
+    /// Box of the directions from a film point to the last surface's clear aperture; for a radial map, to its half
+    /// y >= 0.
+    DirectionBox box_of_last_surface(Vec2<double> film, FilmMap film_map) const;
 
 private:
-    /// Replaces the blades by the circle around their opening, which contains all rays that pass; blades reject rays
-    /// later.
+    /// `traced`: the lens with the iris that blocks rays.
+    PupilLens(const LensSystem& lens, LensSystem traced, PupilTracer tracer, const std::vector<double>& wavelengths_nm);
+
     static LensSystem round_iris(LensSystem lens);
 
     void trace(const LensView<float>& view, const PupilRays& from, PupilTracer::Rays& rays) const;

@@ -2,7 +2,7 @@
 #include <optional>
 #include <vector>
 
-#include "pupil_box.hpp"
+#include "direction_box.hpp"
 #include "pupil_view.hpp"
 
 namespace REALCAM_NAMESPACE {
@@ -45,7 +45,7 @@ PupilOutline holding_all(const std::vector<PupilOutline>& looks);
 /// Sectors of one row, in order of azimuth.
 class PupilRow {
 public:
-    static constexpr int kSectors = 32;  ///< sectors for m >= 0
+    static constexpr int kSectors = PupilView::kSectors;  ///< sectors for m >= 0
 
     /// Cuts the outline into sectors of nearly equal area.
     explicit PupilRow(const PupilOutline& outline);

@@ -8,9 +8,21 @@
 
 namespace realcam {
 
-std::vector<PupilOutline> OutlineSearch::find(const PupilLens& lens, const std::vector<OutlineLook>& looks) {
+PupilDirection OutlineLook::unit(int azimuth) const {
+    const PupilDirection d = PupilOutline::direction(azimuth);
+    const double l = half_width * d.l, m = half_height * d.m;
+    return {l * cos - m * sin, l * sin + m * cos};
+}
+
+PupilDirection OutlineLook::direction(int azimuth, double reach) const {
+    const PupilDirection d = unit(azimuth);
+    return {centre.l + reach * d.l, centre.m + reach * d.m};
+}
+
+std::vector<PupilOutline> OutlineSearch::find(const PupilLens& lens, const std::vector<OutlineLook>& looks,
+                                              OutlineScan scan) {
     std::vector<PupilOutline> outlines(looks.size());
-    scan_all(lens, looks, spokes_of(looks), outlines);
+    scan_all(lens, looks, spokes_of(looks), scan, outlines);
     return outlines;
 }
 
@@ -31,7 +43,7 @@ std::vector<PupilOutline> OutlineSearch::find_near(const PupilLens& lens, const 
             if (!found[i]) lost.push_back(left[i]);
         left = std::move(lost);
     }
-    scan_all(lens, looks, left, outlines);
+    scan_all(lens, looks, left, {}, outlines);
     return outlines;
 }
 
@@ -42,9 +54,9 @@ OutlineSearch::Spokes OutlineSearch::spokes_of(const std::vector<OutlineLook>& l
 }
 
 void OutlineSearch::scan_all(const PupilLens& lens, const std::vector<OutlineLook>& looks, const Spokes& spokes,
-                             std::vector<PupilOutline>& outlines) {
+                             OutlineScan scan, std::vector<PupilOutline>& outlines) {
     for_each_group(lens, looks, spokes, [&](OutlineSearch& group, std::size_t) {
-        group.scan(lens);
+        group.scan(lens, scan);
         group.write(nullptr, outlines);
     });
 }
@@ -64,10 +76,9 @@ OutlineSearch::OutlineSearch(const std::vector<OutlineLook>& looks, const int* s
     : spokes_(spokes), count_(count) {
     for (int i = 0; i < count; ++i) {
         const OutlineLook& look = looks[static_cast<std::size_t>(spokes[i] / kSpokes)];
-        const PupilDirection unit = PupilOutline::direction(spokes[i] % kSpokes);
         film_[i] = look.film;
         centre_[i] = look.centre;
-        unit_[i] = {look.half_width * unit.l, look.half_height * unit.m};
+        unit_[i] = look.unit(spokes[i] % kSpokes);
     }
 }
 
@@ -90,13 +101,13 @@ void OutlineSearch::trace(const PupilLens& lens, int reaches, Reach&& reach) {
     });
 }
 
-void OutlineSearch::scan(const PupilLens& lens) {
-    const auto at = [](int step) { return kReach * step / kSteps; };
-    trace(lens, kSteps, [&](int, int step) { return at(step); });
+void OutlineSearch::scan(const PupilLens& lens, OutlineScan scan) {
+    const auto at = [&](int step) { return kReach * step / scan.steps; };
+    trace(lens, scan.steps, [&](int, int step) { return at(step); });
     int first[kBlock], last[kBlock];
     std::fill(first, first + kBlock, -1);
     std::fill(last, last + kBlock, -1);
-    for (int step = 0; step < kSteps; ++step)
+    for (int step = 0; step < scan.steps; ++step)
         for (int i = 0; i < count_; ++i) {
             if (!passes(i, step)) continue;
             if (first[i] < 0) first[i] = step;
@@ -107,14 +118,14 @@ void OutlineSearch::scan(const PupilLens& lens) {
         open[i] = at(std::max(last[i], 0));
         outer_[i] = at(last[i] + 1);
     }
-    halve(lens, kHalvings, open, outer_);
+    halve(lens, scan.halvings, open, outer_);
     std::fill(inner_, inner_ + count_, 0.0);
     if (std::none_of(first, first + count_, [](int step) { return step > 0; })) return;
     for (int i = 0; i < count_; ++i) {
         open[i] = at(std::max(first[i], 0));
         inner_[i] = at(std::max(first[i] - 1, 0));
     }
-    halve(lens, kHalvings, open, inner_);
+    halve(lens, scan.halvings, open, inner_);
 }
 
 void OutlineSearch::narrow(const PupilLens& lens, const std::vector<PupilOutline>& expected, double tolerance,

@@ -12,6 +12,18 @@ struct OutlineLook {
     Vec2<double> film;  ///< mm
     PupilDirection centre;
     double half_width, half_height;
+    double cos = 1, sin = 0;  ///< of the azimuth by which the box is rotated about its centre
+
+    /// Direction at an azimuth of the outline (PupilOutline::direction) and a radius.
+    PupilDirection direction(int azimuth, double reach) const;
+    /// Unit of the radius at an azimuth of the outline.
+    PupilDirection unit(int azimuth) const;
+};
+
+/// Resolution of a search along spokes: number of radii that are scanned, and of bisections of the interval between
+/// two.
+struct OutlineScan {
+    int steps = 20, halvings = 9;
 };
 
 /// Searches outlines at several film points by bisection along radial scan lines (spokes). A block of rays holds
@@ -24,12 +36,14 @@ public:
     /// Upper bound of the number of ray blocks for `looks` outlines: without any near its expected outline, two
     /// intervals for each edge, and a scan.
     static constexpr int most_blocks(int looks) {
-        constexpr int kNarrowings = 2 * (2 + 4) + 2 * (2 + 7), kScan = kSteps + 2 * kHalvings;
+        constexpr int kNarrowings = 2 * (2 + 4) + 2 * (2 + 7), kScan = OutlineScan{}.steps + 2 * OutlineScan{}.halvings;
         constexpr int kSmallGroups = (kBlock + kSmallGroup - 1) / kSmallGroup;
         return ((looks * kSpokes + kBlock - 1) / kBlock + kSmallGroups) * (kNarrowings + kScan);
     }
 
-    static std::vector<PupilOutline> find(const PupilLens& lens, const std::vector<OutlineLook>& looks);
+    /// `scan`: of at most kMostSteps steps.
+    static std::vector<PupilOutline> find(const PupilLens& lens, const std::vector<OutlineLook>& looks,
+                                          OutlineScan scan = {});
 
     /// Finds outlines near an expected one for each request. Its edges are searched within `tolerance` (in units of the
     /// box), which takes a quarter of the rays, and then within eight times as much. Azimuths without an edge in that
@@ -42,7 +56,7 @@ private:
     /// Spokes of a group if all spokes together do not fill a block. Seven rays of each are traced at once, which cover
     /// three bisections.
     static constexpr int kSmallGroup = kBlock / 7;
-    static constexpr int kSteps = 20, kHalvings = 9;
+    static constexpr int kMostSteps = 48;
     static constexpr double kReach = 1.5;  ///< past the corner of the box
     static constexpr double kPrecision = 6e-4;  ///< approximate precision of edges near expected ones
 
@@ -59,10 +73,10 @@ private:
                                Task&& task);
 
     static void scan_all(const PupilLens& lens, const std::vector<OutlineLook>& looks, const Spokes& spokes,
-                         std::vector<PupilOutline>& outlines);
+                         OutlineScan scan, std::vector<PupilOutline>& outlines);
 
     /// Scans outwards along each azimuth, then bisects the first and the last interval in which the light changes.
-    void scan(const PupilLens& lens);
+    void scan(const PupilLens& lens, OutlineScan scan);
 
     /// Bisects the intervals around the expected edges. Sets `found` to true for spokes whose intervals contain the
     /// edges.
@@ -89,7 +103,7 @@ private:
     Vec2<double> film_[kBlock];
     PupilDirection centre_[kBlock], unit_[kBlock];
     double outer_[kBlock], inner_[kBlock];
-    bool passes_[kSteps * kBlock];
+    bool passes_[kMostSteps * kBlock];
 };
 
 }  // namespace REALCAM_NAMESPACE

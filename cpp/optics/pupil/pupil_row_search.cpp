@@ -15,7 +15,7 @@ PupilRowSearch::Sight PupilRowSearch::look_from_axis() const {
     Sight sight;
     PupilTrack track;
     const auto is_lit = [&](int row) {
-        if (!search_.look(radius_at(row), track)) return false;
+        if (!track.look(search_, radius_at(row))) return false;
         sight.lit.push_back(*track.last);
         return true;
     };
@@ -30,7 +30,7 @@ PupilRowSearch::Sight PupilRowSearch::look_from_axis() const {
     search_.lens().for_each(kRows - dark, [&](int i) {
         PupilTrack own = track;
         const int row = dark + 1 + i;
-        ahead[static_cast<std::size_t>(row)] = search_.look(radius_at(row), own);
+        ahead[static_cast<std::size_t>(row)] = own.look(search_, radius_at(row));
     });
     int last = kRows;
     while (last >= dark && !ahead[static_cast<std::size_t>(last)]) --last;
@@ -50,10 +50,10 @@ void PupilRowSearch::find_edge_of_image(Sight& sight, double width, int far_roun
         // A moving sliver may be missed from a distance, so dark radii are searched again from nearby.
         const double radii[] = {lit + third, lit + 2 * third, dark.back()};
         constexpr int kCount = std::size(radii);
-        std::optional<PupilBox> boxes[kCount];
+        std::optional<DirectionBox> boxes[kCount];
         search_.lens().for_each(kCount, [&](int i) {
             PupilTrack own = track;
-            boxes[i] = round < far_rounds ? search_.look(radii[i], own) : search_.look_near(radii[i], own);
+            boxes[i] = round < far_rounds ? own.look(search_, radii[i]) : own.look_near(search_, radii[i]);
         });
         dark.pop_back();
         for (int i = kCount - 1; i >= 0 && !boxes[i]; --i) dark.push_back(radii[i]);
@@ -63,7 +63,7 @@ void PupilRowSearch::find_edge_of_image(Sight& sight, double width, int far_roun
     if (track.last->radius > sight.lit.back().radius) sight.lit.push_back(*track.last);
 }
 
-PupilRowSearch::Sight PupilRowSearch::look_near_edge(double radius, const PupilBox& box) const {
+PupilRowSearch::Sight PupilRowSearch::look_near_edge(double radius, const DirectionBox& box) const {
     Sight sight = look_around(radius, box, {0.99994, 1});
     if (sight.lit.size() == 1 && sight.dark.size() == 1) return sight;
     sight = look_around(radius, box, {0.999, 0.9999, 1, 1.0001, 1.001});
@@ -71,13 +71,13 @@ PupilRowSearch::Sight PupilRowSearch::look_near_edge(double radius, const PupilB
     return sight;
 }
 
-PupilRowSearch::Sight PupilRowSearch::look_around(double radius, const PupilBox& box,
+PupilRowSearch::Sight PupilRowSearch::look_around(double radius, const DirectionBox& box,
                                                   const std::vector<double>& shares) const {
     PupilRowBoxes boxes(shares.size());
     search_.lens().for_each(static_cast<int>(shares.size()), [&](int i) {
         PupilTrack track;
         track.add(radius, box);
-        boxes[static_cast<std::size_t>(i)] = search_.look_near(radius * shares[static_cast<std::size_t>(i)], track);
+        boxes[static_cast<std::size_t>(i)] = track.look_near(search_, radius * shares[static_cast<std::size_t>(i)]);
     });
     Sight sight;
     std::size_t lit = boxes.size();
@@ -108,7 +108,7 @@ PupilRowBoxes PupilRowSearch::look_between(const std::vector<PupilTrack::Seen>& 
         const double radius = radius_at(row);
         PupilTrack track = track_between(seen, radius);
         const bool is_seen = track.last->radius == radius;
-        boxes[static_cast<std::size_t>(row)] = is_seen ? track.last->box : search_.look(radius, track);
+        boxes[static_cast<std::size_t>(row)] = is_seen ? track.last->box : track.look(search_, radius);
     });
     return boxes;
 }

@@ -2,12 +2,12 @@
 #include <optional>
 #include <vector>
 
-#include "pupil_search.hpp"
+#include "pupil_track.hpp"
 
 namespace REALCAM_NAMESPACE {
 
 /// Box of each row of a pupil's table, from the axis outwards; std::nullopt if the row is dark.
-using PupilRowBoxes = std::vector<std::optional<PupilBox>>;
+using PupilRowBoxes = std::vector<std::optional<DirectionBox>>;
 
 /// Searches the boxes at the rows of a pupil's table, whose spacing decreases towards the edge of the image.
 class PupilRowSearch {
@@ -38,7 +38,7 @@ public:
     /// Finds the edge, to 1e-4, of an image that ends at about `radius`, where the light has this box. The edge is
     /// `radius` itself if it lies at most 6e-5 further in. `lit` or `dark` is empty if the image ends more than a
     /// thousandth elsewhere.
-    Sight look_near_edge(double radius, const PupilBox& box) const;
+    Sight look_near_edge(double radius, const DirectionBox& box) const;
 
     /// Boxes of all rows from `first_row` on, each searched where its neighbours in `seen` lead.
     PupilRowBoxes look_between(const std::vector<PupilTrack::Seen>& seen, int first_row = 0) const;
@@ -48,7 +48,7 @@ private:
     static constexpr int kMostEdgeRounds = 32;
 
     /// Searches at these multiples of a radius, in ascending order, near the box of that radius.
-    Sight look_around(double radius, const PupilBox& box, const std::vector<double>& shares) const;
+    Sight look_around(double radius, const DirectionBox& box, const std::vector<double>& shares) const;
 
     /// Track that leads to a radius from the nearest two known boxes, on both sides of it if possible.
     static PupilTrack track_between(const std::vector<PupilTrack::Seen>& seen, double radius);

@@ -1,115 +1,149 @@
 #include "pupil_search.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
 namespace realcam {
 
-std::optional<PupilBox> PupilSearch::look(double radius, PupilTrack& track) const {
-    if (track.last)
-        if (const auto box = look_near(radius, track)) return box;
-    const PupilBox widest = lens_.box_of_last_surface(radius);
-    const std::optional<PupilBox> box = find_box(radius, widest, widest);
-    if (box) track.add(radius, *box);
-    return box;
+std::optional<DirectionBox> PupilSearch::look(Vec2<double> film, const std::optional<DirectionBox>& expected) const {
+    if (expected)
+        if (const auto box = look_near(film, *expected)) return box;
+    const DirectionBox widest = widest_box(film);
+    return find_box(film, widest, widest);
 }
 
-std::optional<PupilBox> PupilSearch::look_near(double radius, PupilTrack& track) const {
-    const std::optional<PupilBox> box = find_box(radius, track.search_at(radius), lens_.box_of_last_surface(radius));
-    if (box) track.add(radius, *box);
-    return box;
+std::optional<DirectionBox> PupilSearch::look_near(Vec2<double> film, const DirectionBox& expected) const {
+    return find_box(film, grown(expected, 0.4), widest_box(film));
 }
 
-PupilSearch::Passing PupilSearch::passing(double radius, const PupilBox& search) const {
-    bool passes[kGridBlocks * kBlock];
-    trace_grid(radius, search, [&](const PupilRays& rays, int first) { lens_.trace(rays, passes + first); });
+DirectionBox PupilSearch::grown(const DirectionBox& box, double share) const {
+    const DirectionBox part = searched(box);
+    return box.grown_by(share * (part.l_max - part.l_min), share * (part.m_max - part.m_min));
+}
+
+DirectionBox PupilSearch::widest_box(Vec2<double> film) const {
+    return grown(whole_of(lens_.box_of_last_surface(film, film_map_)), 0.02);
+}
+
+PupilSearch::Grid::Grid(FilmMap film_map, const DirectionBox& part)
+    : columns(film_map == FilmMap::radial ? 48 : 32),
+      rows(film_map == FilmMap::radial ? 24 : 32),
+      cell_l((part.l_max - part.l_min) / columns),
+      cell_m((part.m_max - part.m_min) / rows) {
+    for (int i = 0; i < columns; ++i) l[i] = part.l_min + (i + 0.5) / columns * (part.l_max - part.l_min);
+    for (int i = 0; i < rows; ++i) m[i] = part.m_min + (i + 0.5) / rows * (part.m_max - part.m_min);
+}
+
+template <class Trace>
+void PupilSearch::trace_grid(Vec2<double> film, const Grid& grid, Trace&& trace) const {
+    lens_.for_each((grid.points() + kBlock - 1) / kBlock, [&](int block) {
+        PupilRays rays;
+        int column = block * kBlock % grid.columns, row = block * kBlock / grid.columns;
+        for (int i = 0; i < kBlock; ++i) {
+            rays.set(i, film, {grid.l[column], grid.m[row]});
+            if (++column < grid.columns) continue;
+            column = 0;
+            row = std::min(row + 1, grid.rows - 1);
+        }
+        trace(rays, block * kBlock);
+    });
+}
+
+PupilSearch::Passing PupilSearch::passing(Vec2<double> film, const DirectionBox& search) const {
+    const Grid grid = grid_over(search);
+    bool passes[kMostGridBlocks * kBlock];
+    trace_grid(film, grid, [&](const PupilRays& rays, int first) { lens_.trace(rays, passes + first); });
     Passing seen;
-    double leftmost = 0;
-    for (int row = 0; row < kRows; ++row) {
-        const bool *begin = passes + row * kColumns, *end = begin + kColumns;
+    for (int row = 0; row < grid.rows; ++row) {
+        const bool *begin = passes + row * grid.columns, *end = begin + grid.columns;
         const bool* const first = std::find(begin, end, true);
         if (first == end) continue;
-        int last = kColumns - 1;
+        int last = grid.columns - 1;
         while (!begin[last]) --last;
         seen.count += static_cast<int>(std::count(begin, end, true));
-        const PupilDirection left{grid_l(search, static_cast<int>(first - begin)), grid_m(search, row)},
-            right{grid_l(search, last), left.m};
+        const PupilDirection left{grid.l[first - begin], grid.m[row]}, right{grid.l[last], grid.m[row]};
         seen.box = seen.box.with(left).with(right);
-        if (left.m > seen.highest.m) leftmost = left.l;
-        seen.highest = {0.5 * (leftmost + right.l), left.m};
+        seen.highest = {0.5 * (left.l + right.l), left.m};
     }
+    seen.box = whole_of(seen.box);
     return seen;
 }
 
-PupilBox PupilSearch::refined(double radius, const PupilBox& search, const Passing& seen) const {
+DirectionBox PupilSearch::refined(Vec2<double> film, const DirectionBox& search, const Passing& seen) const {
+    const Grid grid = grid_over(search);
+    const double cell_l = grid.cell_l, cell_m = grid.cell_m;
+    if (!is_symmetric()) return seen.box.grown_by(cell_l, cell_m);
     constexpr int kSteps = kBlock / 3;
-    const double cell_l = (search.l_max - search.l_min) / kColumns, cell_m = search.m_max / kRows;
     PupilRays from;
     for (int i = 0; i < kBlock; ++i) {
         const double step = (i % kSteps + 1.0) / kSteps;
-        const PupilBox& box = seen.box;
+        const DirectionBox& box = seen.box;
         switch (i / kSteps) {
-            case 0: from.set(i, radius, {box.l_min - step * cell_l, 0}); break;
-            case 1: from.set(i, radius, {box.l_max + step * cell_l, 0}); break;
-            default: from.set(i, radius, {seen.highest.l, box.m_max + step * cell_m});
+            case 0: from.set(i, film, {box.l_min - step * cell_l, 0}); break;
+            case 1: from.set(i, film, {box.l_max + step * cell_l, 0}); break;
+            default: from.set(i, film, {seen.highest.l, box.m_max + step * cell_m});
         }
     }
     bool passes[kBlock];
     lens_.trace(from, passes);
-    PupilBox box = seen.box;
+    DirectionBox box = seen.box;
     for (int i = 0; i < 3 * kSteps; ++i)
         if (passes[i]) box = box.with({from.l[i], from.m[i]});
-    box.l_min -= cell_l / kSteps;
-    box.l_max += cell_l / kSteps;
-    box.m_max += cell_m / kSteps;
-    return box;
+    return whole_of(box.grown_by(cell_l / kSteps, cell_m / kSteps));
 }
 
-std::optional<PupilBox> PupilSearch::find_box(double radius, PupilBox search, const PupilBox& widest) const {
-    constexpr int kLevels = 6, kEnough = 48;
+std::optional<DirectionBox> PupilSearch::find_box(Vec2<double> film, DirectionBox search,
+                                                  const DirectionBox& widest) const {
+    constexpr int kLevels = 6;
+    const int enough = is_symmetric() ? 48 : 64;
     std::optional<NearestRay> last;
     for (int level = 0; level < kLevels; ++level) {
-        const Passing seen = passing(radius, search);
-        if (seen.count >= kEnough) return whole(radius, refined(radius, search, seen), search, widest);
-        const std::optional<NearestRay> nearest = nearest_to_stop(radius, search);
+        const Passing seen = passing(film, search);
+        if (seen.count >= enough) return whole(film, refined(film, search, seen), search, widest);
+        const std::optional<NearestRay> nearest = nearest_to_stop(film, search);
         if (!nearest || (seen.count == 0 && is_dark_around(*nearest, last))) return std::nullopt;
         last = nearest;
-        const double w = search.half_width() / 6, h = search.m_max / 6;
-        search = seen.count > 0 ? refined(radius, search, seen).grown(0.2)
-                                : PupilBox{nearest->at.l - w, nearest->at.l + w, nearest->at.m + h};
+        search = seen.count > 0
+                     ? grown(refined(film, search, seen), 0.2)
+                     : whole_of(DirectionBox::around(nearest->at, search.half_width() / 6, search.half_height() / 6));
     }
-    const Passing few = passing(radius, search);
+    const Passing few = passing(film, search);
     if (few.count == 0) return std::nullopt;
-    return whole(radius, refined(radius, search, few), search, widest);
+    return whole(film, refined(film, search, few), search, widest);
 }
 
-PupilBox PupilSearch::whole(double radius, PupilBox box, PupilBox search, const PupilBox& widest) const {
+DirectionBox PupilSearch::whole(Vec2<double> film, DirectionBox box, DirectionBox search,
+                                const DirectionBox& widest) const {
     constexpr int kMostGrowths = 16;
+    const double growth = is_symmetric() ? 1 : 0.5;
     for (int i = 0; i < kMostGrowths && !box.lies_in(search, widest); ++i) {
-        search = box.grown(1);
-        const Passing more = passing(radius, search);
+        search = grown(box, growth);
+        const Passing more = passing(film, search);
         if (more.count == 0) break;
-        box = refined(radius, search, more);
+        box = refined(film, search, more);
     }
     return box;
 }
 
-std::optional<PupilSearch::NearestRay> PupilSearch::nearest_to_stop(double radius, const PupilBox& search) const {
+std::optional<PupilSearch::NearestRay> PupilSearch::nearest_to_stop(Vec2<double> film,
+                                                                    const DirectionBox& search) const {
     struct Place {
-        float squared_distance;
-        int point;
+        float squared_distance = std::numeric_limits<float>::max();
+        int point = -1;
     };
-    constexpr Place kNone{std::numeric_limits<float>::max(), -1};
     const auto nearer = [](Place a, Place b) { return a.squared_distance < b.squared_distance; };
     const double stop = lens_.stop_radius();
-    Place nearest[kGridBlocks];
-    bool all_in_stop[kGridBlocks];
-    trace_grid(radius, search, [&](const PupilRays& from, int first) {
+    const Grid grid = grid_over(search);
+    Place nearest[kMostGridBlocks];
+    bool all_in_stop[kMostGridBlocks];
+    std::fill(std::begin(all_in_stop), std::end(all_in_stop), true);
+    trace_grid(film, grid, [&](const PupilRays& from, int first) {
         PupilTracer::Rays rays;
         lens_.trace_to_stop(from, rays);
-        Place best = kNone;
+        Place best;
         bool all_in = true;
-        for (int i = 0; i < std::min(kBlock, kPoints - first); ++i) {
+        for (int i = 0; i < std::min(kBlock, grid.points() - first); ++i) {
             const float x = rays.origin.x[i], y = rays.origin.y[i];
             const Place place{x * x + y * y, first + i};
             const bool reaches = rays.status[i] == 0;
@@ -119,11 +153,10 @@ std::optional<PupilSearch::NearestRay> PupilSearch::nearest_to_stop(double radiu
         nearest[first / kBlock] = best;
         all_in_stop[first / kBlock] = all_in;
     });
-    const Place best = *std::min_element(nearest, nearest + kGridBlocks, nearer);
+    const Place best = *std::min_element(std::begin(nearest), std::end(nearest), nearer);
     if (best.point < 0) return std::nullopt;
-    return NearestRay{{grid_l(search, best.point % kColumns), grid_m(search, best.point / kColumns)},
-                      std::sqrt(static_cast<double>(best.squared_distance)) / stop,
-                      std::all_of(all_in_stop, all_in_stop + kGridBlocks, [](bool all_in) { return all_in; })};
+    return NearestRay{grid.direction(best.point), std::sqrt(static_cast<double>(best.squared_distance)) / stop,
+                      std::all_of(std::begin(all_in_stop), std::end(all_in_stop), [](bool all_in) { return all_in; })};
 }
 
 bool PupilSearch::is_dark_around(const NearestRay& nearest, const std::optional<NearestRay>& last) {

@@ -24,8 +24,8 @@ constexpr double kPi = std::numbers::pi;
 /// which few meet a corner.
 std::vector<Vec2<double>> outline(int corners, double radius = 0.1) {
     std::vector<Vec2<double>> points;
-    for (int spoke = 0; spoke < PupilEdgeSearch::kSpokes; ++spoke) {
-        const double angle = 2 * kPi * spoke / PupilEdgeSearch::kSpokes, side = 2 * kPi / std::max(corners, 1);
+    for (int spoke = 0; spoke < kPupilEdgeCorners; ++spoke) {
+        const double angle = 2 * kPi * spoke / kPupilEdgeCorners, side = 2 * kPi / std::max(corners, 1);
         const double r =
             corners == 0 ? radius : radius * std::cos(kPi / corners) / std::cos(std::remainder(angle, side));
         points.push_back({r * std::cos(angle), r * std::sin(angle)});

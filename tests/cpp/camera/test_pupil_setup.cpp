@@ -25,7 +25,7 @@ bool same_bits(const T* a, const T* b, int count) {
 }
 
 bool same_pupil(const PupilView& a, const PupilView& b) {
-    return same_bits(a.nodes, b.nodes, a.rows + 1) && same_bits(a.outline, b.outline, a.rows * a.sectors) &&
+    return same_bits(a.nodes, b.nodes, a.rows + 1) && same_bits(a.outline, b.outline, a.rows * PupilView::kSectors) &&
            same_bits(&a.image_radius, &b.image_radius, 1);
 }
 

@@ -119,7 +119,7 @@ void compare_pictures(const LensSystem& lens, const LensSystem& large, Differenc
     differences.length(a.image_radius(), b.image_radius());
     const auto count = static_cast<std::size_t>(one.rows);
     differences.number(same_bits(one.nodes, other.nodes, count + 1), 1);
-    differences.number(same_bits(one.outline, other.outline, count * static_cast<std::size_t>(one.sectors)), 1);
+    differences.number(same_bits(one.outline, other.outline, count * static_cast<std::size_t>(PupilView::kSectors)), 1);
     differences.number(axis_irradiance(lens), axis_irradiance(large));
     differences.number(field_angle(lens, 0.3 * lens.film_width), field_angle(large, 0.3 * large.film_width));
     for (const CameraModel model : kModels) {

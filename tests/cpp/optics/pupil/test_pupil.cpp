@@ -148,7 +148,7 @@ TEST_CASE("a pupil that has changed much is the same as without the one before")
         const Pupil pupil(changed, radius, {}, {}, &before), anew(changed, radius);
         const PupilView a = pupil.view(), b = anew.view();
         return !pupil.is_moved() && a.image_radius == b.image_radius &&
-               std::equal(a.outline, a.outline + a.rows * a.sectors, b.outline,
+               std::equal(a.outline, a.outline + a.rows * PupilView::kSectors, b.outline,
                           [](const PupilSector& s, const PupilSector& t) {
                               return s.x == t.x && s.y == t.y && s.dx == t.dx && s.dy == t.dy &&
                                      s.hole_squared == t.hole_squared;

@@ -35,7 +35,7 @@ LensSystem lens_at(const FilmPoint& point) {
 // Square bins in optical direction cosines around the region's box, the film point at 0.7 radians.
 template <class Sampler>
 Bins in_direction_cosines(const PupilView& pupil, float x, float y, Sampler&& sampler, unsigned seed) {
-    const PupilRowPosition place = pupil_row_position(pupil, x, y);
+    const PupilRowPosition place = pupil_lookup(pupil, x, y);
     // Rows reach past the box where their ends differ or stray rays have widened them.
     const double half = 2.2 * static_cast<double>(std::max(place.half_width, place.half_height));
     const double l = static_cast<double>(place.centre * place.cos), m = static_cast<double>(place.centre * place.sin);
