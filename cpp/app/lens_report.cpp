@@ -85,7 +85,7 @@ std::string remarks(const Surface& surface) {
         add((form.base == BaseForm::toroid ? "toroid, " : "biconic, ") +
             (form.curvature_x == 0 ? "plane" : "radius " + number_text(1 / form.curvature_x, 6) + " mm") + " in xz");
     if (form.conic_x != 0) add("conic " + number_text(form.conic_x, 6) + " in xz");
-    if (!form.radial.empty() || !form.xy.empty() || form.zernike || form.forbes) add("polynomial terms");
+    if (form.has_terms()) add("polynomial terms");
     if (const std::string place = place_text(surface.placement); !place.empty()) add(place);
     if (surface.conic != 0) add("conic " + number_text(surface.conic, 6));
     if (surface.is_asphere()) add("asphere to r^" + std::to_string(2 * surface.aspheric.size() + 2));

@@ -36,8 +36,6 @@ const std::map<std::string, LensQuantity>& quantities() {
         {"conic_x", LensQuantity::conic_x},
         {"radial", LensQuantity::radial},
         {"xy", LensQuantity::xy},
-        {"zernike", LensQuantity::zernike},
-        {"forbes", LensQuantity::forbes},
         {"film_distance", LensQuantity::film_distance},
     };
     return names;
@@ -46,11 +44,20 @@ const std::map<std::string, LensQuantity>& quantities() {
 std::vector<LensVariable> variables_from(const Variables& variables) {
     std::vector<LensVariable> list;
     for (const auto& [name, surface, number, number_y] : variables) {
+        const auto is_it = [&](const FormWords& words) { return name == words.key; };
+        const auto row = std::find_if(kFormWords.begin(), kFormWords.end(), is_it);
+        if (row != kFormWords.end()) {
+            const auto index = static_cast<int>(row - kFormWords.begin());
+            list.push_back({LensQuantity::terms, surface, number, number_y, index});
+            continue;
+        }
         const auto found = quantities().find(name);
         if (found == quantities().end()) {
             std::string all;
-            for (const auto& [known, quantity] : quantities()) all += (all.empty() ? "" : ", ") + known;
-            throw InputError("unknown quantity \"" + name + "\"; one of " + all + " is wanted");
+            for (const auto& [known, quantity] : quantities()) all += known + ", ";
+            for (const FormWords& words : kFormWords) all += words.key + std::string(", ");
+            throw InputError("unknown quantity \"" + name + "\"; one of " + all.substr(0, all.size() - 2) +
+                             " is wanted");
         }
         list.push_back({found->second, surface, number, number_y});
     }

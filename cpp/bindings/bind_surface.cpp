@@ -37,29 +37,6 @@ Vec3d triple_from(const std::vector<double>& values, std::size_t least, const ch
     return {values[0], values[1], values.size() > 2 ? values[2] : 0};
 }
 
-Surface make_surface(double radius_of_curvature, double thickness, const py::object& material,
-                     double clear_semi_diameter, double conic, const std::map<int, double>& aspheric,
-                     double inner_semi_diameter, const std::string& type, const py::object& coating,
-                     const std::vector<double>& decentre, const std::vector<double>& tilt, bool returns,
-                     const SurfaceChanges::Name& form, SurfaceChanges::Number radius_x, SurfaceChanges::Number conic_x,
-                     const SurfaceChanges::RadialTerms& radial, const SurfaceChanges::XyTerms& xy,
-                     const SurfaceChanges::Dict& zernike, const SurfaceChanges::Dict& forbes,
-                     const SurfaceChanges::Dict& aperture, const SurfaceChanges::Dicts& obscurations) {
-    return changed_surface(Surface(), {radius_of_curvature,
-                                       thickness,
-                                       glass_from(material),
-                                       clear_semi_diameter,
-                                       conic,
-                                       aspheric,
-                                       inner_semi_diameter,
-                                       type,
-                                       coating_from(coating),
-                                       decentre,
-                                       tilt,
-                                       returns,
-                                       {form, radius_x, conic_x, radial, xy, zernike, forbes, aperture, obscurations}});
-}
-
 std::map<int, double> aspheric_map(const Surface& surface) {
     std::map<int, double> map;
     for (std::size_t i = 0; i < surface.aspheric.size(); ++i)
@@ -78,6 +55,81 @@ std::string surface_text(const Surface& s) {
     if (s.coating.kind != CoatingKind::unknown)
         text += ", " + (s.coating.name.empty() ? std::string("coated") : shortened(s.coating.name));
     return text + ", then " + digits(s.thickness) + " mm of " + glass_text(s.material) + '>';
+}
+
+/// The keys of kFormTerms.
+py::tuple form_terms() {
+    py::tuple keys(kFormTermsCount);
+    for (std::size_t row = 0; row < kFormTermsCount; ++row) keys[row] = kFormWords[row].key;
+    return keys;
+}
+
+/// Describes the dicts of all rows of kFormTerms, a line each: `zernike: {"order": "noll" or "fringe", ...}.`
+std::string terms_text() {
+    std::string text;
+    for (const FormWords& words : kFormWords) {
+        text += std::string(words.key) + ": {";
+        if (*words.variant_key)
+            text += '"' + std::string(words.variant_key) + "\": \"" + words.variants[0] + "\" or \"" +
+                    words.variants[1] + "\", ";
+        text += "\"radius_mm\", \"" + std::string(words.coefficients_key) + "\"}.\n";
+    }
+    return text;
+}
+
+/// Defines the constructor, with one keyword for each row of kFormTerms.
+template <std::size_t... row>
+void def_constructor(py::class_<Surface>& surface, std::index_sequence<row...>) {
+    using C = SurfaceChanges;
+    const std::string text = std::string(
+                                 R"(radius_of_curvature_mm: positive where the centre lies on the film side; inf: plane.
+thickness_mm: to the next surface; that of the last surface is not used.
+material: behind the surface: index, (n_d, V_d), glass name, Glass, or None for air.
+conic: k = -e^2. aspheric_coefficients: {even power of r: mm^(1 - power)}, powers 4 to 18.
+inner_semi_diameter_mm: light closer to the axis is blocked.
+type: refracting, mirror, stop or aperture (a plane that only blocks).
+coating: "bare", "quarter_wave", of a mirror "aluminium" or "silver", a Coating, or "unknown": light
+is then taken to meet bare glass, or a perfect mirror.
+decentre_mm: (x, y) or (x, y, z) of the vertex, from its place on the axis. tilt_deg: angles by which it
+is then turned about x, its new y and its new z, counterclockwise as seen from the axis's tip. returns:
+this moves the surface alone; else the axis goes on from there, with all that follows and the film.
+form: "biconic" or "toroid", of which radius and conic are the section in the yz plane, and
+radius_of_curvature_x_mm and conic_x that in the xz plane. A toroid's even terms are of y.
+radial_terms: {power of r: mm^(1 - power)}, powers 1 to 20. xy_terms: {(i, j): coefficient of x^i y^j}.
+)") + terms_text() + R"(These parts are added to the conic.
+aperture: {"ellipse_mm" or "rectangle_mm": (half_x, half_y)}, {"circle_mm": radius} or
+{"polygon_mm": corners}, each with "offset_mm". obscurations: a list of {"circle_mm", "ellipse_mm" or
+"rectangle_mm", "offset_mm", "angle_deg"} and {"spider_arms": count, "width_mm", "angle_deg"}.)";
+    surface.def(py::init([](double radius_of_curvature, double thickness, const py::object& material,
+                            double clear_semi_diameter, double conic, const std::map<int, double>& aspheric,
+                            double inner_semi_diameter, const std::string& type, const py::object& coating,
+                            const std::vector<double>& decentre, const std::vector<double>& tilt, bool returns,
+                            const C::Name& form, C::Number radius_x, C::Number conic_x, const C::RadialTerms& radial,
+                            const C::XyTerms& xy, const TermsDict<row>&... terms, const C::Dict& aperture,
+                            const C::Dicts& obscurations) {
+                    return changed_surface(Surface(),
+                                           {radius_of_curvature,
+                                            thickness,
+                                            glass_from(material),
+                                            clear_semi_diameter,
+                                            conic,
+                                            aspheric,
+                                            inner_semi_diameter,
+                                            type,
+                                            coating_from(coating),
+                                            decentre,
+                                            tilt,
+                                            returns,
+                                            {form, radius_x, conic_x, radial, xy, {terms...}, aperture, obscurations}});
+                }),
+                py::kw_only(), "radius_of_curvature_mm"_a = kInfinity, "thickness_mm"_a = 0.0,
+                "material"_a = py::none(), "clear_semi_diameter_mm"_a, "conic"_a = 0.0,
+                "aspheric_coefficients"_a = std::map<int, double>{}, "inner_semi_diameter_mm"_a = 0.0,
+                "type"_a = "refracting", "coating"_a = "unknown", "decentre_mm"_a = std::vector<double>{0, 0, 0},
+                "tilt_deg"_a = std::vector<double>{0, 0, 0}, "returns"_a = false, "form"_a = py::none(),
+                "radius_of_curvature_x_mm"_a = py::none(), "conic_x"_a = py::none(), "radial_terms"_a = py::none(),
+                "xy_terms"_a = py::none(), (py::arg(kFormWords[row].key) = py::none())..., "aperture"_a = py::none(),
+                "obscurations"_a = py::none(), text.c_str());
 }
 
 }  // namespace
@@ -109,34 +161,10 @@ void bind_surface(py::module_& m) {
         m, "Surface",
         "One row of a lens table: a surface and what lies behind it. Lengths in mm, lens frame (z to the film).");
     def_hashable_value(surface);
+    def_constructor(surface, kFormRows);
+    for (std::size_t row = 0; row < kFormTermsCount; ++row)
+        surface.def_property_readonly(kFormWords[row].key, [row](const Surface& s) { return terms_of(s, row); });
     surface
-        .def(py::init(&make_surface), py::kw_only(), "radius_of_curvature_mm"_a = kInfinity, "thickness_mm"_a = 0.0,
-             "material"_a = py::none(), "clear_semi_diameter_mm"_a, "conic"_a = 0.0,
-             "aspheric_coefficients"_a = std::map<int, double>{}, "inner_semi_diameter_mm"_a = 0.0,
-             "type"_a = "refracting", "coating"_a = "unknown", "decentre_mm"_a = std::vector<double>{0, 0, 0},
-             "tilt_deg"_a = std::vector<double>{0, 0, 0}, "returns"_a = false, "form"_a = py::none(),
-             "radius_of_curvature_x_mm"_a = py::none(), "conic_x"_a = py::none(), "radial_terms"_a = py::none(),
-             "xy_terms"_a = py::none(), "zernike"_a = py::none(), "forbes"_a = py::none(), "aperture"_a = py::none(),
-             "obscurations"_a = py::none(),
-             R"(radius_of_curvature_mm: positive where the centre lies on the film side; inf: plane.
-thickness_mm: to the next surface; that of the last surface is not used.
-material: behind the surface: index, (n_d, V_d), glass name, Glass, or None for air.
-conic: k = -e^2. aspheric_coefficients: {even power of r: mm^(1 - power)}, powers 4 to 18.
-inner_semi_diameter_mm: light closer to the axis is blocked.
-type: refracting, mirror, stop or aperture (a plane that only blocks).
-coating: "bare", "quarter_wave", of a mirror "aluminium" or "silver", a Coating, or "unknown": light
-is then taken to meet bare glass, or a perfect mirror.
-decentre_mm: (x, y) or (x, y, z) of the vertex, from its place on the axis. tilt_deg: angles by which it
-is then turned about x, its new y and its new z, counterclockwise as seen from the axis's tip. returns:
-this moves the surface alone; else the axis goes on from there, with all that follows and the film.
-form: "biconic" or "toroid", of which radius and conic are the section in the yz plane, and
-radius_of_curvature_x_mm and conic_x that in the xz plane. A toroid's even terms are of y.
-radial_terms: {power of r: mm^(1 - power)}, powers 1 to 20. xy_terms: {(i, j): coefficient of x^i y^j}.
-zernike: {"order": "noll" or "fringe", "radius_mm", "coefficients_mm"}. forbes: the same with
-"kind": "bfs" or "con". These parts are added to the conic.
-aperture: {"ellipse_mm" or "rectangle_mm": (half_x, half_y)}, {"circle_mm": radius} or
-{"polygon_mm": corners}, each with "offset_mm". obscurations: a list of {"circle_mm", "ellipse_mm" or
-"rectangle_mm", "offset_mm", "angle_deg"} and {"spider_arms": count, "width_mm", "angle_deg"}.)")
         .def_property_readonly("radius_of_curvature_mm",
                                [](const Surface& s) { return s.curvature == 0 ? kInfinity : 1 / s.curvature; })
         .def_readonly("curvature_per_mm", &Surface::curvature)
@@ -158,8 +186,6 @@ aperture: {"ellipse_mm" or "rectangle_mm": (half_x, half_y)}, {"circle_mm": radi
         .def_property_readonly("conic_x", [](const Surface& s) { return s.form.conic_x; })
         .def_property_readonly("radial_terms", &radial_terms_of)
         .def_property_readonly("xy_terms", &xy_terms_of)
-        .def_property_readonly("zernike", &zernike_of)
-        .def_property_readonly("forbes", &forbes_of)
         .def_property_readonly("aperture", &aperture_of)
         .def_property_readonly("obscurations", &obscurations_of)
         .def(
@@ -170,6 +196,7 @@ aperture: {"ellipse_mm" or "rectangle_mm": (half_x, half_y)}, {"circle_mm": radi
             "sag_at_mm", [](const Surface& s, double x, double y) { return s.sag(x, y); }, "x_mm"_a, "y_mm"_a,
             "Height over the vertex plane; nan past the edge of the conic.")
         .def("__repr__", [](const Surface& s) { return surface_text(s); });
+    m.def("_form_terms", &form_terms, "Keywords of Surface for terms of the sag, which are variables, too.");
     def_surface_changes(surface, "replace", &changed_surface,
                         "The surface with some of what Surface() takes changed. What is not given stays.");
 }

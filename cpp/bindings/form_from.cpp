@@ -51,31 +51,32 @@ Pair pair_of(Vec2d v) {
 }
 
 template <class Terms>
-Terms terms_from(const py::dict& given, const std::string& what) {
-    constexpr bool is_zernike = std::same_as<Terms, ZernikeTerms>;
-    const char *key = is_zernike ? "order" : "kind", *first = is_zernike ? "noll" : "bfs",
-               *second = is_zernike ? "fringe" : "con";
-    allow(given, what, {key, "radius_mm", "coefficients_mm"});
+Terms terms_from(const py::dict& given) {
+    constexpr FormWords words = Terms::words;
+    const std::string what = words.key;
     Terms terms;
-    const auto name = value_of<std::string>(given, key, what);
-    if (name != first && name != second)
-        throw InputError(what + ": \"" + key + "\" must be \"" + first + "\" or \"" + second + '"');
-    if constexpr (is_zernike)
-        terms.order = name == first ? ZernikeOrder::noll : ZernikeOrder::fringe;
-    else
-        terms.kind = name == first ? ForbesKind::bfs : ForbesKind::con;
+    if constexpr (requires { Terms::variant; }) {
+        const auto [first, second] = words.variants;
+        allow(given, what, {words.variant_key, "radius_mm", words.coefficients_key});
+        const auto name = value_of<std::string>(given, words.variant_key, what);
+        if (name != first && name != second)
+            throw InputError(what + ": \"" + words.variant_key + "\" must be \"" + first + "\" or \"" + second + '"');
+        terms.*Terms::variant = static_cast<std::remove_reference_t<decltype(terms.*Terms::variant)>>(name == second);
+    } else {
+        allow(given, what, {"radius_mm", words.coefficients_key});
+    }
     terms.radius = value_of<double>(given, "radius_mm", what);
-    terms.coefficients = value_of<std::vector<double>>(given, "coefficients_mm", what);
+    terms.coefficients = value_of<std::vector<double>>(given, words.coefficients_key, what);
     return terms;
 }
 
 template <class Terms>
-void change_terms(std::optional<Terms>& terms, const std::optional<py::dict>& to, const std::string& what) {
+void change_terms(std::optional<Terms>& terms, const std::optional<py::dict>& to) {
     if (!to) return;
     if (to->empty())
         terms.reset();
     else
-        terms = terms_from<Terms>(*to, what);
+        terms = terms_from<Terms>(*to);
 }
 
 /// Returns the one of these keys that is present.
@@ -170,8 +171,8 @@ void change_form(Surface& surface, const FormChanges& to) {
         form.xy.clear();
         for (const auto& [powers, value] : *to.xy_terms) form.xy.push_back({powers.first, powers.second, value});
     }
-    change_terms(form.zernike, to.zernike, "zernike");
-    change_terms(form.forbes, to.forbes, "forbes");
+    std::size_t row = 0;
+    over_rows(form, [&](auto& terms) { change_terms(terms, to.terms[row++]); });
     if (to.aperture) change_aperture(surface.aperture_shape, *to.aperture);
     if (to.obscurations) {
         surface.aperture_shape.obscurations.clear();
@@ -202,18 +203,19 @@ std::map<std::pair<int, int>, double> xy_terms_of(const Surface& surface) {
     return terms;
 }
 
-py::dict zernike_of(const Surface& surface) {
-    const auto& terms = surface.form.zernike;
-    if (!terms) return {};
-    return py::dict("order"_a = terms->order == ZernikeOrder::noll ? "noll" : "fringe", "radius_mm"_a = terms->radius,
-                    "coefficients_mm"_a = terms->coefficients);
-}
-
-py::dict forbes_of(const Surface& surface) {
-    const auto& terms = surface.form.forbes;
-    if (!terms) return {};
-    return py::dict("kind"_a = terms->kind == ForbesKind::bfs ? "bfs" : "con", "radius_mm"_a = terms->radius,
-                    "coefficients_mm"_a = terms->coefficients);
+py::dict terms_of(const Surface& surface, std::size_t row) {
+    py::dict result;
+    std::size_t i = 0;
+    over_rows(surface.form, [&](const auto& terms) {
+        if (i++ != row || !terms) return;
+        using Terms = TermsIn<decltype(terms)>;
+        constexpr FormWords words = Terms::words;
+        if constexpr (requires { Terms::variant; })
+            result[words.variant_key] = words.variants[static_cast<std::size_t>((*terms).*Terms::variant)];
+        result["radius_mm"] = terms->radius;
+        result[words.coefficients_key] = terms->coefficients;
+    });
+    return result;
 }
 
 py::dict aperture_of(const Surface& surface) {

@@ -1,6 +1,7 @@
 #pragma once
 #include <pybind11/stl.h>
 
+#include <array>
 #include <map>
 #include <optional>
 #include <string>
@@ -12,6 +13,9 @@
 
 namespace realcam::bindings {
 
+/// Terms of each row of kFormTerms as dicts; omitted ones are left unchanged.
+using TermsDicts = std::array<std::optional<py::dict>, kFormTermsCount>;
+
 /// Changes of a surface's form and aperture; omitted ones are left unchanged.
 struct FormChanges {
     using Number = std::optional<double>;
@@ -19,7 +23,8 @@ struct FormChanges {
     Number radius_of_curvature_x_mm, conic_x;
     std::optional<std::map<int, double>> radial_terms;
     std::optional<std::map<std::pair<int, int>, double>> xy_terms;
-    std::optional<py::dict> zernike, forbes, aperture;
+    TermsDicts terms;
+    std::optional<py::dict> aperture;
     std::optional<std::vector<py::dict>> obscurations;
 };
 
@@ -31,8 +36,8 @@ void change_form(Surface& surface, const FormChanges& to);
 std::string form_name(const Surface& surface);
 std::map<int, double> radial_terms_of(const Surface& surface);
 std::map<std::pair<int, int>, double> xy_terms_of(const Surface& surface);
-py::dict zernike_of(const Surface& surface);
-py::dict forbes_of(const Surface& surface);
+/// `row`: of kFormTerms. Empty if the surface has no such terms.
+py::dict terms_of(const Surface& surface, std::size_t row);
 py::dict aperture_of(const Surface& surface);
 std::vector<py::dict> obscurations_of(const Surface& surface);
 

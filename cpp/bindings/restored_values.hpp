@@ -77,10 +77,10 @@ struct RestoredCheck<Coating> {
 };
 template <>
 struct LastEnumerator<BaseForm> : LastIs<BaseForm::toroid> {};
-template <>
-struct LastEnumerator<ZernikeOrder> : LastIs<ZernikeOrder::fringe> {};
-template <>
-struct LastEnumerator<ForbesKind> : LastIs<ForbesKind::con> {};
+/// Variants of terms, see kFormTerms.
+template <class E>
+    requires(is_form_variant<E>)
+struct LastEnumerator<E> : LastIs<E{1}> {};
 template <>
 struct LastEnumerator<ApertureOutline> : LastIs<ApertureOutline::polygon> {};
 
@@ -89,10 +89,9 @@ template <>
 struct RestoredCheck<SurfacePlacement> : AnyMembers {};
 template <>
 struct RestoredCheck<XyTerm> : AnyMembers {};
-template <>
-struct RestoredCheck<ZernikeTerms> : AnyMembers {};
-template <>
-struct RestoredCheck<ForbesTerms> : AnyMembers {};
+template <class Terms>
+    requires requires { Terms::words; }
+struct RestoredCheck<Terms> : AnyMembers {};
 template <>
 struct RestoredCheck<SurfaceForm> : AnyMembers {};
 template <>

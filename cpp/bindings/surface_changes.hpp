@@ -39,11 +39,17 @@ Surface changed_surface(Surface surface, const SurfaceChanges& to);
 
 template <class>
 using Index = int;
+template <std::size_t>
+using TermsDict = SurfaceChanges::Dict;
 
-/// Defines a method with the arguments `first` and, by keyword, those of Surface. Omitted ones are left unchanged; the
-/// default of a material is `...`, because None is air.
-template <class T, class Function, class... First>
-void def_surface_changes(py::class_<T>& type, const char* name, Function function, const char* text, First... first) {
+/// The rows of kFormTerms, for parameter packs with one parameter for each row.
+inline constexpr std::make_index_sequence<kFormTermsCount> kFormRows;
+
+namespace surface_changes_detail {
+
+template <class T, class Function, std::size_t... row, class... First>
+void def(std::index_sequence<row...>, py::class_<T>& type, const char* name, Function function, const char* text,
+         First... first) {
     using C = SurfaceChanges;
     using namespace py::literals;
     type.def(
@@ -52,23 +58,22 @@ void def_surface_changes(py::class_<T>& type, const char* name, Function functio
                    const py::object& material, C::Number clear, C::Number conic, const C::RadialTerms& aspheric,
                    C::Number inner, const C::Name& surface_type, const py::object& coating, const C::Numbers& decentre,
                    const C::Numbers& tilt, std::optional<bool> returns, const C::Name& form, C::Number radius_x,
-                   C::Number conic_x, const C::RadialTerms& radial, const C::XyTerms& xy, const C::Dict& zernike,
-                   const C::Dict& forbes, const C::Dict& aperture, const C::Dicts& obscurations) {
+                   C::Number conic_x, const C::RadialTerms& radial, const C::XyTerms& xy,
+                   const TermsDict<row>&... terms, const C::Dict& aperture, const C::Dicts& obscurations) {
             const bool stays = material.is(py::ellipsis());
-            const SurfaceChanges changes{
-                radius,
-                thickness,
-                stays ? std::nullopt : std::optional(glass_from(material)),
-                clear,
-                conic,
-                aspheric,
-                inner,
-                surface_type,
-                coating.is_none() ? std::nullopt : std::optional(coating_from(coating)),
-                decentre,
-                tilt,
-                returns,
-                {form, radius_x, conic_x, radial, xy, zernike, forbes, aperture, obscurations}};
+            const SurfaceChanges changes{radius,
+                                         thickness,
+                                         stays ? std::nullopt : std::optional(glass_from(material)),
+                                         clear,
+                                         conic,
+                                         aspheric,
+                                         inner,
+                                         surface_type,
+                                         coating.is_none() ? std::nullopt : std::optional(coating_from(coating)),
+                                         decentre,
+                                         tilt,
+                                         returns,
+                                         {form, radius_x, conic_x, radial, xy, {terms...}, aperture, obscurations}};
             return function(self, place..., changes);
         },
         first..., py::kw_only(), "radius_of_curvature_mm"_a = py::none(), "thickness_mm"_a = py::none(),
@@ -76,8 +81,17 @@ void def_surface_changes(py::class_<T>& type, const char* name, Function functio
         "aspheric_coefficients"_a = py::none(), "inner_semi_diameter_mm"_a = py::none(), "type"_a = py::none(),
         "coating"_a = py::none(), "decentre_mm"_a = py::none(), "tilt_deg"_a = py::none(), "returns"_a = py::none(),
         "form"_a = py::none(), "radius_of_curvature_x_mm"_a = py::none(), "conic_x"_a = py::none(),
-        "radial_terms"_a = py::none(), "xy_terms"_a = py::none(), "zernike"_a = py::none(), "forbes"_a = py::none(),
+        "radial_terms"_a = py::none(), "xy_terms"_a = py::none(), (py::arg(kFormWords[row].key) = py::none())...,
         "aperture"_a = py::none(), "obscurations"_a = py::none(), text);
+}
+
+}  // namespace surface_changes_detail
+
+/// Defines a method with the arguments `first` and, by keyword, those of Surface. Omitted ones are left unchanged; the
+/// default of a material is `...`, because None is air.
+template <class T, class Function, class... First>
+void def_surface_changes(py::class_<T>& type, const char* name, Function function, const char* text, First... first) {
+    surface_changes_detail::def(kFormRows, type, name, function, text, first...);
 }
 
 }  // namespace realcam::bindings

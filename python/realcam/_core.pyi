@@ -45,6 +45,7 @@ class _LargeValue(_Value):
     __hash__: ClassVar[None]  # type: ignore[assignment]
 
 def one_line(message: str) -> str: ...
+def _form_terms() -> tuple[str, ...]: ...
 def _record_inputs(is_on: bool) -> None: ...
 def _check_no_input(output: bytes) -> None: ...
 
@@ -190,6 +191,7 @@ class Surface(_Value):
         xy_terms: Mapping[tuple[int, int], float] | None = None,
         zernike: Mapping[str, Any] | None = None,
         forbes: Mapping[str, Any] | None = None,
+        superconic: Mapping[str, Any] | None = None,
         aperture: Mapping[str, Any] | None = None,
         obscurations: Sequence[Mapping[str, Any]] | None = None,
     ) -> None: ...
@@ -234,6 +236,8 @@ class Surface(_Value):
     @property
     def forbes(self) -> dict[str, Any]: ...
     @property
+    def superconic(self) -> dict[str, Any]: ...
+    @property
     def aperture(self) -> dict[str, Any]: ...
     @property
     def obscurations(self) -> list[dict[str, Any]]: ...
@@ -261,6 +265,7 @@ class Surface(_Value):
         xy_terms: Mapping[tuple[int, int], float] | None = None,
         zernike: Mapping[str, Any] | None = None,
         forbes: Mapping[str, Any] | None = None,
+        superconic: Mapping[str, Any] | None = None,
         aperture: Mapping[str, Any] | None = None,
         obscurations: Sequence[Mapping[str, Any]] | None = None,
     ) -> Surface: ...
@@ -863,6 +868,7 @@ class Lens(_Value):
         xy_terms: Mapping[tuple[int, int], float] | None = None,
         zernike: Mapping[str, Any] | None = None,
         forbes: Mapping[str, Any] | None = None,
+        superconic: Mapping[str, Any] | None = None,
         aperture: Mapping[str, Any] | None = None,
         obscurations: Sequence[Mapping[str, Any]] | None = None,
     ) -> Lens: ...

@@ -6,9 +6,11 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from ._core import Glass, InputError, Lens, Surface
+from ._core import Glass, InputError, Lens, Surface, _form_terms
 
-_OF_SURFACES = (
+FORM_TERMS = _form_terms()
+"""Kinds of terms of the sag, as keywords of Surface."""
+QUANTITIES = (
     "curvature",
     "thickness",
     "conic",
@@ -20,10 +22,9 @@ _OF_SURFACES = (
     "conic_x",
     "radial",
     "xy",
-    "zernike",
-    "forbes",
+    *FORM_TERMS,
+    "film_distance",
 )
-QUANTITIES = (*_OF_SURFACES, "film_distance")
 
 
 @dataclass(frozen=True)
@@ -33,8 +34,8 @@ class Variable:
     quantity: "curvature" (1/mm), "thickness" (mm), "conic", "aspheric" (the coefficient of r^power, mm^(1-power)),
       "index" (of the medium behind the surface, equally at all wavelengths), "decentre" (mm) or "tilt" (degrees;
       power 0, 1, 2: along or about x, y, z), "curvature_x" and "conic_x" (of toroids and biconics), "radial" (of
-      r^power), "xy" (of x^power y^power_y), "zernike" (term number power), "forbes" (a_power), or "film_distance"
-      (of no surface: last vertex to film, mm).
+      r^power), "xy" (of x^power y^power_y), a keyword of Surface for terms, such as "zernike" (term number power) or
+      "forbes" (a_power), or "film_distance" (of no surface: last vertex to film, mm).
     surface: its index, from 0. lower, upper: bounds, in the same unit.
     Tilting or decentring an untilted, centred surface moves it alone; for other surfaces their `returns` decides.
     """
@@ -97,7 +98,7 @@ class Variable:
             which = f" x^{self.power} y^{self.power_y}"
         elif self.quantity in ("aspheric", "radial"):
             which = f" r^{self.power}"
-        elif self.quantity in ("zernike", "forbes"):
+        elif self.quantity in FORM_TERMS:
             which = f" {self.power}"
         return f"{self.quantity}{which} of surface {self.surface + 1}"
 

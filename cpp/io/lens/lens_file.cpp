@@ -71,29 +71,29 @@ Surface read_surface(const TomlTable& table, const std::optional<TomlTable>& gla
     Surface surface;
     surface.type = read_type(table);
     if (surface.bends_light()) {
-        table.allow({"type",
-                     "radius_of_curvature_mm",
-                     "thickness_mm",
-                     "material",
-                     "clear_semi_diameter_mm",
-                     "inner_semi_diameter_mm",
-                     "conic",
-                     "aspheric_coefficients",
-                     "coating",
-                     "curvature_per_mm",
-                     "form",
-                     "radius_of_curvature_x_mm",
-                     "curvature_x_per_mm",
-                     "conic_x",
-                     "radial_terms",
-                     "xy_terms",
-                     "zernike",
-                     "forbes",
-                     "aperture",
-                     "obscurations",
-                     "decentre_mm",
-                     "tilt_deg",
-                     "returns"});
+        std::vector<std::string_view> keys{"type",
+                                           "radius_of_curvature_mm",
+                                           "thickness_mm",
+                                           "material",
+                                           "clear_semi_diameter_mm",
+                                           "inner_semi_diameter_mm",
+                                           "conic",
+                                           "aspheric_coefficients",
+                                           "coating",
+                                           "curvature_per_mm",
+                                           "form",
+                                           "radius_of_curvature_x_mm",
+                                           "curvature_x_per_mm",
+                                           "conic_x",
+                                           "radial_terms",
+                                           "xy_terms",
+                                           "aperture",
+                                           "obscurations",
+                                           "decentre_mm",
+                                           "tilt_deg",
+                                           "returns"};
+        for (const FormWords& words : kFormWords) keys.push_back(words.key);
+        table.allow(keys);
     } else {
         table.allow({"type", "thickness_mm", "clear_semi_diameter_mm", "inner_semi_diameter_mm", "decentre_mm",
                      "tilt_deg", "returns", "aperture", "obscurations"});

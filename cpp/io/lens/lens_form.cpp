@@ -56,27 +56,30 @@ std::vector<XyTerm> read_xy(const TomlTable& surface) {
     return terms;
 }
 
+/// Reads the terms of a row of kFormTerms.
 template <class Terms>
-std::optional<Terms> read_terms(const TomlTable& surface, std::string_view key, std::string_view kind_key,
-                                const char* first, const char* second, decltype(Terms::coefficients)* = nullptr) {
-    const auto table = surface.table(key);
-    if (!table) return std::nullopt;
-    table->allow({kind_key, "radius_mm", "coefficients_mm"});
-    Terms terms;
-    const std::string kind = table->text(kind_key);
-    if (kind != first && kind != second)
-        table->fail('"' + std::string(kind_key) + "\" must be \"" + first + "\" or \"" + second + '"',
-                    table->find(kind_key));
+void read_terms(const TomlTable& surface, std::optional<Terms>& terms) {
+    constexpr FormWords words = Terms::words;
+    const auto table = surface.table(words.key);
+    if (!table) return;
+    terms.emplace();
+    if constexpr (requires { Terms::variant; }) {
+        table->allow({words.variant_key, "radius_mm", words.coefficients_key});
+        const std::string name = table->text(words.variant_key);
+        const auto [first, second] = words.variants;
+        if (name != first && name != second)
+            table->fail(std::string{'"'} + words.variant_key + "\" must be \"" + first + "\" or \"" + second + '"',
+                        table->find(words.variant_key));
+        using Variant = std::remove_reference_t<decltype((*terms).*Terms::variant)>;
+        (*terms).*Terms::variant = static_cast<Variant>(name == second);
+    } else {
+        table->allow({"radius_mm", words.coefficients_key});
+    }
     const auto radius = table->number("radius_mm");
     if (!radius) table->fail("\"radius_mm\" is missing: where the polynomials have their rim");
-    terms.radius = *radius;
-    terms.coefficients = table->numbers("coefficients_mm", 0);
-    if (terms.coefficients.empty()) table->fail("\"coefficients_mm\" is missing");
-    if constexpr (std::same_as<Terms, ZernikeTerms>)
-        terms.order = kind == first ? ZernikeOrder::noll : ZernikeOrder::fringe;
-    else
-        terms.kind = kind == first ? ForbesKind::bfs : ForbesKind::con;
-    return terms;
+    terms->radius = *radius;
+    terms->coefficients = table->numbers(words.coefficients_key, 0);
+    if (terms->coefficients.empty()) table->fail(std::string{'"'} + words.coefficients_key + "\" is missing");
 }
 
 Vec2d pair_of(const std::vector<double>& values) {
@@ -158,8 +161,7 @@ SurfaceForm read_form(const TomlTable& table) {
     form.conic_x = table.number("conic_x").value_or(0);
     form.radial = read_radial(table);
     form.xy = read_xy(table);
-    form.zernike = read_terms<ZernikeTerms>(table, "zernike", "order", "noll", "fringe");
-    form.forbes = read_terms<ForbesTerms>(table, "forbes", "kind", "bfs", "con");
+    over_rows(form, [&](auto& terms) { read_terms(table, terms); });
     return form;
 }
 

@@ -2,15 +2,13 @@
 
 #include <cmath>
 
-#include "../../optics/prescription/form_terms.hpp"
-
 namespace realcam::io {
 
 namespace {
 
 /// Adds the powers of r of u^4 times a polynomial in t = 2 u^2 - 1.
 void add_forbes(const ForbesTerms& forbes, std::map<int, double>& terms) {
-    const std::vector<double> in_t = forbes_polynomial(forbes);
+    const std::vector<double> in_t = forbes.in_powers();
     std::vector<double> in_square(in_t.size(), 0.0);
     for (std::size_t k = in_t.size(); k-- > 0;) {
         for (std::size_t i = in_square.size(); i-- > 0;)
@@ -44,7 +42,7 @@ std::map<XyPower, double> xy_terms_of(const Surface& surface) {
     const SurfaceForm& form = surface.form;
     for (const XyTerm& term : form.xy) add(term.x, term.y, term.coefficient);
     if (form.zernike)
-        for (const XyTerm& term : zernike_as_xy(*form.zernike))
+        for (const XyTerm& term : form.zernike->as_xy())
             add(term.x, term.y, term.coefficient / std::pow(form.zernike->radius, term.x + term.y));
     for (const auto& [power, value] : radial_terms_of(surface)) {
         if (power % 2 != 0) continue;
@@ -55,6 +53,14 @@ std::map<XyPower, double> xy_terms_of(const Surface& surface) {
         }
     }
     return terms;
+}
+
+std::string beyond_polynomials(const SurfaceForm& form) {
+    std::string found;
+    over_terms(form, [&](const auto& terms) {
+        if (found.empty()) found = terms.beyond_polynomials();
+    });
+    return found;
 }
 
 bool has_odd_terms(const Surface& surface) {

@@ -30,10 +30,16 @@ std::string offset(Vec2d v) {
     return v == Vec2d{0, 0} ? "" : ", offset_mm = " + pair(v);
 }
 
+/// The terms of a row of kFormTerms as an inline table.
 template <class Terms>
-std::string terms(const char* kind_key, const char* kind, const Terms& of) {
-    return std::string("{ ") + kind_key + " = \"" + kind + "\", radius_mm = " + toml_number(of.radius) +
-           ", coefficients_mm = " + list_of(of.coefficients) + " }";
+std::string table_of(const Terms& terms) {
+    constexpr FormWords words = Terms::words;
+    std::string text = "{ ";
+    if constexpr (requires { Terms::variant; })
+        text += std::string(words.variant_key) + " = \"" +
+                words.variants[static_cast<std::size_t>(terms.*Terms::variant)] + "\", ";
+    return text + "radius_mm = " + toml_number(terms.radius) + ", " + words.coefficients_key + " = " +
+           list_of(terms.coefficients) + " }";
 }
 
 std::string obscuration(const Obscuration& piece) {
@@ -66,11 +72,7 @@ std::string form_as_toml(const SurfaceForm& form) {
                          return '[' + std::to_string(term.x) + ", " + std::to_string(term.y) + ", " +
                                 toml_number(term.coefficient) + ']';
                      }));
-    if (form.zernike)
-        lines += key("zernike",
-                     terms("order", form.zernike->order == ZernikeOrder::noll ? "noll" : "fringe", *form.zernike));
-    if (form.forbes)
-        lines += key("forbes", terms("kind", form.forbes->kind == ForbesKind::bfs ? "bfs" : "con", *form.forbes));
+    over_terms(form, [&](const auto& terms) { lines += key(terms.words.key, table_of(terms)); });
     return lines;
 }
 

@@ -81,6 +81,18 @@ struct Dual {
     friend __attribute__((always_inline)) inline Dual fabs(const Dual& a) { return a.value < 0 ? -a : a; }
 };
 
+template <int N>
+double plain_value(const Dual<N>& a) {
+    return a.value;
+}
+
+template <int N>
+bool is_constant_zero(const Dual<N>& a) {
+    bool is_zero = a.value == 0;
+    for (int lane = 0; lane < N; ++lane) is_zero &= a.by[lane] == 0;
+    return is_zero;
+}
+
 /// More specialised than the template for plain numbers, so that overload resolution prefers it.
 template <int N>
 __attribute__((always_inline)) inline Dual<N> length(Vec3<Dual<N>> a) {

@@ -6,7 +6,6 @@
 #include <optional>
 
 #include "../lens/lens_tilts.hpp"
-#include "../prescription/form_terms.hpp"
 #include "../trace/film_frame.hpp"
 
 namespace realcam {
@@ -98,11 +97,33 @@ Dual8& component(Vec3<Dual8>& v, int axis) {
     return axis == 0 ? v.x : axis == 1 ? v.y : v.z;
 }
 
-/// Returns the terms with coefficient `number` equal to 1 and all others 0.
-ForbesTerms unit_forbes(const ForbesTerms& terms, int number) {
-    ForbesTerms unit{terms.kind, terms.radius, std::vector<double>(terms.coefficients.size(), 0.0)};
-    unit.coefficients[static_cast<std::size_t>(number)] = 1;
-    return unit;
+/// Sets the derivative of `lane` to that by a variable of the shape. Returns false for other variables.
+bool seed(ShapeNumbers<Dual8>& numbers, const LensVariable& variable, int lane) {
+    const auto at = [](std::vector<Dual8>& list, int place) -> Dual8& {
+        const auto index = static_cast<std::size_t>(place);
+        if (list.size() <= index) list.resize(index + 1, 0.0);
+        return list[index];
+    };
+    const auto xy = [&]() -> Dual8& {
+        for (XyTermOf<Dual8>& term : numbers.xy)
+            if (term.x == variable.number && term.y == variable.number_y) return term.coefficient;
+        return numbers.xy.emplace_back(variable.number, variable.number_y, 0.0).coefficient;
+    };
+    switch (variable.quantity) {
+        case LensQuantity::curvature: numbers.curvature.by[lane] = 1; return true;
+        case LensQuantity::conic: numbers.conic.by[lane] = 1; return true;
+        case LensQuantity::aspheric: at(numbers.aspheric, variable.number / 2 - 2).by[lane] = 1; return true;
+        case LensQuantity::curvature_x: numbers.curvature_x.by[lane] = 1; return true;
+        case LensQuantity::conic_x: numbers.conic_x.by[lane] = 1; return true;
+        case LensQuantity::radial: at(numbers.radial, variable.number - 1).by[lane] = 1; return true;
+        case LensQuantity::xy: xy().by[lane] = 1; return true;
+        case LensQuantity::terms: {
+            const auto row = static_cast<std::size_t>(variable.row);
+            at(numbers.terms[row], variable.number - kFormWords[row].first_number).by[lane] = 1;
+            return true;
+        }
+        default: return false;
+    }
 }
 
 }  // namespace
@@ -195,23 +216,15 @@ DualSurface::DualSurface(const SurfaceView<double>& from, const Surface& surface
     view.kind = wide.kind;
     view.surface_index = wide.surface_index;
     if (wide.kind != SurfaceShape::freeform) return;
-    Surface with_terms = surface;
-    for (const LensVariable& v : shape)
-        if (v.quantity == LensQuantity::xy) with_terms.form.xy.push_back({v.number, v.number_y, 0});
-    const FreeformView<double> freeform = freeform_view<double>(with_terms);
+    // The shape's numbers, with a derivative wherever one will be seeded, so that all terms are present.
+    ShapeNumbers<Dual8> numbers(surface);
+    for (const LensVariable& v : shape) seed(numbers, v, 0);
+    const FreeformView<double> freeform = freeform_view<double>(surface);
     FreeformView<Dual8>& terms = form.emplace_back();
     over_form_numbers(terms, freeform, [](Dual8& to, double number) { to = number; });
-    terms.is_toroid = freeform.is_toroid;
-    terms.section_terms = freeform.section_terms, terms.radial_terms = freeform.radial_terms;
-    terms.forbes_terms = freeform.forbes_terms, terms.xy_degree = freeform.xy_degree;
-    for (const int power : aspheric) {
-        if (terms.is_toroid)
-            terms.section_terms = std::max(terms.section_terms, power / 2 - 1);
-        else
-            terms.radial_terms = std::max(terms.radial_terms, power);
-    }
-    for (const LensVariable& v : shape)
-        if (v.quantity == LensQuantity::radial) terms.radial_terms = std::max(terms.radial_terms, v.number);
+    terms.xy_degree = -1;
+    set_shape(terms, surface, numbers);
+    over_form_numbers(terms, terms, [](Dual8& number, const Dual8&) { number.by = Dual8::Derivatives{}; });
 }
 
 void DualSurface::clear_lanes() {
@@ -245,50 +258,14 @@ void seed_shape(DualSurface& dual, const Surface& surface, const LensVariable& v
         if (variable.quantity == LensQuantity::aspheric) dual.powers[static_cast<std::size_t>(lane)] = variable.number;
         return;
     }
+    ShapeNumbers<Dual8> numbers(surface);
+    if (!seed(numbers, variable, lane)) return;
     FreeformView<Dual8>& form = dual.form.front();
-    const double reach = 1 / form.inverse_reach.value;
-    switch (variable.quantity) {
-        case LensQuantity::curvature:
-            form.curvature_y.by[lane] = 1;
-            if (surface.form.base == BaseForm::conic) form.curvature_x.by[lane] = 1;
-            if (surface.form.forbes) form.forbes_curvature_squared.by[lane] = 2 * surface.curvature;
-            return;
-        case LensQuantity::conic:
-            form.conic_factor_y.by[lane] = 1;
-            if (surface.form.base != BaseForm::biconic) form.conic_factor_x.by[lane] = 1;
-            return;
-        case LensQuantity::aspheric: {
-            Dual8& to = form.is_toroid ? form.section[variable.number / 2 - 2] : form.radial[variable.number - 1];
-            to.by[lane] = std::pow(reach, variable.number);
-            return;
-        }
-        case LensQuantity::curvature_x: form.curvature_x.by[lane] = 1; return;
-        case LensQuantity::conic_x: form.conic_factor_x.by[lane] = 1; return;
-        case LensQuantity::radial: form.radial[variable.number - 1].by[lane] = std::pow(reach, variable.number); return;
-        case LensQuantity::xy:
-        case LensQuantity::zernike: {
-            make_freeform_detail::XyTable table;
-            if (variable.quantity == LensQuantity::xy) {
-                table.add({{variable.number, variable.number_y, 1}}, reach);
-            } else {
-                ZernikeTerms unit{surface.form.zernike->order, surface.form.zernike->radius,
-                                  std::vector<double>(surface.form.zernike->coefficients.size(), 0.0)};
-                unit.coefficients[static_cast<std::size_t>(variable.number - 1)] = 1;
-                table.add(zernike_as_xy(unit), reach / unit.radius);
-            }
-            Dual8* next = form.xy;
-            for (int j = form.xy_degree; j >= 0; --j)
-                for (int i = form.xy_degree - j; i >= 0; --i) (next++)->by[lane] = table.at(i, j);
-            return;
-        }
-        case LensQuantity::forbes: {
-            Dual8* next = form.forbes;
-            for (const double c : forbes_polynomial(unit_forbes(*surface.form.forbes, variable.number)))
-                (next++)->by[lane] = c;
-            return;
-        }
-        default: return;
-    }
+    FreeformView<Dual8> seeded{};
+    seeded.inverse_reach = form.inverse_reach.value;
+    seeded.xy_degree = form.xy_degree;
+    set_shape(seeded, surface, numbers);
+    over_form_numbers(form, seeded, [lane](Dual8& to, const Dual8& from) { to.by[lane] = from.by[lane]; });
 }
 
 }  // namespace realcam

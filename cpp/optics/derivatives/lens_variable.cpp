@@ -13,10 +13,22 @@ namespace {
     throw InputError("surface " + std::to_string(surface + 1) + " " + why);
 }
 
-void check_number(const LensVariable& v, int least, int most, const char* what) {
+void check_number(const LensVariable& v, int least, int most, const std::string& what) {
     if (v.number < least || v.number > most)
-        refuse(v.surface, std::string(what) + " from " + std::to_string(least) + " to " + std::to_string(most) +
-                              ", and not " + std::to_string(v.number));
+        refuse(v.surface, what + " from " + std::to_string(least) + " to " + std::to_string(most) + ", and not " +
+                              std::to_string(v.number));
+}
+
+void check_terms(const LensVariable& v, const SurfaceForm& form) {
+    int row = 0;
+    over_rows(form, [&](const auto& terms) {
+        if (row++ != v.row) return;
+        const FormWords& words = kFormWords[static_cast<std::size_t>(v.row)];
+        const std::string name = words.name;
+        if (!terms) refuse(v.surface, "has no " + name + " terms");
+        const int count = static_cast<int>(terms->coefficients.size());
+        check_number(v, words.first_number, words.first_number + count - 1, "has " + name + " terms");
+    });
 }
 
 void check_form(const LensVariable& v, const SurfaceForm& form) {
@@ -37,14 +49,7 @@ void check_form(const LensVariable& v, const SurfaceForm& form) {
             if (v.number < 0 || v.number_y < 0 || v.number + v.number_y < 1 || v.number + v.number_y > kMaxXyDegree)
                 refuse(v.surface, "has terms of x and y up to the degree " + std::to_string(kMaxXyDegree));
             break;
-        case LensQuantity::zernike:
-            if (!form.zernike) refuse(v.surface, "has no Zernike terms");
-            check_number(v, 1, static_cast<int>(form.zernike->coefficients.size()), "has Zernike terms");
-            break;
-        case LensQuantity::forbes:
-            if (!form.forbes) refuse(v.surface, "has no Forbes terms");
-            check_number(v, 0, static_cast<int>(form.forbes->coefficients.size()) - 1, "has Forbes terms");
-            break;
+        case LensQuantity::terms: check_terms(v, form); break;
         default: break;
     }
 }

@@ -18,8 +18,7 @@ enum class LensQuantity {
     conic_x,  ///< of a biconic
     radial,  ///< coefficient of r^number, mm^(1 - number)
     xy,  ///< coefficient of x^number y^number_y
-    zernike,  ///< coefficient of the term `number`, from 1, mm
-    forbes,  ///< coefficient a_number, from 0, mm
+    terms,  ///< coefficient `number` of the terms of row `row` of kFormTerms
     film_distance,  ///< last vertex to film, mm; `surface` is ignored
 };
 
@@ -31,6 +30,7 @@ struct LensVariable {
     LensQuantity quantity = LensQuantity::curvature;
     int surface = 0;  ///< from 0
     int number = 0, number_y = 0;
+    int row = 0;
 
     bool operator==(const LensVariable&) const = default;
 };

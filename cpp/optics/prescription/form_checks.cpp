@@ -43,23 +43,20 @@ std::string terms_error(const Surface& s) {
         if (is_too_large(term.coefficient, rim, term.x + term.y))
             return "a term of x and y is too large: its coefficient is past 1e37, or the term past 1e9 mm at the rim";
     }
-    if (form.zernike) {
-        const std::size_t most = form.zernike->order == ZernikeOrder::fringe
-                                     ? 37
-                                     : static_cast<std::size_t>((kMaxXyDegree + 1) * (kMaxXyDegree + 2) / 2);
-        if (!is_length(form.zernike->radius)) return "the radius of its Zernike terms must be a positive length";
-        if (form.zernike->coefficients.size() > most) return "has more Zernike terms than " + std::to_string(most);
-        if (!all_finite(form.zernike->coefficients)) return "a Zernike coefficient is not a finite number";
-    }
-    if (form.forbes) {
-        if (!is_length(form.forbes->radius)) return "the radius of its Forbes terms must be a positive length";
-        if (form.forbes->coefficients.size() > static_cast<std::size_t>(kMaxForbesTerms))
-            return "has more Forbes terms than " + std::to_string(kMaxForbesTerms);
-        if (!all_finite(form.forbes->coefficients)) return "a Forbes coefficient is not a finite number";
-        if (form.forbes->kind == ForbesKind::bfs && (s.conic != 0 || form.base != BaseForm::conic))
-            return "Forbes terms of the kind \"bfs\" depart from a sphere, so that no conic is wanted";
-    }
-    return "";
+    std::string why;
+    over_terms(form, [&](const auto& terms) {
+        if (!why.empty()) return;
+        const std::string name = terms.words.name;
+        if (!is_length(terms.radius))
+            why = "the radius of its " + name + " terms must be a positive length";
+        else if (terms.coefficients.size() > static_cast<std::size_t>(terms.most()))
+            why = "has more " + name + " terms than " + std::to_string(terms.most());
+        else if (!all_finite(terms.coefficients))
+            why = "a " + name + " coefficient is not a finite number";
+        else
+            why = terms.error(s);
+    });
+    return why;
 }
 
 std::string aperture_error(const Surface& s) {

@@ -3,8 +3,6 @@
 #include <cmath>
 #include <cstddef>
 
-#include "form_terms.hpp"
-
 namespace realcam {
 
 std::string Surface::asymmetry() const {
@@ -16,11 +14,7 @@ std::string Surface::asymmetry() const {
 
 namespace {
 
-double polynomial(const std::vector<double>& coefficients, double u) {
-    double sum = 0;
-    for (std::size_t i = coefficients.size(); i-- > 0;) sum = sum * u + coefficients[i];
-    return sum;
-}
+using form_detail::polynomial;
 
 /// Even aspheric terms from the fourth power on; `squared` is r^2, or y^2 for a toroid.
 double even_terms(const Surface& surface, double squared) {
@@ -41,12 +35,6 @@ double base_sag(const Surface& surface, double x, double y) {
     return (cx * x * x + c * y * y) / (1 + std::sqrt(1 - qx * x * x - q * y * y)) + terms;
 }
 
-double forbes_sag(const ForbesTerms& terms, double curvature, double r2) {
-    const double w = r2 / (terms.radius * terms.radius), sum = polynomial(forbes_polynomial(terms), 2 * w - 1);
-    if (terms.kind == ForbesKind::con) return w * w * sum;
-    return w * (1 - w) / std::sqrt(1 - curvature * curvature * r2) * sum;
-}
-
 }  // namespace
 
 double Surface::sag(double x, double y) const {
@@ -56,19 +44,14 @@ double Surface::sag(double x, double y) const {
     const double r = std::sqrt(r2);
     z += r * polynomial(form.radial, r);
     for (const XyTerm& term : form.xy) z += term.coefficient * std::pow(x, term.x) * std::pow(y, term.y);
-    if (form.zernike)
-        for (const XyTerm& term : zernike_as_xy(*form.zernike))
-            z += term.coefficient * std::pow(x / form.zernike->radius, term.x) *
-                 std::pow(y / form.zernike->radius, term.y);
-    if (form.forbes) z += forbes_sag(*form.forbes, curvature, r2);
+    over_terms(form, [&](const auto& terms) { z += terms.sag(x, y, {curvature, conic}); });
     return z;
 }
 
 double Surface::vertex_curvature() const {
     double c = curvature;
     if (form.radial.size() > 1) c += 2 * form.radial[1];
-    if (form.forbes && form.forbes->kind == ForbesKind::bfs)
-        c += 2 * polynomial(forbes_polynomial(*form.forbes), -1) / (form.forbes->radius * form.forbes->radius);
+    over_terms(form, [&](const auto& terms) { c += terms.vertex_curvature(); });
     return c;
 }
 

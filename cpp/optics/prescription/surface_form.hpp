@@ -1,9 +1,15 @@
 #pragma once
+#include <array>
+#include <cstddef>
 #include <optional>
 #include <string>
+#include <tuple>
+#include <type_traits>
 #include <vector>
 
-#include "../../platform.hpp"
+#include "forbes_terms.hpp"
+#include "superconic_terms.hpp"
+#include "zernike_terms.hpp"
 
 namespace REALCAM_NAMESPACE {
 
@@ -15,43 +21,6 @@ enum class BaseForm {
     toroid,  ///< the section in the yz plane, including its even terms of y, rotated about a line parallel to y
 };
 
-/// Term of the sag: coefficient x^i y^j, in mm^(1 - i - j).
-struct XyTerm {
-    int x, y;
-    double coefficient;
-
-    bool operator==(const XyTerm&) const = default;
-};
-
-enum class ZernikeOrder {
-    noll,  ///< Noll's order, each term with an RMS of 1 over the circle ("Zernike standard")
-    fringe,  ///< the order of the University of Arizona, each term of amplitude 1 at the rim
-};
-
-/// Sum of Zernike polynomials over a circle, mm. The azimuth counts from the x axis towards y.
-struct ZernikeTerms {
-    ZernikeOrder order = ZernikeOrder::noll;
-    double radius = 1;  ///< radius of the circle, mm
-    std::vector<double> coefficients;  ///< from the first term on, mm
-
-    bool operator==(const ZernikeTerms&) const = default;
-};
-
-enum class ForbesKind {
-    bfs,  ///< Q^bfs: departure from a sphere, u^2 (1 - u^2) / sqrt(1 - c^2 r^2) times a sum of Q_m(u^2)
-    con,  ///< Q^con: departure from a conic, u^4 times a sum of Q_m(u^2)
-};
-
-/// G. W. Forbes, "Shape specification for axially symmetric optical surfaces", Opt. Express 15, 5218 (2007), with
-/// u = r / radius.
-struct ForbesTerms {
-    ForbesKind kind = ForbesKind::bfs;
-    double radius = 1;                 ///< mm
-    std::vector<double> coefficients;  ///< a_0, a_1, ..., mm
-
-    bool operator==(const ForbesTerms&) const = default;
-};
-
 /// Sag of a surface beyond a conic of revolution and its even aspheric terms. All parts are added.
 struct SurfaceForm {
     BaseForm base = BaseForm::conic;
@@ -61,9 +30,13 @@ struct SurfaceForm {
     std::vector<XyTerm> xy;
     std::optional<ZernikeTerms> zernike;
     std::optional<ForbesTerms> forbes;
+    std::optional<SuperconicTerms> superconic;
 
     bool operator==(const SurfaceForm&) const = default;
 
+    bool has_conic_base() const { return base == BaseForm::conic; }
+    /// True if the form has terms of any kind, even if all coefficients are 0.
+    bool has_terms() const;
     /// True if the surface is a conic of revolution with at most even aspheric terms.
     bool is_none() const;
     /// Returns the form with all lengths multiplied by `factor`.
@@ -73,5 +46,50 @@ struct SurfaceForm {
     /// Reason why the form is not rotationally symmetric: "is toroidal"; empty if it is.
     std::string asymmetry() const;
 };
+
+/// The registry of forms: one row for each kind of terms. A row's type names its terms, checks them and converts them
+/// to what is traced (see form_row.hpp). Readers, writers, checks, derivatives and bindings go by this table.
+inline constexpr std::tuple kFormTerms{&SurfaceForm::zernike, &SurfaceForm::forbes, &SurfaceForm::superconic};
+inline constexpr std::size_t kFormTermsCount = std::tuple_size_v<decltype(kFormTerms)>;
+
+/// Type of the terms that a std::optional of a form holds.
+template <class Optional>
+using TermsIn = typename std::remove_cvref_t<Optional>::value_type;
+
+/// Calls f(optional) with the std::optional of each row of kFormTerms, whether the form has these terms or not.
+template <class Form, class F>
+constexpr void over_rows(Form& form, F&& f) {
+    std::apply([&](auto... row) { (f(form.*row), ...); }, kFormTerms);
+}
+
+/// Calls f(terms) for each kind of terms that the form has.
+template <class Form, class F>
+constexpr void over_terms(Form& form, F&& f) {
+    over_rows(form, [&](auto& terms) {
+        if (terms) f(*terms);
+    });
+}
+
+namespace form_detail {
+template <class Terms>
+constexpr const FormWords& words_of(std::optional<Terms> SurfaceForm::*) {
+    return Terms::words;
+}
+template <class Variant, class Terms>
+constexpr bool has_variant(std::optional<Terms> SurfaceForm::*) {
+    if constexpr (requires { Terms::variant; })
+        return std::is_same_v<Variant Terms::*, std::remove_const_t<decltype(Terms::variant)>>;
+    return false;
+}
+}  // namespace form_detail
+
+/// True for the enumerations of the variants of terms. They have two enumerators.
+template <class E>
+inline constexpr bool is_form_variant =
+    std::apply([](auto... row) { return (form_detail::has_variant<E>(row) || ...); }, kFormTerms);
+
+/// The names of the rows of kFormTerms.
+inline constexpr std::array<FormWords, kFormTermsCount> kFormWords =
+    std::apply([](auto... row) { return std::array{form_detail::words_of(row)...}; }, kFormTerms);
 
 }  // namespace REALCAM_NAMESPACE

@@ -51,8 +51,9 @@ MirrorPlanes mirror_planes(const LensSystem& lens) {
         planes.x &= aperture.offset.x == 0;
         planes.y &= aperture.offset.y == 0;
         // These may be symmetric, too, but rarely are.
-        if (surface.form.zernike || aperture.kind == ApertureOutline::polygon || !aperture.obscurations.empty())
-            return {};
+        bool is_asymmetric = false;
+        over_terms(surface.form, [&](const auto& terms) { is_asymmetric |= *terms.words.asymmetry != 0; });
+        if (is_asymmetric || aperture.kind == ApertureOutline::polygon || !aperture.obscurations.empty()) return {};
     }
     heed(lens.film_placement);
     return planes;

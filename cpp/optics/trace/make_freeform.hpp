@@ -3,8 +3,7 @@
 #include <cmath>
 #include <vector>
 
-#include "../prescription/form_terms.hpp"
-#include "../prescription/surface.hpp"
+#include "../prescription/shape_numbers.hpp"
 #include "freeform.hpp"
 
 namespace REALCAM_NAMESPACE {
@@ -38,31 +37,28 @@ void over_region(const FreeformView<T>& view, F&& f) {
         }
 }
 
-/// Coefficients of x^i y^j, i + j <= degree, as FreeformView::xy lists them.
-struct XyTable {
-    int degree = -1;
-    std::vector<double> by_powers = std::vector<double>((kMaxXyDegree + 1) * (kMaxXyDegree + 1), 0.0);
+template <class T, class Number>
+void set_base_shape(FreeformView<T>& view, const Surface& surface, const ShapeNumbers<Number>& numbers) {
+    const BaseForm base = surface.form.base;
+    view.is_toroid = base == BaseForm::toroid;
+    view.curvature_y = static_cast<T>(numbers.curvature);
+    view.conic_factor_y = static_cast<T>(1 + numbers.conic);
+    view.curvature_x = static_cast<T>(base == BaseForm::conic ? numbers.curvature : numbers.curvature_x);
+    view.conic_factor_x = static_cast<T>(1 + (base == BaseForm::biconic ? numbers.conic_x : numbers.conic));
+}
 
-    double& at(int x, int y) { return by_powers[static_cast<std::size_t>(x * (kMaxXyDegree + 1) + y)]; }
-    void add(const std::vector<XyTerm>& terms, double unit) {
-        for (const XyTerm& term : terms) {
-            at(term.x, term.y) += term.coefficient * std::pow(unit, term.x + term.y);
-            degree = std::max(degree, term.x + term.y);
-        }
-    }
-};
-
-template <class T>
-void set_radial_terms(FreeformView<T>& view, const Surface& surface, double reach, double& size) {
-    std::vector<double> radial(kMaxRadialTerms, 0.0);
-    const auto scaled = [&](double coefficient, std::size_t power) {
-        const double at_rim = coefficient * std::pow(reach, static_cast<int>(power));
-        size += std::fabs(at_rim);
+/// `size`: sum of the absolute values of all coefficients.
+template <class T, class Number>
+void set_radial_terms(FreeformView<T>& view, const ShapeNumbers<Number>& numbers, double reach, double& size) {
+    std::vector<Number> radial(kMaxRadialTerms, Number(0.0));
+    const auto scaled = [&](const Number& coefficient, std::size_t power) {
+        const Number at_rim = coefficient * std::pow(reach, static_cast<int>(power));
+        size += std::fabs(plain_value(at_rim));
         return at_rim;
     };
-    for (std::size_t i = 0; i < surface.form.radial.size(); ++i) radial[i] += scaled(surface.form.radial[i], i + 1);
-    for (std::size_t i = 0; i < surface.aspheric.size(); ++i) {
-        const double term = scaled(surface.aspheric[i], 2 * i + 4);
+    for (std::size_t i = 0; i < numbers.radial.size(); ++i) radial[i] += scaled(numbers.radial[i], i + 1);
+    for (std::size_t i = 0; i < numbers.aspheric.size(); ++i) {
+        const Number term = scaled(numbers.aspheric[i], 2 * i + 4);
         if (view.is_toroid)
             view.section[view.section_terms++] = static_cast<T>(term);
         else
@@ -70,33 +66,36 @@ void set_radial_terms(FreeformView<T>& view, const Surface& surface, double reac
     }
     for (std::size_t i = 0; i < radial.size(); ++i) {
         view.radial[i] = static_cast<T>(radial[i]);
-        if (radial[i] != 0) view.radial_terms = static_cast<std::int32_t>(i) + 1;
+        if (!is_constant_zero(radial[i])) view.radial_terms = static_cast<std::int32_t>(i) + 1;
     }
 }
 
-template <class T>
-void set_forbes_terms(FreeformView<T>& view, const Surface& surface, double& size) {
-    const ForbesTerms& forbes = *surface.form.forbes;
-    for (const double coefficient : forbes_polynomial(forbes)) {
+/// Sets the terms of x and y and those of kFormTerms.
+template <class T, class Number>
+void set_polynomials(FreeformView<T>& view, const SurfaceForm& form, const ShapeNumbers<Number>& numbers, double reach,
+                     double& size) {
+    FormPolynomials<Number> sums{reach, {}, {}};
+    sums.xy.add(numbers.xy, reach);
+    std::size_t row = 0;
+    over_rows(form, [&](const auto& terms) {
+        if (terms) terms->add_to(sums, numbers.terms[row], {numbers.curvature, numbers.conic});
+        ++row;
+    });
+    for (const Number& coefficient : sums.even) {
         view.forbes[view.forbes_terms++] = static_cast<T>(coefficient);
-        size += std::fabs(coefficient);
+        size += std::fabs(plain_value(coefficient));
     }
-    view.forbes_scale = static_cast<T>(1 / (forbes.radius * forbes.radius));
-    view.forbes_curvature_squared = static_cast<T>(surface.curvature * surface.curvature);
-    view.is_bfs = forbes.kind == ForbesKind::bfs ? T(1) : T(0);
-}
-
-template <class T>
-void set_xy_terms(FreeformView<T>& view, const SurfaceForm& form, double reach, double& size) {
-    XyTable table;
-    table.add(form.xy, reach);
-    if (form.zernike) table.add(zernike_as_xy(*form.zernike), reach / form.zernike->radius);
-    view.xy_degree = table.degree;
+    if (view.forbes_terms > 0) {
+        view.forbes_scale = static_cast<T>(1 / (sums.even_radius * sums.even_radius));
+        view.forbes_curvature_squared = static_cast<T>(numbers.curvature * numbers.curvature);
+        view.is_bfs = sums.is_bfs ? T(1) : T(0);
+    }
+    view.xy_degree = std::max(view.xy_degree, sums.xy.degree);
     T* next = view.xy;
-    for (int j = table.degree; j >= 0; --j)
-        for (int i = table.degree - j; i >= 0; --i) {
-            size += std::fabs(table.at(i, j));
-            *next++ = static_cast<T>(table.at(i, j));
+    for (int j = view.xy_degree; j >= 0; --j)
+        for (int i = view.xy_degree - j; i >= 0; --i) {
+            size += std::fabs(plain_value(sums.xy.at(i, j)));
+            *next++ = static_cast<T>(sums.xy.at(i, j));
         }
 }
 
@@ -119,12 +118,25 @@ void set_sag_bounds(FreeformView<T>& view, double reach) {
 
 }  // namespace make_freeform_detail
 
+/// Sets the base and the terms of a view whose search region is set and whose numbers of terms are 0. Its xy_degree is
+/// the least degree of the terms of x and y; -1: none is required.
+template <class T, class Number>
+void set_shape(FreeformView<T>& view, const Surface& surface, const ShapeNumbers<Number>& numbers) {
+    using namespace make_freeform_detail;
+    const double reach = 1 / plain_value(view.inverse_reach);
+    double size = 0;
+    set_base_shape(view, surface, numbers);
+    set_radial_terms(view, numbers, reach, size);
+    set_polynomials(view, surface.form, numbers, reach, size);
+    view.term_size = static_cast<T>(size);
+}
+
 /// Returns a freeform surface prepared for tracing.
 template <class T>
 FreeformView<T> freeform_view(const Surface& surface) {
     using namespace make_freeform_detail;
-    const SurfaceForm& form = surface.form;
     FreeformView<T> view{};
+    view.xy_degree = -1;
     bool is_finite = true;
     // 2% past the rim, so that a ray that just misses it is found to miss it, unless the surface ends before.
     set_rectangle(view, surface, 1.02);
@@ -132,18 +144,8 @@ FreeformView<T> freeform_view(const Surface& surface) {
         is_finite &= std::isfinite(surface.sag(static_cast<double>(x), static_cast<double>(y)));
     });
     if (!is_finite) set_rectangle(view, surface, 1);
-    const double reach = 1 / static_cast<double>(view.inverse_reach);
-    view.is_toroid = form.base == BaseForm::toroid;
-    view.curvature_y = static_cast<T>(surface.curvature);
-    view.conic_factor_y = static_cast<T>(1 + surface.conic);
-    view.curvature_x = static_cast<T>(form.base == BaseForm::conic ? surface.curvature : form.curvature_x);
-    view.conic_factor_x = static_cast<T>(1 + (form.base == BaseForm::biconic ? form.conic_x : surface.conic));
-    double size = 0;
-    set_radial_terms(view, surface, reach, size);
-    if (form.forbes) set_forbes_terms(view, surface, size);
-    set_xy_terms(view, form, reach, size);
-    view.term_size = static_cast<T>(size);
-    set_sag_bounds(view, reach);
+    set_shape(view, surface, ShapeNumbers<double>(surface));
+    set_sag_bounds(view, 1 / static_cast<double>(view.inverse_reach));
     return view;
 }
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .._core import InputError, Lens
-from ..variable import Variable
+from ..variable import FORM_TERMS, Variable
 from .dual_array import DualArray
 
 
@@ -46,10 +46,11 @@ def first_order_duals(lens: Lens, variables: Sequence[Variable], wavelength_nm: 
     sign = 1.0
     for i, surface in enumerate(surfaces):
         curvature = dual(surface.curvature_per_mm, "curvature", i)
-        if surface.forbes:
-            raise InputError(
-                f"surface {i + 1} has Forbes terms: first-order derivatives of such surfaces are not known"
-            )
+        for terms in FORM_TERMS:
+            if getattr(surface, terms):
+                raise InputError(
+                    f"surface {i + 1} has {terms} terms: first-order derivatives of such surfaces are not known"
+                )
         if surface.radial_terms:
             bend = [2.0 * (v.quantity == "radial" and v.surface == i and v.power == 2) for v in variables]
             curvature = curvature + DualArray(np.array(2 * surface.radial_terms.get(2, 0.0)), np.array(bend))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from .._core import InputError, Lens, Surface
+from ..variable import FORM_TERMS
 
 
 def check_expressible(lens: Lens) -> None:
@@ -34,7 +35,7 @@ def _why_not(surface: Surface) -> str:
         return f"is a {surface.form}"
     if surface.radial_terms:
         return "has radial_terms"
-    if surface.xy_terms or surface.zernike or surface.forbes:
+    if surface.xy_terms or any(getattr(surface, terms) for terms in FORM_TERMS):
         return "has terms of a free form"
     if surface.aperture:
         return "has an aperture that is no circle about the axis"

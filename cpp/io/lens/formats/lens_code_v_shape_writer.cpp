@@ -27,8 +27,8 @@ private:
     void leave_out(const std::string& what) { result_.left_out.push_back(what); }
 
     void write_form() {
-        if (form_.forbes && form_.forbes->kind == ForbesKind::bfs)
-            leave_out("has Forbes terms of a departure from a sphere, which realcam does not write to .seq files");
+        if (const std::string terms = beyond_polynomials(form_); !terms.empty())
+            leave_out("has " + terms + ", which realcam does not write to .seq files");
         const bool has_radial = !form_.radial.empty() || form_.forbes, has_xy = !form_.xy.empty() || form_.zernike;
         if (form_.base != BaseForm::conic) {
             if (has_radial || has_xy) leave_out("has terms beside its toroid or biconic, which CODE V's types lack");

@@ -125,8 +125,8 @@ private:
     void write_geometry(std::size_t i, const Affine<double>& frame) {
         const Surface& s = lens_.surfaces[i];
         const SurfaceForm& form = s.form;
-        const bool has_xy = !form.xy.empty() || form.zernike,
-                   is_bfs = form.forbes && form.forbes->kind == ForbesKind::bfs;
+        const bool has_xy = !form.xy.empty() || form.zernike;
+        const std::string beyond = beyond_polynomials(form);
         const std::map<int, double> radial = radial_terms_of(s);
         if (!s.bends_light()) {
             begin_geometry("StandardGeometry", frame);
@@ -135,15 +135,14 @@ private:
             if (has_xy || !form.radial.empty() || form.forbes)
                 leave_out(i, "has terms beside its toroid, which Optiland's geometries lack");
             write_toroid(s, frame);
-        } else if (form.zernike && form.xy.empty() && radial.empty() && !is_bfs) {
+        } else if (form.zernike && form.xy.empty() && radial.empty() && beyond.empty()) {
             begin_geometry("ZernikePolynomialGeometry", frame);
             write_conic(s);
             write_list("coefficients", form.zernike->coefficients);
             json_.key("zernike_type").text(form.zernike->order == ZernikeOrder::noll ? "noll" : "fringe");
             json_.key("norm_radius").number(form.zernike->radius);
         } else {
-            if (is_bfs)
-                leave_out(i, "has Forbes terms of a departure from a sphere, which Optiland writes, and does not read");
+            if (!beyond.empty()) leave_out(i, "has " + beyond + ", which Optiland does not read");
             write_polynomials(i, s, radial, frame);
         }
         if (s.bends_light() && form.base == BaseForm::biconic)

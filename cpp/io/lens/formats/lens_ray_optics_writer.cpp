@@ -225,8 +225,8 @@ private:
             leave_out(i, "is a biconic, which ray-optics lacks: it is written as a conic");
         if (!form.xy.empty() || form.zernike)
             leave_out(i, "has terms of x and y or of Zernike, which ray-optics lacks");
-        if (form.forbes && form.forbes->kind == ForbesKind::bfs)
-            leave_out(i, "has Forbes terms of a departure from a sphere, which ray-optics lacks");
+        if (const std::string terms = beyond_polynomials(form); !terms.empty())
+            leave_out(i, "has " + terms + ", which ray-optics lacks");
         const bool is_toroid = form.base == BaseForm::toroid, odd = !is_toroid && has_odd_terms(s);
         if (is_toroid && (!form.radial.empty() || form.forbes))
             leave_out(i, "has radial terms on a toroid, which ray-optics lacks");

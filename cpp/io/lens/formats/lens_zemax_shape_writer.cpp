@@ -36,13 +36,11 @@ std::vector<double> in_order(const std::vector<XyTerm>& terms, ZemaxShape& shape
 
 void set_type(ZemaxShape& shape, const Surface& s) {
     const SurfaceForm& form = s.form;
-    const bool is_bfs = form.forbes && form.forbes->kind == ForbesKind::bfs;
-    const bool has_radial = !form.radial.empty() || (form.forbes && !is_bfs);
+    const std::string beyond = beyond_polynomials(form);
+    const bool has_radial = !form.radial.empty() || (form.forbes && form.forbes->kind == ForbesKind::con);
     const int parts = (form.base != BaseForm::conic ? 1 : 0) + (has_radial ? 1 : 0) + (form.xy.empty() ? 0 : 1) +
                       (form.zernike ? 1 : 0);
-    if (is_bfs)
-        shape.left_out.push_back(
-            "has Forbes terms of a departure from a sphere, which realcam does not write to .zmx files");
+    if (!beyond.empty()) shape.left_out.push_back("has " + beyond + ", which realcam does not write to .zmx files");
     if (parts > 1)
         shape.left_out.push_back("has terms of several kinds, of which one type of Zemax has the first alone");
     const double radius_x = form.curvature_x == 0 ? 0 : 1 / form.curvature_x;

@@ -44,12 +44,19 @@ LensSystem changed(LensSystem lens, const LensVariable& v, double step) {
         case LensQuantity::conic_x: s.form.conic_x += step; break;
         case LensQuantity::radial: term(s.form.radial, number - 1) += step; break;
         case LensQuantity::xy: s.form.xy.push_back({v.number, v.number_y, step}); break;
-        case LensQuantity::zernike: term(s.form.zernike->coefficients, number - 1) += step; break;
-        case LensQuantity::forbes: term(s.form.forbes->coefficients, number) += step; break;
+        case LensQuantity::terms: {
+            int row = 0;
+            over_rows(s.form, [&](auto& terms) {
+                if (row++ == v.row) term(terms->coefficients, number - terms->words.first_number) += step;
+            });
+            break;
+        }
         case LensQuantity::film_distance: break;
     }
     return lens;
 }
+
+constexpr int kZernike = 0, kForbes = 1;  // rows of kFormTerms
 
 /// A step that moves the surface by a micrometre or less at 8 mm from the vertex, a power of two.
 double step_of(const LensVariable& v) {
@@ -312,14 +319,18 @@ TEST_CASE("derivatives by the coefficients of every form") {
     check(with(-70, 1, form), {{LensQuantity::xy, 0, 1, 0}, {LensQuantity::xy, 0, 2, 2}, {LensQuantity::xy, 0, 3, 3}});
     form = {};
     form.zernike = ZernikeTerms{ZernikeOrder::noll, 11, {0, 0.1, -0.2, 0.05, 0.04, -0.06, 0.02, 0.01}};
-    check(with(80, 0.2, form),
-          {{LensQuantity::zernike, 0, 2}, {LensQuantity::zernike, 0, 5}, {LensQuantity::zernike, 0, 8}});
+    check(with(80, 0.2, form), {{LensQuantity::terms, 0, 2, 0, kZernike},
+                                {LensQuantity::terms, 0, 5, 0, kZernike},
+                                {LensQuantity::terms, 0, 8, 0, kZernike}});
+    form.zernike->coefficients = {0, 0.1, 0, 0, 0, 0};  // a coefficient of 0 whose degree is above those of the others
+    check(with(80, 0.2, form), {{LensQuantity::terms, 0, 6, 0, kZernike}});
     form = {};
     form.forbes = ForbesTerms{ForbesKind::con, 11, {0.1, -0.05, 0.02}};
-    check(with(50, -0.7, form), {{LensQuantity::forbes, 0, 0}, {LensQuantity::forbes, 0, 2}});
+    check(with(50, -0.7, form), {{LensQuantity::terms, 0, 0, 0, kForbes}, {LensQuantity::terms, 0, 2, 0, kForbes}});
     form.forbes->kind = ForbesKind::bfs;
-    check(with(50, 0.1, form),
-          {{LensQuantity::forbes, 0, 0}, {LensQuantity::forbes, 0, 1}, {LensQuantity::forbes, 0, 2}});
+    check(with(50, 0.1, form), {{LensQuantity::terms, 0, 0, 0, kForbes},
+                                {LensQuantity::terms, 0, 1, 0, kForbes},
+                                {LensQuantity::terms, 0, 2, 0, kForbes}});
 }
 
 TEST_CASE("adjoints of many rays add up, whatever the threads, and rays that end are left out") {
@@ -370,5 +381,5 @@ TEST_CASE("variables that make no sense are refused with one line") {
     refused({LensQuantity::aspheric, 0, 5}, "powers 4, 6, ...");
     refused({LensQuantity::tilt, 0, 3}, "has axes from 0 to 2");
     refused({LensQuantity::curvature_x, 0}, "has one radius");
-    refused({LensQuantity::zernike, 0, 4}, "has no Zernike terms");
+    refused({LensQuantity::terms, 0, 4, 0, kZernike}, "has no Zernike terms");
 }
