@@ -2,9 +2,9 @@
 #include <set>
 
 #include "bundled_lenses.hpp"
-#include "glass_table.hpp"
 #include "lens_file.hpp"
 #include "lens_glass.hpp"
+#include "lens_material.hpp"
 #include "lens_text.hpp"
 
 namespace realcam::io {

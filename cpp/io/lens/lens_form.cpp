@@ -1,4 +1,4 @@
-#include "lens_form.hpp"
+#include "lens_toml.hpp"
 
 #include <algorithm>
 #include <cmath>

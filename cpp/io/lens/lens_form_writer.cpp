@@ -1,7 +1,6 @@
 #include <functional>
 
-#include "lens_form.hpp"
-#include "toml_numbers.hpp"
+#include "lens_toml.hpp"
 
 namespace realcam::io {
 

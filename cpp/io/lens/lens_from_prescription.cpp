@@ -1,5 +1,3 @@
-#include "lens_from_prescription.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -15,13 +13,41 @@
 #include "../text/printable.hpp"
 #include "lens_asphere_terms.hpp"
 #include "lens_error.hpp"
-#include "lens_foreign.hpp"
+#include "lens_format.hpp"
 #include "lens_places.hpp"
 #include "lens_rims.hpp"
 #include "lens_states.hpp"
 
 namespace realcam::io {
 namespace {
+
+/// Reports all features of a file that realcam does not model: as warnings if `options.force` is set, otherwise as one
+/// LensFileError.
+void refuse_features(const std::vector<ForeignFeature>& features, const std::string& file,
+                     const LensReadOptions& options) {
+    if (features.empty()) return;
+    const auto place = [](const ForeignFeature& f) {
+        return std::string(f.surface > 0 ? "surface " + std::to_string(f.surface) : "") +
+               (f.line > 0 ? (f.surface > 0 ? " (line " : "(line ") + std::to_string(f.line) + ")" : "");
+    };
+    constexpr std::size_t kMostNamed = 8;
+    if (options.force) {
+        if (!options.warn) return;
+        for (const ForeignFeature& f : features)
+            options.warn(file + ": " + (place(f).empty() ? "" : place(f) + ": ") + "left out: " + f.what);
+        return;
+    }
+    std::string also;
+    for (std::size_t i = 1; i < std::min(features.size(), kMostNamed); ++i)
+        also += (i == 1 ? "; also " : ", ") + features[i].what +
+                (place(features[i]).empty() ? "" : " at " + place(features[i]));
+    if (features.size() > kMostNamed) also += ", and " + std::to_string(features.size() - kMostNamed) + " more";
+    const ForeignFeature& first = features.front();
+    LensReadError error("has " + first.what + also + ", of which realcam has no model", file, first.line,
+                        first.surface);
+    error.can_be_forced = true;
+    throw error;
+}
 
 class Builder {
 public:
@@ -139,7 +165,7 @@ private:
             if (!what.empty()) foreign_.push_back({what, row.line, row.number});
             keep_form(i);
         }
-        realcam::io::refuse_foreign(foreign_, p_.file, options_);
+        refuse_features(foreign_, p_.file, options_);
     }
 
     /// Factor for a rim that is not known yet: it is estimated from the entrance pupil's diameter, until rays are

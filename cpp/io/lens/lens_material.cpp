@@ -1,6 +1,5 @@
 #include "lens_material.hpp"
 
-#include "glass_table.hpp"
 #include "lens_file.hpp"
 #include "lens_text.hpp"
 

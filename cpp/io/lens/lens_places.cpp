@@ -41,30 +41,6 @@ bool is_moved(const PrescriptionSurface& row) {
     return !(row.before == Affine<double>{}) || !(row.behind == Affine<double>{});
 }
 
-void set_decentre(const SurfacePlacement& placement, DecentreKind kind, PrescriptionSurface& row) {
-    row.before = row.behind = {};
-    if (placement.is_in_place()) return;
-    const Affine<double> frame = placement.frame();
-    if (kind != DecentreKind::reverse) row.before = frame;
-    if (kind == DecentreKind::and_return || kind == DecentreKind::reverse) row.behind = inverse_motion(frame);
-    if (kind == DecentreKind::bend) row.behind = SurfacePlacement{{}, placement.tilt_deg, false}.frame();
-}
-
-void turn_about_axis(PrescriptionSurface& row) {
-    const Affine<double> turn = SurfacePlacement{{}, {0, 0, 90}, false}.frame();
-    row.before = row.before * turn;
-    row.behind = inverse_motion(turn) * row.behind;
-    ApertureShape& shape = row.aperture_shape;
-    const auto turned = [](Vec2d v) { return Vec2d{v.y, -v.x}; };
-    std::swap(shape.half.x, shape.half.y);
-    shape.offset = turned(shape.offset);
-    for (Vec2d& corner : shape.corners) corner = turned(corner);
-    for (Obscuration& piece : shape.obscurations) {
-        piece.offset = turned(piece.offset);
-        piece.angle_deg -= 90;
-    }
-}
-
 void set_places(const Prescription& p, const std::vector<KeptRow>& kept, LensSystem& lens) {
     Affine<double> way;      // from the axis of the last kept surface to here
     double thickness = 0;    // along that path, as if it were straight

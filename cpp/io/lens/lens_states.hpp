@@ -2,9 +2,19 @@
 #include <cstddef>
 #include <vector>
 
-#include "lens_rows.hpp"
+#include "lens_prescription.hpp"
 
 namespace realcam::io {
+
+/// A row of the file that became a surface of the lens. A stop that bends light becomes two surfaces.
+struct KeptRow {
+    std::size_t row;
+    SurfaceType type;
+};
+
+/// Returns the rows that bend or block light. The others, with the same medium on both sides, only add their thickness
+/// to the surface before them.
+std::vector<KeptRow> kept_rows(const Prescription& p);
 
 /// A lens in one of the zoom positions of its file, and the distance of the object from its first vertex, mm.
 struct LensState {

@@ -114,6 +114,10 @@ int LensLines::whole_number_of(std::string_view word, const std::string& what, i
     return static_cast<int>(*value);
 }
 
+bool is_digits(std::string_view word) {
+    return !word.empty() && word.find_first_not_of("0123456789") == word.npos;
+}
+
 bool is_infinity(std::string_view word) {
     if (word.starts_with('+') || word.starts_with('-')) word.remove_prefix(1);
     const std::string capital = word.size() < 10 ? upper_case(word) : std::string();

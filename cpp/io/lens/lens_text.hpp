@@ -43,6 +43,7 @@ public:
 
     /// Sets the surface that errors name; 0: no surface.
     void set_surface(int surface) { surface_ = surface; }
+    int surface() const { return surface_; }
     [[noreturn]] void fail(const std::string& message) const { throw LensFileError(message, file_, number_, surface_); }
     [[noreturn]] void fail(const InputError& cause) const { throw LensReadError(cause, file_, number_, surface_); }
     /// Splits a line at blanks. Throws LensFileError for a quote that does not end, and Cancelled.
@@ -58,6 +59,9 @@ private:
     int number_ = 0, surface_ = 0;
     mutable Checkpoint checkpoint_;
 };
+
+/// True if a word consists of digits only.
+bool is_digits(std::string_view word);
 
 /// True if a word means infinity: "inf", "Infinity", ignoring case, with or without a sign.
 bool is_infinity(std::string_view word);

@@ -3,19 +3,14 @@
 #include <numbers>
 #include <set>
 
-#include "../../optics/prescription/lens_checks.hpp"
 #include "../../optics/prescription/named_coatings.hpp"
-#include "../files/file_suffix.hpp"
 #include "../text/printable.hpp"
 #include "../text/text_number.hpp"
 #include "../text/utf8.hpp"
-#include "lens_form.hpp"
-#include "lens_format.hpp"
 #include "lens_glass.hpp"
 #include "lens_material.hpp"
 #include "lens_text.hpp"
-#include "lens_writers.hpp"
-#include "toml_numbers.hpp"
+#include "lens_toml.hpp"
 
 namespace realcam::io {
 namespace {
@@ -277,15 +272,6 @@ std::string exact_number(double value) {
 
 std::string lens_as_toml(const LensSystem& lens) {
     return TomlWriter(lens).write();
-}
-
-LensText lens_text_for(const LensSystem& lens, const std::string& path) {
-    validate(lens);
-    const LensFormat* format = foreign_format_of(path);
-    if (format && format->write) return format->write(lens);
-    // Requires the suffix, because without it the file could not be read by its name.
-    if (suffix_of(path) == ".toml") return {lens_as_toml(lens), {}};
-    throw InputError(path + ": the suffix " + lens_suffixes(true) + " is wanted");
 }
 
 }  // namespace realcam::io

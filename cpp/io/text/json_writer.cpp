@@ -67,6 +67,17 @@ JsonWriter& JsonWriter::null() {
     return *this;
 }
 
+JsonWriter& JsonWriter::numbers(const std::vector<double>& values) {
+    begin_array();
+    for (const double value : values) number(value);
+    return end();
+}
+
+JsonWriter& JsonWriter::numbers(std::initializer_list<std::pair<const char*, double>> members) {
+    for (const auto& [name, value] : members) number(name, value);
+    return *this;
+}
+
 void JsonWriter::before_value() {
     if (!after_key_ && !closers_.empty()) {
         if (!first_) text_ += ',';

@@ -1,5 +1,7 @@
 #pragma once
+#include <initializer_list>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace realcam::io {
@@ -18,6 +20,19 @@ public:
     JsonWriter& number_or_infinity(double value);
     JsonWriter& truth(bool value);
     JsonWriter& null();
+    JsonWriter& numbers(const std::vector<double>& values);
+
+    // The same as members of an object.
+    JsonWriter& numbers(std::initializer_list<std::pair<const char*, double>> members);
+    JsonWriter& begin_object(const std::string& name) { return key(name).begin_object(); }
+    JsonWriter& begin_array(const std::string& name) { return key(name).begin_array(); }
+    JsonWriter& text(const std::string& name, const std::string& value) { return key(name).text(value); }
+    JsonWriter& number(const std::string& name, double value) { return key(name).number(value); }
+    JsonWriter& truth(const std::string& name, bool value) { return key(name).truth(value); }
+    JsonWriter& null(const std::string& name) { return key(name).null(); }
+    JsonWriter& numbers(const std::string& name, const std::vector<double>& values) {
+        return key(name).numbers(values);
+    }
 
     std::string finish() const { return text_; }
 

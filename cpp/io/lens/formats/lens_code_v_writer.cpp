@@ -1,39 +1,30 @@
 #include <cmath>
-#include <set>
 
-#include "../../../math/hypotenuse.hpp"
-#include "../../../optics/lens/paraxial.hpp"
 #include "../../text/printable.hpp"
 #include "../lens_glass.hpp"
 #include "../lens_text.hpp"
-#include "../lens_writers.hpp"
-#include "lens_code_v_shape.hpp"
+#include "prescription_writer.hpp"
 
 namespace realcam::io {
 namespace {
 
-class CodeVWriter {
+constexpr int kXyDegree = 10;  // highest degree of SPS XYP
+constexpr std::size_t kAnamorphicTerms = 4;
+
+class CodeVWriter : PrescriptionWriter {
 public:
-    explicit CodeVWriter(const LensSystem& lens) : lens_(lens) {}
+    explicit CodeVWriter(const LensSystem& lens) : PrescriptionWriter(lens, "CODE V") {}
 
     LensText write() {
-        result_.warnings = left_out_of_foreign_files(lens_, "CODE V");
-        for (std::size_t i = 0; i < lens_.surfaces.size(); ++i) write_surface(i);
-        // The reader sizes the stop as if the lens were centred; the pupil diameter is computed in the same way.
-        const FirstOrder data = first_order(centred(lens_), lens_.wavelength_nm);
-        if (!std::isfinite(data.entrance_pupil_diameter))
-            throw InputError("lens \"" + lens_.name +
-                             "\" has its entrance pupil at infinity, and no aperture that a .seq file states");
+        std::string surfaces;
+        for (std::size_t i = 0; i < lens_.surfaces.size(); ++i) surfaces += surface(i);
         // Curvatures, because radii would be rounded.
-        std::string text = "RDM N;LEN\nTITLE '" + quoted(lens_.title.empty() ? lens_.name : lens_.title) + "'\nEPD " +
-                           exact_number(data.entrance_pupil_diameter) + "\nDIM M\nWL " +
-                           exact_number(lens_.wavelength_nm) + "\nREF 1\nWTW 1\n";
-        const double corner = 0.5 * hypotenuse(lens_.film_width, lens_.film_height);
-        text += "XRI 0.0 0.0\nYRI 0.0 " + exact_number(corner) + "\nWTF 1.0 1.0\n";
-        text += private_glasses();
-        const double object = lens_.focus_distance - lens_.film_position();
-        text += "SO 0.0 " + (std::isfinite(object) ? exact_number(object) : std::string("0.1e14")) + '\n';
-        result_.text = text + surfaces_ + image() + zoom() + "GO\n";
+        result_.text =
+            "RDM N;LEN\nTITLE " + quoted(title()) + "\nEPD " + exact_number(entrance_pupil_diameter(".seq")) +
+            "\nDIM M\nWL " + exact_number(lens_.wavelength_nm) + "\nREF 1\nWTW 1\nXRI 0.0 0.0\nYRI 0.0 " +
+            exact_number(corner()) + "\nWTF 1.0 1.0\n" + private_glasses() + "SO 0.0 " +
+            (std::isfinite(object_distance()) ? exact_number(object_distance()) : "0.1e14") + '\n' + surfaces + "SI " +
+            exact_number(image_curvature()) + " 0.0\n" + placement(lens_.film_placement) + zoom() + "GO\n";
         return std::move(result_);
     }
 
@@ -42,64 +33,164 @@ private:
         std::string text = printable(title);
         for (char& c : text)
             if (c == '\'') c = '`';
-        return text;
+        return '\'' + text + '\'';
     }
+    static std::string command(const std::string& word, double value) {
+        return "  " + word + ' ' + exact_number(value) + '\n';
+    }
+    void line(const std::string& word) { commands_ += "  " + word + '\n'; }
+    void line(const std::string& word, double value) { commands_ += command(word, value); }
 
-    void write_surface(std::size_t i) {
+    std::string surface(std::size_t i) {
         const Surface& s = lens_.surfaces[i];
-        const bool is_last = i + 1 == lens_.surfaces.size();
-        if (s.type == SurfaceType::refracting) medium_ = &s.material;
-        const CodeVShape shape = code_v_shape_of(s);
+        commands_.clear();
+        if (s.type == SurfaceType::stop) line("STO");
+        const double constant = s.bends_light() ? write_form(i) : 0;
+        write_aperture(i);
         SurfacePlacement place = s.placement;
-        if (shape.constant != 0) {
+        if (constant != 0) {
             // CODE V's polynomials have no constant term: only this surface is moved.
-            place = SurfacePlacement::of(place.frame() * along_axis(shape.constant));
+            place = SurfacePlacement::of(place.frame() * along_axis(constant));
             place.returns = s.placement.returns || s.placement.is_in_place();
         }
-        const double thickness = is_last ? lens_.film_distance : s.thickness;
-        surfaces_ += "S " + exact_number(s.bends_light() ? s.curvature : 0.0) + ' ' +
-                     exact_number(place.returns ? thickness : thickness - shape.constant);
+        std::string text = "S " + exact_number(s.bends_light() ? s.curvature : 0.0) + ' ' +
+                           exact_number(place.returns ? thickness(i) : thickness(i) - constant);
         if (s.type == SurfaceType::mirror)
-            surfaces_ += " REFL";
-        else if (!medium_->is_air())
-            surfaces_ += ' ' + glass(*medium_);
-        surfaces_ += '\n';
-        if (s.type == SurfaceType::stop) surfaces_ += "  STO\n";
-        surfaces_ += shape.commands + code_v_placement(place);
-        for (const std::string& what : shape.left_out)
-            result_.warnings.push_back("surface " + std::to_string(i + 1) + ' ' + what);
+            text += " REFL";
+        else if (const Glass& medium = medium_behind(i); !medium.is_air())
+            text += ' ' + glass(medium);
+        return text + '\n' + commands_ + placement(place);
     }
 
-    std::string image() const {
-        // The sag of the film is measured along the light, and that of the file along the axis.
-        const double curvature = (lens_.film_distance < 0 ? -1 : 1) / lens_.film_radius_of_curvature;
-        return "SI " + exact_number(curvature) + " 0.0\n" + code_v_placement(lens_.film_placement);
+    /// Returns XDE to CDE, and DAR if the placement returns; empty if the surface is neither decentred nor tilted.
+    static std::string placement(const SurfacePlacement& placement) {
+        const auto& [decentre, tilt, returns] = placement;
+        if (placement.is_in_place()) return {};
+        std::string text;
+        // Alpha and beta are positive clockwise.
+        for (const auto& [word, value] : {std::pair{"XDE", decentre.x},
+                                          {"YDE", decentre.y},
+                                          {"ZDE", decentre.z},
+                                          {"ADE", -tilt.x},
+                                          {"BDE", -tilt.y},
+                                          {"CDE", tilt.z}})
+            if (value != 0) text += command(word, value);
+        return returns ? text + "  DAR\n" : text;
+    }
+
+    /// Returns the constant term of the sag, by which the surface has to be moved along its axis.
+    double write_form(std::size_t i) {
+        const Surface& s = lens_.surfaces[i];
+        const SurfaceForm& form = s.form;
+        const bool has_radial = !form.radial.empty() || form.forbes, has_xy = !form.xy.empty() || form.zernike;
+        if (const std::string terms = beyond_polynomials(form); !terms.empty())
+            leave_out(i, "has " + terms + ", which realcam does not write to .seq files");
+        if (form.base != BaseForm::conic) {
+            if (has_radial || has_xy) leave_out(i, "has terms beside its toroid or biconic, which CODE V's types lack");
+            const bool is_toroid = form.base == BaseForm::toroid;
+            line(is_toroid ? "YTO" : "AAS");
+            line("CUX", form.curvature_x);
+            line("K", s.conic);
+            if (!is_toroid) line("KX", form.conic_x);
+            write_even(i, is_toroid ? "" : "R");
+        } else if (has_xy) {
+            return write_polynomial(i);
+        } else if (has_radial) {
+            line("SPS ODD");
+            line("SCO K", s.conic);
+            for (const auto& [power, value] : radial_terms_of(s)) line("SCO AR" + std::to_string(power), value);
+        } else if (s.is_asphere() || s.conic != 0) {
+            line(s.is_asphere() ? "ASP" : "CON");
+            line("K", s.conic);
+            write_even(i, "");
+        }
+        return 0;
+    }
+
+    /// `suffix`: of the terms' names in an anamorphic asphere.
+    void write_even(std::size_t i, const std::string& suffix) {
+        const std::vector<double>& terms = lens_.surfaces[i].aspheric;
+        for (std::size_t k = 0; k < terms.size(); ++k) {
+            if (terms[k] == 0) continue;
+            if (suffix.empty() || k < kAnamorphicTerms)
+                line("ABCDEFGH"[k] + suffix, terms[k]);
+            else
+                leave_out(i, "has even terms of more than r^10, which CODE V's anamorphic asphere lacks");
+        }
+    }
+
+    double write_polynomial(std::size_t i) {
+        const Surface& s = lens_.surfaces[i];
+        if (has_odd_terms(s)) leave_out(i, "has odd terms of r beside those of x and y, which CODE V's types lack");
+        line("SPS XYP");
+        line("SCO K", s.conic);
+        double constant = 0;
+        bool is_too_high = false;
+        for (const auto& [power, value] : xy_terms_of(s)) {
+            const auto [degree, y] = power;
+            if (degree == 0)
+                constant = value;
+            else if (degree > kXyDegree)
+                is_too_high = true;
+            else
+                line("SCO C" + std::to_string(xy_number(degree, y) + 1), value);
+        }
+        if (is_too_high)
+            leave_out(i, "has terms of x and y of more than the power 10, which CODE V's polynomial lacks");
+        return constant;
+    }
+
+    void write_aperture(std::size_t i) {
+        const Surface& s = lens_.surfaces[i];
+        const ApertureShape& shape = s.aperture_shape;
+        if (s.type != SurfaceType::stop || !shape.is_plain())
+            line(shape.is_plain() ? "CIR" : "CIR L'RIM'", s.clear_semi_diameter);
+        if (s.inner_semi_diameter > 0) line("CIR OBS", s.inner_semi_diameter);
+        const auto add = [&](ApertureOutline kind, const std::string& obscures, const std::string& label,
+                             const Obscuration& piece) {
+            const std::string word = kind == ApertureOutline::rectangle ? "RE" : "EL";
+            if (kind == ApertureOutline::circle) {
+                line("CIR" + label, piece.half.x);
+            } else {
+                line(word + 'X' + obscures + label, piece.half.x);
+                line(word + 'Y' + obscures + label, piece.half.y);
+            }
+            if (piece.offset.x != 0) line("ADX" + label, piece.offset.x);
+            if (piece.offset.y != 0) line("ADY" + label, piece.offset.y);
+            if (piece.angle_deg != 0) line("ARO" + label, piece.angle_deg);
+        };
+        if (shape.kind == ApertureOutline::polygon)
+            leave_out(i, "has a polygonal aperture, which a .seq file has no words for");
+        else if (shape.half.x > 0)
+            add(shape.kind, "", " L'OPEN'", {false, shape.half, shape.offset, 0});
+        int number = 0;
+        for (const Obscuration& piece : shape.obscurations)
+            add(piece.is_rectangle ? ApertureOutline::rectangle : ApertureOutline::ellipse, " OBS",
+                " L'OBS" + std::to_string(++number) + '\'', piece);
     }
 
     std::string glass(const Glass& glass) {
         if (const auto known = catalogue_name_of(glass))
             return bare_glass_name(known->name) + '_' + (known->maker == "misc" ? "SPECIAL" : upper_case(known->maker));
-        for (std::size_t i = 0; i < private_.size(); ++i)
-            if (private_[i] == glass) return private_name(i);
-        private_.push_back(glass);
-        return private_name(private_.size() - 1);
+        std::size_t i = 0;
+        while (i < private_.size() && !(private_[i] == glass)) ++i;
+        if (i == private_.size()) private_.push_back(glass);
+        return private_name(i);
     }
     static std::string private_name(std::size_t i) { return "'GLASS" + std::to_string(i + 1) + '\''; }
 
     /// Returns glasses that are in no catalogue, by their indices at spectral lines and at the lens's own wavelength.
     std::string private_glasses() const {
         if (private_.empty()) return {};
-        std::string text = "PRV\n  PWL";
-        for (const auto& point : indices_at_lines(private_.front(), lens_.wavelength_nm))
-            text += ' ' + exact_number(point.wavelength_nm);
-        text += '\n';
+        std::string wavelengths = "PRV\n  PWL", text;
         for (std::size_t i = 0; i < private_.size(); ++i) {
-            text += "  " + private_name(i);
-            for (const auto& point : indices_at_lines(private_[i], lens_.wavelength_nm))
-                text += ' ' + exact_number(point.index);
-            text += '\n';
+            text += "\n  " + private_name(i);
+            for (const auto& [nm, index] : indices_at_lines(private_[i], lens_.wavelength_nm)) {
+                if (i == 0) wavelengths += ' ' + exact_number(nm);
+                text += ' ' + exact_number(index);
+            }
         }
-        return text + "END\n";
+        return wavelengths + text + "\nEND\n";
     }
 
     std::string zoom() {
@@ -112,43 +203,22 @@ private:
         if (zoom.current != 0)
             result_.warnings.push_back("the position of the zoom ring: a .seq file is read in its first position");
         std::string text = "ZOO " + std::to_string(zoom.positions.size()) + "\nZOO TIT";
-        for (const ZoomPosition& position : zoom.positions) text += " '" + quoted(position.name) + '\'';
-        const auto state = [&](std::size_t k) {
-            return static_cast<int>(k) == zoom.current ? lens_ : at_zoom_position(lens_, static_cast<int>(k));
-        };
-        const auto add = [&](const std::string& what, const auto& value) {
-            text += "\nZOO " + what;
-            for (std::size_t k = 0; k < zoom.positions.size(); ++k) text += ' ' + exact_number(value(state(k)));
-        };
-        for (const int i : zoom.surfaces)
-            add("THI S" + std::to_string(i + 1),
-                [i](const LensSystem& l) { return l.surfaces[static_cast<std::size_t>(i)].thickness; });
-        add("THI S" + std::to_string(lens_.surfaces.size()), [](const LensSystem& l) { return l.film_distance; });
-        add("THI SO", [](const LensSystem& l) {
-            const double object = l.focus_distance - l.film_position();
-            return std::isfinite(object) ? object : 1e13;
-        });
-        add("EPD", [](const LensSystem& l) { return first_order(l, l.wavelength_nm).entrance_pupil_diameter; });
+        for (const ZoomPosition& position : zoom.positions) text += ' ' + quoted(position.name);
+        for (const auto& [surface, values] : zoom_rows()) {
+            const bool is_object = surface == ZoomRow::kObject;
+            text += surface == ZoomRow::kEntrancePupil ? "\nZOO EPD"
+                                                       : "\nZOO THI S" + (is_object ? "O" : std::to_string(surface));
+            for (const double value : values)
+                text += ' ' + exact_number(is_object && !std::isfinite(value) ? 1e13 : value);
+        }
         return text + '\n';
     }
 
-    const LensSystem& lens_;
-    LensText result_;
-    std::string surfaces_;
-    const Glass air_ = Glass::air();
-    const Glass* medium_ = &air_;
+    std::string commands_;  ///< of the current surface
     std::vector<Glass> private_;
 };
 
 }  // namespace
-
-std::vector<Glass::TablePoint> indices_at_lines(const Glass& glass, double wavelength_nm) {
-    std::set<double> lines{365.0146,  404.6561,  435.8343, kLineF_nm, 546.0740,
-                           kLineD_nm, kLineC_nm, 706.5188, 852.11,    wavelength_nm};
-    std::vector<Glass::TablePoint> points;
-    for (const double nm : lines) points.push_back({nm, glass.index(nm)});
-    return points;
-}
 
 LensText lens_as_code_v(const LensSystem& lens) {
     return CodeVWriter(lens).write();

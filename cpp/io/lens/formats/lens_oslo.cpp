@@ -3,10 +3,13 @@
 // optimisation, analysis and further configurations.
 
 #include <cmath>
+#include <tuple>
 
+#include "../../../optics/lens/paraxial.hpp"
 #include "../../text/printable.hpp"
-#include "../lens_readers.hpp"
-#include "lens_oslo_reader.hpp"
+#include "../../text/text_number.hpp"
+#include "../lens_format.hpp"
+#include "prescription_reader.hpp"
 
 namespace realcam::io {
 namespace {
@@ -14,247 +17,478 @@ namespace {
 /// Object distances from this number of units on are infinite in OSLO.
 constexpr double kFarAway = 1e8;
 
-/// True for commands that do not affect the path of light: names, notes, drawing, weights, and settings of OSLO's
-/// computations.
-bool is_harmless(const std::string& word) {
-    static const std::set<std::string> words{
-        "DES",  "NOT", "WW",   "DRW",  "LDP",  "CBK",  "CALLBACK", "GPRT", "ELMDF1", "ELMDF2", "BDI",  "BDD",  "VX",
-        "PF",   "LMN", "LME",  "APCK", "DT",   "OPDO", "AFO",      "EVZ",  "IMS",    "IAR",    "WRSP", "SDAD", "XARM",
-        "WARM", "ARM", "SASP", "DLAP", "DLRS", "DLNR", "DLFD",     "DLNF", "DLHA",   "DLVA",   "APDX", "DIAM", "OCO",
-        "PRE",  "TEM", "TCE",  "ELE",  "EGR",  "DLDL", "DLRI",     "PKP",  "AMO",    "IMGNA",  "SHFL"};
-    if (words.contains(word)) return true;
-    const auto numbered = [&](std::string_view begin) {
-        return word.starts_with(begin) && word.size() > begin.size() &&
-               word.find_first_not_of("0123456789", begin.size()) == word.npos;
+/// Medium as stated: a name, indices at the file's wavelengths, or n_d and V_d. Air if all are empty.
+struct OsloMedium {
+    std::string glass;
+    std::vector<double> indices;
+    std::optional<AbbePair> pair;
+    int line = 0;
+};
+
+/// Surface as stated in a .len file.
+struct OsloSurface {
+    PrescriptionSurface row;  ///< in the file's unit
+    std::map<int, double> aspheric;     ///< by the number in the command's name: ASn
+    std::map<int, double> plain_terms;  ///< by power: AD is the term of r^4
+    int aspheric_step = 0;              ///< AS1 is the term of r^2 (2) or of r (1); 0: not stated
+    OsloMedium medium;
+
+    struct Pickup {
+        std::string what;  ///< CV, CVM, TH, THM, GLA or AP
+        int from;          ///< surface
+        double added;
+        int line;
     };
-    return numbered("SNO") || numbered("WW");
+    std::vector<Pickup> pickups;
+    std::optional<double> axial_slope, axial_height;  ///< solves: PU for the curvature, PY for the thickness
+};
+
+bool is_numbered(std::string_view word, std::string_view name) {
+    return word.starts_with(name) && is_digits(word.substr(name.size()));
 }
+
+class OsloReader : PrescriptionText {
+public:
+    using PrescriptionText::PrescriptionText;
+
+    Prescription read() {
+        std::string_view line;
+        while (lines_.next(line)) read_line(line);
+        if (surfaces_.empty()) fail_at("begins no lens (LEN NEW)");
+        if (!has_ended_) fail_at("the file ends too early: END is wanted");
+        finish();
+        return std::move(p_);
+    }
+
+private:
+    using R = OsloReader;
+    using C = LensCommand;
+
+    /// Commands that are ignored do not affect the path of light: names, notes, drawing, weights, settings of OSLO's
+    /// computations, and parts of a special aperture, which is recorded by its own command.
+    static const Keywords<R>& commands() {
+        static constexpr auto positive = [](R& r, C& c) {
+            const double value = c.number(0, c.word);
+            if (!(value > 0)) r.lines_.fail(c.word + " must be positive");
+            return value;
+        };
+        static constexpr auto set_field = [](R& r, C& c, FieldKind kind) {
+            r.field_ = {kind, std::fabs(c.number(0, c.word))};
+        };
+        static constexpr auto set_aperture = [](R& r, ApertureKind kind, double value) { r.aperture_ = {kind, value}; };
+        static constexpr auto add = [](R& r, C& c) { r.foreign(c); };
+        static constexpr auto add_unless_0 = [](R& r, C& c) {
+            if (c.number(0, c.word) != 0) r.foreign(c);
+        };
+        static const Keywords<R> table{
+            {"DES NOT WW DRW LDP CBK CALLBACK GPRT ELMDF1 ELMDF2 BDI BDD VX PF LMN LME APCK DT OPDO AFO EVZ IMS IAR "
+             "WRSP SDAD XARM WARM ARM SASP DLAP DLRS DLNR DLFD DLNF DLHA DLVA APDX DIAM OCO PRE TEM TCE ELE EGR DLDL "
+             "DLRI PKP AMO IMGNA SHFL ATP AAC AGN AAN AX1 AX2 AY1 AY2 APK"},
+            // The whole lens
+            {"NXT", [](R& r, C&) { r.next_surface(); }},
+            {"GTO",
+             [](R& r, C& c) {
+                 const int last = static_cast<int>(r.surfaces_.size()) - 1;
+                 r.current_ = static_cast<std::size_t>(
+                     r.lines_.whole_number_of(c.size() > 0 ? c[0].text : "", "the surface", 0, last));
+                 r.lines_.set_surface(r.row().number);
+             }},
+            {"END", [](R& r, C& c) { r.end_lens(c); }},
+            {"UNI", [](R& r, C& c) { r.unit_ = positive(r, c); }},
+            {"EBR", [](R& r, C& c) { r.beam_radius_ = positive(r, c); }},
+            {"FNO", [](R& r, C& c) { set_aperture(r, ApertureKind::working_f_number, positive(r, c)); }},
+            {"NAO", [](R& r, C& c) { set_aperture(r, ApertureKind::object_aperture, positive(r, c)); }},
+            {"NAP", [](R& r, C& c) { set_aperture(r, ApertureKind::image_aperture, positive(r, c)); }},
+            {"PUK",
+             [](R& r, C& c) {
+                 set_aperture(r, ApertureKind::image_aperture, std::sin(std::atan(std::fabs(c.number(0, c.word)))));
+             }},
+            {"ANG", [](R& r, C& c) { set_field(r, c, FieldKind::angle_deg); }},
+            {"OBH", [](R& r, C& c) { set_field(r, c, FieldKind::object_height); }},
+            {"GIH", [](R& r, C& c) { set_field(r, c, FieldKind::image_height); }},
+            {"TELE",
+             [](R& r, C& c) {
+                 if (c.capital(0) == "ON") r.remark("TELE (a telecentric object) is left out");
+             }},
+            // Surfaces
+            {"RD RDF",
+             [](R& r, C& c) {
+                 const double radius = c.size() > 0 && is_infinity(c[0].text) ? 0 : c.number(0, "the radius");
+                 r.row().curvature = std::fabs(radius) > 1e17 ? 0 : curvature_of(radius);
+             }},
+            {"CV CVF", [](R& r, C& c) { r.row().curvature = c.number(0, "the curvature"); }},
+            {"TH THF",
+             [](R& r, C& c) {
+                 const bool is_infinite = c.size() > 0 && is_infinity(c[0].text);
+                 if (is_infinite && r.current_ > 0)
+                     r.lines_.fail("the thickness is infinite; only the object may be as far away");
+                 r.row().thickness = is_infinite ? kInfinity : c.number(0, "the thickness");
+             }},
+            {"CC", [](R& r, C& c) { r.row().conic = c.number(0, "the conic"); }},
+            {"AST",
+             [](R& r, C&) {
+                 for (OsloSurface& other : r.surfaces_) other.row.is_stop = false;
+                 r.row().is_stop = true;
+             }},
+            {"AIR AIF RFL RFH",
+             [](R& r, C& c) {
+                 r.row().is_mirror = c.word[0] == 'R';
+                 r.surface().medium = {};
+             }},
+            {"GLA GLF", [](R& r, C& c) { r.read_glass(c); }},
+            {"AP APF", [](R& r, C& c) { r.read_aperture(c); }},
+            {"PK", [](R& r, C& c) { r.read_pickup(c); }},
+            {"PU", [](R& r, C& c) { r.surface().axial_slope = c.number(0, "the slope of the axial ray"); }},
+            {"PY", [](R& r, C& c) { r.surface().axial_height = c.number(0, "the height of the axial ray"); }},
+            {"AD AE AF AG",
+             [](R& r, C& c) {
+                 r.surface().plain_terms[4 + 2 * (c.word[1] - 'D')] = c.number(0, "the coefficient " + c.word);
+             }},
+            {"ASP",
+             [](R& r, C& c) {
+                 const std::string kind = c.capital(0, 10);
+                 if (kind == "ASR" || kind == "1" || kind == "ARA")
+                     r.surface().aspheric_step = kind == "ARA" ? 1 : 2;
+                 else if (kind != "ADO" && kind != "0")
+                     r.foreign("an aspheric surface of the kind " + printable(kind));
+             }},
+            // Features that are not modelled
+            {"DCX DCY DCZ TLA TLB TLC TOX TOY TOZ", add_unless_0, "a tilt or decentre"},
+            {"CVX RDX", add_unless_0, "a toric surface"},
+            {"PFL", add_unless_0, "a perfect lens"},
+            {"GSP", add_unless_0, "a grating"},
+            {"APN", add_unless_0, "a special aperture"},
+            {"DOR", add_unless_0, "a diffractive surface"},
+            {"HOR", add_unless_0, "a hologram"},
+            {"PUC PYC", add, "a solve of the chief ray"},
+            {"EC", add, "a solve of the edge"},
+            {"PI PIC", add, "a solve of the angle"},
+            {"BEN", add, "a bent axis"},
+            {"GC", add, "global coordinates"},
+            {"RCO", add, "a return of coordinates"},
+            {"GOR", add, "a grating"},
+            {"TIR", add, "total internal reflection"},
+            {"ELI NAC", add, "a non-sequential element"},
+            {"GRC GRD GRT", add, "a glass with a gradient"},
+            {"SPL", add, "a spline surface"},
+            {"ARR", add, "an array of lenses"},
+            {"EIK", add, "an eikonal surface"},
+            {"FZL FRN", add, "a Fresnel surface"},
+            {"LMO",
+             [](R& r, C& c) {
+                 if (c.capital(0) == "NSS") r.foreign("a non-sequential group (LMO NSS)");
+             }},
+        };
+        return table;
+    }
+
+    OsloSurface& surface() { return surfaces_[current_]; }
+    PrescriptionSurface& row() { return surfaces_[current_].row; }
+
+    /// Reads the commands of a line, separated by ';'; "//" begins a remark.
+    void read_line(std::string_view line) {
+        std::size_t begin = 0;
+        bool quoted = false;
+        for (std::size_t i = 0; i < line.size(); ++i) {
+            if (line[i] == '"') quoted = !quoted;
+            if (quoted) continue;
+            const bool is_remark = line.substr(i).starts_with("//");
+            if (line[i] != ';' && !is_remark) continue;
+            read_command(line.substr(begin, i - begin));
+            if (is_remark) return;
+            begin = i + 1;
+        }
+        read_command(line.substr(begin));
+    }
+
+    void read_command(std::string_view text) {
+        text = without_blanks(text);
+        const std::string word = upper_case(text.substr(0, std::min<std::size_t>(text.find_first_of(" \t,"), 20)));
+        const auto* known = commands().find(word);
+        // The words of ignored commands are not split: they may be free text.
+        if (word.empty() || (known && !known->read) || is_numbered(word, "SNO") || is_numbered(word, "WW")) return;
+        if (has_ended_) return read_late_command(word, text);
+        std::vector<LensWord> words = lines_.words(text);
+        words.erase(words.begin());
+        C c(lines_, word, std::move(words));
+        if (word == "LEN") return begin_lens(c);
+        if (surfaces_.empty()) return;  // skips the beginning of files of another kind
+        if (word.starts_with("WV")) return read_wavelengths(c);
+        if (word.size() < 6 && is_numbered(word, "AS")) {
+            surface().aspheric[std::stoi(word.substr(2))] = c.number(0, "the coefficient " + word);
+            if (surface().aspheric_step == 0) surface().aspheric_step = 2;
+        } else if (!commands().read(*this, c) && !word.starts_with("AVX") && !word.starts_with("AVY")) {
+            add_unknown(word);
+        }
+    }
+
+    /// Reads a command after END, where some programs write the wavelengths. Later commands are about other things,
+    /// with their own keywords.
+    void read_late_command(const std::string& word, std::string_view text) {
+        if (word == "CFG") remark("its further configurations (CFG) are left out");
+        has_late_wavelengths_ = has_late_wavelengths_ && word.starts_with("WV");
+        if (!has_late_wavelengths_) return;
+        std::vector<LensWord> words = lines_.words(text);
+        words.erase(words.begin());
+        read_wavelengths({lines_, word, std::move(words)});
+    }
+
+    void begin_lens(const C& c) {
+        if (!surfaces_.empty()) lines_.fail("a second lens (LEN); one is wanted");
+        if (c.capital(0) != "NEW") lines_.fail("LEN NEW is wanted, which begins a lens");
+        if (c.size() > 1) p_.title = std::string(c[1].text);
+        if (c.size() > 3) stated_last_ = c.whole(3, "the number of surfaces", 2, 1 << 20);
+        surfaces_.emplace_back().row.line = lines_.number();
+    }
+
+    void next_surface() {
+        check_count(++current_);
+        if (current_ == surfaces_.size()) {
+            surfaces_.emplace_back().row.line = lines_.number();
+            row().number = static_cast<int>(current_);
+        }
+        lines_.set_surface(static_cast<int>(current_));
+    }
+
+    void end_lens(const C& c) {
+        const int last = static_cast<int>(surfaces_.size()) - 1;
+        const int stated = c.size() > 0 ? c.whole(0, "the number of the image", 0, 1 << 20) : last;
+        lines_.set_surface(0);
+        for (const int number : {stated, stated_last_ < 0 ? last : stated_last_})
+            if (number != last)
+                lines_.fail("the image is surface " + std::to_string(last) + "; the file says that it is " +
+                            std::to_string(number));
+        has_ended_ = true;
+        has_late_wavelengths_ = wavelengths_.empty();
+    }
+
+    /// Reads WV and all wavelengths, or WV2 and the second one.
+    void read_wavelengths(const C& c) {
+        if (c.word.size() > 2) {
+            const std::string_view number = std::string_view(c.word).substr(2);
+            const int i = lines_.whole_number_of(number, "the number of the wavelength", 1, 1000);
+            wavelengths_[i] = c.number(0, "the wavelength");
+            return;
+        }
+        wavelengths_.clear();
+        for (std::size_t i = 0; i < c.size() && i < kMostFileFields; ++i)
+            wavelengths_[static_cast<int>(i) + 1] = c.number(i, "each wavelength");
+    }
+
+    void read_glass(const C& c) {
+        if (c.size() == 0) lines_.fail("GLA needs a glass");
+        row().is_mirror = false;
+        OsloMedium& medium = surface().medium = {};
+        medium.line = lines_.number();
+        const auto is_number = [&](std::size_t i) {
+            std::string_view rest = i < c.size() ? c[i].text : "";
+            return take_number(rest) && rest.empty();
+        };
+        const bool is_model = c.capital(0, 4) == "MOD", is_code = c.size() == 1 && glass_of_number(c[0].text);
+        if (!is_model && (!is_number(0) || is_code)) {
+            medium.glass = std::string(c[0].text);
+            return;
+        }
+        const std::size_t first = !is_model ? 0 : is_number(1) ? 1 : 2;  // a name may come between
+        for (std::size_t i = first; i < c.size() && medium.indices.size() < kMostFileIndices; ++i)
+            medium.indices.push_back(c.number(i, "the index"));
+        if (medium.indices.empty()) lines_.fail("GLA needs a glass, or its indices");
+        if (!is_model || medium.indices.size() != 2 || !(medium.indices[1] >= 10)) return;
+        medium.pair = AbbePair{medium.indices[0], medium.indices[1]};
+        medium.indices.clear();
+    }
+
+    void read_aperture(const C& c) {
+        std::size_t i = 0;
+        for (; i < c.size(); ++i) {
+            const std::string kind = c.capital(i, 4);
+            if (kind != "CHK" && kind != "UNC" && kind != "SPC") break;
+            row().blocks = kind == "CHK";
+        }
+        const double radius = c.number(i, "the radius of the aperture");
+        if (radius < 0) lines_.fail("the radius of the aperture must be positive");
+        // An object at infinity has a radius as large as its distance.
+        row().clear_semi_diameter = unit_ * radius > kLongest ? 0 : radius;
+    }
+
+    void read_pickup(const C& c) {
+        if (c.size() < 2) lines_.fail("PK needs what is picked up, and a surface");
+        const std::string what = c.capital(0, 8);
+        static const Keywords<R> known{{"CV CVM TH THM GLA AP"}};
+        if (!known.find(what)) return foreign("a pickup of " + printable(what) + " (PK)");
+        const int stated = c.whole(1, "the surface that is picked up", -1000, 1000);
+        // A negative number is relative to this surface.
+        const int from = stated < 0 ? row().number + stated : stated;
+        if (from < 0 || from >= row().number)
+            lines_.fail("PK " + what + " picks up from surface " + std::to_string(from) + "; one in front is wanted");
+        const double added = c.size() > 2 ? c.number(2, "what is added") : 0;
+        surface().pickups.push_back({what, from, added, lines_.number()});
+    }
+
+    void finish() {
+        if (surfaces_.size() < 3) fail_at("has no surface between object and image");
+        for (const auto& [i, um] : wavelengths_) wavelengths_um_.push_back(um);
+        std::vector<double> nm;
+        for (const double um : wavelengths_um_) nm.push_back(1000 * um);
+        set_wavelengths(nm, 0);
+        if (wavelengths_um_.empty()) wavelengths_um_ = {0.58756, 0.48613, 0.65627};  // OSLO's defaults
+        p_.wavelength_nm = 1000 * wavelengths_um_.front();
+        // Pickups refer to surfaces in front, whose own pickups are resolved by then.
+        for (OsloSurface& s : surfaces_)
+            for (const OsloSurface::Pickup& pickup : s.pickups) pick_up(s, pickup);
+        for (OsloSurface& s : surfaces_) s.row.material = material_of(s);
+        resolve_solves();
+        const PrescriptionSurface &object = surfaces_.front().row, &image = surfaces_.back().row;
+        set_object(object.thickness >= kFarAway ? kInfinity : unit_ * object.thickness, object.curvature, object.line);
+        p_.image_curvature = image.curvature;
+        if (!object.material.is_air()) add_foreign("an object inside a glass", object.line, 0);
+        p_.defocus = unit_ * image.thickness;
+        bool has_stop = false;
+        for (std::size_t i = 1; i + 1 < surfaces_.size(); ++i) has_stop = has_stop || surfaces_[i].row.is_stop;
+        if (!has_stop) surfaces_[1].row.is_stop = true;  // OSLO's default
+        for (std::size_t i = 1; i + 1 < surfaces_.size(); ++i) p_.surfaces.push_back(in_millimetres(surfaces_[i]));
+        finish_aperture();
+        tell_unknown("commands");
+    }
+
+    PrescriptionSurface in_millimetres(const OsloSurface& s) const {
+        PrescriptionSurface row = s.row;
+        row.curvature /= unit_;
+        row.thickness *= unit_;
+        row.clear_semi_diameter *= unit_;
+        if (row.is_mirror) row.material = Glass::air();
+        for (const auto& [power, value] : s.plain_terms) add_term(row, power, value, unit_);
+        for (const auto& [index, value] : s.aspheric) {
+            if (index == 0 && value != 0) fail_at("AS0 moves the vertex", row.line, row.number);
+            if (index > 0) add_term(row, s.aspheric_step * index, value, unit_);
+        }
+        return row;
+    }
+
+    void finish_aperture() {
+        if (field_) {
+            p_.field_kind = field_->first;
+            p_.fields = {{0, 0}, {0, (p_.field_kind == FieldKind::angle_deg ? 1 : unit_) * field_->second}};
+        }
+        const double radius = unit_ * beam_radius_.value_or(1);
+        if (!aperture_ && !beam_radius_) remark("it states no aperture: OSLO's beam radius of one unit is taken");
+        if (!aperture_ && std::isinf(p_.object_distance)) {
+            aperture_ = {ApertureKind::entrance_pupil_diameter, 2 * radius};
+        } else if (!aperture_) {  // the beam has this radius at the first surface, wherever the pupil is
+            aperture_ = {ApertureKind::object_aperture, std::sin(std::atan(radius / std::fabs(p_.object_distance)))};
+        }
+        std::tie(p_.aperture_kind, p_.aperture) = *aperture_;
+    }
+
+    void pick_up(OsloSurface& s, const OsloSurface::Pickup& pickup) const {
+        const OsloSurface& from = surfaces_[static_cast<std::size_t>(pickup.from)];
+        const auto fail = [&](const std::string& message) { fail_at(message, pickup.line, s.row.number); };
+        const auto refuse_solve = [&](const std::string& what, const std::optional<double>& solve) {
+            if (solve)
+                fail("picks up the " + what + " of surface " + std::to_string(from.row.number) +
+                     ", which a solve has; a stated one is wanted");
+        };
+        const double sign = pickup.what.ends_with('M') ? -1 : 1;
+        if (pickup.what.starts_with("CV")) {  // the complete shape
+            refuse_solve("curvature", from.axial_slope);
+            s.row.curvature = sign * from.row.curvature + pickup.added;
+            s.row.conic = from.row.conic;
+            s.aspheric_step = from.aspheric_step;
+            s.aspheric = from.aspheric;
+            s.plain_terms = from.plain_terms;
+            for (auto* terms : {&s.aspheric, &s.plain_terms})
+                for (auto& [power, value] : *terms) value *= sign;
+        } else if (pickup.what.starts_with("TH")) {
+            refuse_solve("thickness", from.axial_height);
+            s.row.thickness = sign * from.row.thickness + pickup.added;
+        } else if (pickup.what == "AP") {
+            s.row.clear_semi_diameter = from.row.clear_semi_diameter;
+        } else {
+            if (from.row.is_mirror) fail("picks up the glass of a mirror");
+            s.row.is_mirror = false;
+            s.medium = from.medium;
+            s.medium.line = pickup.line;
+        }
+    }
+
+    Glass named_glass(const std::string& name) {
+        // OSLO's files name no maker; OSLO searches Schott's catalogue first, which shares plain names with other
+        // makers.
+        const std::vector<std::string> first{"SCHOTT"};
+        if (!glasses_.in_catalogue(name, first)) return glasses_.find(name, {});
+        if (!glasses_.in_catalogue(name, {}))
+            remark("the glass " + in_quotes(name) + ", whose name several makers use, is taken for Schott's");
+        return glasses_.find(name, first);
+    }
+
+    Glass material_of(const OsloSurface& s) {
+        const auto& [glass, indices, pair, line] = s.medium;
+        try {
+            if (pair) return glass_of_pair(pair->n_d, pair->v_d);
+            if (!glass.empty()) return named_glass(glass);
+            if (indices.empty() || s.row.is_mirror) return Glass::air();
+            if (is_constant(indices)) return glass_of_pair(indices.front(), 0);
+            if (indices.size() != wavelengths_um_.size())
+                throw InputError("has " + std::to_string(indices.size()) + " indices for " +
+                                 std::to_string(wavelengths_um_.size()) + " wavelengths (WV)");
+            std::vector<double> nm;
+            for (const double um : wavelengths_um_) nm.push_back(1000 * um);
+            return glass_of_indices(nm, indices, "glass of surface " + std::to_string(s.row.number));
+        } catch (const InputError& error) {
+            throw LensReadError(error, p_.file, line, s.row.number);
+        }
+    }
+
+    /// Resolves solves, whose results a file does not always contain, by tracing the marginal ray through the surfaces
+    /// in order, in the file's unit. Only a beam radius determines the height of the ray; a solve for height 0 does not
+    /// need it.
+    void resolve_solves() {
+        const double object = surfaces_.front().row.thickness, radius = beam_radius_.value_or(1);
+        ParaxialRay ray{radius, object >= kFarAway ? 0 : radius / object};
+        double index = surfaces_.front().row.material.index(p_.wavelength_nm), sign = 1;
+        for (std::size_t i = 1; i + 1 < surfaces_.size(); ++i) {
+            auto& [row, aspheric, plain_terms, step, medium, pickups, axial_slope, axial_height] = surfaces_[i];
+            const auto fail = [&, line = row.line, number = row.number](const std::string& message) {
+                fail_at(message, line, number);
+            };
+            // Light returns through the medium in front of a mirror.
+            if (row.is_mirror) row.material = surfaces_[i - 1].row.material;
+            const double before = sign * index;
+            if (row.is_mirror) sign = -sign;
+            index = row.material.index(p_.wavelength_nm);
+            const double after = sign * index;
+            if ((axial_slope || axial_height.value_or(0) != 0) && aperture_)
+                fail("a solve of the axial ray (PU, PY) needs the radius of the beam (EBR)");
+            if (axial_slope) {
+                const double bend = ray.height * (after - before);
+                if (bend == 0) fail("no curvature gives the axial ray the slope of the solve (PU)");
+                row.curvature = (before * ray.slope - after * *axial_slope) / bend;
+            }
+            ray = refract_paraxial(ray, row.curvature, before, after);
+            if (axial_height) {
+                if (ray.slope == 0) fail("no thickness gives the axial ray the height of the solve (PY)");
+                row.thickness = (*axial_height - ray.height) / ray.slope;
+            }
+            ray.height += row.thickness * ray.slope;
+        }
+    }
+
+    std::vector<OsloSurface> surfaces_;  ///< including object and image
+    std::size_t current_ = 0;
+    bool has_ended_ = false, has_late_wavelengths_ = false;
+    int stated_last_ = -1;  ///< number of the image surface, from the first line
+    double unit_ = 1;  ///< mm
+    std::map<int, double> wavelengths_;  ///< um, from 1
+    std::vector<double> wavelengths_um_;  ///< the same, or OSLO's defaults
+    std::optional<double> beam_radius_;  ///< at the first surface, in the file's unit
+    std::optional<std::pair<ApertureKind, double>> aperture_;
+    std::optional<std::pair<FieldKind, double>> field_;
+};
 
 }  // namespace
 
-OsloReader::OsloReader(std::string_view text, const std::string& file, LensGlasses& glasses)
-    : lines_(text, file, glasses.options().keep_going), glasses_(glasses) {
-    p_.file = file;
-    p_.format = "OSLO";
-}
-
-Prescription OsloReader::read() {
-    std::string_view line;
-    while (lines_.next(line)) read_line(line);
-    if (rows_.empty()) throw LensFileError("begins no lens (LEN NEW)", p_.file);
-    if (!has_ended_) throw LensFileError("the file ends too early: END is wanted", p_.file);
-    finish();
-    return std::move(p_);
-}
-
-double OsloReader::number(const Words& words, std::size_t i, const std::string& what) const {
-    if (i >= words.size()) lines_.fail(what + " is missing");
-    return lines_.number_of(words[i].text, what);
-}
-
-void OsloReader::foreign(const std::string& what) {
-    const int number = rows_.empty() ? 0 : rows_[current_].number;
-    if (foreign_.emplace(what, number).second) p_.foreign.push_back({what, lines_.number(), number});
-}
-
-void OsloReader::read_line(std::string_view line) {
-    std::size_t begin = 0;
-    bool quoted = false;
-    for (std::size_t i = 0; i < line.size(); ++i) {
-        if (line[i] == '"') quoted = !quoted;
-        if (quoted) continue;
-        const bool is_remark = line.substr(i).starts_with("//");
-        if (line[i] != ';' && !is_remark) continue;
-        read_command(line.substr(begin, i - begin));
-        if (is_remark) return;
-        begin = i + 1;
-    }
-    read_command(line.substr(begin));
-}
-
-void OsloReader::read_command(std::string_view text) {
-    text = without_blanks(text);
-    const std::string word = upper_case(text.substr(0, std::min<std::size_t>(text.find_first_of(" \t,"), 20)));
-    if (word.empty() || is_harmless(word)) return;
-    if (has_ended_) {
-        // Some programs write the wavelengths here. Later commands are about other things, with their own keywords.
-        if (word.starts_with("WV") && has_late_wavelengths_)
-            read_wavelengths(word, lines_.words(text));
-        else
-            has_late_wavelengths_ = false;
-        if (word == "CFG" && !has_configurations_) {
-            has_configurations_ = true;
-            p_.remarks.push_back("its further configurations (CFG) are left out");
-        }
-        return;
-    }
-    const Words words = lines_.words(text);
-    if (word == "LEN") return begin_lens(words);
-    if (rows_.empty()) return;  // skips the beginning of files of another kind
-    if (word == "NXT") return next_surface();
-    if (word == "END") return end_lens(words);
-    if (word == "GTO") {
-        current_ = static_cast<std::size_t>(lines_.whole_number_of(words.size() > 1 ? words[1].text : "", "the surface",
-                                                                   0, static_cast<int>(rows_.size()) - 1));
-        return lines_.set_surface(rows_[current_].number);
-    }
-    if (read_system(word, words) || read_surface(word, words)) return;
-    if (unknown_.size() < kMostUnknown) unknown_.insert(printable(word));
-}
-
-void OsloReader::begin_lens(const Words& words) {
-    if (!rows_.empty()) lines_.fail("a second lens (LEN); one is wanted");
-    if (words.size() < 2 || upper_case(words[1].text) != "NEW") lines_.fail("LEN NEW is wanted, which begins a lens");
-    if (words.size() > 2) p_.title = std::string(words[2].text);
-    if (words.size() > 4) stated_last_ = lines_.whole_number_of(words[4].text, "the number of surfaces", 2, 1 << 20);
-    rows_.emplace_back().line = lines_.number();
-}
-
-void OsloReader::next_surface() {
-    ++current_;
-    if (current_ >= kMostFileSurfaces)
-        lines_.fail("the file has more than " + std::to_string(kMostFileSurfaces) + " surfaces");
-    if (current_ == rows_.size()) {
-        rows_.emplace_back().line = lines_.number();
-        rows_.back().number = static_cast<int>(current_);
-    }
-    lines_.set_surface(static_cast<int>(current_));
-}
-
-void OsloReader::end_lens(const Words& words) {
-    const int last = static_cast<int>(rows_.size()) - 1;
-    const int stated =
-        words.size() > 1 ? lines_.whole_number_of(words[1].text, "the number of the image", 0, 1 << 20) : last;
-    lines_.set_surface(0);
-    for (const int number : {stated, stated_last_ < 0 ? last : stated_last_})
-        if (number != last)
-            lines_.fail("the image is surface " + std::to_string(last) + "; the file says that it is " +
-                        std::to_string(number));
-    has_ended_ = true;
-    has_late_wavelengths_ = wavelengths_.empty();
-}
-
-bool OsloReader::read_system(const std::string& word, const Words& words) {
-    const auto positive = [&] {
-        const double value = number(words, 1, word);
-        if (!(value > 0)) lines_.fail(word + " must be positive");
-        return value;
-    };
-    if (word == "UNI") {
-        unit_ = positive();
-    } else if (word == "EBR") {
-        beam_radius_ = positive();
-    } else if (word == "FNO") {
-        aperture_ = {ApertureKind::working_f_number, positive()};
-    } else if (word == "NAO") {
-        aperture_ = {ApertureKind::object_aperture, positive()};
-    } else if (word == "NAP") {
-        aperture_ = {ApertureKind::image_aperture, positive()};
-    } else if (word == "PUK") {
-        aperture_ = {ApertureKind::image_aperture, std::sin(std::atan(std::fabs(number(words, 1, word))))};
-    } else if (word == "ANG") {
-        field_ = {FieldKind::angle_deg, std::fabs(number(words, 1, word))};
-    } else if (word == "OBH") {
-        field_ = {FieldKind::object_height, std::fabs(number(words, 1, word))};
-    } else if (word == "GIH") {
-        field_ = {FieldKind::image_height, std::fabs(number(words, 1, word))};
-    } else if (word == "TELE") {
-        if (words.size() > 1 && upper_case(words[1].text) == "ON")
-            p_.remarks.push_back("TELE (a telecentric object) is left out");
-    } else {
-        return read_wavelengths(word, words);
-    }
-    return true;
-}
-
-bool OsloReader::read_wavelengths(const std::string& word, const Words& words) {
-    if (!word.starts_with("WV")) return false;
-    if (word.size() > 2) {  // WV2
-        const int i = lines_.whole_number_of(std::string_view(word).substr(2), "the number of the wavelength", 1, 1000);
-        wavelengths_[i] = number(words, 1, "the wavelength");
-    } else {
-        wavelengths_.clear();
-        for (std::size_t i = 1; i < words.size() && i <= kMostFileFields; ++i)
-            wavelengths_[static_cast<int>(i)] = number(words, i, "each wavelength");
-    }
-    return true;
-}
-
-std::vector<double> OsloReader::wavelengths_um() const {
-    if (wavelengths_.empty()) return {0.58756, 0.48613, 0.65627};  // OSLO's defaults
-    std::vector<double> list;
-    for (const auto& [i, um] : wavelengths_) list.push_back(um);
-    return list;
-}
-
-void OsloReader::finish() {
-    if (rows_.size() < 3) throw LensFileError("has no surface between object and image", p_.file);
-    p_.wavelength_nm = 1000 * wavelengths_um().front();
-    for (const auto& [i, um] : wavelengths_) p_.wavelengths_nm.push_back(1000 * um);
-    if (wavelengths_.empty()) p_.remarks.push_back("it states no wavelength: that of the d line is taken");
-    resolve_pickups();
-    for (const OsloSurface& s : rows_) media_.push_back(medium_of(s));
-    resolve_solves();
-    const double object = rows_.front().thickness;
-    p_.object_distance = object >= kFarAway ? kInfinity : unit_ * object;
-    if (rows_.front().curvature != 0 && std::isfinite(p_.object_distance))
-        p_.foreign.push_back({"a curved object", rows_.front().line, 0});
-    p_.image_curvature = rows_.back().curvature;
-    if (!media_.front().is_air()) p_.foreign.push_back({"an object inside a glass", rows_.front().line, 0});
-    p_.defocus = unit_ * rows_.back().thickness;
-    bool has_stop = false;
-    for (std::size_t i = 1; i + 1 < rows_.size(); ++i) has_stop = has_stop || rows_[i].is_stop;
-    for (std::size_t i = 1; i + 1 < rows_.size(); ++i) {
-        const OsloSurface& s = rows_[i];
-        PrescriptionSurface row;
-        row.line = s.line;
-        row.number = s.number;
-        row.curvature = s.curvature / unit_;
-        row.conic = s.conic;
-        const auto term = [&](int power, double value) {
-            if (value != 0) row.aspheric[power] += value * std::pow(unit_, 1 - power);
-        };
-        for (const auto& [power, value] : s.plain_terms) term(power, value);
-        for (const auto& [index, value] : s.aspheric) {
-            if (index == 0 && value != 0) throw LensFileError("AS0 moves the vertex", p_.file, s.line, s.number);
-            if (index > 0) term(s.aspheric_step * index, value);
-        }
-        row.thickness = unit_ * s.thickness;
-        row.is_mirror = s.is_mirror;
-        row.is_stop = has_stop ? s.is_stop : i == 1;  // OSLO's default
-        if (!s.is_mirror) row.material = media_[i];
-        row.clear_semi_diameter = unit_ * s.semi_diameter;
-        row.blocks = s.is_checked;
-        p_.surfaces.push_back(std::move(row));
-    }
-    finish_aperture();
-    if (!unknown_.empty()) p_.remarks.push_back("commands that are not known were left out: " + short_list(unknown_));
-}
-
-void OsloReader::finish_aperture() {
-    if (field_) {
-        const double scale = field_->first == FieldKind::angle_deg ? 1 : unit_;
-        p_.field_kind = field_->first;
-        p_.fields = {{0, 0}, {0, scale * field_->second}};
-    }
-    if (aperture_) {
-        p_.aperture_kind = aperture_->first;
-        p_.aperture = aperture_->second;
-        return;
-    }
-    if (!beam_radius_) p_.remarks.push_back("it states no aperture: OSLO's beam radius of one unit is taken");
-    const double radius = unit_ * beam_radius_.value_or(1);
-    if (std::isinf(p_.object_distance)) {
-        p_.aperture_kind = ApertureKind::entrance_pupil_diameter;
-        p_.aperture = 2 * radius;
-    } else {  // the beam has this radius at the first surface, wherever the pupil is
-        p_.aperture_kind = ApertureKind::object_aperture;
-        p_.aperture = std::sin(std::atan(radius / std::fabs(p_.object_distance)));
-    }
-}
-
 Prescription read_oslo(std::string_view text, const std::string& file, LensGlasses& glasses) {
-    return OsloReader(text, file, glasses).read();
+    return OsloReader("OSLO", text, file, glasses).read();
 }
 
 }  // namespace realcam::io

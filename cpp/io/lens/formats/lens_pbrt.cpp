@@ -11,7 +11,6 @@
 #include "../../text/printable.hpp"
 #include "../lens_format.hpp"
 #include "../lens_material.hpp"
-#include "../lens_readers.hpp"
 #include "../lens_text.hpp"
 
 namespace realcam::io {
@@ -23,9 +22,9 @@ PbrtThickness pbrt_thickness_named(const std::string& name) {
                      in_quotes(name));
 }
 
-Prescription read_pbrt(std::string_view text, const std::string& file, const LensReadOptions& options) {
-    const PbrtThickness thickness = options.pbrt_thickness;
-    LensLines lines(text, file, options.keep_going);
+Prescription read_pbrt(std::string_view text, const std::string& file, LensGlasses& glasses) {
+    const PbrtThickness thickness = glasses.options().pbrt_thickness;
+    LensLines lines(text, file, glasses.options().keep_going);
     Prescription p;
     p.file = file;
     p.format = "pbrt";

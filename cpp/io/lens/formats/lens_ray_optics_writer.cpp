@@ -1,42 +1,38 @@
 // Writes ray-optics' .roa: the data of its sequential model; the program computes other data itself.
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 
-#include "../../../math/hypotenuse.hpp"
-#include "../../../optics/lens/paraxial.hpp"
 #include "../../text/json_writer.hpp"
-#include "../../text/printable.hpp"
-#include "../lens_form_terms.hpp"
 #include "../lens_glass.hpp"
-#include "../lens_writers.hpp"
+#include "prescription_writer.hpp"
 
 namespace realcam::io {
 namespace {
 
 constexpr double kFarAway = 1e10;  // ray-optics' infinity
 
-class RayOpticsWriter {
+class RayOpticsWriter : PrescriptionWriter {
 public:
-    explicit RayOpticsWriter(const LensSystem& lens) : lens_(lens) {}
+    explicit RayOpticsWriter(const LensSystem& lens) : PrescriptionWriter(lens, "ray-optics") {}
 
     LensText write() {
-        result_.warnings = left_out_of_foreign_files(lens_, "ray-optics");
         if (!lens_.zoom.positions.empty())
-            result_.warnings.push_back("zoom positions, which a ray-optics file has no word for");
+            result_.warnings.emplace_back("zoom positions, which a ray-optics file has no word for");
         json_.begin_object().key("optical_model");
         begin("rayoptics.optical.opticalmodel", "OpticalModel");
-        json_.key("ro_version").text("0.9.8").key("radius_mode").truth(false);
-        write_system();
+        json_.text("ro_version", "0.9.8").truth("radius_mode", false).key("system_spec");
+        begin("rayoptics.optical.opticalmodel", "SystemSpec");
+        json_.text("title", title()).text("initials", "").text("_dimensions", "mm");
+        json_.number("temperature", 20).number("pressure", 760);
+        end();
         write_sequence();
         write_specification();
-        json_.key("profile_dict").begin_object();
+        json_.begin_object("profile_dict");
         for (std::size_t i = 0; i < lens_.surfaces.size(); ++i) write_profile(i);
-        json_.key("0");
-        write_sphere(0);
-        json_.key(image_name());
-        // The sag of the film is measured along the light, and that of the file along the axis.
-        write_sphere((lens_.film_distance < 0 ? -1 : 1) / lens_.film_radius_of_curvature);
+        write_sphere("0", 0);
+        write_sphere(name_of(lens_.surfaces.size()), image_curvature());
         json_.end();
         end();
         json_.end();
@@ -45,76 +41,52 @@ public:
     }
 
 private:
-    void begin(const char* module, const char* type) {
-        json_.begin_object().key("__instance_type__").begin_array().text(module).text(type).end();
-        json_.key("attributes").begin_object();
+    /// Begins an object of a class of Python, as the value of the last key or as an element.
+    JsonWriter& begin(const std::string& module, const char* type) {
+        json_.begin_object().begin_array("__instance_type__").text(module).text(type).end();
+        return json_.begin_object("attributes");
+    }
+    JsonWriter& begin_part(const char* key, const char* type) {
+        json_.key(key);
+        return begin("rayoptics.raytr.opticalspec", type);
     }
     void end() { json_.end().end(); }
 
-    void write_array(const std::vector<double>& values) {
-        json_.begin_object().key("__ndarray__");
-        write_list(values);
-        json_.key("dtype").text("float64").key("shape").begin_array();
-        json_.number(static_cast<double>(values.size())).end().end();
-    }
-    void write_list(const std::vector<double>& values) {
-        json_.begin_array();
-        for (const double value : values) json_.number(value);
-        json_.end();
+    void write_array(const char* key, const std::vector<double>& values) {
+        json_.begin_object(key).numbers("__ndarray__", values).text("dtype", "float64");
+        json_.numbers("shape", {static_cast<double>(values.size())}).end();
     }
 
-    std::string image_name() const { return std::to_string(lens_.surfaces.size() + 1); }
-    void leave_out(std::size_t i, const std::string& what) {
-        result_.warnings.push_back("surface " + std::to_string(i + 1) + ' ' + what);
-    }
-
-    void write_system() {
-        json_.key("system_spec");
-        begin("rayoptics.optical.opticalmodel", "SystemSpec");
-        json_.key("title").text(printable(lens_.title.empty() ? lens_.name : lens_.title)).key("initials").text("");
-        json_.key("_dimensions").text("mm").key("temperature").number(20).key("pressure").number(760);
-        end();
-    }
+    static std::string name_of(std::size_t surface) { return std::to_string(surface + 1); }
 
     void write_sequence() {
+        const std::size_t count = lens_.surfaces.size();
         json_.key("seq_model");
-        begin("rayoptics.seq.sequential", "SequentialModel");
-        json_.key("ifcs").begin_array();
-        write_interface("0", "Obj", "dummy", 0.5 * lens_.film_width, nullptr, {});
-        for (std::size_t i = 0; i < lens_.surfaces.size(); ++i) {
+        begin("rayoptics.seq.sequential", "SequentialModel").begin_array("ifcs");
+        write_interface("0", "Obj", "dummy", 0.5 * lens_.film_width, {}, count);
+        for (std::size_t i = 0; i < count; ++i) {
             const Surface& s = lens_.surfaces[i];
             const char* mode = s.type == SurfaceType::mirror ? "reflect" : "transmit";
-            write_interface(std::to_string(i + 1), "", mode, s.clear_semi_diameter, &s, s.placement);
+            write_interface(name_of(i), "", mode, s.clear_semi_diameter, s.placement, i);
         }
-        write_interface(image_name(), "Img", "dummy", 0.5 * hypotenuse(lens_.film_width, lens_.film_height), nullptr,
-                        lens_.film_placement);
-        json_.end();
-        json_.key("gaps").begin_array();
-        const double object = lens_.focus_distance - lens_.film_position();
-        const Glass air = Glass::air();
-        write_gap(std::isfinite(object) ? object : kFarAway, air);
-        const Glass* medium = &air;
-        for (std::size_t i = 0; i < lens_.surfaces.size(); ++i) {
-            const Surface& s = lens_.surfaces[i];
-            if (s.type == SurfaceType::refracting) medium = &s.material;
-            write_gap(i + 1 == lens_.surfaces.size() ? lens_.film_distance : s.thickness, *medium);
-        }
-        json_.end();
-        json_.key("stop_surface").number(lens_.stop_index() + 1);
-        json_.key("cur_surface").number(static_cast<double>(lens_.surfaces.size()));
-        json_.key("do_apertures").truth(false);
+        write_interface(name_of(count), "Img", "dummy", corner(), lens_.film_placement, count);
+        json_.end().begin_array("gaps");
+        write_gap(std::isfinite(object_distance()) ? object_distance() : kFarAway, Glass::air());
+        for (std::size_t i = 0; i < count; ++i) write_gap(thickness(i), medium_behind(i));
+        json_.end().number("stop_surface", lens_.stop_index() + 1);
+        json_.number("cur_surface", static_cast<double>(count)).truth("do_apertures", false);
         end();
     }
 
-    void write_interface(const std::string& profile, const char* label, const char* mode, double rim, const Surface* s,
-                         const SurfacePlacement& place) {
-        begin("rayoptics.elem.surface", "Surface");
-        json_.key("label").text(label).key("delta_n").number(0).key("interact_mode").text(mode);
-        json_.key("profile_id").text(profile).key("max_aperture").number(rim).key("decenter");
+    /// `surface`: the one that has apertures; their number, if there is none.
+    void write_interface(const std::string& profile, const char* label, const char* mode, double rim,
+                         const SurfacePlacement& place, std::size_t surface) {
+        begin("rayoptics.elem.surface", "Surface").text("label", label).number("delta_n", 0);
+        json_.text("interact_mode", mode).text("profile_id", profile).number("max_aperture", rim).key("decenter");
         write_decentre(place);
-        json_.key("clear_apertures").begin_array();
-        if (s) write_apertures(*s);
-        json_.end().key("edge_apertures").begin_array().end();
+        json_.begin_array("clear_apertures");
+        if (surface < lens_.surfaces.size()) write_apertures(surface);
+        json_.end().numbers("edge_apertures", {});
         end();
     }
 
@@ -123,56 +95,52 @@ private:
             json_.null();
             return;
         }
-        begin("rayoptics.elem.surface", "DecenterData");
-        json_.key("_dtype").text(place.returns ? "dec and return" : "decenter").key("dec");
-        write_array({place.decentre.x, place.decentre.y, place.decentre.z});
-        // The first two angles are positive clockwise.
-        json_.key("euler");
-        write_array({-place.tilt_deg.x, -place.tilt_deg.y, place.tilt_deg.z});
-        json_.key("rot_pt");
-        write_array({0, 0, 0});
-        json_.key("rot_mat").null();
+        const auto& [decentre, tilt, returns] = place;
+        begin("rayoptics.elem.surface", "DecenterData").text("_dtype", returns ? "dec and return" : "decenter");
+        write_array("dec", {decentre.x, decentre.y, decentre.z});
+        write_array("euler", {-tilt.x, -tilt.y, tilt.z});  // the first two angles are positive clockwise
+        write_array("rot_pt", {0, 0, 0});
+        json_.null("rot_mat");
         end();
     }
 
-    void write_aperture(const char* type, Vec2d half, Vec2d offset, bool blocks) {
-        begin("rayoptics.elem.surface", type);
-        json_.key("x_offset").number(offset.x).key("y_offset").number(offset.y).key("rotation").number(0);
-        json_.key("is_obscuration").truth(blocks);
-        if (std::string_view(type) == "Circular")
-            json_.key("radius").number(half.x);
+    void write_aperture(ApertureOutline kind, Vec2d half, Vec2d offset, bool blocks) {
+        const bool is_circle = kind == ApertureOutline::circle;
+        begin("rayoptics.elem.surface", is_circle                            ? "Circular"
+                                        : kind == ApertureOutline::rectangle ? "Rectangular"
+                                                                             : "Elliptical");
+        json_.number("x_offset", offset.x).number("y_offset", offset.y).number("rotation", 0);
+        json_.truth("is_obscuration", blocks);
+        if (is_circle)
+            json_.number("radius", half.x);
         else
-            json_.key("x_half_width").number(half.x).key("y_half_width").number(half.y);
+            json_.number("x_half_width", half.x).number("y_half_width", half.y);
         end();
     }
 
-    void write_apertures(const Surface& s) {
-        const auto i = static_cast<std::size_t>(&s - lens_.surfaces.data());
+    void write_apertures(std::size_t i) {
+        const Surface& s = lens_.surfaces[i];
         const ApertureShape& shape = s.aperture_shape;
-        const bool is_stop = s.type == SurfaceType::stop;
-        const double rim = is_stop ? lens_.stop_semi_diameter : s.clear_semi_diameter;
-        write_aperture("Circular", {rim, rim}, {0, 0}, false);
-        if (s.inner_semi_diameter > 0)
-            write_aperture("Circular", {s.inner_semi_diameter, s.inner_semi_diameter}, {0, 0}, true);
+        const double rim = s.type == SurfaceType::stop ? lens_.stop_semi_diameter : s.clear_semi_diameter;
+        write_aperture(ApertureOutline::circle, {rim, rim}, {0, 0}, false);
+        if (const double inner = s.inner_semi_diameter; inner > 0)
+            write_aperture(ApertureOutline::circle, {inner, inner}, {0, 0}, true);
         if (shape.kind == ApertureOutline::polygon)
             leave_out(i, "has a polygonal aperture, which a ray-optics file has no word for");
         else if (shape.half.x > 0)
-            write_aperture(shape.kind == ApertureOutline::circle      ? "Circular"
-                           : shape.kind == ApertureOutline::rectangle ? "Rectangular"
-                                                                      : "Elliptical",
-                           shape.half, shape.offset, false);
+            write_aperture(shape.kind, shape.half, shape.offset, false);
         for (const Obscuration& piece : shape.obscurations) {
             const bool is_turned = piece.angle_deg != 0 && (piece.is_rectangle || piece.half.x != piece.half.y);
             if (is_turned)
                 leave_out(i, "has an obscuration that is turned, which a ray-optics file has no word for");
             else
-                write_aperture(piece.is_rectangle ? "Rectangular" : "Elliptical", piece.half, piece.offset, true);
+                write_aperture(piece.is_rectangle ? ApertureOutline::rectangle : ApertureOutline::ellipse, piece.half,
+                               piece.offset, true);
         }
     }
 
     void write_gap(double thickness, const Glass& medium) {
-        begin("rayoptics.seq.gap", "Gap");
-        json_.key("thi").number(thickness).key("medium");
+        begin("rayoptics.seq.gap", "Gap").number("thi", thickness).key("medium");
         write_medium(medium);
         end();
     }
@@ -181,133 +149,96 @@ private:
         static const std::map<std::string, const char*> makers{{"schott", "SchottGlass"}, {"ohara", "OharaGlass"},
                                                                {"hoya", "HoyaGlass"},     {"cdgm", "CDGMGlass"},
                                                                {"hikari", "HikariGlass"}, {"sumita", "SumitaGlass"}};
+        std::vector<double> wavelengths, indices;
+        for (const auto& [nm, index] : indices_at_lines(glass, lens_.wavelength_nm)) {
+            wavelengths.push_back(nm);
+            indices.push_back(index);
+        }
+        const auto known = catalogue_name_of(glass);
         if (glass.is_air()) {
             begin("opticalglass.opticalmedium", "Air");
-            return end();
-        }
-        const std::vector<Glass::TablePoint> points = indices_at_lines(glass, lens_.wavelength_nm);
-        const bool is_constant = std::all_of(points.begin(), points.end(),
-                                             [&](const auto& point) { return point.index == points.front().index; });
-        if (const auto known = catalogue_name_of(glass); known && makers.contains(known->maker)) {
-            begin(("opticalglass." + known->maker).c_str(), makers.at(known->maker));
-            json_.key("gname").text(known->name);
-        } else if (is_constant) {
-            begin("opticalglass.opticalmedium", "ConstantIndex");
-            json_.key("label").text(glass.label).key("n").number(points.front().index).key("_catalog").text("");
+        } else if (known && makers.contains(known->maker)) {
+            begin("opticalglass." + known->maker, makers.at(known->maker)).text("gname", known->name);
+        } else if (std::ranges::count(indices, indices.front()) == std::ssize(indices)) {
+            begin("opticalglass.opticalmedium", "ConstantIndex").text("label", glass.label);
+            json_.number("n", indices.front()).text("_catalog", "");
         } else {
             begin("opticalglass.opticalmedium", "InterpolatedMedium");
-            json_.key("label").text(glass.label.empty() ? "glass" : glass.label).key("_catalog").text("").key("wvls");
-            std::vector<double> wavelengths, indices;
-            for (const auto& point : points) {
-                wavelengths.push_back(point.wavelength_nm);
-                indices.push_back(point.index);
-            }
-            write_list(wavelengths);
-            json_.key("rndx");
-            write_list(indices);
-            json_.key("kvals").null().key("kvals_wvls").null();
+            json_.text("label", glass.label.empty() ? "glass" : glass.label).text("_catalog", "");
+            json_.numbers("wvls", wavelengths).numbers("rndx", indices).null("kvals").null("kvals_wvls");
         }
         end();
     }
 
-    void write_sphere(double curvature) {
-        begin("rayoptics.elem.profiles", "Spherical");
-        json_.key("cv").number(curvature);
+    void write_sphere(const std::string& name, double curvature) {
+        json_.key(name);
+        begin("rayoptics.elem.profiles", "Spherical").number("cv", curvature);
         end();
     }
 
     void write_profile(std::size_t i) {
         const Surface& s = lens_.surfaces[i];
         const SurfaceForm& form = s.form;
-        json_.key(std::to_string(i + 1));
-        if (!s.bends_light()) return write_sphere(0);
+        if (!s.bends_light()) return write_sphere(name_of(i), 0);
+        const bool is_toroid = form.base == BaseForm::toroid, odd = !is_toroid && has_odd_terms(s);
         if (form.base == BaseForm::biconic)
             leave_out(i, "is a biconic, which ray-optics lacks: it is written as a conic");
         if (!form.xy.empty() || form.zernike)
             leave_out(i, "has terms of x and y or of Zernike, which ray-optics lacks");
         if (const std::string terms = beyond_polynomials(form); !terms.empty())
             leave_out(i, "has " + terms + ", which ray-optics lacks");
-        const bool is_toroid = form.base == BaseForm::toroid, odd = !is_toroid && has_odd_terms(s);
         if (is_toroid && (!form.radial.empty() || form.forbes))
             leave_out(i, "has radial terms on a toroid, which ray-optics lacks");
         const std::map<int, double> radial = radial_terms_of(s);
-        if (!is_toroid && radial.empty() && s.conic == 0) return write_sphere(s.curvature);
-        const int step = odd ? 1 : 2;
-        std::vector<double> terms(10, 0.0);
-        for (const auto& [power, value] : radial) {
-            const auto place = static_cast<std::size_t>(power / step);
-            if (terms.size() < place) terms.resize(place, 0.0);
-            terms[place - 1] = value;
-        }
+        if (!is_toroid && radial.empty() && s.conic == 0) return write_sphere(name_of(i), s.curvature);
+        std::vector<double> terms = radial_list(radial, odd ? 1 : 2);
+        terms.resize(std::max<std::size_t>(terms.size(), 10), 0.0);
+        json_.key(name_of(i));
         begin("rayoptics.elem.profiles", is_toroid ? "YToroid" : odd ? "RadialPolynomial" : "EvenPolynomial");
-        json_.key("cv").number(s.curvature);
-        if (is_toroid) json_.key("cR").number(form.curvature_x);
-        if (odd)
-            json_.key("ec").number(s.conic + 1);
-        else
-            json_.key("cc").number(s.conic);
-        json_.key("coefs");
-        write_list(terms);
-        json_.key("max_nonzero_coef").number(static_cast<double>(terms.size()));
+        json_.number("cv", s.curvature);
+        if (is_toroid) json_.number("cR", form.curvature_x);
+        json_.number(odd ? "ec" : "cc", odd ? s.conic + 1 : s.conic).numbers("coefs", terms);
+        json_.number("max_nonzero_coef", static_cast<double>(terms.size()));
         end();
     }
 
     void write_specification() {
-        json_.key("optical_spec");
-        begin("rayoptics.raytr.opticalspec", "OpticalSpecs");
-        json_.key("do_aiming").truth(true).key("spectral_region");
-        begin("rayoptics.raytr.opticalspec", "WvlSpec");
-        json_.key("wavelengths");
-        write_list({lens_.wavelength_nm});
-        json_.key("spectral_wts");
-        write_list({1});
-        json_.key("render_colors").begin_array().text("black").end();
-        json_.key("reference_wvl").number(0).key("coating_wvl").number(550);
+        begin_part("optical_spec", "OpticalSpecs").truth("do_aiming", true);
+        begin_part("spectral_region", "WvlSpec").numbers("wavelengths", {lens_.wavelength_nm});
+        json_.numbers("spectral_wts", {1}).begin_array("render_colors").text("black").end();
+        json_.number("reference_wvl", 0).number("coating_wvl", 550);
         end();
-        const FirstOrder data = first_order(centred(lens_), lens_.wavelength_nm);
-        if (!std::isfinite(data.entrance_pupil_diameter))
-            throw InputError("lens \"" + lens_.name +
-                             "\" has its entrance pupil at infinity, and no aperture that a .roa file states");
-        json_.key("pupil");
-        begin("rayoptics.raytr.opticalspec", "PupilSpec");
-        json_.key("_key").begin_array().text("aperture").text("object").text("epd").end();
-        json_.key("value").number(data.entrance_pupil_diameter);
-        json_.key("pupil_rays").begin_array();
+        begin_part("pupil", "PupilSpec");
+        json_.begin_array("_key").text("aperture").text("object").text("epd").end();
+        json_.number("value", entrance_pupil_diameter(".roa")).begin_array("pupil_rays");
         for (const auto& [x, y] : {Vec2d{0, 0}, Vec2d{1, 0}, Vec2d{-1, 0}, Vec2d{0, 1}, Vec2d{0, -1}})
-            write_list({x, y});
-        json_.end().key("ray_labels").begin_array();
+            json_.numbers({x, y});
+        json_.end().begin_array("ray_labels");
         for (const char* label : {"00", "+X", "-X", "+Y", "-Y"}) json_.text(label);
         json_.end();
         end();
         write_fields();
-        json_.key("defocus");
-        begin("rayoptics.raytr.opticalspec", "FocusRange");
-        json_.key("focus_shift").number(0).key("defocus_range").number(0);
+        begin_part("defocus", "FocusRange").number("focus_shift", 0).number("defocus_range", 0);
         end();
         end();
     }
 
     void write_fields() {
-        const double corner = 0.5 * hypotenuse(lens_.film_width, lens_.film_height);
-        json_.key("field_of_view");
-        begin("rayoptics.raytr.opticalspec", "FieldSpec");
-        json_.key("key").begin_array().text("field").text("image").text("real height").end();
-        json_.key("value").number(corner).key("is_relative").truth(false).key("is_wide_angle").truth(false);
-        json_.key("index_labels").begin_array().text("axis").text("corner").end();
-        json_.key("index_label_type").text("auto").key("fields").begin_array();
-        for (const double height : {0.0, corner}) {
-            begin("rayoptics.raytr.opticalspec", "Field");
-            json_.key("x").number(0).key("y").number(height);
-            for (const char* cut : {"vux", "vuy", "vlx", "vly"}) json_.key(cut).number(0);
-            json_.key("wt").number(1).key("aim_info").null();
+        begin_part("field_of_view", "FieldSpec");
+        json_.begin_array("key").text("field").text("image").text("real height").end().number("value", corner());
+        json_.truth("is_relative", false).truth("is_wide_angle", false);
+        json_.begin_array("index_labels").text("axis").text("corner").end().text("index_label_type", "auto");
+        json_.begin_array("fields");
+        for (const double height : {0.0, corner()}) {
+            begin("rayoptics.raytr.opticalspec", "Field").number("x", 0).number("y", height);
+            for (const char* cut : {"vux", "vuy", "vlx", "vly"}) json_.number(cut, 0);
+            json_.number("wt", 1).null("aim_info");
             end();
         }
         json_.end();
         end();
     }
 
-    const LensSystem& lens_;
-    LensText result_;
     JsonWriter json_;
 };
 

@@ -1,139 +1,529 @@
-// Converts the content of a Zemax OpticStudio .zmx file to a prescription. Surface 0 is the object, the last one the
-// image.
+// Reads Zemax OpticStudio's .zmx: a line is a keyword of four letters and its values; "SURF n" begins a surface, and
+// later lines with a surface's keyword belong to it. Surface 0 is the object, the last one the image.
 
 #include <algorithm>
 #include <cmath>
 
+#include "../../../optics/prescription/lens_limits.hpp"
 #include "../../text/printable.hpp"
-#include "../lens_readers.hpp"
-#include "../lens_text.hpp"
-#include "lens_zemax_file.hpp"
-#include "lens_zemax_shape.hpp"
+#include "../lens_format.hpp"
+#include "prescription_reader.hpp"
 
 namespace realcam::io {
 namespace {
 
-class Converter {
-public:
-    Converter(ZemaxFile file, LensGlasses& glasses)
-        : file_(std::move(file)), p_(std::move(file_.prescription)), glasses_(glasses) {}
+/// Surface as stated in a .zmx file; parameters whose unit depends on the surface type are in the file's unit.
+struct ZemaxSurface {
+    PrescriptionSurface row;
+    std::string type = "STANDARD";  // the type in files without TYPE lines
+    std::map<int, double> parameters, extra;
+    std::string glass, hint;
+    int glass_line = 0, glass_kind = 0;
+    int pickup = 0;  ///< surface whose glass is picked up, if the kind says so
+    /// Of a model glass; for other glasses possibly left over from an earlier one.
+    double n_d = 0, v_d = 0, partial = 0;
+    double diameter = 0;
+    Vec2d aperture_offset = {0, 0};  ///< offset of its aperture and its obscurations, mm
+    double arm_width = 0;            ///< width of the arms of a spider, mm
+    int arms = 0;
+    bool has_thickness = false, at_infinity = false;
 
-    Prescription prescription() {
+    /// True if n_d and V_d in the line of a glass are those of a glass, and not the defaults of new files, 1.5 and 40,
+    /// or unrelated numbers.
+    bool states_a_glass() const {
+        const bool are_defaults = n_d == 1.5 && v_d == 40;
+        return n_d >= 1.3 && n_d <= 2.4 && v_d >= 10 && v_d <= 100 && !are_defaults;
+    }
+};
+
+/// Returns the frame after a coordinate break: decentre, then tilts about x, y and z; in the reverse order if
+/// `is_reversed`.
+Affine<double> frame_of_break(Vec2d decentre, Vec3d tilt_deg, bool is_reversed) {
+    const SurfacePlacement shift{{decentre.x, decentre.y, 0}, {}, false};
+    if (!is_reversed) return SurfacePlacement{shift.decentre, tilt_deg, false}.frame();
+    return rotation(0, 0, tilt_deg.z) * rotation(0, tilt_deg.y, 0) * rotation(tilt_deg.x, 0, 0) * shift.frame();
+}
+
+double at(const std::map<int, double>& values, int number) {
+    const auto found = values.find(number);
+    return found == values.end() ? 0.0 : found->second;
+}
+
+class ZemaxReader : PrescriptionText {
+public:
+    using PrescriptionText::PrescriptionText;
+
+    Prescription read() {
+        std::string_view line;
+        while (lines_.next(line)) read_line(line);
+        const bool begins_with_face = has_faces_alone_ || (!surfaces_.empty() && !surfaces_.front().glass.empty());
+        if (surfaces_.size() < (begins_with_face ? 2 : 3))
+            fail_at("has " + std::to_string(surfaces_.size()) +
+                    " surfaces (SURF); an object, a lens and an image are wanted");
         complete_ends();
         glasses_are_stated_ = find_out_whether_glasses_are_stated();
-        for (std::size_t i = 0; i < file_.surfaces.size(); ++i) convert(file_.surfaces[i], i);
-        set_object();
-        set_fields();
-        set_wavelength();
-        set_zoom();
-        if (!file_.unknown.empty())
-            p_.remarks.push_back("lines of keywords that are not known were left out: " + short_list(file_.unknown));
+        for (std::size_t i = 0; i < surfaces_.size(); ++i) convert(surfaces_[i], i);
+        convert_object();
+        convert_fields();
+        convert_wavelengths();
+        convert_zoom();
+        tell_unknown("lines of keywords");
         return std::move(p_);
     }
 
 private:
+    using R = ZemaxReader;
+    using C = LensCommand;
+
+    static void add(R& r, C& c) { r.foreign(c); }
+    static void set_numbered(const C& c, std::map<int, double>& values, const std::string& name, int least, int most) {
+        const int number = c.whole(0, "the number of " + name, least, most);
+        values[number] = c.number(1, name);
+    }
+
+    ZemaxSurface& last() { return surfaces_.back(); }
+    PrescriptionSurface& row() { return surfaces_.back().row; }
+    double length(const C& c, std::size_t i, const char* name) const { return unit_ * c.number(i, name); }
+    double length_or_infinity(const C& c, std::size_t i, const char* name) const {
+        return unit_ * c.number_or_infinity(i, name);
+    }
+    Vec2d lengths(const C& c, const char* name) const { return {length(c, 0, name), length(c, 1, name)}; }
+
+    /// Keywords of a surface. Those that are ignored do not affect the path of light, or repeat others: names, solves,
+    /// tolerances, drawing.
+    static const Keywords<R>& of_surface() {
+        static const Keywords<R> table{
+            {"HIDE MIRR SLAB POPS MEMA FIMP VDSZ PPAR VPAR PZUP PKUP MAZH BRDF EDGE VCON VCUR DMFS SCAT RLIN GOPT "
+             "LSEL TCED TRAC TOLE CRIX WCBK HDEN COFN VGLA CUPD ISNA PCUR MACH PTHI COMM"},
+            {"STOP", [](R& r, C&) { r.row().is_stop = true; }},
+            {"TYPE",
+             [](R& r, C& c) {
+                 if (c.size() == 0) r.lines_.fail("TYPE needs the type of the surface");
+                 r.last().type = c.capital(0);
+             }},
+            {"CURV", [](R& r, C& c) { r.row().curvature = c.number(0, "the curvature") / r.unit_; }},
+            {"CONI", [](R& r, C& c) { r.row().conic = c.number(0, "the conic"); }},
+            {"DISZ",
+             [](R& r, C& c) {
+                 if (c.size() == 0) r.lines_.fail("DISZ needs the thickness");
+                 const double thickness = r.length_or_infinity(c, 0, "the thickness");
+                 r.last().has_thickness = true;
+                 r.last().at_infinity = std::isinf(thickness);
+                 r.row().thickness = r.last().at_infinity ? 0 : thickness;
+             }},
+            {"DIAM", [](R& r, C& c) { r.last().diameter = r.length(c, 0, "the semi-diameter"); }},
+            {"CLAP FLAP", [](R& r, C& c) { r.read_circle(c); }},
+            {"OBSC", [](R& r, C& c) { r.read_obscuration(c); }},
+            {"OBDC", [](R& r, C& c) { r.last().aperture_offset = r.lengths(c, "the decentre"); }},
+            {"SQAP ELAP",
+             [](R& r, C& c) {
+                 r.row().blocks = true;
+                 r.row().aperture_shape.kind = c.word == "SQAP" ? ApertureOutline::rectangle : ApertureOutline::ellipse;
+                 r.row().aperture_shape.half = r.lengths(c, "the half width");
+             }},
+            {"SQOB ELOB",
+             [](R& r, C& c) {
+                 r.row().blocks = true;
+                 r.row().aperture_shape.obscurations.push_back(
+                     {c.word == "SQOB", r.lengths(c, "the half width"), {0, 0}, 0});
+             }},
+            {"SPID",
+             [](R& r, C& c) {
+                 r.row().blocks = true;
+                 r.last().arm_width = r.length(c, 0, "the width of the arms");
+                 if (c.size() < 2) r.lines_.fail("SPID needs the number of arms");
+                 r.last().arms = c.whole(1, "the number of arms", 1, kMaxObscurations);
+             }},
+            {"UDAD USAP UDOB", add, "an aperture that is no circle"},
+            {"SCBD", [](R& r, C& c) { r.read_tilt(c); }},
+            {"TILT SDEC", add, "a tilted or decentred surface"},
+            {"GLAS", [](R& r, C& c) { r.read_glass(c); }},
+            {"PARM", [](R& r, C& c) { set_numbered(c, r.last().parameters, "the parameter", 0, 300); }},
+            {"XDAT", [](R& r, C& c) { set_numbered(c, r.last().extra, "the extra datum", 1, 1000); }},
+            {"COAT", [](R& r, C& c) { r.coatings_.insert(c.size() == 0 ? "" : printable(c[0].text.substr(0, 40))); }},
+        };
+        return table;
+    }
+
+    static const Keywords<R>& of_system() {
+        static const Keywords<R> table{
+            {"VERS PFIL LANG ENVD GFAC RAIM PUSH SDMA OMMA ROPD PICB HYPR FWGN FWGT WWGT WWGN ZVAN POLS GLRS GSTD NSCD "
+             "COFN NOTE BLNK TOL MOFF DBDT OPDX CONF PUPD EFFL MNCA MNEA MNCG MNEG MXCA MXCG RGLA TCMM TOTR XDFL CHCO "
+             "FCHR TCNT ANGC COMN WFNO PMAG DMFS ANON MCOM VANN VDXN VCXN UDFL LOCK COMM"},
+            {"MODE",
+             [](R& r, C& c) {
+                 if (c.size() > 0 && c.capital(0) != "SEQ")
+                     r.lines_.fail("the mode is " + in_quotes(c[0].text) + "; a sequential lens (MODE SEQ) is wanted");
+             }},
+            {"UNIT", [](R& r, C& c) { r.set_unit(c.size() == 0 ? "MM" : c.capital(0)); }},
+            {"ENPD",
+             [](R& r, C& c) {
+                 r.set_aperture(ApertureKind::entrance_pupil_diameter, r.length(c, 0, "the entrance pupil diameter"));
+             }},
+            {"FNUM",
+             [](R& r, C& c) {
+                 const bool working = c.number_or(1, "the kind of f-number", 0) == 1;
+                 r.set_aperture(working ? ApertureKind::working_f_number : ApertureKind::f_number,
+                                c.number(0, "the f-number"));
+             }},
+            {"OBNA",
+             [](R& r, C& c) {
+                 if (c.number_or(1, "the kind of aperture", 0) != 0)
+                     r.lines_.fail(
+                         "the aperture is a cone angle; "
+                         "an entrance pupil diameter, an f-number or a numerical aperture is wanted");
+                 r.set_aperture(ApertureKind::object_aperture, c.number(0, "the numerical aperture"));
+             }},
+            {"FLOA", [](R& r, C&) { r.p_.aperture_kind = ApertureKind::stop_size; }},
+            {"GCAT",
+             [](R& r, C& c) {
+                 for (std::size_t i = 0; i < c.size(); ++i) r.catalogues_.emplace_back(c[i].text);
+                 if (r.catalogues_.size() > 100) r.lines_.fail("GCAT lists more than 100 catalogues of glass");
+             }},
+            {"FTYP",
+             [](R& r, C& c) {
+                 r.field_type_ = c.whole(0, "the type of the fields", 0, 10);
+                 const double count = c.number_or(2, "the number of fields", 0);
+                 r.field_count_ =
+                     static_cast<std::size_t>(std::clamp(count, 0.0, static_cast<double>(kMostFileFields)));
+             }},
+            {"XFLN XFLD", [](R& r, C& c) { r.x_ = r.field_values(c); }},
+            {"YFLN YFLD", [](R& r, C& c) { r.y_ = r.field_values(c); }},
+            {"VDYN", [](R& r, C& c) { r.decentre_y_ = r.field_values(c); }},
+            {"VCYN", [](R& r, C& c) { r.compress_y_ = r.field_values(c); }},
+            {"WAVM", [](R& r, C& c) { set_numbered(c, r.wavelengths_, "the wavelength", 1, 1000); }},
+            {"WAVL",
+             [](R& r, C& c) {
+                 for (std::size_t i = 0; i < c.size() && i < kMostFileFields; ++i)
+                     r.wavelengths_[static_cast<int>(i) + 1] = c.number(i, "each wavelength");
+             }},
+            {"PWAV", [](R& r, C& c) { r.primary_ = c.whole(0, "the number of the primary wavelength", 1, 1000); }},
+            {"AFOC", [](R& r, C&) { r.remark("its image is afocal, which is left out"); }},
+            {"MNUM",
+             [](R& r, C& c) {
+                 r.positions_ = c.whole(0, "the number of configurations", 1, kMostFileZoomPositions);
+                 r.current_ = c.size() > 1 ? c.whole(1, "the current configuration", 1, kMostFileZoomPositions) : 1;
+             }},
+        };
+        return table;
+    }
+
+    /// Operands of the multi-configuration editor: keyword, surface, configuration, value.
+    static const Keywords<R>& of_zoom() {
+        static const Keywords<R> table{
+            {"FVCX FVCY FVDX FVDY FVAN YFIE XFIE FLWT WLWT FLTP LTTL HOLD",
+             [](R& r, C& c) {
+                 r.remark("fields and their vignetting are taken from the first configuration (" + c.word +
+                          " is left out)");
+             }},
+            {"CRVT CONN PRAM PAR1 PAR2 PAR3 PAR4 GLSS STPS CSP1 IGNR IGNM WAVE PRWV TEMP PRES MIND MABB MDPG NPAR NPOS "
+             "CATN APDX APDY APMN APMX APTP EDVA PSCX PSCY",
+             add, "configurations that change more than thicknesses"},
+            {"THIC", [](R& r, C& c) { r.read_zoomed(c, r.zoom_); }},
+            {"SDIA", [](R& r, C& c) { r.read_zoomed(c, r.zoom_sizes_); }},
+            {"APER", [](R& r, C& c) { r.read_zoomed(c, r.zoom_apertures_); }},
+        };
+        return table;
+    }
+
+    /// Returns false if the table does not have the keyword. Only the words of known keywords are split: other lines
+    /// may be free text.
+    bool read_by(const Keywords<R>& table, const std::string& word, std::string_view rest) {
+        const auto* known = table.find(word);
+        if (!known || !known->read) return known != nullptr;
+        LensCommand command(lines_, word, lines_.words(rest));
+        return table.read(*this, command);
+    }
+
+    void read_line(std::string_view line) {
+        std::string_view rest = without_blanks(line);
+        if (rest.empty()) return;
+        const std::string word = upper_case(rest.substr(0, rest.find_first_of(" \t")));
+        rest = without_blanks(rest.substr(std::min(rest.size(), word.size())));
+        if (word == "NAME") return set_title(rest);
+        if (word == "SURF") return begin_surface(LensCommand(lines_, word, lines_.words(rest)));
+        // Indents are ignored, because programs other than OpticStudio omit them. The keyword tells whether a line
+        // belongs to a surface.
+        const bool is_indented = line[0] == ' ' || line[0] == '\t';
+        if (!surfaces_.empty()) {
+            lines_.set_surface(row().number);
+            has_indents_ = has_indents_ || is_indented;
+            if (read_by(of_surface(), word, rest)) return;
+        }
+        lines_.set_surface(0);
+        if (read_by(of_system(), word, rest)) return;
+        if (positions_ > 1 && read_by(of_zoom(), word, rest)) return;
+        // The surfaces are followed by hundreds of operands of the merit function, which are not indented.
+        if (surfaces_.empty() || !has_indents_ || is_indented) add_unknown(word);
+    }
+
+    void set_title(std::string_view text) {
+        if (text.size() > 1 && text.front() == '"' && text.back() == '"') text = text.substr(1, text.size() - 2);
+        p_.title = std::string(text);
+    }
+
+    void begin_surface(const C& c) {
+        if (c.size() == 0) lines_.fail("SURF needs the surface's number");
+        // Exporters that insert a stop between two numbered faces label it "5AS".
+        const std::string_view word = c[0].text, digits = word.substr(0, word.find_first_of("ASas"));
+        const bool is_between = digits.size() < word.size() && !surfaces_.empty();
+        const int number = lines_.whole_number_of(is_between ? digits : word, "the number of the surface", 0, 1 << 30);
+        check_count(surfaces_.size());
+        if (number == 1 && surfaces_.empty()) {  // exporters of faces alone begin with the first face
+            has_faces_alone_ = true;
+            surfaces_.emplace_back();
+            last().has_thickness = last().at_infinity = true;
+        }
+        const int expected = surfaces_.empty() ? 0 : row().number + (is_between ? 0 : 1);
+        if (number != expected)
+            lines_.fail("surface " + std::to_string(number) + " follows " +
+                        (surfaces_.empty()
+                             ? std::string("nothing; surface 0, the object,")
+                             : "surface " + std::to_string(row().number) + "; surface " + std::to_string(expected)) +
+                        " is wanted");
+        surfaces_.emplace_back();
+        row().number = number;
+        row().line = lines_.number();
+        lines_.set_surface(number);
+    }
+
+    /// Reads an annular aperture. A floating one is as large as the semi-diameter.
+    void read_circle(const C& c) {
+        row().blocks = true;
+        const double inner = length(c, 0, "the inner radius"), outer = length_or_infinity(c, 1, "the outer radius");
+        row().inner_semi_diameter = std::max(row().inner_semi_diameter, inner);
+        row().is_open_outside = c.word == "CLAP" && outer == kInfinity;
+        if (c.word == "CLAP" && !row().is_open_outside) row().clear_semi_diameter = outer;
+    }
+
+    /// Reads the complement of an annular aperture. The semi-diameter (DIAM) of a surface with one does not limit
+    /// light.
+    void read_obscuration(const C& c) {
+        row().blocks = true;
+        if (length(c, 0, "the inner radius") != 0)
+            foreign("an obscuration with a hole");
+        else
+            row().inner_semi_diameter = std::max(row().inner_semi_diameter, length(c, 1, "the outer radius"));
+        row().is_open_outside = row().clear_semi_diameter == 0;
+    }
+
+    /// Reads tilt and decentre of the surface itself: 1 before or 2 behind it, their order, their source, and five
+    /// values.
+    void read_tilt(const C& c) {
+        const int side = c.whole(0, "the side of the tilt", 1, 2);
+        const auto value = [&](std::size_t i) { return c.number_or(i, "the tilt or decentre", 0); };
+        const Vec2d decentre{length(c, 3, "the decentre"), length(c, 4, "the decentre")};
+        const Affine<double> frame = frame_of_break(decentre, {value(5), value(6), value(7)}, value(1) != 0);
+        // Source of the tilt behind the surface: 1 repeats the one before it, and 2 reverses that.
+        const double source = value(2);
+        if (side == 1)
+            row().before = frame;
+        else
+            row().behind = source == 1 ? row().before : source == 2 ? inverse_motion(row().before) : frame;
+        if (source != 0 && (side == 1 || source > 2)) foreign("a tilt that is picked up (SCBD)");
+    }
+
+    void read_glass(const C& c) {
+        if (c.size() == 0) lines_.fail("GLAS needs the name of the glass");
+        ZemaxSurface& s = last();
+        s.glass = std::string(c[0].text);
+        s.glass_line = lines_.number();
+        s.glass_kind = c.size() > 1 ? c.whole(1, "the kind of the glass", 0, 100) : 0;
+        s.pickup =
+            s.glass_kind == 2 && c.size() > 2 ? c.whole(2, "the surface whose glass is picked up", 0, 1 << 20) : 0;
+        s.n_d = c.number_or(3, "the glass's n_d", 0);
+        s.v_d = c.number_or(4, "the glass's V_d", 0);
+        s.partial = c.number_or(5, "the glass's partial dispersion", 0);
+        if (s.states_a_glass())
+            s.hint = "n_d = " + printable(c[3].text.substr(0, 30)) + ", V_d = " + printable(c[4].text.substr(0, 30));
+    }
+
+    void set_unit(const std::string& unit) {
+        if (!surfaces_.empty()) lines_.fail("UNIT has to stand in front of the surfaces");
+        const std::optional<double> known = millimetres_of(unit);
+        if (!known) lines_.fail("the unit is " + in_quotes(unit) + "; MM, CM, IN or METER is wanted");
+        unit_ = *known;
+    }
+
+    void set_aperture(ApertureKind kind, double value) {
+        if (!(value > 0)) lines_.fail("the aperture must be positive");
+        p_.aperture_kind = kind;
+        p_.aperture = value;
+    }
+
+    /// Reads the value of a configuration; values that are not stated are NaN.
+    void read_zoomed(const C& c, std::map<int, std::vector<double>>& values_by_surface) {
+        if (c.size() < 3) lines_.fail(c.word + " needs a surface, a configuration and a value");
+        const int position = c.whole(1, "the configuration", 1, positions_);
+        const double value = is_infinity(c[2].text) ? kInfinity : c.number(2, "the value");
+        const bool has_surface = c.word != "APER";
+        std::vector<double>& values = values_by_surface[has_surface ? c.whole(0, "the surface", 0, 1 << 20) : 0];
+        values.resize(static_cast<std::size_t>(positions_), std::nan(""));
+        values[static_cast<std::size_t>(position) - 1] = value;
+    }
+
     /// Adds object and image to lists of refracting faces alone: some exporters give surface 0 the glass of the first
     /// element, and end the list at the last face.
     void complete_ends() {
-        const bool begins_in_glass = !file_.surfaces.front().glass.empty() && !file_.surfaces.front().at_infinity;
-        const ZemaxSurface end = file_.surfaces.back();  // a copy, because surfaces are inserted below
-        const bool ends_in_glass = !file_.surfaces[file_.surfaces.size() - 2].glass.empty() && end.glass.empty();
+        const bool begins_in_glass = !surfaces_.front().glass.empty() && !surfaces_.front().at_infinity;
+        const ZemaxSurface end = surfaces_.back();  // a copy, because surfaces are inserted below
+        const bool ends_in_glass = !surfaces_[surfaces_.size() - 2].glass.empty() && end.glass.empty();
         if (begins_in_glass && ends_in_glass) {
             ZemaxSurface object;
             object.has_thickness = object.at_infinity = true;
-            file_.surfaces.insert(file_.surfaces.begin(), object);
-            file_.has_faces_alone = true;
+            surfaces_.insert(surfaces_.begin(), object);
+            has_faces_alone_ = true;
         }
-        if (!file_.has_faces_alone) return check_image();
-        ZemaxSurface image;
-        image.row.number = end.row.number + 1;
-        image.has_thickness = true;
-        file_.surfaces.push_back(image);
+        if (!has_faces_alone_) return check_image(end);
+        surfaces_.emplace_back();
+        row().number = end.row.number + 1;
+        last().has_thickness = true;
         p_.has_film_distance = false;
-        p_.remarks.push_back(
-            "lists faces alone: the object is taken to be distant, and the film to lie where its image is sharpest");
+        remark("lists faces alone: the object is taken to be distant, and the film to lie where its image is sharpest");
     }
 
     /// Checks that the last surface is the image. If it has a glass or a thickness, the file is truncated.
-    void check_image() const {
-        const ZemaxSurface& image = file_.surfaces.back();
+    void check_image(const ZemaxSurface& image) const {
         if (!image.has_thickness || image.row.thickness != 0 || !image.glass.empty())
-            throw LensFileError("the file ends with a surface that is no image: it " +
-                                    std::string(!image.glass.empty()  ? "has a glass"
-                                                : image.has_thickness ? "has a thickness"
-                                                                      : "has no thickness (DISZ)"),
-                                p_.file, image.row.line, image.row.number);
+            fail_at("the file ends with a surface that is no image: it " +
+                        std::string(!image.glass.empty()  ? "has a glass"
+                                    : image.has_thickness ? "has a thickness"
+                                                          : "has no thickness (DISZ)"),
+                    image.row.line, image.row.number);
     }
 
     void convert(ZemaxSurface& s, std::size_t i) {
-        const bool is_object = i == 0, is_image = i + 1 == file_.surfaces.size();
-        const auto fail = [&](const std::string& message, int line = 0) {
-            throw LensFileError(message, p_.file, line > 0 ? line : s.row.line, s.row.number);
-        };
-        const auto add_foreign = [&](const std::string& what) {
-            p_.foreign.push_back({what, s.row.line, s.row.number});
-        };
+        const bool is_object = i == 0, is_image = i + 1 == surfaces_.size();
+        const auto fail = [&](const std::string& message) { fail_at(message, s.row.line, s.row.number); };
+        const auto add = [&](const std::string& what) { add_foreign(what, s.row.line, s.row.number); };
         if (!s.has_thickness) fail("the surface has no thickness (DISZ)");
         if (s.at_infinity && !is_object) fail("the thickness is infinite; only the object may be as far away");
         if (is_image) {
             p_.image_curvature = s.row.curvature;
             if (s.row.curvature != 0 && (s.row.conic != 0 || s.type != "STANDARD"))
-                add_foreign("an image surface that is no sphere");
+                add("an image surface that is no sphere");
             if (s.row.is_stop) fail("the image is the aperture stop");
             if (s.type == "COORDBRK") fail("the image is a coordinate break");
             p_.image_semi_diameter = s.diameter;
-            return;
         }
-        if (is_object) return;
+        if (is_object || is_image) return;
         if (s.row.clear_semi_diameter == 0) s.row.clear_semi_diameter = s.diameter;
-        const std::string foreign = set_zemax_shape(s, file_.unit);
-        if (!foreign.empty()) add_foreign(foreign);
-        set_zemax_aperture(s);
-        convert_glass(s, fail, add_foreign);
+        if (const std::string what = set_shape(s); !what.empty()) add(what);
+        set_aperture_shape(s);
+        if (s.glass_kind == 4 && !s.glass.empty() && upper_case(s.glass) != "MIRROR") add("a glass with an offset");
+        convert_glass(s);
         glass_behind_.push_back(&s);
         p_.surfaces.push_back(s.row);
     }
 
-    template <class Fail, class Foreign>
-    void convert_glass(ZemaxSurface& s, const Fail& fail, const Foreign& add_foreign) {
-        if (s.glass_kind == 2 && !s.glass.empty() && pick_up_glass(s, fail)) return;
+    /// Converts type, parameters and extra data, as in Zemax's manual. Returns the feature that is not modelled, or an
+    /// empty string.
+    std::string set_shape(ZemaxSurface& s) const {
+        SurfaceForm& form = s.row.form;
+        const auto parameter = [&](int number) { return at(s.parameters, number); };
+        // Number of extra terms, whose coefficients begin at the third extra datum, and the normalization radius.
+        const int count = static_cast<int>(std::clamp(at(s.extra, 1), 0.0, 300.0));
+        const double radius = at(s.extra, 2) > 0 ? at(s.extra, 2) : 1;
+        if (s.type == "STANDARD") return "";  // its parameters have no meaning
+        if (s.type == "EVENASPH" || s.type == "ODDASPHE") {
+            const int step = s.type == "EVENASPH" ? 2 : 1;
+            for (const auto& [number, value] : s.parameters)
+                if (number > 0) add_term(s.row, step * number, value, unit_);
+        } else if (s.type == "XASPHERE" || s.type == "XOSPHERE") {
+            const int step = s.type == "XASPHERE" ? 2 : 1;
+            for (int k = 1; k <= count; ++k)
+                add_term(s.row, step * k, at(s.extra, 2 + k) / std::pow(radius, step * k), unit_);
+        } else if (s.type == "TOROIDAL") {
+            form.base = BaseForm::toroid;
+            form.curvature_x = curvature_of(parameter(1), unit_);
+            for (const auto& [number, value] : s.parameters)
+                if (number > 1) add_term(s.row, 2 * (number - 1), value, unit_);
+            if (at(s.extra, 1) > 0) return "Zernike terms on a toroid";
+        } else if (s.type == "BICONICX") {
+            form.base = BaseForm::biconic;
+            form.curvature_x = curvature_of(parameter(1), unit_);
+            form.conic_x = parameter(2);
+        } else if (s.type == "XPOLYNOM") {
+            for (int k = 0; k < count; ++k) {
+                const auto [x, y] = xy_powers(k + 1);
+                const double value = at(s.extra, 3 + k);
+                if (value != 0 && x + y > kMaxXyDegree)
+                    return "a term of x and y of more than the power " + std::to_string(kMaxXyDegree);
+                if (value != 0) form.xy.push_back({x, y, unit_ * value / std::pow(unit_ * radius, x + y)});
+            }
+        } else if (s.type == "SZERNSAG" || s.type == "FZERNSAG") {
+            std::vector<double> terms;
+            for (int k = 0; k < count; ++k) terms.push_back(unit_ * at(s.extra, 3 + k));
+            set_zernike(s.row, s.type == "SZERNSAG" ? ZernikeOrder::noll : ZernikeOrder::fringe, unit_ * radius, terms);
+            for (int k = 1; k <= 8; ++k) add_term(s.row, 2 * k, parameter(k), unit_);
+            for (const auto& [number, value] : s.parameters)
+                if (number > 8 && value != 0) return "a decentre of Zernike terms";
+        } else if (s.type == "COORDBRK") {
+            s.row.before = frame_of_break({unit_ * parameter(1), unit_ * parameter(2)},
+                                          {parameter(3), parameter(4), parameter(5)}, parameter(6) != 0);
+            s.row.curvature = 0;
+            s.glass.clear();
+        } else {
+            return "a surface of type " + printable(s.type).substr(0, 40);
+        }
+        return "";
+    }
+
+    /// Converts the decentre and the spider of a surface's aperture.
+    static void set_aperture_shape(ZemaxSurface& s) {
+        ApertureShape& shape = s.row.aperture_shape;
+        const Vec2d offset = s.aperture_offset;
+        const bool is_circle = shape.kind == ApertureOutline::circle;
+        if (offset != Vec2d{0, 0}) {
+            // A decentred circle is stated only by its radii.
+            double& inner = s.row.inner_semi_diameter;
+            if (is_circle && inner > 0) shape.obscurations.push_back({false, {inner, inner}, {0, 0}, 0});
+            inner = 0;
+            if (is_circle && !s.row.is_open_outside && s.row.blocks && shape.obscurations.empty())
+                shape.half = {s.row.clear_semi_diameter, s.row.clear_semi_diameter};
+            shape.offset = shape.half.x > 0 ? offset : Vec2d{0, 0};
+            for (Obscuration& piece : shape.obscurations) piece.offset = offset;
+        }
+        // An aperture set by the designer limits the light, and not the semi-diameter.
+        if (const double reach = shape.reach(); reach > 0) s.row.clear_semi_diameter = reach;
+        if (s.arms == 0) return;
+        const double arm = std::max(s.row.clear_semi_diameter, s.arm_width);
+        for (Obscuration piece : spider_arms(s.arms, s.arm_width, arm, 0)) {
+            piece.offset = {piece.offset.x + offset.x, piece.offset.y + offset.y};
+            shape.obscurations.push_back(piece);
+        }
+    }
+
+    void convert_glass(ZemaxSurface& s) {
+        if (s.glass_kind == 2 && !s.glass.empty() && pick_up_glass(s)) return;
         // A medium of index -1 is a mirror by Snell's law.
         s.row.is_mirror = upper_case(s.glass) == "MIRROR" || (s.glass_kind == 1 && s.n_d == -1);
         if (s.row.is_mirror) return;
-        if (s.glass.empty()) {
-            // A coordinate break is not a surface: the medium continues behind it.
-            if (s.type == "COORDBRK") s.row.material = medium_;
-            medium_ = s.row.material;
-            return;
-        }
         try {
-            if (s.glass_kind == 1) {
-                s.row.material = glass_of_pair(s.n_d, s.v_d);
-                if (s.partial != 0)
-                    p_.remarks.push_back("the partial dispersion of the model glass of surface " +
-                                         std::to_string(s.row.number) + " is left out");
-            } else {
-                if (s.glass_kind == 4) add_foreign("a glass with an offset");
-                s.row.material = named_glass(s);
-            }
+            if (s.glass.empty())  // a coordinate break is not a surface: the medium continues behind it
+                s.row.material = s.type == "COORDBRK" ? medium_ : s.row.material;
+            else
+                s.row.material = s.glass_kind == 1 ? glass_of_pair(s.n_d, s.v_d) : named_glass(s);
         } catch (const InputError& error) {
             throw LensReadError(error, p_.file, s.glass_line, s.row.number);
         }
+        if (s.glass_kind == 1 && !s.glass.empty() && s.partial != 0)
+            remark("the partial dispersion of the model glass of surface " + std::to_string(s.row.number) +
+                   " is left out");
         medium_ = s.row.material;
     }
 
     /// Resolves a pickup of the glass from a surface in front. Returns false if the glass is determined by its name.
-    template <class Fail>
-    bool pick_up_glass(ZemaxSurface& s, const Fail& fail) {
+    bool pick_up_glass(ZemaxSurface& s) {
         const int from = s.pickup;
         const bool is_named = s.glass != "___BLANK";
         const bool is_in_front = from > 0 && from <= static_cast<int>(glass_behind_.size());
         const ZemaxSurface* source = is_in_front ? glass_behind_[static_cast<std::size_t>(from) - 1] : nullptr;
         if (!source || source->glass.empty()) {
             if (is_named) return false;
-            fail("picks up the glass of surface " + std::to_string(from) +
-                     (source ? ", which has none" : "; a surface of the lens in front of this one is wanted"),
-                 s.glass_line);
+            fail_at("picks up the glass of surface " + std::to_string(from) +
+                        (source ? ", which has none" : "; a surface of the lens in front of this one is wanted"),
+                    s.glass_line, s.row.number);
         }
         s.row.is_mirror = source->row.is_mirror;
         s.row.material = source->row.material;
@@ -143,13 +533,13 @@ private:
 
     Glass named_glass(const ZemaxSurface& s) {
         try {
-            return glasses_.find(s.glass, file_.catalogues, s.hint);
+            return glasses_.find(s.glass, catalogues_, s.hint);
         } catch (const UnknownGlass& error) {
-            if (!glasses_are_stated_ || !states_a_glass(s) || !error.candidate.empty()) throw;
+            if (!glasses_are_stated_ || !s.states_a_glass() || !error.candidate.empty()) throw;
             Glass stated = glass_of_pair(s.n_d, s.v_d);
             if (told_.insert(s.glass).second)
-                p_.remarks.push_back("the glass " + in_quotes(s.glass) +
-                                     " is in no catalogue that the file lists: " + s.hint + " are taken from its line");
+                remark("the glass " + in_quotes(s.glass) + " is in no catalogue that the file lists: " + s.hint +
+                       " are taken from its line");
             return stated;
         }
     }
@@ -157,9 +547,9 @@ private:
     /// Tells whether n_d and V_d in the lines of catalogue glasses can be trusted: they may be left over from an
     /// earlier glass. Compares those of known glasses in the file.
     bool find_out_whether_glasses_are_stated() const {
-        for (const ZemaxSurface& s : file_.surfaces) {
+        for (const ZemaxSurface& s : surfaces_) {
             if (s.glass.empty() || s.glass_kind != 0 || upper_case(s.glass) == "MIRROR") continue;
-            const std::optional<Glass> known = glasses_.in_catalogue(s.glass, file_.catalogues);
+            const std::optional<Glass> known = glasses_.in_catalogue(s.glass, catalogues_);
             if (!known) continue;
             const AbbePair pair = abbe_pair(*known);
             // Melts and catalogue editions differ by less.
@@ -168,156 +558,146 @@ private:
         return true;
     }
 
-    void set_object() {
-        const ZemaxSurface& object = file_.surfaces.front();
-        p_.object_distance = object.at_infinity || object.row.thickness >= kLongest ? kInfinity : object.row.thickness;
-        if (object.row.curvature != 0 && !object.at_infinity)
-            p_.foreign.push_back({"a curved object", object.row.line, 0});
+    void convert_object() {
+        const ZemaxSurface& object = surfaces_.front();
+        set_object(object.at_infinity ? kInfinity : object.row.thickness, object.row.curvature, object.row.line);
         if (!object.glass.empty() && object.at_infinity)
             add_window(object);
         else if (!object.glass.empty())
-            p_.foreign.push_back({"an object inside a glass", object.glass_line, 0});
-        if (object.row.is_stop) throw LensFileError("the object is the aperture stop", p_.file, object.row.line, 0);
-        if (!file_.coatings.empty()) p_.remarks.push_back("coatings are left out: " + short_list(file_.coatings));
+            add_foreign("an object inside a glass", object.glass_line, 0);
+        if (object.row.is_stop) fail_at("the object is the aperture stop", object.row.line);
+        if (!coatings_.empty()) remark("coatings are left out: " + short_list(coatings_));
     }
 
     /// Adds a plane surface from air to the object's medium that touches the first face, like the pane of an aquarium:
     /// a plane has no power, so that focal length and f-number are those in the medium.
-    void add_window(const ZemaxSurface& object) {
-        ZemaxSurface medium = object;
-        const auto fail = [&](const std::string& message, int line = 0) {
-            throw LensFileError(message, p_.file, line, 0);
-        };
-        convert_glass(medium, fail, [](const std::string&) {});
+    void add_window(ZemaxSurface object) {
+        convert_glass(object);
         PrescriptionSurface window;
         window.line = object.glass_line;
-        window.material = medium.row.material;
+        window.material = object.row.material;
         const PrescriptionSurface& first = p_.surfaces.front();
         const double c = first.curvature, r = first.clear_semi_diameter;
         if (c < 0)
             window.thickness = -c * r * r / (1 + std::sqrt(std::max(0.0, 1 - (1 + first.conic) * c * c * r * r)));
         p_.surfaces.insert(p_.surfaces.begin(), window);
-        p_.remarks.push_back("its object lies in a medium, " + window.material.label +
-                             ": a plane window in front of the lens stands between it and the air of scenes");
+        remark("its object lies in a medium, " + window.material.label +
+               ": a plane window in front of the lens stands between it and the air of scenes");
     }
 
-    void set_fields() {
-        const std::size_t given = std::max(file_.x.size(), file_.y.size());
-        const std::size_t count = file_.field_count > 0 ? std::min(file_.field_count, given) : given;
-        const auto at = [](const std::vector<double>& list, std::size_t i) { return i < list.size() ? list[i] : 0.0; };
-        p_.field_kind = file_.field_type == 0   ? FieldKind::angle_deg
-                        : file_.field_type == 1 ? FieldKind::object_height
-                                                : FieldKind::image_height;
-        if (file_.field_type > 3) p_.remarks.push_back("its fields are of a kind that is not known");
-        const double scale = file_.field_type == 0 ? 1 : file_.unit;
-        for (std::size_t i = 0; i < count && file_.field_type <= 3; ++i) {
+    void convert_fields() {
+        if (field_type_ > 3) return remark("its fields are of a kind that is not known");
+        p_.field_kind = field_type_ == 0   ? FieldKind::angle_deg
+                        : field_type_ == 1 ? FieldKind::object_height
+                                           : FieldKind::image_height;
+        const std::size_t given = std::max(x_.size(), y_.size());
+        const std::size_t count = field_count_ > 0 ? std::min(field_count_, given) : given;
+        const double scale = field_type_ == 0 ? 1 : unit_;
+        for (std::size_t i = 0; i < count; ++i) {
             // The edge of the pupil moves to decentre + (1 - compression).
-            const double shift = at(file_.decentre_y, i), narrow = at(file_.compress_y, i);
-            p_.fields.push_back({scale * at(file_.x, i), scale * at(file_.y, i), 0, 0,
-                                 std::clamp(narrow - shift, 0.0, 0.999), std::clamp(narrow + shift, 0.0, 0.999)});
+            const double shift = at_or_0(decentre_y_, i), narrow = at_or_0(compress_y_, i);
+            p_.fields.push_back({scale * at_or_0(x_, i), scale * at_or_0(y_, i), 0, 0, vignetting(narrow - shift),
+                                 vignetting(narrow + shift)});
         }
     }
 
-    void set_wavelength() {
-        if (file_.wavelengths.empty()) {
-            p_.remarks.push_back("it states no wavelength: that of the d line is taken");
-            return;
-        }
-        const auto found = file_.wavelengths.find(file_.primary);
-        if (found == file_.wavelengths.end())
-            throw LensFileError("the primary wavelength (PWAV) is number " + std::to_string(file_.primary) +
-                                    ", which the file does not have",
-                                p_.file);
-        p_.wavelength_nm = 1000 * found->second;
-        for (const auto& [number, um] : file_.wavelengths) p_.wavelengths_nm.push_back(1000 * um);
+    void convert_wavelengths() {
+        std::vector<double> all;
+        for (const auto& [number, um] : wavelengths_) all.push_back(1000 * um);
+        const auto main = wavelengths_.find(primary_);
+        if (!all.empty() && main == wavelengths_.end())
+            fail_at("the primary wavelength (PWAV) is number " + std::to_string(primary_) +
+                    ", which the file does not have");
+        set_wavelengths(all, static_cast<std::size_t>(std::distance(wavelengths_.begin(), main)));
         // A file has 24 rows; unused ones repeat the same value after the used ones.
-        std::vector<double>& all = p_.wavelengths_nm;
-        const double unused = all.back();
-        if (all.size() < 2 || all[all.size() - 2] != unused) return;
-        while (all.size() > 1 && all.back() == unused) all.pop_back();
-        if (std::ranges::find(all, p_.wavelength_nm) == all.end()) all.push_back(p_.wavelength_nm);
+        std::vector<double>& used = p_.wavelengths_nm;
+        if (used.size() < 2 || used[used.size() - 2] != used.back()) return;
+        const double unused = used.back();
+        while (used.size() > 1 && used.back() == unused) used.pop_back();
+        if (std::ranges::find(used, p_.wavelength_nm) == used.end()) used.push_back(p_.wavelength_nm);
     }
 
-    void set_zoom() {
-        if (file_.zoom.empty() && file_.zoom_apertures.empty()) return;
-        const auto count = static_cast<std::size_t>(file_.positions);
-        const auto filled = [&](std::vector<double> values, double otherwise) {
-            values.resize(count, std::nan(""));
-            for (double& value : values)
-                if (std::isnan(value)) value = otherwise;
-            return values;
-        };
-        for (std::size_t i = 0; i < count; ++i) p_.zoom_names.push_back(std::to_string(i + 1));
-        p_.zoom_current = std::min(file_.current, file_.positions) - 1;
-        for (const auto& [surface, values] : file_.zoom) {
-            if (surface == file_.surfaces.back().row.number) {
-                p_.remarks.push_back("the thickness behind the image, which configurations change, is left out");
+    void convert_zoom() {
+        if (zoom_.empty() && zoom_apertures_.empty()) return;
+        for (int i = 1; i <= positions_; ++i) p_.zoom_names.push_back(std::to_string(i));
+        p_.zoom_current = std::min(current_, positions_) - 1;
+        for (const auto& [surface, values] : zoom_) {
+            if (surface == row().number) {
+                remark("the thickness behind the image, which configurations change, is left out");
                 continue;
             }
-            const int row = row_of_number(surface);
-            std::vector<double> list = values;
-            for (double& value : list) value = file_.unit * value >= kLongest ? kInfinity : file_.unit * value;
-            const double otherwise =
-                row < 0 ? p_.object_distance : p_.surfaces[static_cast<std::size_t>(row)].thickness;
-            p_.zoom_thicknesses[row] = filled(list, otherwise);
-            for (const double value : p_.zoom_thicknesses[row])
-                if (row >= 0 && !std::isfinite(value))
-                    throw LensFileError(
-                        "a configuration makes the thickness of surface " + std::to_string(surface) + " infinite",
-                        p_.file);
+            const int index = row_of_number(surface);
+            std::vector<double>& list = p_.zoom_thicknesses[index];
+            list = filled(values, unit_,
+                          index < 0 ? p_.object_distance : p_.surfaces[static_cast<std::size_t>(index)].thickness);
+            for (double& value : list) {
+                if (value >= kLongest) value = kInfinity;
+                if (index >= 0 && !std::isfinite(value))
+                    fail_at("a configuration makes the thickness of surface " + std::to_string(surface) + " infinite");
+            }
         }
-        set_zoom_sizes(filled);
-        if (!file_.zoom_apertures.empty()) {
-            const bool is_length = p_.aperture_kind == ApertureKind::entrance_pupil_diameter;
-            for (double& value : file_.zoom_apertures) value *= is_length ? file_.unit : 1;
-            p_.zoom_apertures = filled(file_.zoom_apertures, p_.aperture);
-        }
+        convert_zoom_sizes();
+        if (zoom_apertures_.empty()) return;
+        const bool is_length = p_.aperture_kind == ApertureKind::entrance_pupil_diameter;
+        p_.zoom_apertures = filled(zoom_apertures_[0], is_length ? unit_ : 1, p_.aperture);
+    }
+
+    /// Returns the values of all configurations, converted to mm; those that are not stated are `otherwise`.
+    std::vector<double> filled(std::vector<double> values, double unit, double otherwise) const {
+        values.resize(static_cast<std::size_t>(positions_), std::nan(""));
+        for (double& value : values) value = std::isnan(value) ? otherwise : unit * value;
+        return values;
     }
 
     /// Returns the index of a surface's row; -1: the object.
     int row_of_number(int surface) const {
-        if (surface == 0 && !file_.has_faces_alone) return -1;
-        const auto found =
-            std::ranges::find_if(p_.surfaces, [&](const PrescriptionSurface& s) { return s.number == surface; });
+        if (surface == 0 && !has_faces_alone_) return -1;
+        const auto found = std::ranges::find(p_.surfaces, surface, &PrescriptionSurface::number);
         if (found == p_.surfaces.end())
-            throw LensFileError(
-                "a configuration changes surface " + std::to_string(surface) + ", which the lens does not have",
-                p_.file);
+            fail_at("a configuration changes surface " + std::to_string(surface) + ", which the lens does not have");
         return static_cast<int>(found - p_.surfaces.begin());
     }
 
     /// Sets the sizes of the stop in the zoom positions, if the file defines the aperture by its semi-diameter. Other
     /// surfaces have one clear semi-diameter for all configurations, which is the largest.
-    template <class Filled>
-    void set_zoom_sizes(const Filled& filled) {
-        for (const auto& [surface, values] : file_.zoom_sizes) {
-            if (surface == 0 || surface == file_.surfaces.back().row.number) continue;
+    void convert_zoom_sizes() {
+        for (const auto& [surface, values] : zoom_sizes_) {
+            if (surface == 0 || surface == row().number) continue;
             PrescriptionSurface& row = p_.surfaces[static_cast<std::size_t>(row_of_number(surface))];
-            std::vector<double> sizes = filled(values, row.clear_semi_diameter / file_.unit);
-            for (double& size : sizes) size *= file_.unit;
+            const std::vector<double> sizes = filled(values, unit_, row.clear_semi_diameter);
             if (row.is_stop && p_.aperture_kind == ApertureKind::stop_size) {
                 p_.zoom_apertures = sizes;
             } else {
                 row.clear_semi_diameter = *std::ranges::max_element(sizes);
-                p_.remarks.push_back("the largest of the semi-diameters that configurations give surface " +
-                                     std::to_string(surface) + " is taken for all of them");
+                remark("the largest of the semi-diameters that configurations give surface " + std::to_string(surface) +
+                       " is taken for all of them");
             }
         }
     }
 
-    ZemaxFile file_;
-    Prescription p_;
-    LensGlasses& glasses_;
+    std::vector<ZemaxSurface> surfaces_;  ///< including object and image
+    /// True if the file lists faces alone: no surface is the object, and the last need not be the image.
+    bool has_faces_alone_ = false;
+    bool has_indents_ = false;
+    double unit_ = 1;  ///< mm
+    std::vector<std::string> catalogues_;
+    int field_type_ = 0;
+    std::size_t field_count_ = 0;
+    std::vector<double> x_, y_, decentre_y_, compress_y_;
+    std::map<int, double> wavelengths_;  ///< um, by number
+    int primary_ = 1, positions_ = 1, current_ = 1;
+    /// Values of the configurations by surface, NaN if not stated; apertures are those of surface 0.
+    std::map<int, std::vector<double>> zoom_, zoom_sizes_, zoom_apertures_;
+    std::set<std::string> coatings_, told_;
     Glass medium_ = Glass::air();  ///< medium behind the last surface converted
     std::vector<const ZemaxSurface*> glass_behind_;  ///< the surfaces converted so far
     bool glasses_are_stated_ = true;
-    std::set<std::string> told_;
 };
 
 }  // namespace
 
 Prescription read_zemax(std::string_view text, const std::string& file, LensGlasses& glasses) {
-    return Converter(zemax_file_of(text, file, glasses.options()), glasses).prescription();
+    return ZemaxReader("Zemax", text, file, glasses).read();
 }
 
 }  // namespace realcam::io

@@ -2,149 +2,229 @@
 #include <cmath>
 #include <set>
 
-#include "../../../math/hypotenuse.hpp"
 #include "../../../optics/lens/paraxial.hpp"
 #include "../../text/printable.hpp"
 #include "../lens_glass.hpp"
-#include "../lens_writers.hpp"
-#include "lens_zemax_shape.hpp"
+#include "../lens_text.hpp"
+#include "prescription_writer.hpp"
 
 namespace realcam::io {
 namespace {
 
-class ZemaxWriter {
+class ZemaxWriter : PrescriptionWriter {
 public:
-    explicit ZemaxWriter(const LensSystem& lens) : lens_(lens) {}
+    explicit ZemaxWriter(const LensSystem& lens) : PrescriptionWriter(lens, "Zemax") {}
 
     LensText write() {
-        result_.warnings = left_out_of_foreign_files(lens_, "Zemax");
         for (std::size_t i = 0; i < lens_.surfaces.size(); ++i) write_surface(i);
         if (!lens_.film_placement.is_in_place()) write_break(lens_.film_placement);
+        begin_surface();
+        line("TYPE STANDARD");
+        line("CURV", {image_curvature()});
+        line("DISZ 0");
+        line("DIAM", {corner(), 0, 0, 0, 1}, " \"\"");
+        const std::string surfaces = std::move(text_);
+        write_head();
+        text_ += surfaces;
         write_zoom();
-        std::string head = "VERS 180000 0 0\nMODE SEQ\nNAME " +
-                           printable(lens_.title.empty() ? lens_.name : lens_.title) + "\nUNIT MM X W X CM MR CPMM\n";
-        // For lenses without rotational symmetry only the stop defines the width of the beam.
-        const bool has_pupil = lens_.is_rotational();
-        const double pupil = has_pupil ? first_order(lens_, lens_.wavelength_nm).entrance_pupil_diameter : kInfinity;
-        if (std::isfinite(pupil))
-            head += "ENPD " + exact_number(pupil) + '\n';
-        else
-            head += "FLOA\n";
-        if (!makers_.empty()) {
-            head += "GCAT";
-            for (const std::string& maker : makers_) head += ' ' + maker;
-            head += '\n';
-        }
-        // The corner of the film, as a real image height.
-        const double corner = 0.5 * hypotenuse(lens_.film_width, lens_.film_height);
-        head += "FTYP 3 0 2 1 0 0 0\nXFLN 0 0\nYFLN 0 " + exact_number(corner) + "\nWAVM 1 " +
-                exact_number(lens_.wavelength_nm / 1000) + " 1\nPWAV 1\n";
-        const double object = lens_.focus_distance - lens_.film_position();
-        head += "SURF 0\n  TYPE STANDARD\n  CURV 0\n  DISZ " +
-                (std::isfinite(object) ? exact_number(object) : std::string("INFINITY")) + "\n  DIAM 0 0 0 0 1 \"\"\n";
-        const std::string image = "SURF " + std::to_string(count_ + 1) + "\n  TYPE STANDARD\n  CURV " +
-                                  exact_number((lens_.film_distance < 0 ? -1 : 1) / lens_.film_radius_of_curvature) +
-                                  "\n  DISZ 0\n  DIAM " + exact_number(corner) + " 0 0 0 1 \"\"\n";
-        result_.text = head + surfaces_ + image + zoom_;
+        result_.text = std::move(text_);
         return std::move(result_);
     }
 
 private:
-    void line(const std::string& text) { surfaces_ += "  " + text + '\n'; }
+    static std::string numbers(const std::string& word, std::initializer_list<double> values) {
+        std::string text = word;
+        for (const double value : values) text += ' ' + exact_number(value);
+        return text;
+    }
+    void line(const std::string& text) { text_ += "  " + text + '\n'; }
+    void line(const std::string& word, std::initializer_list<double> values, const char* end = "") {
+        line(numbers(word, values) + end);
+    }
+    static std::string or_infinity(double value) { return std::isfinite(value) ? exact_number(value) : "INFINITY"; }
+    void begin_surface() { text_ += "SURF " + std::to_string(++count_) + '\n'; }
+
+    void write_head() {
+        text_ = "VERS 180000 0 0\nMODE SEQ\nNAME " + title() + "\nUNIT MM X W X CM MR CPMM\n";
+        // For lenses without rotational symmetry only the stop defines the width of the beam.
+        const bool has_pupil = lens_.is_rotational();
+        const double pupil = has_pupil ? first_order(lens_, lens_.wavelength_nm).entrance_pupil_diameter : kInfinity;
+        text_ += std::isfinite(pupil) ? "ENPD " + exact_number(pupil) + '\n' : "FLOA\n";
+        if (!makers_.empty()) text_ += "GCAT";
+        for (const std::string& maker : makers_) text_ += ' ' + maker;
+        if (!makers_.empty()) text_ += '\n';
+        // The corner of the film, as a real image height.
+        text_ += "FTYP 3 0 2 1 0 0 0\nXFLN 0 0\nYFLN 0 " + exact_number(corner()) + "\nWAVM 1 " +
+                 exact_number(lens_.wavelength_nm / 1000) + " 1\nPWAV 1\nSURF 0\n";
+        line("TYPE STANDARD");
+        line("CURV 0");
+        line("DISZ " + or_infinity(object_distance()));
+        line("DIAM 0 0 0 0 1 \"\"");
+    }
 
     void write_surface(std::size_t i) {
         const Surface& s = lens_.surfaces[i];
-        const bool is_last = i + 1 == lens_.surfaces.size();
         const bool is_moved = !s.placement.is_in_place(), returns = is_moved && s.placement.returns;
         if (is_moved) write_break(s.placement);
-        surfaces_ += "SURF " + std::to_string(++count_) + '\n';
+        begin_surface();
         if (s.type == SurfaceType::stop) line("STOP");
-        const bool bends = s.bends_light(), is_asphere = bends && s.is_asphere() && s.form.is_none();
-        const ZemaxShape shape = zemax_shape_of(s);
-        line("TYPE " + shape.type);
-        line("CURV " + exact_number(bends ? s.curvature : 0.0) + " 0 0 0 0 \"\"");
-        for (const std::string& parameter : shape.lines) line(parameter);
-        for (const std::string& what : shape.left_out)
-            result_.warnings.push_back("surface " + std::to_string(i + 1) + ' ' + what);
-        if (is_asphere) {
-            // Parameter 1 is the term of r^2; there are eight, up to r^16.
-            line("PARM 1 0");
-            for (std::size_t k = 0; k < s.aspheric.size(); ++k) {
-                if (s.aspheric[k] == 0) continue;
-                line("PARM " + std::to_string(k + 2) + ' ' + exact_number(s.aspheric[k]));
-                if (k + 2 > 8)
-                    result_.warnings.push_back("surface " + std::to_string(i + 1) +
-                                               " has an aspheric term of r^18, which OpticStudio's even asphere lacks");
-            }
-        }
-        const double thickness = is_last ? lens_.film_distance : s.thickness;
-        line("DISZ " + exact_number(returns ? 0.0 : thickness));
+        std::vector<std::string> parameters;
+        line("TYPE " + type_of(i, parameters));
+        line("CURV", {s.bends_light() ? s.curvature : 0.0, 0, 0, 0, 0}, " \"\"");
+        for (const std::string& parameter : parameters) line(parameter);
+        line("DISZ", {returns ? 0.0 : thickness(i)});
         if (s.type == SurfaceType::mirror)
             line("GLAS MIRROR 0 0 1.5 40 0 0 0 0 0 0");
         else if (const Glass& behind = medium_behind(i); !behind.is_air())
             line("GLAS " + glass(behind));
-        if (bends && s.conic != 0) line("CONI " + exact_number(s.conic));
+        if (s.bends_light() && s.conic != 0) line("CONI", {s.conic});
         const double rim = s.type == SurfaceType::stop ? lens_.stop_semi_diameter : s.clear_semi_diameter;
-        line("DIAM " + exact_number(rim) + " 1 0 0 1 \"\"");
+        line("DIAM", {rim, 1, 0, 0, 1}, " \"\"");
         if (!s.aperture_shape.is_plain())
-            for (const std::string& aperture : shape.aperture) line(aperture);
+            write_aperture(i);
         else if (s.type == SurfaceType::aperture || s.inner_semi_diameter > 0)
-            line("CLAP " + exact_number(s.inner_semi_diameter) + ' ' + exact_number(s.clear_semi_diameter) + " 0");
+            line("CLAP", {s.inner_semi_diameter, s.clear_semi_diameter, 0});
         else if (s.type != SurfaceType::stop)
-            line("FLAP 0 " + exact_number(s.clear_semi_diameter) + " 0");
-        if (returns) write_return(s.placement, thickness);
+            line("FLAP", {0, s.clear_semi_diameter, 0});
+        if (!returns) return;
+        // The reverse of a coordinate break. With order 1 a break applies its steps in reverse order.
+        const auto& [decentre, tilt, unused] = s.placement;
+        write_break({-decentre.x, -decentre.y, -tilt.x, -tilt.y, -tilt.z, 1}, thickness(i) - decentre.z);
     }
 
-    void write_break_line(const std::vector<double>& parameters, double thickness) {
-        surfaces_ += "SURF " + std::to_string(++count_) + '\n';
+    void write_break(std::initializer_list<double> parameters, double thickness) {
+        begin_surface();
         line("TYPE COORDBRK");
         line("CURV 0 0 0 0 0 \"\"");
-        for (std::size_t k = 0; k < parameters.size(); ++k)
-            line("PARM " + std::to_string(k + 1) + ' ' + exact_number(parameters[k]));
-        line("DISZ " + exact_number(thickness));
+        double number = 0;
+        for (const double parameter : parameters) line("PARM", {++number, parameter});
+        line("DISZ", {thickness});
         line("DIAM 0 0 0 0 1 \"\"");
     }
 
     /// Writes a coordinate break. The shift along the axis comes first: after a break it would be along the new axis.
     void write_break(const SurfacePlacement& place) {
         const auto& [decentre, tilt, returns] = place;
-        if (decentre.z != 0) write_break_line({0, 0, 0, 0, 0, 0}, decentre.z);
-        write_break_line({decentre.x, decentre.y, tilt.x, tilt.y, tilt.z, 0}, 0);
+        if (decentre.z != 0) write_break({0, 0, 0, 0, 0, 0}, decentre.z);
+        write_break({decentre.x, decentre.y, tilt.x, tilt.y, tilt.z, 0}, 0);
     }
 
-    /// Writes the reverse of a coordinate break. With order 1 a break applies its steps in reverse order.
-    void write_return(const SurfacePlacement& place, double thickness) {
-        const auto& [decentre, tilt, returns] = place;
-        write_break_line({-decentre.x, -decentre.y, -tilt.x, -tilt.y, -tilt.z, 1}, thickness - decentre.z);
+    /// Returns the type of a surface, and adds the lines of its parameters.
+    std::string type_of(std::size_t i, std::vector<std::string>& lines) {
+        const Surface& s = lens_.surfaces[i];
+        const SurfaceForm& form = s.form;
+        if (!s.bends_light()) return "STANDARD";
+        const auto add_even = [&](std::size_t first, std::size_t most) {  // the number of the term of r^4
+            for (std::size_t k = 0; k < s.aspheric.size() && k < most; ++k)
+                lines.push_back(numbers("PARM", {static_cast<double>(k + first), s.aspheric[k]}));
+        };
+        // The number of terms, the normalization radius, and the coefficients.
+        const auto add_extra = [&](double radius, const std::vector<double>& terms) {
+            lines.push_back(numbers("XDAT", {1, static_cast<double>(terms.size())}));
+            lines.push_back(numbers("XDAT", {2, radius}));
+            for (std::size_t k = 0; k < terms.size(); ++k)
+                lines.push_back(numbers("XDAT", {static_cast<double>(k + 3), terms[k]}));
+        };
+        if (form.is_none()) {
+            if (!s.is_asphere()) return "STANDARD";
+            // Parameter 1 is the term of r^2; there are eight, up to r^16.
+            lines.emplace_back("PARM 1 0");
+            for (std::size_t k = 0; k < s.aspheric.size(); ++k) {
+                if (s.aspheric[k] == 0) continue;
+                lines.push_back(numbers("PARM", {static_cast<double>(k + 2), s.aspheric[k]}));
+                if (k + 2 > 8) leave_out(i, "has an aspheric term of r^18, which OpticStudio's even asphere lacks");
+            }
+            return "EVENASPH";
+        }
+        const std::string beyond = beyond_polynomials(form);
+        const bool has_radial = !form.radial.empty() || (form.forbes && form.forbes->kind == ForbesKind::con);
+        if (!beyond.empty()) leave_out(i, "has " + beyond + ", which realcam does not write to .zmx files");
+        if ((form.base != BaseForm::conic) + has_radial + !form.xy.empty() + form.zernike.has_value() > 1)
+            leave_out(i, "has terms of several kinds, of which one type of Zemax has the first alone");
+        const double radius_x = form.curvature_x == 0 ? 0 : 1 / form.curvature_x;
+        if (form.base == BaseForm::toroid) {
+            lines.push_back(numbers("PARM", {1, radius_x}));
+            add_even(3, s.aspheric.size());
+            return "TOROIDAL";
+        }
+        if (form.zernike) {
+            add_even(2, 7);
+            add_extra(form.zernike->radius, form.zernike->coefficients);
+            return form.zernike->order == ZernikeOrder::noll ? "SZERNSAG" : "FZERNSAG";
+        }
+        if (has_radial) {
+            add_extra(1, radial_list(radial_terms_of(s), 1));
+            return "XOSPHERE";
+        }
+        if (s.is_asphere()) leave_out(i, "has even terms, which Zemax's type of this surface lacks");
+        if (form.base == BaseForm::biconic) {
+            lines = {numbers("PARM", {1, radius_x}), numbers("PARM", {2, form.conic_x})};
+            return "BICONICX";
+        }
+        if (form.xy.empty()) return s.is_asphere() ? "EVENASPH" : "STANDARD";
+        std::vector<double> terms;
+        for (const XyTerm& term : form.xy) {
+            const auto number = static_cast<std::size_t>(xy_number(term.x + term.y, term.y));
+            if (number == 0) {
+                leave_out(i, "has a constant term, which Zemax's extended polynomial lacks");
+                continue;
+            }
+            terms.resize(std::max(terms.size(), number), 0.0);
+            terms[number - 1] = term.coefficient;
+        }
+        add_extra(1, terms);
+        return "XPOLYNOM";
     }
 
-    /// Returns the medium behind a surface. A stop or an aperture inside a glass has it on both sides.
-    const Glass& medium_behind(std::size_t i) const {
-        for (std::size_t k = i + 1; k-- > 0;)
-            if (lens_.surfaces[k].type == SurfaceType::refracting) return lens_.surfaces[k].material;
-        static const Glass air = Glass::air();
-        return air;
+    /// Writes the aperture of a surface if it is not a circle about the vertex.
+    void write_aperture(std::size_t i) {
+        const Surface& s = lens_.surfaces[i];
+        const ApertureShape& shape = s.aperture_shape;
+        Vec2d offset = shape.offset;
+        const bool is_circle = shape.kind == ApertureOutline::circle, is_open = is_circle && shape.half.x == 0;
+        bool has_word = true;
+        // In Zemax a surface has one aperture or one obscuration.
+        const bool has_one = is_open && shape.obscurations.size() == 1 && shape.obscurations.front().angle_deg == 0;
+        if (shape.kind == ApertureOutline::rectangle) {
+            line("SQAP", {shape.half.x, shape.half.y});
+        } else if (shape.kind == ApertureOutline::ellipse) {
+            line("ELAP", {shape.half.x, shape.half.y});
+        } else if (is_circle && !is_open) {
+            line("CLAP", {s.inner_semi_diameter, shape.half.x});
+        } else if (has_one) {
+            const Obscuration& piece = shape.obscurations.front();
+            line(piece.is_rectangle ? "SQOB" : "ELOB", {piece.half.x, piece.half.y});
+            offset = piece.offset;
+        } else {
+            has_word = false;
+        }
+        if (shape.kind == ApertureOutline::polygon)
+            leave_out(i, "has a polygonal aperture, which realcam does not write to .zmx files");
+        if (!has_one && !shape.obscurations.empty())
+            leave_out(i, "has obscurations that Zemax's one aperture of a surface does not say");
+        if (s.inner_semi_diameter > 0 && has_word && (is_open || !is_circle))
+            leave_out(i, "has a disc in its aperture, which Zemax's one aperture of a surface does not say");
+        if (offset != Vec2d{0, 0}) line("OBDC", {offset.x, offset.y});
     }
 
     std::string glass(const Glass& glass) {
-        if (const auto known = catalogue_name_of(glass); known && is_unique(*known)) {
-            std::string maker = known->maker;
-            for (char& c : maker) c = static_cast<char>(c - 'a' + 'A');
-            makers_.insert(maker);
-            return known->name + " 0 0 " + exact_number(glass.index(kLineD_nm)) + ' ' +
-                   exact_number(abbe_pair(glass).v_d) + " 0 0 0 0 0 0";
-        }
+        const auto known = catalogue_name_of(glass);
         const AbbePair pair = abbe_pair(glass);
-        Glass model = glass_of_pair(pair.n_d, pair.v_d);
-        if (const auto shared = catalogue_name_of(glass); shared && told_.insert(glass.label).second)
-            result_.warnings.push_back("that the glass " + in_quotes(glass.label) +
-                                       " is that maker's, as another maker in the file has the name too: it is written "
-                                       "by n_d and V_d");
-        if (told_.insert(glass.label).second &&
-            std::fabs(model.index(lens_.wavelength_nm) - glass.index(lens_.wavelength_nm)) > 1e-9)
-            result_.warnings.push_back("the glass " + in_quotes(glass.label) +
-                                       " is written by n_d and V_d, which at other wavelengths is not exact");
-        return "___BLANK 1 0 " + exact_number(pair.n_d) + ' ' + exact_number(pair.v_d) + " 0 0 0 0 0 0";
+        if (known && is_unique(*known)) {
+            makers_.insert(upper_case(known->maker));
+            return numbers(known->name, {0, 0, glass.index(kLineD_nm), pair.v_d}) + " 0 0 0 0 0 0";
+        }
+        if (told_.insert(glass.label).second) {
+            if (known)
+                result_.warnings.push_back("that the glass " + in_quotes(glass.label) +
+                                           " is that maker's, as another maker in the file has the name too: it is "
+                                           "written by n_d and V_d");
+            const Glass model = glass_of_pair(pair.n_d, pair.v_d);
+            if (!known && std::fabs(model.index(lens_.wavelength_nm) - glass.index(lens_.wavelength_nm)) > 1e-9)
+                result_.warnings.push_back("the glass " + in_quotes(glass.label) +
+                                           " is written by n_d and V_d, which at other wavelengths is not exact");
+        }
+        return numbers("___BLANK", {1, 0, pair.n_d, pair.v_d}) + " 0 0 0 0 0 0";
     }
 
     /// True if no other maker in the file has another glass of this name. A file lists the makers of all of its glasses
@@ -161,66 +241,25 @@ private:
     void write_zoom() {
         const ZoomRange& zoom = lens_.zoom;
         if (zoom.positions.empty()) return;
-        if (count_ != static_cast<int>(lens_.surfaces.size())) {
-            result_.warnings.push_back("zoom positions, because surfaces are tilted or decentred");
-            return;
-        }
-        zoom_ = "MNUM " + std::to_string(zoom.positions.size()) + ' ' + std::to_string(zoom.current + 1) + '\n';
-        const auto add = [&](const std::string& name, int surface, std::size_t position, double value) {
-            zoom_ += name + ' ' + std::to_string(surface) + ' ' + std::to_string(position + 1) + ' ' +
-                     (std::isfinite(value) ? exact_number(value) : std::string("INFINITY")) +
-                     " 0 0 0 1 1 1 0 0 \"\" 0\n";
-        };
-        const std::size_t count = zoom.positions.size();
-        // The current position has the lens unchanged; in the others it is focused at their rest distance.
-        const auto state = [&](std::size_t k) {
-            return static_cast<int>(k) == zoom.current ? lens_ : at_zoom_position(lens_, static_cast<int>(k));
-        };
-        for (std::size_t j = 0; j < zoom.surfaces.size(); ++j)
-            for (std::size_t k = 0; k < count; ++k)
-                add("THIC", zoom.surfaces[j] + 1, k,
-                    state(k).surfaces[static_cast<std::size_t>(zoom.surfaces[j])].thickness);
-        for (std::size_t k = 0; k < count; ++k)
-            add("THIC", static_cast<int>(lens_.surfaces.size()), k, state(k).film_distance);
-        for (std::size_t k = 0; k < count; ++k) {
-            const LensSystem there = state(k);
-            add("THIC", 0, k, there.focus_distance - there.film_position());
-        }
-        for (std::size_t k = 0; k < count; ++k)
-            add("APER", 0, k, first_order(state(k), lens_.wavelength_nm).entrance_pupil_diameter);
+        if (count_ != static_cast<int>(lens_.surfaces.size()) + 1)
+            return result_.warnings.push_back("zoom positions, because surfaces are tilted or decentred");
+        text_ += "MNUM " + std::to_string(zoom.positions.size()) + ' ' + std::to_string(zoom.current + 1) + '\n';
+        for (const auto& [surface, values] : zoom_rows())
+            for (std::size_t k = 0; k < values.size(); ++k)
+                text_ += (surface < 0 ? "APER 0 " : "THIC " + std::to_string(surface) + ' ') + std::to_string(k + 1) +
+                         ' ' + or_infinity(values[k]) + " 0 0 0 1 1 1 0 0 \"\" 0\n";
         std::string names;
         for (const ZoomPosition& position : zoom.positions)
             names += (names.empty() ? "" : ", ") + in_quotes(position.name);
         result_.warnings.push_back("the zoom positions " + names + " are numbered");
     }
 
-    const LensSystem& lens_;
     int count_ = 0;  ///< number of surfaces written, including coordinate breaks
-    LensText result_;
-    std::string surfaces_, zoom_;
+    std::string text_;
     std::set<std::string> makers_, told_;
 };
 
 }  // namespace
-
-std::vector<std::string> left_out_of_foreign_files(const LensSystem& lens, const std::string& format) {
-    std::vector<std::string> list;
-    const std::string none = ", which a " + format + " file has no word for";
-    std::string coated, holes;
-    for (std::size_t i = 0; i < lens.surfaces.size(); ++i)
-        if (!(lens.surfaces[i].coating == Coating())) coated += (coated.empty() ? "" : ", ") + std::to_string(i + 1);
-    if (!coated.empty()) list.push_back("the coatings of surfaces " + coated + none);
-    if (lens.iris.blades != 0)
-        list.push_back("the " + std::to_string(lens.iris.blades) + " blades of the diaphragm" + none);
-    if (lens.focusing.moves_group() || lens.focusing.nearest_mm > 0) list.push_back("how the lens focuses" + none);
-    if (lens.stop_semi_diameter < lens.stop().clear_semi_diameter)
-        list.push_back("how far the diaphragm opens: it is written as it is closed");
-    if (!lens.source.empty()) list.push_back("the source of the lens" + none);
-    if (std::fabs(lens.film_width * 2 - lens.film_height * 3) > 1e-9 * lens.film_width)
-        list.push_back("the film's shape: it is written as the height of its corner");
-    if (lens.allow_crossing) list.push_back("that faces may cross" + none);
-    return list;
-}
 
 LensText lens_as_zemax(const LensSystem& lens) {
     return ZemaxWriter(lens).write();

@@ -1,0 +1,161 @@
+#include "prescription_reader.hpp"
+
+#include <cmath>
+
+#include "../../text/printable.hpp"
+
+namespace realcam::io {
+
+PrescriptionReader::PrescriptionReader(const char* format, const std::string& file, LensGlasses& glasses)
+    : glasses_(glasses) {
+    p_.file = file;
+    p_.format = format;
+}
+
+void PrescriptionReader::add_foreign(const std::string& what, int line, int surface) {
+    if (foreign_.emplace(what, surface).second) p_.foreign.push_back({what, line, surface});
+}
+
+void PrescriptionReader::remark(const std::string& what) {
+    if (remarks_.insert(what).second) p_.remarks.push_back(what);
+}
+
+void PrescriptionReader::set_object(double distance, double curvature, int line) {
+    p_.object_distance = distance >= kLongest ? kInfinity : distance;
+    if (curvature != 0 && std::isfinite(p_.object_distance)) add_foreign("a curved object", line, 0);
+}
+
+void PrescriptionReader::set_wavelengths(std::vector<double> wavelengths_nm, std::size_t main) {
+    if (wavelengths_nm.empty()) return remark("it states no wavelength: that of the d line is taken");
+    p_.wavelength_nm = wavelengths_nm[main];
+    p_.wavelengths_nm = std::move(wavelengths_nm);
+}
+
+std::string LensCommand::capital(std::size_t i, std::size_t most) const {
+    return i < size() ? upper_case(values_[i].text.substr(0, most)) : std::string();
+}
+
+double LensCommand::number(std::size_t i, const std::string& name) const {
+    if (i >= size()) lines_.fail(name + " is missing");
+    return lines_.number_of(values_[i].text, name);
+}
+
+double LensCommand::number_or(std::size_t i, const std::string& name, double otherwise) const {
+    return i < size() && !values_[i].is_quoted ? number(i, name) : otherwise;
+}
+
+double LensCommand::number_or_infinity(std::size_t i, const std::string& name) const {
+    if (i < size() && is_infinity(values_[i].text)) return values_[i].text.starts_with('-') ? -kInfinity : kInfinity;
+    return number(i, name);
+}
+
+std::vector<double> LensCommand::numbers(std::size_t from, const std::string& name) const {
+    std::vector<double> list;
+    for (std::size_t i = from; i < size(); ++i) list.push_back(number(i, "each value of " + name));
+    return list;
+}
+
+int LensCommand::whole(std::size_t i, const std::string& name, int least, int most) const {
+    if (i >= size()) lines_.fail(name + " is missing");
+    return lines_.whole_number_of(values_[i].text, name, least, most);
+}
+
+void PrescriptionText::add_unknown(std::string_view word) {
+    if (unknown_.size() < kMostUnknown) unknown_.insert(printable(word.substr(0, 40)));
+}
+
+void PrescriptionText::tell_unknown(const std::string& what) {
+    if (!unknown_.empty()) remark(what + " that are not known were left out: " + short_list(unknown_));
+}
+
+std::vector<double> PrescriptionText::field_values(const LensCommand& command) const {
+    if (command.size() > kMostFileFields)
+        lines_.fail(command.word + " has more than " + std::to_string(kMostFileFields) + " values");
+    return command.numbers(0, command.word);
+}
+
+void PrescriptionText::check_count(std::size_t surfaces) const {
+    if (surfaces >= kMostFileSurfaces)
+        lines_.fail("the file has more than " + std::to_string(kMostFileSurfaces) + " surfaces");
+}
+
+std::optional<double> millimetres_of(const std::string& unit) {
+    static const std::map<std::string, double> units{{"MM", 1},    {"CM", 10},     {"M", 1000},      {"METER", 1000},
+                                                     {"IN", 25.4}, {"INCH", 25.4}, {"INCHES", 25.4}, {"METERS", 1000}};
+    const auto found = units.find(unit);
+    return found == units.end() ? std::nullopt : std::optional(found->second);
+}
+
+void add_term(PrescriptionSurface& row, int power, double value, double unit) {
+    if (value != 0) row.aspheric[power] += value * std::pow(unit, 1 - power);
+}
+
+std::pair<int, int> xy_powers(int number) {
+    int left = number, degree = 0;
+    while (left > degree) left -= ++degree;
+    return {degree - left, left};
+}
+
+void set_zernike(PrescriptionSurface& row, ZernikeOrder order, double radius, std::vector<double> coefficients) {
+    while (!coefficients.empty() && coefficients.back() == 0) coefficients.pop_back();
+    if (!coefficients.empty()) row.form.zernike = ZernikeTerms{order, radius, std::move(coefficients)};
+}
+
+void set_outline(ApertureShape& shape, bool is_circle, bool is_rectangle, Vec2d half, Vec2d offset) {
+    shape.kind = is_circle      ? ApertureOutline::circle
+                 : is_rectangle ? ApertureOutline::rectangle
+                                : ApertureOutline::ellipse;
+    shape.half = half;
+    shape.offset = offset;
+}
+
+void limit_to_outline(PrescriptionSurface& row) {
+    const double reach = row.aperture_shape.reach();
+    if (!(reach > 0)) return;
+    row.clear_semi_diameter = row.clear_semi_diameter > 0 ? std::min(row.clear_semi_diameter, reach) : reach;
+}
+
+std::vector<Vec2d> rotated_rectangle(Vec2d half, double angle_deg) {
+    const Affine<double> frame = rotation(0, 0, angle_deg);
+    std::vector<Vec2d> corners;
+    for (const auto& [x, y] : {Vec2d{1, 1}, Vec2d{-1, 1}, Vec2d{-1, -1}, Vec2d{1, -1}}) {
+        const Vec3d corner = frame.direction({x * half.x, y * half.y, 0});
+        corners.push_back({corner.x, corner.y});
+    }
+    return corners;
+}
+
+Glass glass_of_indices(const std::vector<double>& wavelengths_nm, const std::vector<double>& indices,
+                       std::string label) {
+    std::vector<Glass::TablePoint> points;
+    for (std::size_t i = 0; i < indices.size(); ++i) points.push_back({wavelengths_nm[i], indices[i]});
+    Glass glass = Glass::table(std::move(points));
+    glass.label = std::move(label);
+    return glass;
+}
+
+void set_decentre(const SurfacePlacement& placement, DecentreKind kind, PrescriptionSurface& row) {
+    row.before = row.behind = {};
+    if (placement.is_in_place()) return;
+    const Affine<double> frame = placement.frame();
+    if (kind != DecentreKind::reverse) row.before = frame;
+    if (kind == DecentreKind::and_return || kind == DecentreKind::reverse) row.behind = inverse_motion(frame);
+    if (kind == DecentreKind::bend) row.behind = SurfacePlacement{{}, placement.tilt_deg, false}.frame();
+}
+
+void turn_about_axis(PrescriptionSurface& row) {
+    const Affine<double> turn = rotation(0, 0, 90);
+    row.before = row.before * turn;
+    row.behind = inverse_motion(turn) * row.behind;
+    ApertureShape& shape = row.aperture_shape;
+    const auto turned = [](Vec2d v) { return Vec2d{v.y, -v.x}; };
+    std::swap(shape.half.x, shape.half.y);
+    shape.offset = turned(shape.offset);
+    for (Vec2d& corner : shape.corners) corner = turned(corner);
+    for (Obscuration& piece : shape.obscurations) {
+        piece.offset = turned(piece.offset);
+        piece.angle_deg -= 90;
+    }
+}
+
+}  // namespace realcam::io

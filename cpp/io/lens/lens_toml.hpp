@@ -1,0 +1,49 @@
+#pragma once
+// Parts of the reader and the writer of realcam's own lens files.
+
+#include <cmath>
+#include <initializer_list>
+#include <limits>
+#include <optional>
+#include <string>
+
+#include "../../keep_going.hpp"
+#include "../../optics/prescription/lens_system.hpp"
+#include "../text/toml_table.hpp"
+#include "lens_format.hpp"
+
+namespace realcam::io {
+
+/// Reads a lens from the table of a lens file. `file`: its name in messages. Throws LensFileError.
+LensSystem lens_from_table(const toml::table& table, const std::string& file, const KeepGoing& keep_going);
+
+/// Returns the text of a lens file, which preserves the lens exactly.
+std::string lens_as_toml(const LensSystem& lens);
+
+/// Reads the form of a surface from its table. Throws LensFileError.
+SurfaceForm read_form(const TomlTable& table);
+
+/// Reads the shape of a surface's aperture from its table. `rim`: clear semi-diameter, to which the arms of a spider
+/// extend. Throws LensFileError.
+ApertureShape read_aperture(const TomlTable& table, double rim);
+
+/// Return lines of a surface's table, from which the readers restore the form and the aperture shape.
+std::string form_as_toml(const SurfaceForm& form);
+std::string aperture_as_toml(const ApertureShape& shape);
+
+/// Returns a number as a TOML float: without a point, TOML reads a 64-bit integer.
+inline std::string toml_number(double value) {
+    const std::string text = exact_number(value);
+    return text.find_first_of(".e") == text.npos ? text + ".0" : text;
+}
+
+/// Returns a number near `near` that `back` maps exactly to `value`; std::nullopt if rounding leaves no such number.
+template <class Back>
+std::optional<double> before_rounding(double near, double value, const Back& back) {
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    for (const double candidate : {near, std::nextafter(near, kInfinity), std::nextafter(near, -kInfinity)})
+        if (std::isfinite(candidate) && back(candidate) == value) return candidate;
+    return std::nullopt;
+}
+
+}  // namespace realcam::io
