@@ -28,7 +28,7 @@ import uvicorn
 from realcam.cli.demo import scenes_folder
 from realcam.shot import Shot
 from realcam.viewer.lens_bench import LensBench
-from realcam.viewer.window import Window
+from realcam.viewer.page.window import Window
 from starlette.applications import Starlette
 from starlette.routing import WebSocketRoute
 from starlette.websockets import WebSocket

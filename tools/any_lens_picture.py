@@ -6,7 +6,7 @@ import sys
 from pathlib import Path
 
 import realcam as rc
-from realcam.sheet import save_sheet
+from realcam.cli.sheet import save_sheet
 
 ROOT = Path(__file__).resolve().parents[1]
 HEIGHT = 240

@@ -65,7 +65,7 @@ TEXT
 }
 
 # The suite that exercises every kernel, small enough for tools that slow a GPU down a hundred times.
-sanitized=(tests/python/test_live_view.py tests/python/test_session.py tests/python/test_instances.py tests/python/test_device_arrays.py
+sanitized=(tests/python/render/test_live_view.py tests/python/render/test_session.py tests/python/scene/test_instances.py tests/python/render/test_device_arrays.py
            tests/parity/test_parity_rays.py
            tests/parity/test_parity_pictures.py::test_any_number_of_pixels_and_samples
            tests/parity/test_parity_pictures.py::test_the_same_picture_twice)

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import realcam as rc
 from PIL import Image
-from realcam.draw import save_cross_section, save_states, states_of
+from realcam.drawing import save_cross_section, save_states, states_of
 
 WIDTH = 1000
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from written import write_text
 
-# Names of `realcam` by what they are for. tests/python/test_site.py holds that none is missing.
+# Names of `realcam` by what they are for. tests/python/pages/test_site.py holds that none is missing.
 GROUPS = {
     "Lenses": (
         "Lens", "Surface", "Stop", "Mirror", "Glass", "Coating", "CoatingLayer", "CoatingResponse", "FirstOrder",
@@ -58,7 +58,7 @@ GROUPS = {
 }  # fmt: skip
 MODULES = {
     "realcam.analysis": "Aberrations and MTF, as arrays and as plots",
-    "realcam.draw": "Drawings of lenses",
+    "realcam.drawing": "Drawings of lenses",
     "realcam.dataset": "Labelled pictures",
 }
 

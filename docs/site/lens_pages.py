@@ -12,8 +12,8 @@ from pathlib import Path
 
 import lens_pictures
 import realcam as rc
-from realcam import lens_tables
-from realcam.draw import save_cross_section
+from realcam.analysis import lens_tables
+from realcam.drawing import save_cross_section
 from written import is_newer, remove_others, stand_in_for, write_text
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -9,7 +9,7 @@ import matplotlib.figure
 import numpy as np
 from realcam import Camera, Film, Lens, render
 from realcam._core import develop
-from realcam.draw import draw_cross_section
+from realcam.drawing import draw_cross_section
 
 from .experiment import Experiment, Figure, Row, drawn, pixels
 from .scenes import stars

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from realcam import Lens
-from realcam.draw import draw_states
+from realcam.drawing import draw_states
 
 from .experiment import Experiment, Row, drawn
 

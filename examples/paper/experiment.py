@@ -11,7 +11,7 @@ import matplotlib
 import matplotlib.figure
 import numpy as np
 from realcam._core import develop
-from realcam.figure_files import figure_bytes
+from realcam.drawing.figure_files import figure_bytes
 from realcam.image import Image
 
 

@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING
 
 from frame_scene import frame_camera, frame_scene
 from realcam import Film, Lens, RenderSettings, devices
-from realcam.draw import draw_states
+from realcam.drawing import draw_states
 from realcam.shot import Shot
 
 from .experiment import Experiment, Figure, Row, drawn, photographed
 
 if TYPE_CHECKING:
     from realcam.viewer.lens_bench import LensBench
-    from realcam.viewer.picture_request import Frame
+    from realcam.viewer.pictures.picture_request import Frame
 
 SIDE = 320
 SAMPLES = 64

@@ -15,7 +15,7 @@ lets least squares repair it.
 
 import matplotlib.pyplot as plt
 import realcam as rc
-from realcam.draw import draw_cross_section
+from realcam.drawing import draw_cross_section
 
 lens = rc.Lens.load("cooke-triplet-50mm")
 for index, surface in enumerate(lens.surfaces):

@@ -8,14 +8,17 @@ scene = rc.Scene.load("scene.glb").with_environment(2000)
 rc.render(scene, camera, spp=64).save("photograph.png")
 """
 
+from collections.abc import Callable
+from importlib import import_module
 from typing import TYPE_CHECKING, Any
+
+from .installation import advised as _advised
+from .installation import cuda_plugin as _cuda_plugin
 
 try:
     from . import _core as _core
 except ImportError as error:
-    from .import_advice import advised
-
-    raise advised(error) from None
+    raise _advised(error) from None
 from ._core import (
     PSF,
     AimedRays,
@@ -70,47 +73,102 @@ from ._core import (
     lens_names,
     sensor_names,
 )
-from .accuracy import AccuracyCost, accuracy_cost
 from .autofocus import Autofocus, autofocus
-from .cuda_plugin import path_of_plugin as _path_of_plugin
-from .derivatives import Gradient, RayDerivatives, RayGradient, backpropagate_rays, ray_derivatives
-from .drawing import CrossSection, cross_section
 from .film_part import FilmPart
-from .flow import OpticalFlow, optical_flow
-from .glass_search import GlassMatch, GlassSearch, nearest_glasses, with_better_glasses
 from .image import Image
 from .image_file import read_environment
-from .image_simulation import ImageSimulation, image_simulation
-from .job import Job, JobStatus
 from .lens import Mirror, Stop
 from .live_view import LiveView
-from .operands import Operand
-from .optimisation import Optimisation, Targets, optimised
-from .photography import DepthOfField, PhotographicFigures, depth_of_field, photographic_figures
 from .pickling import name_static_functions as _name_static_functions
 from .planning import plan
 from .raw_image import RawImage
 from .render import render
-from .rig import Rig, RigCamera
 from .session import ReachedNoise, Session
 from .shot import Shot, photograph
-from .tolerance import (
-    CopyFigures,
-    ElementShift,
-    Sensitivity,
-    Tolerance,
-    Tolerances,
-    ToleranceStudy,
-    random_copy,
-    tolerance_study,
-)
-from .variable import Variable
-from .vision import CameraModelFit, camera_json, fit_camera_model, save_camera_json, save_colmap
 
 if TYPE_CHECKING:
     from . import analysis
+    from .accuracy import AccuracyCost, accuracy_cost
+    from .analysis.image_simulation import ImageSimulation, image_simulation
+    from .derivatives import Gradient, RayDerivatives, RayGradient, Variable, backpropagate_rays, ray_derivatives
+    from .job import Job, JobStatus
+    from .optimisation import (
+        GlassMatch,
+        GlassSearch,
+        Operand,
+        Optimisation,
+        Targets,
+        nearest_glasses,
+        optimised,
+        with_better_glasses,
+    )
+    from .photography import DepthOfField, PhotographicFigures, depth_of_field, photographic_figures
+    from .section import CrossSection, cross_section
+    from .tolerance import (
+        CopyFigures,
+        ElementShift,
+        Sensitivity,
+        Tolerance,
+        Tolerances,
+        ToleranceStudy,
+        random_copy,
+        tolerance_study,
+    )
+    from .vision import CameraModelFit, OpticalFlow, Rig, RigCamera, fit_camera_model, optical_flow, save_colmap
+    from .vision.camera_json import camera_json, save_camera_json
 
-_core._name_cuda_plugin(_path_of_plugin())
+# Names of the packages of tools, which are imported on first use: they and their libraries take longer than the core.
+_TOOLS = {
+    "accuracy": "AccuracyCost accuracy_cost",
+    "analysis": "analysis",
+    "analysis.image_simulation": "ImageSimulation image_simulation",  # loads scipy
+    "derivatives": "Gradient RayDerivatives RayGradient Variable backpropagate_rays ray_derivatives",
+    "job": "Job JobStatus",
+    "optimisation": "GlassMatch GlassSearch Operand Optimisation Targets nearest_glasses optimised with_better_glasses",
+    "photography": "DepthOfField PhotographicFigures depth_of_field photographic_figures",
+    "section": "CrossSection cross_section",
+    "tolerance": "CopyFigures ElementShift Sensitivity Tolerance ToleranceStudy Tolerances random_copy tolerance_study",
+    "vision": "CameraModelFit OpticalFlow Rig RigCamera fit_camera_model optical_flow save_colmap",
+    "vision.camera_json": "camera_json save_camera_json",
+}
+_PACKAGE_OF = {name: package for package, names in _TOOLS.items() for name in names.split()}
+
+
+def __getattr__(name: str) -> Any:
+    """Imports the package of tools that has this name."""
+    if name not in _PACKAGE_OF:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    package = import_module(f".{_PACKAGE_OF[name]}", __name__)
+    value = globals()[name] = package if name == _PACKAGE_OF[name] else getattr(package, name)
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *_PACKAGE_OF})
+
+
+class _ToolMethod:
+    """A method of a class of the extension. Its first use imports the package of tools that defines it."""
+
+    def __init__(self, type_: type, name: str, package: str, function: str) -> None:
+        self.type, self.name, self.package, self.function = type_, name, package, function
+
+    def __get__(self, instance: object, owner: type) -> Callable[..., Any]:
+        setattr(self.type, self.name, getattr(import_module(f".{self.package}", __name__), self.function))
+        method: Callable[..., Any] = getattr(owner if instance is None else instance, self.name)
+        return method
+
+
+# _core.pyi declares the public names.
+for _type, _name, _package, _function in (
+    (Lens, "draw", "drawing", "draw"),
+    (Lens, "_repr_png_", "drawing.lens_drawings", "lens_png"),
+    (Lens, "gradient", "derivatives", "gradient"),
+    (PSF, "_repr_png_", "analysis.point_spread", "psf_png"),
+):
+    setattr(_type, _name, _ToolMethod(_type, _name, _package, _function))
+
+_core._name_cuda_plugin(_cuda_plugin())
 _name_static_functions()
 
 __all__ = [
@@ -226,12 +284,3 @@ __all__ = [
     "tolerance_study",
     "with_better_glasses",
 ]
-
-
-def __getattr__(name: str) -> Any:
-    """Imports rc.analysis on first use: it loads matplotlib, which takes longer than all other imports together."""
-    if name == "analysis":
-        from importlib import import_module
-
-        return import_module(".analysis", __name__)
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

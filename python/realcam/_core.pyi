@@ -10,10 +10,9 @@ from matplotlib.figure import Figure
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 from typing_extensions import Self, TypeVar, Unpack
 
-from .derivatives import Gradient
+from .derivatives import Gradient, Variable
 from .image import Image
 from .raw_image import RawImage
-from .variable import Variable
 
 __version__: str
 _STATE_FORMAT: int

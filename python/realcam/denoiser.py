@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 import numpy as np
-from realcam_command import denoiser_library
 
 from . import _core
 from ._core import InputError
+from .installation import denoiser_library
 
 GUIDES = ("albedo", "normal", "traced_light")  #: two guide layers, and the light that is not denoised
 

@@ -10,8 +10,8 @@ from pathlib import Path
 import numpy as np
 
 from ._core import Cancelled, ImageFileError, InputError
-from .extras import imported
 from .files import check_target
+from .installation import imported
 
 # Code points of ITU-T H.273.
 _BT709, _SRGB = 1, 13

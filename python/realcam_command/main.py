@@ -6,8 +6,6 @@ import os
 import signal
 import sys
 
-from . import denoiser_library
-
 # What the extension does, with the C++ that the executable has, so that the two cannot differ.
 _IN_CPP = (["render"], ["plan"], ["devices"], ["lens", "info"])
 
@@ -17,13 +15,10 @@ def main() -> None:
     # Python's own handler would end an import in a traceback, and would not be called while C++ is at work.
     signal.signal(signal.SIGINT, signal.SIG_DFL)
     arguments = sys.argv[1:]
-    # Also without --denoise: pictures whose noise goal is not reached are denoised where the library is installed.
-    if arguments[:1] == ["render"] and "--no-denoise" not in arguments and (library := denoiser_library()):
-        os.environ["REALCAM_OIDN"] = library
     try:
         if any(arguments[: len(command)] == command for command in _IN_CPP):
             sys.exit(_run_in_cpp(arguments))
-        from realcam.cli import run
+        from realcam.cli.app import run
     except ImportError as error:
         print(f"realcam: error: {error}", file=sys.stderr)
         sys.exit(2)
@@ -39,11 +34,15 @@ def _run_in_cpp(arguments: list[str]) -> int:
     if not hasattr(_core, "_run_command"):
         print("realcam: error: this build of realcam has no picture files, and no such command", file=sys.stderr)
         return 2
-    from realcam.command_words import understood_in_cpp
+    from realcam.cli.command_words import understood_in_cpp
+    from realcam.installation import denoiser_library
 
     try:
         words = understood_in_cpp(arguments)
     except _core.InputError as error:
         print(f"realcam: error: {_core.one_line(str(error))}", file=sys.stderr)
         return 2
+    # Also without --denoise: pictures whose noise goal is not reached are denoised where the library is installed.
+    if arguments[0] == "render" and "--no-denoise" not in arguments and (library := denoiser_library()):
+        os.environ["REALCAM_OIDN"] = library
     return _core._run_command([os.fsencode(word) for word in words])

@@ -1,14 +1,21 @@
-"""No two modules of the Python package need each other, neither directly nor by way of others."""
+"""No two modules of the Python package need each other, neither directly nor by way of others; and its core, the
+modules directly in python/realcam, needs none of the packages of tools, the folders beside them.
+"""
 
 from __future__ import annotations
 
 import ast
+import subprocess
+import sys
 from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
 import pytest
 
 PYTHON = Path(__file__).resolve().parents[2] / "python"
+TOOLS = {f"realcam.{folder.parent.name}" for folder in (PYTHON / "realcam").glob("*/__init__.py")}
+# Libraries that only tools use, or only some functions of the core; each takes longer to import than the core.
+LIBRARIES = {"matplotlib", "scipy", "rich", "typer", "OpenImageIO"}
 
 
 def modules_of(root: Path) -> dict[str, Path]:
@@ -87,3 +94,38 @@ def test_a_circle_is_found(tmp_path: Path, text: str) -> None:
     assert circle is not None and set(circle) == {"lib.a", "lib.b", "lib.c"}
     (tmp_path / "lib" / "c.py").write_text("from __future__ import annotations")
     assert circle_in(imports_under(tmp_path)) is None
+
+
+def test_the_core_imports_no_package_of_tools() -> None:
+    """realcam/__init__.py alone names them: for type checkers, and to import them on first use."""
+    assert {"realcam.analysis", "realcam.job", "realcam.viewer"} <= TOOLS
+    core = {name: users for name, users in imports_under(PYTHON).items() if name.startswith("realcam.")}
+    core = {name: users for name, users in core.items() if package_of(name) not in TOOLS}
+    assert "realcam.render" in core
+    wrong = {name: tools for name, users in core.items() if (tools := {u for u in users if package_of(u) in TOOLS})}
+    assert wrong == {}
+
+
+def package_of(module: str) -> str:
+    return ".".join(module.split(".")[:2])
+
+
+def test_importing_realcam_loads_no_package_of_tools() -> None:
+    """What they bring is there nevertheless, imported on first use."""
+    script = """
+import sys, realcam as rc
+print(*sys.modules)
+for name in rc.__all__:
+    getattr(rc, name)
+rc.Lens.draw, rc.Lens.gradient
+print(*sys.modules)
+"""
+    printed = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True).stdout
+    at_first, after_use = (set(line.split()) for line in printed.splitlines())
+    assert at_first & (TOOLS | LIBRARIES) == set()
+    assert {"realcam.analysis", "realcam.drawing", "realcam.job", "realcam.vision"} <= after_use
+
+
+def test_no_folder_has_more_than_forty_source_files() -> None:
+    folders = [folder for root in (PYTHON, PYTHON.parent / "tests") for folder in (root, *root.rglob("*"))]
+    assert {str(f): n for f in folders if f.is_dir() and (n := len([*f.glob("*.py"), *f.glob("*.pyi")])) > 40} == {}

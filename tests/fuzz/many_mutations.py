@@ -58,7 +58,7 @@ def prepare() -> None:
     if os.environ.get("REALCAM_CORE"):
         sys.meta_path.insert(0, CoreFinder(os.environ["REALCAM_CORE"]))
     here = Path(__file__).resolve().parent
-    sys.path[:0] = [str(here), str(here.parent / "python")]
+    sys.path[:0] = [str(here), str(here.parent / "python" / "package")]
 
 
 def finding(target: Target, folder: Path, seed: int, number: int) -> Path:

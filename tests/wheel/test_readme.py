@@ -65,7 +65,7 @@ def all_steps(folder: Path) -> float:
 @pytest.mark.slow
 @pytest.mark.picture_files
 def test_the_first_steps_run_in_an_empty_folder_without_grain(tmp_path: Path) -> None:
-    if run([PYTHON, "-c", "from realcam_command import denoiser_library as d; print(d())"], tmp_path)[1] == "\n":
+    if run([PYTHON, "-c", "from realcam.installation import denoiser_library as d; print(d())"], tmp_path)[1] == "\n":
         pytest.skip("pictures are denoised, and the extra realcam[denoise] is not installed")
     seconds = all_steps(tmp_path / "first")
     if seconds > CPU_S:  # what other programs do meanwhile makes CPU seconds longer

@@ -12,8 +12,8 @@ from matplotlib.figure import Figure
 from .. import files
 from .._core import ImageFileError
 from ..analysis import style
+from ..drawing.figure_files import figure_bytes
 from ..drawing.web_page import colour_variables, inline_svg
-from ..figure_files import figure_bytes
 from .error_plot import draw_errors, recommendation
 from .measurements import Measurements
 from .report import tables_of

@@ -12,7 +12,7 @@ the corner of the film, wavelengths are the F line, the design wavelength and th
 plane in focus.
 """
 
-from ..figure_files import save_figure
+from ..drawing.figure_files import save_figure
 from . import notebook as notebook  # adds notebook representations
 from .bokeh import Bokeh, bokeh, plot_bokeh
 from .depth_over_focus import DepthOverFocus, depth_over_focus, plot_depth_over_focus

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from ..figure_files import NOTEBOOK_DPI, figure_bytes
+from ..drawing.figure_files import NOTEBOOK_DPI, figure_bytes
 from .kinds import KINDS, plot_figure
 from .mtf import Mtf
 

@@ -9,6 +9,7 @@ from matplotlib.axes import Axes
 from numpy.typing import ArrayLike
 
 from .._core import PSF, Lens
+from ..drawing.figure_files import NOTEBOOK_DPI, figure_bytes
 from ..short_text import ShortText
 from . import style
 from .fields import Doubles, numbers_of
@@ -84,3 +85,11 @@ def plot_decades(data: PointSpread | PSF, axes: Axes, title: str) -> None:
     strehl = "" if np.isnan(data.strehl) else f", Strehl {data.strehl:.2g}"
     axes.set_title(f"{title}{strehl}")
     style.colour_bar(axes, picture, "decades of the peak")
+
+
+def psf_png(psf: PSF) -> bytes:
+    """PNG of a point spread function on a logarithmic scale, for notebooks."""
+    with style.themed():
+        figure = style.new_figure(*style.SIZES_IN["small"])
+        plot_decades(psf, figure.add_subplot(), f"{', '.join(f'{nm:.4g}' for nm in psf.wavelengths_nm)} nm")
+    return figure_bytes(figure, ".png", NOTEBOOK_DPI)

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from .. import lens_tables
 from .._core import InputError
 from ..fields import FieldPosition
+from . import lens_tables
 from .fields import Bundles, Doubles
 from .seidel_bars import SYMBOLS, seidel_bars, seidel_table
 

@@ -8,7 +8,7 @@ import textwrap
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ..draw import draw_cross_section
+from ..drawing.lens_drawings import draw_cross_section
 from .report_facts import ReportFacts
 from .report_plots import PAGE_IN, ReportPlots
 from .style import GREY

@@ -15,8 +15,8 @@ from matplotlib.image import AxesImage
 from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 from numpy.typing import NDArray
 
+from ..drawing.figure_files import ShownFigure
 from ..drawing.themes import theme_named
-from ..figure_files import ShownFigure
 from .fields import texts_of
 
 SIZES_IN = {"small": (4.2, 3.0), "large": (8.0, 5.6)}

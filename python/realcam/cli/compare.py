@@ -13,17 +13,17 @@ from typing import Annotated
 import typer
 
 from .._core import Camera, Cancelled, InputError
-from ..command_words import plain_number
 from ..denoiser import GUIDES
 from ..image import Image
 from ..json_values import json_text
 from ..number_text import counted, number_text
 from ..progress import progress_bar
 from ..shot import Shot
-from ..variations import Variation, variations
 from . import lens_options, options
+from .command_words import plain_number
 from .grouped_options import grouped
 from .shot_options import load_shot, shot_options
+from .variations import Variation, variations
 
 ShotOptions = shot_options("ShotOptions", without=("f_number", "resolution", "layers"))
 
@@ -56,9 +56,9 @@ def compare(
     quiet: options.Quiet = False,
 ) -> None:
     """Take a shot several times with the same framing, brightness and noise, and put the pictures on one sheet."""
+    from ..drawing.figure_files import check_figure_target
     from ..drawing.themes import theme_named
-    from ..figure_files import check_figure_target
-    from ..sheet import save_sheet  # brings matplotlib, which other commands need not load
+    from .sheet import save_sheet  # brings matplotlib, which other commands need not load
 
     check_figure_target(output)
     theme_named(theme)

@@ -35,7 +35,7 @@ def demo(
     quiet: options.Quiet = False,
 ) -> None:
     """Photograph the demo scene through a double Gauss, and once more through an ideal thin lens."""
-    from ..draw import save_cross_section  # brings matplotlib, which other commands need not load
+    from ..drawing.lens_drawings import save_cross_section  # brings matplotlib, which other commands need not load
 
     shot = scenes_folder() / "demo.toml"
     denoises = is_installed() if denoise is None else denoise

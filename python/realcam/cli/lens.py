@@ -67,7 +67,7 @@ def draw(
     quiet: options.Quiet = False,
 ) -> None:
     """Write the cross-section of a lens, with rays from the object in focus."""
-    from ..draw import save_cross_section, save_states, states_of
+    from ..drawing.lens_drawings import save_cross_section, save_states, states_of
 
     if states not in ("one", "rows", "ghost"):
         raise InputError(f'--states: "{states:.40}" is unknown; one, rows or ghost is wanted')
@@ -164,7 +164,7 @@ def compare(
     lenses = [rings.set(file.lens(name)) for name in (first, second)]
     drawn = look.arguments()
     if output is not None:
-        from ..figure_files import check_figure_target
+        from ..drawing.figure_files import check_figure_target
 
         lens_options.check_not_the_lens(check_figure_target(output), first, second)
     frequencies = lens_options.numbers(mtf, "--mtf") or []
@@ -177,7 +177,7 @@ def compare(
         rows = [lens_figures.summary_rows(summary) for summary in summaries]
         lens_figures.print_columns([lens.title or lens.name for lens in lenses], rows)
     if output is not None:
-        from ..draw import save_states
+        from ..drawing.lens_drawings import save_states
 
         save_states([(lens.title or lens.name, lens) for lens in lenses], output, **drawn)
         options.say_written(output, quiet or as_json)
@@ -232,7 +232,7 @@ def gallery(
     quiet: options.Quiet = False,
 ) -> None:
     """Write a contact sheet: the cross-sections of all bundled lenses, or of those named."""
-    from ..gallery import save_gallery
+    from ..drawing.gallery import save_gallery
 
     lens_options.check_not_the_lens(output, *(names or []))
     lenses = [file.lens(name) for name in names or []]

@@ -69,7 +69,7 @@ def image(
 ) -> None:
     """Image a flat picture through a lens: blur, distortion, lateral colour, falloff and diffraction."""
     from .. import files
-    from ..image_simulation import image_simulation
+    from ..analysis.image_simulation import image_simulation
 
     lens_options.check_not_the_lens(files.check_target(output, DEVELOPED), name)
     lens = rings.set(file.lens(name))

@@ -11,8 +11,8 @@ import typer
 
 from .._core import Camera, InputError, Lens, RealcamError, lens_names, one_line
 from ..json_values import json_text
-from ..lens_kinds import KINDS, kind_of, year_of
 from ..number_text import number_text
+from ..photography.lens_kinds import KINDS, kind_of, year_of
 from . import lens_options, options
 
 

@@ -148,7 +148,7 @@ class Look:
     ] = 1600
 
     def arguments(self) -> dict[str, Any]:
-        """As the functions of realcam.draw have them."""
+        """As the functions of realcam.drawing have them."""
         return {
             "wavelengths_nm": numbers(self.wavelengths, "--wavelengths"),
             "radius_colours": self.radius_colours,

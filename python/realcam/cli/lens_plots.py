@@ -96,7 +96,7 @@ def plot(
     """
     from .. import analysis, files  # brings matplotlib, which other commands need not load
     from ..analysis import kinds, numbers
-    from ..figure_files import FORMATS, save_figure
+    from ..drawing.figure_files import FORMATS, save_figure
 
     if kind not in kinds.KINDS and name in kinds.KINDS:
         raise InputError(f'KIND and LENS are swapped (did you mean "{name} {kind}"?)')

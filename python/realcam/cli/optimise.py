@@ -12,17 +12,17 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from .._core import InputError, Lens
+from ..derivatives.variable import Variable
 from ..json_values import json_text
 from ..number_text import counted, number_text
 from ..progress import progress_bar
-from ..variable import Variable
 from . import lens_options, options
 from .grouped_options import grouped
 
 if TYPE_CHECKING:
-    from ..glass_search import GlassSearch
-    from ..operands import Operand
-    from ..optimisation import Optimisation
+    from ..optimisation.glass_search import GlassSearch
+    from ..optimisation.operands import Operand
+    from ..optimisation.optimiser import Optimisation
 
 WAYS = ("radii", "thicknesses", "conics")
 COLOURS_NM = (486.1327, 587.5618, 656.2725)
@@ -98,9 +98,9 @@ def optimise(
 ) -> None:
     """Make the spots of a lens smaller, by least squares within bounds. Ctrl-C ends it with the best lens so far."""
     from .. import files
-    from ..glass_search import with_better_glasses
-    from ..operands import Operand
-    from ..optimisation import Targets, optimised
+    from ..optimisation.glass_search import with_better_glasses
+    from ..optimisation.operands import Operand
+    from ..optimisation.optimiser import Targets, optimised
 
     lens_options.check_not_the_lens(files.check_target(output, (".toml", ".zmx", ".seq")), name)
     if glasses and global_looks:
@@ -196,7 +196,7 @@ def _of_surface(i: int, way: str, lens: Lens, bounds: Bounds) -> Iterator[Variab
 
 def _edges(lens: Lens, least: float | None) -> list[Operand]:
     """No glass becomes thinner at its edge; `least` in mm, None: than 0.5, or than it is."""
-    from ..operands import Operand
+    from ..optimisation.operands import Operand
 
     operands = []
     for i, (front, back) in enumerate(pairwise(lens.surfaces)):

@@ -12,8 +12,8 @@ from typing import Annotated
 import typer
 
 from .._core import InputError, Lens, LensFileError, _did_you_mean
-from ..command_words import spelled
 from ..number_text import number_text
+from .command_words import spelled
 from .completions import completion_of
 
 SHOT_HELP = "A shot file (.toml), a scene file (.obj, .gltf, .glb or .ply), or the name of a bundled shot: demo"

@@ -8,7 +8,7 @@ from typing import Any
 import typer
 
 from .._core import _did_you_mean
-from ..command_words import Grammar, spelled, understood
+from .command_words import Grammar, spelled, understood
 
 # click's UsageError: newer versions of typer bundle click under a private name.
 UsageError: Any = typer.BadParameter.__bases__[0]

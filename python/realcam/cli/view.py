@@ -37,8 +37,8 @@ def view(
 ) -> None:
     """Photograph a scene in the browser: turn the rings, edit the lens, and see the picture follow."""
     try:
-        from ..viewer.access import is_local
-        from ..viewer.server import ServerSettings, check_port, serve
+        from ..viewer.server.access import is_local
+        from ..viewer.server.server import ServerSettings, check_port, serve
         from ..viewer.shot_source import ShotSource
     except ImportError as error:
         raise InputError(f"the lens bench needs {error.name}; pip install realcam[view] brings it") from None

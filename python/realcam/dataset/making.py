@@ -11,8 +11,8 @@ from pathlib import Path
 
 from .. import demosaicing
 from .._core import InputError, RealcamError, devices
-from ..executing import Outcome, do_all
 from ..files import remove_leftovers
+from ..job.executing import Outcome, do_all
 from .recipe import Recipe
 from .sample import make_sample
 from .shards import DatasetFolder

@@ -10,11 +10,10 @@ from typing import Any
 
 import numpy as np
 
-from .. import flow
 from .._core import Camera, RenderSettings, Sensor
 from ..image import Image
 from ..render import render
-from ..vision import camera_json, fit_camera_model
+from ..vision import camera_json, fit_camera_model, flow
 from .pictures import png_bytes
 from .recipe import Recipe
 from .scenes import RandomScene, random_camera, random_scene

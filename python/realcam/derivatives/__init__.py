@@ -1,10 +1,7 @@
 """Exact derivatives of rays, and of imaging quantities, by the variables of a lens."""
 
-from .._core import Lens
 from .gradient import Gradient, gradient
 from .rays import RayDerivatives, RayGradient, backpropagate_rays, ray_derivatives
+from .variable import Variable
 
-# setattr because the class belongs to the extension; _core.pyi declares the method.
-setattr(Lens, "gradient", gradient)  # noqa: B010
-
-__all__ = ["Gradient", "RayDerivatives", "RayGradient", "backpropagate_rays", "gradient", "ray_derivatives"]
+__all__ = ["Gradient", "RayDerivatives", "RayGradient", "Variable", "backpropagate_rays", "gradient", "ray_derivatives"]

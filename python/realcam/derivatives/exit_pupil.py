@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from .._core import Lens
-from ..variable import Variable
 from .dual_array import Doubles, DualArray
+from .variable import Variable
 
 # Five-point stencil of the first derivative, whose error is of fourth order in the step.
 OFFSETS = np.array([-2.0, -1.0, 1.0, 2.0])

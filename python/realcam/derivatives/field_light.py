@@ -15,10 +15,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._core import AimedRays, InputError, Lens
-from ..variable import Variable
 from .dual_array import Doubles, DualArray
 from .exit_pupil import ChiefRayNeighbours, exit_pupil_distance
 from .first_order import FirstOrderDuals, first_order_duals
+from .variable import Variable
 
 
 @dataclass(frozen=True)

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from .._core import InputError, Lens
-from ..variable import FORM_TERMS, Variable
 from .dual_array import DualArray
+from .variable import FORM_TERMS, Variable
 
 
 @dataclass(frozen=True)

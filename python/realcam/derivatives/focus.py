@@ -7,9 +7,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from .._core import Lens
-from ..variable import Variable
 from .dual_array import Doubles
 from .field_light import field_light
+from .variable import Variable
 
 
 def film_distance_by(lens: Lens, variables: Sequence[Variable]) -> Doubles:

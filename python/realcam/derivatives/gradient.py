@@ -10,11 +10,11 @@ import numpy as np
 
 from .._core import InputError, Lens
 from ..short_text import ShortText
-from ..variable import Variable, checked
 from .dual_array import Doubles, DualArray
 from .field_light import FieldLight, field_light
 from .first_order import first_order_duals
 from .parabasal import focal_length_and_f_number
+from .variable import Variable, checked
 
 FIRST_ORDER = (
     "effective_focal_length_mm",

@@ -7,9 +7,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from .._core import InputError, Lens
-from ..variable import Variable
 from .dual_array import Doubles, DualArray
 from .exit_pupil import ChiefRayNeighbours, at_film
+from .variable import Variable
 
 
 def focal_length_and_f_number(

@@ -10,8 +10,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from .._core import Lens
 from ..short_text import ShortText
-from ..variable import Variable, checked
 from .dual_array import Doubles
+from .variable import Variable, checked
 
 
 @dataclass(frozen=True, repr=False)

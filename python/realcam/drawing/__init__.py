@@ -1,20 +1,12 @@
-"""Cross-sections of lenses: as arrays (cross_section), and as drawings (realcam.draw, which requires matplotlib)."""
+"""Drawings of lenses, with matplotlib."""
 
-from ..fields import Field
-from .marks import FocusGroup, Mark
-from .outlines import Blocker, Crossing, Element, Face
-from .ray_paths import RayBundle
-from .section import CrossSection, cross_section
+from .lens_drawings import draw, draw_cross_section, draw_states, save_cross_section, save_states, states_of
 
 __all__ = [
-    "Blocker",
-    "CrossSection",
-    "Crossing",
-    "Element",
-    "Face",
-    "Field",
-    "FocusGroup",
-    "Mark",
-    "RayBundle",
-    "cross_section",
+    "draw",
+    "draw_cross_section",
+    "draw_states",
+    "save_cross_section",
+    "save_states",
+    "states_of",
 ]

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 from matplotlib.axes import Axes
 
-from .cut import Points
+from ..section.cut import Points
+from ..section.outlines import Element, Face
+from ..section.section import CrossSection
 from .notes import draw_crossings, draw_focus_group, draw_marks
-from .outlines import Element, Face
-from .section import CrossSection
 from .style import Style, ray_colour
 from .themes import Theme
 

@@ -10,10 +10,10 @@ import matplotlib
 import matplotlib.figure
 
 from .._core import InputError
-from ..figure_files import ShownFigure
+from ..section.section import CrossSection
 from .draw import Extent, draw_section, extent_of, prepare_axes
+from .figure_files import ShownFigure
 from .inset import draw_inset, shown_in_insets
-from .section import CrossSection
 from .style import Style, legend_of_wavelengths
 
 

@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from ..fields import Field
-from .section import CrossSection
+from ..section.section import CrossSection
 from .style import Style, ray_colour
 
 _STEPS = (1, 2, 5)

@@ -7,8 +7,8 @@ from itertools import combinations
 import numpy as np
 from matplotlib.axes import Axes
 
-from .marks import Mark
-from .section import CrossSection
+from ..section.marks import Mark
+from ..section.section import CrossSection
 from .style import Style
 
 

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 from .._core import Lens
 from ..number_text import number_text
-from .ray_paths import RayBundle
-from .section import CrossSection
+from ..section.ray_paths import RayBundle
+from ..section.section import CrossSection
 from .themes import LIGHT, Theme, colours_of_wavelengths
 
 

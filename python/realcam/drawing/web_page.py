@@ -7,7 +7,7 @@ from dataclasses import fields
 from matplotlib.figure import Figure
 from matplotlib.transforms import Bbox
 
-from ..figure_files import figure_bytes
+from .figure_files import figure_bytes
 from .themes import LIGHT, THEMES, Theme
 
 

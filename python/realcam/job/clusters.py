@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from .._core import InputError
-from ..extras import imported
+from ..installation import imported
 
 _ANSWERS_WITHIN_S = 20
 

@@ -10,10 +10,10 @@ from dataclasses import replace
 from pathlib import Path
 
 from .._core import InputError
-from ..executing import do_all
 from ..files import remove_leftovers, system_name
 from ..image import Image
 from ..shot import Shot
+from .executing import do_all
 from .folder import JobFolder
 from .making import make_folder
 from .status import JobStatus, status_of

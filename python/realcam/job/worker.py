@@ -15,11 +15,11 @@ import numpy as np
 from .. import _core
 from .._core import Camera, InputError, RealcamError, RenderSettings, Scene
 from ..archive import packed, read_archive, write_archive
-from ..executing import Outcome
 from ..film_part import AccumulatedFilm
 from ..pickling import described, from_description
 from ..session import Session
 from .engine import probe_of
+from .executing import Outcome
 from .folder import DamagedFileError, JobFolder
 from .units import Round, Unit
 

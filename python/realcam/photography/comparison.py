@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._core import Lens
-from ..drawing.cut import Cut
-from ..drawing.outlines import elements_of
 from ..fields import Field, fields_at
+from ..section.cut import Cut
+from ..section.outlines import elements_of
 from ..short_text import ShortText
 from .figures import PhotographicFigures, photographic_figures
 

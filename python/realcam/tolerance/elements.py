@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from .._core import InputError, Lens
-from ..variable import check_surface_exists
+from ..derivatives.variable import check_surface_exists
 
 
 def has_glass_behind(lens: Lens, surface: int) -> bool:

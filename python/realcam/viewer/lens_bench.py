@@ -9,9 +9,9 @@ from dataclasses import replace
 from typing import Any
 
 from .._core import Film, InputError, Lens, LensFileError, Plan, RealcamError, RenderSettings
-from ..drawing.cut import PLANES
 from ..image import Image
 from ..number_text import counted, duration_text
+from ..section.cut import PLANES
 from ..shot import Shot
 from ..tolerance import random_copy
 from .bench_state import restored
@@ -22,11 +22,11 @@ from .follow_ups import FollowUps
 from .history import History
 from .lens_edits import with_value
 from .lens_view import drawn_heights_mm
-from .light_meter import middle_grey_lx_s
 from .listeners import Listeners, Problem
-from .picture_loop import PictureLoop
-from .picture_request import MOST_SPP, Frame, PictureRequest
-from .preview_denoiser import why_missing
+from .pictures.light_meter import middle_grey_lx_s
+from .pictures.picture_loop import PictureLoop
+from .pictures.picture_request import MOST_SPP, Frame, PictureRequest
+from .pictures.preview_denoiser import why_missing
 from .ring_scales import Ring
 
 _BOUNCES_UNPLANNED = 8  # until there is a plan; enough for objects of glass not to be black

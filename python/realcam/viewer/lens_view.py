@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 
 from .._core import Film, InputError, Lens
-from ..drawing import CrossSection, cross_section
-from ..drawing.cut import PLANES, Cut, Points
 from ..fields import angle_of_height
+from ..section import CrossSection, cross_section
+from ..section.cut import PLANES, Cut, Points
 
 _RAYS = 9
 

@@ -8,7 +8,7 @@ from typing import Any
 
 from .._core import Plan
 from ..photography import SharpRange
-from .picture_request import Frame
+from .pictures.picture_request import Frame
 
 
 @dataclass(frozen=True)

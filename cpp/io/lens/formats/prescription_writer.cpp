@@ -5,7 +5,6 @@
 
 #include "../../../math/hypotenuse.hpp"
 #include "../../../optics/lens/paraxial.hpp"
-#include "../../../optics/prescription/form_terms.hpp"
 #include "../../text/printable.hpp"
 
 namespace realcam::io {

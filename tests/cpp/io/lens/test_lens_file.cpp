@@ -259,7 +259,7 @@ TEST_CASE("a lens that is not there is named, with the nearest names") {
 
 TEST_CASE("every bundled lens is valid, cites its source, and has the focal length that the source states") {
     // As the lens files' sources state them; of the four classics, the figures of test_first_order.cpp. The rest of
-    // what the sources state is compared by tests/python/test_bundled_lenses.py.
+    // what the sources state is compared by tests/python/lens/test_bundled_lenses.py.
     const std::vector<std::pair<std::string, double>> stated = {{"achromat-75mm", 75},
                                                                 {"angulon-210mm", 210},
                                                                 {"apo-telephoto-180mm", 180},

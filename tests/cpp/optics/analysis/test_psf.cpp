@@ -1,5 +1,5 @@
 // Point spread functions: closed forms of perfect and defocused pupils, and what has to be the same whichever way it is
-// reckoned. tests/python/test_psf.py compares real lenses with another program's propagation.
+// reckoned. tests/python/design/test_psf.py compares real lenses with another program's propagation.
 
 #include "optics/analysis/psf.hpp"
 

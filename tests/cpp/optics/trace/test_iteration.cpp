@@ -261,7 +261,8 @@ TEST_CASE("the pupil search ends within its bound, whatever passes") {
         ++count;
         const PupilView view = pupil.view();
         for (int i = 0; i <= view.rows; ++i) CHECK(std::isfinite(view.nodes[i].centre + view.nodes[i].half_width));
-        for (int i = 0; i < view.rows * PupilView::kSectors; ++i) CHECK(std::isfinite(view.outline[i].x + view.outline[i].dx));
+        for (int i = 0; i < view.rows * PupilView::kSectors; ++i)
+            CHECK(std::isfinite(view.outline[i].x + view.outline[i].dx));
     };
     for (const LensSystem& lens : {gauss, fisheye})
         for (const double radius : {1e-30, 21.0, 1e9}) {

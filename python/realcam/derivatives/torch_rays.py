@@ -1,0 +1,97 @@
+"""Differentiable ray tracing for PyTorch, by lens variables and rays. Needs the package torch."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from .._core import InputError, Lens, Surface
+from .rays import backpropagate_rays
+from .variable import Variable, checked
+
+if TYPE_CHECKING:
+    import torch
+
+
+SETTABLE = ("curvature", "thickness", "conic", "aspheric", "index", "tilt", "decentre")
+
+
+def with_values(lens: Lens, variables: Sequence[Variable], values: Sequence[float]) -> Lens:
+    """Returns the lens with its variables set. Raises InputError if that lens cannot be built."""
+    surfaces: dict[int, Surface] = {}
+    for variable, value in zip(variables, values, strict=True):
+        surface = surfaces.get(variable.surface, lens.surfaces[variable.surface])
+        surfaces[variable.surface] = variable.set(surface, float(value))
+    return lens.with_surfaces(surfaces)
+
+
+def trace_with_torch(
+    lens: Lens,
+    origins_mm: torch.Tensor,
+    directions: torch.Tensor,
+    variables: Sequence[Variable],
+    values: torch.Tensor,
+    *,
+    wavelength_nm: float | None = None,
+    start: str = "film",
+) -> tuple[torch.Tensor, torch.Tensor, torch.Tensor, torch.Tensor]:
+    """Lens.trace of the lens with `values` (V,) for its variables, differentiable by torch.autograd.
+
+    origins_mm, directions: (N, 3), lens frame, in host memory. variables: curvatures, thicknesses, conics, aspheric
+    coefficients, indices, tilts and decentres.
+    Returns origins, mm, and unit directions (N, 3), optical paths, mm (N,), in float64, and which rays pass (N,). Rays
+    that do not pass are zero and have no derivatives. First derivatives by origins, directions and values are
+    supported; second derivatives are not. Raises InputError for variables that the lens does not have, ImportError
+    without torch.
+    """
+    import torch
+
+    listed = checked(lens, variables)
+    for variable in listed:
+        if variable.quantity not in SETTABLE:
+            raise InputError(f'a lens cannot be given a value of "{variable.quantity}"; {", ".join(SETTABLE)} can')
+    if tuple(values.shape) != (len(listed),):
+        raise InputError(f"values must be {len(listed)} numbers, one for each variable")
+    for tensor in (origins_mm, directions, values):
+        if tensor.device.type != "cpu":
+            raise InputError(f"rays with derivatives are traced on the host, and a tensor lies on {tensor.device}")
+
+    def numbers(tensor: torch.Tensor) -> np.ndarray:
+        array: np.ndarray = tensor.detach().double().numpy()
+        return array
+
+    class Trace(torch.autograd.Function):  # type: ignore[misc]
+        @staticmethod
+        def forward(ctx: Any, o: torch.Tensor, d: torch.Tensor, v: torch.Tensor) -> Any:
+            ctx.changed = with_values(lens, listed, v.detach().double().tolist())
+            ctx.save_for_backward(o, d, v)
+            out = ctx.changed.trace(numbers(o), numbers(d), wavelength_nm=wavelength_nm, start=start)
+            passes = torch.from_numpy(out.status == 0)
+            ctx.mark_non_differentiable(passes)
+
+            def tensor(array: np.ndarray) -> torch.Tensor:
+                return torch.where(passes if array.ndim == 1 else passes[:, None], torch.from_numpy(array), 0.0)
+
+            return tensor(out.origins_mm), tensor(out.directions), tensor(out.optical_path_mm), passes
+
+        @staticmethod
+        @torch.autograd.function.once_differentiable  # type: ignore[untyped-decorator]
+        def backward(ctx: Any, of_origins: Any, of_directions: Any, of_paths: Any, _: Any) -> Any:
+            given = ctx.saved_tensors
+            found = backpropagate_rays(
+                ctx.changed,
+                numbers(given[0]),
+                numbers(given[1]),
+                listed,
+                of_origins=of_origins.numpy(),
+                of_directions=of_directions.numpy(),
+                of_optical_paths=of_paths.numpy(),
+                wavelength_nm=wavelength_nm,
+                start=start,
+            )
+            parts = found.by_origins, found.by_directions, found.by
+            return tuple(torch.from_numpy(part).to(of.dtype) for part, of in zip(parts, given, strict=True))
+
+    return Trace.apply(origins_mm, directions, values)  # type: ignore[no-any-return]

@@ -1,0 +1,1 @@
+"""The pictures of the lens bench: previews, progressive refinement, metering and denoising."""

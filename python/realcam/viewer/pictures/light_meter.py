@@ -1,0 +1,47 @@
+"""Exposure meter and rangefinder, evaluated on a picture."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ... import _core
+from .picture_request import Point
+
+_METERED_PIXELS = 96  # width of the subsampled picture for metering, as in Camera.metered
+_LUMINANCE = np.array([0.2126, 0.7152, 0.0722], np.float32)  # of linear Rec. 709
+
+
+def middle_grey_lx_s(iso: float, compensation_ev: float) -> float:
+    """Film exposure that develops to middle grey (see realcam.develop), shifted by compensation_ev stops."""
+    return 10 * 2**compensation_ev / iso
+
+
+def metered_exposure_lx_s(exposure_lx_s: NDArray[np.float32]) -> float:
+    """Metered exposure of a picture (height, width, 3); not positive or not finite if there is nothing to meter."""
+    step = max(1, exposure_lx_s.shape[1] // _METERED_PIXELS)
+    return float(_core._metered_exposure(exposure_lx_s[::step, ::step]))
+
+
+def point_at(
+    u: float,
+    v: float,
+    exposure_lx_s: NDArray[np.float32],
+    depth_m: NDArray[np.float32],
+    exposure_time_s: float,
+    spot: float = 0.03,
+) -> Point:
+    """Distance and illuminance at u, v (0 to 1, from the upper left corner). spot: width of the metering spot, relative
+    to the picture's."""
+    height, width = depth_m.shape
+    row, column = min(int(v * height), height - 1), min(int(u * width), width - 1)
+    reach = max(1, round(0.5 * spot * width))
+    around = np.s_[max(0, row - reach) : row + reach + 1, max(0, column - reach) : column + reach + 1]
+    near = depth_m[max(0, row - 1) : row + 2, max(0, column - 1) : column + 2]
+    met = near[np.isfinite(near)]
+    return Point(
+        distance_m=float(np.median(met)) if met.size else math.inf,
+        illuminance_lx=float(np.mean(exposure_lx_s[around] @ _LUMINANCE)) / exposure_time_s,
+    )

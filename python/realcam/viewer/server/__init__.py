@@ -1,0 +1,1 @@
+"""The web server of the lens bench: access, streams and messages of its windows."""

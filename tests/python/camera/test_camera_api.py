@@ -1,0 +1,220 @@
+"""rc.Camera, Film and generate_rays as a user meets them; the rays are those that render traces."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+import pytest
+import realcam as rc
+
+from .. import scenes
+
+MODELS = ("pinhole", "thin", "thick", "full")
+
+
+def test_defaults_and_what_is_kept() -> None:
+    lens = rc.Lens.load("phone-4mm")
+    camera = rc.Camera(lens)
+    assert (camera.model, camera.iso, camera.exposure_time_s) == ("full", 100, 1 / 125)
+    # The lens's own film, its longer side 960 pixels.
+    assert (camera.film.width_mm, camera.film.height_mm) == lens.film_mm == (4.8, 3.6)
+    assert camera.film.resolution == (960, 720)
+    assert (tuple(camera.position), tuple(camera.look_at), tuple(camera.up)) == (
+        (0, 0, 0),
+        (0, 0, -1),
+        (0, 1, 0),
+    )
+    assert (rc.Film().width_mm, rc.Film().height_mm, rc.Film().resolution) == (36, 24, (960, 640))
+    other = rc.Camera(
+        lens,
+        film=rc.Film(2, 1, (20, 10)),
+        position=np.array([1, 2, 3], np.float32),
+        look_at=[4, 5, 6],
+        exposure_time_s=2,
+        iso=800,
+        model="thin",
+    )
+    assert (tuple(other.position), tuple(other.look_at)) == ((1, 2, 3), (4, 5, 6))
+    assert (other.film.resolution, other.exposure_time_s, other.iso, other.model) == (
+        (20, 10),
+        2,
+        800,
+        "thin",
+    )
+    for name in ("iso", "film", "lens", "position", "model"):
+        with pytest.raises(AttributeError):
+            setattr(other, name, getattr(camera, name))
+
+
+@pytest.mark.parametrize(
+    ("size", "says"),
+    [
+        ((36, 24, (0, 640)), "0 x 640 pixels; 1 to 32768"),
+        ((36, 24, (960, -5)), "960 x -5 pixels"),
+        ((36, 24, (1000000, 1)), "1000000 x 1 pixels"),
+        ((0, 24, (36, 24)), "width and height"),
+        ((36, math.nan, (36, 24)), "width and height"),
+        ((1e-3, 1e170, (36, 24)), "width and height"),
+        ((1e-300, 24, (36, 24)), "width and height"),
+    ],
+)
+def test_a_film_that_is_none(size: tuple[float, float, tuple[int, int]], says: str) -> None:
+    width, height, resolution = size
+    with pytest.raises(rc.InputError, match=says):
+        rc.Film(*size)
+    with pytest.raises(rc.InputError, match=says):
+        rc.Film().replace(width_mm=width, height_mm=height, resolution=resolution)
+    with pytest.raises(rc.InputError, match=says):
+        rc.Film.for_lens(rc.Lens.load("tessar-50mm"), (width, height), resolution)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "says"),
+    [
+        ({"exposure_time_s": 0}, "exposure time"),
+        ({"exposure_time_s": math.inf}, "exposure time"),
+        ({"exposure_time_s": 1e300}, "exposure time"),
+        ({"exposure_time_s": 1e-300}, "exposure time"),
+        ({"iso": -100}, "ISO"),
+        ({"iso": math.nan}, "ISO"),
+        ({"iso": 1e300}, "ISO"),
+        ({"iso": 1e-300}, "ISO"),
+        ({"model": "fisheye"}, "pinhole, thin, mapped, thick or full"),
+        ({"position": (0, 0, 0), "look_at": (0, 0, 0)}, "look at a point other"),
+        ({"up": (0, 0, 2)}, "up direction"),
+        ({"up": (0, 0, 0)}, "up direction"),
+        ({"position": (math.nan, 0, 0)}, "finite"),
+        ({"position": (0, 1e13, 0)}, "1e12 m"),
+        ({"look_at": (0, 0, -1e300)}, "1e12 m"),
+        ({"position": (0, 0, 1e-200), "look_at": (0, 0, 0), "up": (0, 1e90, 0)}, "look at a point other"),
+        ({"up": (0, math.inf, 0)}, "up direction"),
+        ({"up": (0, 1e-200, 0)}, "up direction"),
+    ],
+)
+def test_a_camera_that_takes_no_picture(arguments: dict[str, object], says: str) -> None:
+    with pytest.raises(rc.InputError, match=says):
+        rc.Camera(rc.Lens.load("tessar-50mm"), **arguments)  # type: ignore[arg-type]
+
+
+def test_generated_rays_shapes_and_units() -> None:
+    lens = rc.Lens.load("double-gauss-50mm").focused(2.0)
+    camera = rc.Camera(lens, film=rc.Film(36, 24, (6, 4)), position=(10, 20, 30), look_at=(10, 20, 29))
+    rays = camera.generate_rays(spp=5, seed=1)
+    count = 6 * 4 * 5
+    assert (rays.origins_m.shape, rays.origins_m.dtype) == ((count, 3), np.float64)
+    assert (rays.directions.shape, rays.directions.dtype) == ((count, 3), np.float32)
+    assert (rays.weights.shape, rays.weights.dtype) == ((count,), np.float32)
+    assert (rays.pixels.shape, rays.pixels.dtype) == ((count,), np.int32)
+    np.testing.assert_array_equal(rays.pixels, np.repeat(np.arange(24), 5))
+    # Eleven refractions in float32, each with a few roundings of 6e-8.
+    np.testing.assert_allclose(np.linalg.norm(rays.directions, axis=1), 1, atol=2e-6)
+    passing = rays.weights > 0
+    assert passing.mean() > 0.9
+    assert (rays.weights >= 0).all()
+    # On the front element: within its rim, and the film's distance in front of the camera's position; metres.
+    front = lens.surfaces[0]
+    offset = (rays.origins_m - (10, 20, 30))[passing]
+    sag = [front.sag_mm(r) for r in 1000 * np.hypot(offset[:, 0], offset[:, 1])]
+    np.testing.assert_allclose(-1000 * offset[:, 2], lens.film_position_mm - np.array(sag), atol=2e-5)
+    assert np.hypot(offset[:, 0], offset[:, 1]).max() <= front.clear_semi_diameter_mm / 1000 * (1 + 1e-6)
+    # The first pixel is the picture's upper left corner.
+    corner = rays.directions[passing & (rays.pixels == 0)].mean(axis=0)
+    assert corner[0] < -0.2
+    assert corner[1] > 0.1
+    for wrong in (0, -1):
+        with pytest.raises(rc.InputError, match="spp"):
+            camera.generate_rays(spp=wrong)
+    with pytest.raises(rc.InputError, match="seed"):
+        camera.generate_rays(seed=-1)
+
+
+def test_rays_meet_in_the_plane_in_focus() -> None:
+    """No aberrations: all rays of a film point pass through one point of the object plane."""
+    lens = rc.Lens.load("double-gauss-50mm").focused(2.0)
+    camera = rc.Camera(lens, film=rc.Film(0.001, 0.001, (1, 1)), model="thin")
+    rays = camera.generate_rays(spp=256)
+    reach = (-2.0 - rays.origins_m[:, 2]) / rays.directions[:, 2].astype(float)
+    met = rays.origins_m + reach[:, None] * rays.directions
+    assert np.ptp(rays.origins_m[:, 0]) > 0.02  # they come from all over the entrance pupil
+    # A pixel of 1 um is 38 um there; the paraxial plane in focus is that of the real lens to first order
+    # only.
+    assert np.abs(met[:, :2]).max() < 2e-4
+
+
+def collected(scene: rc.Scene, camera: rc.Camera, seed: int) -> np.ndarray:
+    """What 32 samples bring, lux seconds, before any chance is taken out of it."""
+    width, height = camera.film.resolution
+    sums = rc.Session(scene, camera, effects=(), seed=seed).expose((0, 0, width, height), 0, 32).pixels
+    return camera.exposure_time_s * sums["irradiance"][..., 0] / 32
+
+
+@pytest.mark.parametrize("model", MODELS)
+def test_render_traces_the_rays_that_are_generated(model: str) -> None:
+    """An image of the surroundings, looked up here for each ray, makes the picture that render makes."""
+    rng = np.random.default_rng(2)
+    values = rng.uniform(0, 10, (8, 16)).astype(np.float32)
+    scene = scenes.sky(0.0).with_environment(np.repeat(values[..., None], 3, axis=2))
+    lens = rc.Lens.load("wide-22mm")
+    camera = rc.Camera(lens, film=rc.Film(24, 16, (24, 16)), look_at=(0.5, 0.2, -1), exposure_time_s=0.25, model=model)
+    rays = camera.generate_rays(spp=32, seed=9)
+    d = rays.directions.astype(np.float64)
+    row = (np.arccos(np.clip(d[:, 1], -1, 1)) / math.pi * 8).astype(int)
+    column = ((0.5 + np.arctan2(d[:, 0], -d[:, 2]) / (2 * math.pi)) * 16).astype(int)
+    light = rays.weights * values[np.minimum(row, 7), np.minimum(column, 15)]
+    expected = 0.25 * np.bincount(rays.pixels, light, minlength=384).reshape(16, 24) / 32
+    picture = collected(scene, camera, seed=9)
+    # float32 on both sides; a sample within rounding of an edge may see the neighbouring value, 1 / 32 of a
+    # pixel.
+    close = np.abs(picture / expected - 1) < 1e-5
+    assert close.mean() > 0.98
+    np.testing.assert_allclose(picture, expected, atol=0.25 * 10 / 32 * float(rays.weights.max()), rtol=1e-5)
+    if model != "full":  # which stops no sample, so that nothing is taken out of its pictures
+        rendered = rc.render(scene, camera, effects=(), spp=32, seed=9).pixels[..., 0]
+        np.testing.assert_allclose(rendered, picture, rtol=1e-6)
+    other = collected(scene, camera, seed=10)
+    assert (np.abs(other / expected - 1) < 1e-5).mean() < 0.9 or model == "pinhole"
+
+
+def test_rays_depend_on_seed_pixel_and_sample_alone() -> None:
+    lens = rc.Lens.load("tessar-50mm")
+    camera = rc.Camera(lens, film=rc.Film(36, 24, (6, 4)))
+    few, many = camera.generate_rays(spp=4, seed=3), camera.generate_rays(spp=16, seed=3)
+    first = many.directions.reshape(24, 16, 3)[:, :4].reshape(-1, 3)
+    np.testing.assert_array_equal(few.directions, first)
+    assert (camera.generate_rays(spp=4, seed=4).directions != few.directions).any()
+    np.testing.assert_array_equal(camera.generate_rays(spp=4, seed=3).directions, few.directions)
+
+
+def test_rays_of_cameras_in_turn_and_on_threads() -> None:
+    """A camera's rays are the same whichever camera was asked before, and whichever thread asks."""
+    tessar = rc.Lens.load("tessar-50mm")
+    film = rc.Film(36, 24, (6, 4))
+    cameras = [rc.Camera(lens, film=film) for lens in (tessar, tessar.stopped_down(8.0), tessar.focused(2.0))]
+    cameras += [rc.Camera(tessar, film=film, model="thin"), rc.Camera(tessar, film=rc.Film(12, 8, (6, 4)))]
+
+    def directions(camera: rc.Camera) -> np.ndarray:
+        return camera.generate_rays(spp=16, seed=3).directions
+
+    expected = [directions(camera) for camera in cameras]
+    assert all((a != b).any() for a, b in itertools.combinations(expected, 2))
+    with ThreadPoolExecutor(4) as pool:
+        found = list(pool.map(directions, 6 * cameras))
+    for i, rays in enumerate(found):
+        np.testing.assert_array_equal(rays, expected[i % len(cameras)])
+
+
+def test_samples_cover_the_pupil_evenly() -> None:
+    """Stratified: each of 8 x 8 cells of equal area of the lens's disc gets its share of 256 samples."""
+    lens = rc.Lens.load("double-gauss-50mm").focused(2.0)
+    camera = rc.Camera(lens, film=rc.Film(0.001, 0.001, (1, 1)), model="thin")
+    rays = camera.generate_rays(spp=256, seed=1)
+    radius = 0.5 * lens.first_order().entrance_pupil_diameter_mm / 1000
+    x, y = rays.origins_m[:, 0] / radius, rays.origins_m[:, 1] / radius
+    area = np.floor(8 * (x**2 + y**2)).astype(int).clip(0, 7)
+    turn = np.floor(8 * (np.arctan2(y, x) / (2 * math.pi) % 1)).astype(int).clip(0, 7)
+    counts = np.bincount(8 * area + turn, minlength=64)
+    # A (0, 2)-sequence puts exactly 4 of 256 points into each cell; one may fall on either side by rounding.
+    assert np.abs(counts - 4).max() <= 1

@@ -1,0 +1,202 @@
+"""Light on the film against closed forms and against the exposure integral summed by force."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+import realcam as rc
+
+from ...centred_lenses import CENTRED
+from .. import scenes, yardsticks
+
+LENSES = CENTRED
+MODELS = ("pinhole", "thin", "thick", "full")
+# One of each kind: sums by force take seconds.
+UNLIKE = (
+    "double-gauss-50mm",
+    "fisheye-6mm-220deg",
+    "hologon-15mm",
+    "landscape-100mm",
+    "mirror-telephoto-500mm",
+    "phone-4mm",
+    "projection-24mm-160deg",
+    "retrofocus-28mm",
+    "singlet-100mm",
+    "telephoto-200mm-inner-focus",
+    "ultra-wide-14mm",
+    "zoom-11-24mm",
+)
+
+
+def axial_exposure(lens: rc.Lens, *, model: str = "full", time_s: float = 1.0, spp: int = 4096) -> float:
+    """Mean exposure of 4 x 4 pixels of 5 um in the middle of the film, in a field of radiance 1."""
+    film = rc.Film(0.02, 0.02, (4, 4))
+    camera = rc.Camera(lens, film=film, exposure_time_s=time_s, model=model)
+    return float(rc.render(scenes.sky(), camera, effects=(), spp=spp).pixels.mean(dtype=np.float64))
+
+
+def test_every_lens_is_tested() -> None:
+    assert len(LENSES) >= 12
+
+
+@pytest.mark.parametrize("name", LENSES)
+def test_constant_field_gives_pi_sin_squared_on_the_axis(name: str) -> None:
+    lens = rc.Lens.load(name)
+    # At least 98% of the samples pass, all with the same weight, so that one standard deviation of the mean
+    # of 65536 samples is sqrt(0.02 / 65536) = 0.06%; four of them are half of what is allowed. 5 um pixels
+    # are 0.007 of the shortest distance to an exit pupil, whose cos^4 changes by 1e-4 over them.
+    assert axial_exposure(lens) == pytest.approx(yardsticks.axial_irradiance(lens), rel=0.005)
+
+
+@pytest.mark.parametrize("name", ["double-gauss-50mm", "fisheye-10mm", "telephoto-200mm-inner-focus"])
+@pytest.mark.parametrize("f_number", [5.6, 22.0])
+def test_constant_field_when_focused_near_and_stopped_down(name: str, f_number: float) -> None:
+    lens = rc.Lens.load(name).focused(3.0).stopped_down(f_number)
+    assert axial_exposure(lens) == pytest.approx(yardsticks.axial_irradiance(lens), rel=0.005)
+
+
+def illuminated_radius(lens: rc.Lens) -> float:
+    """Film radius up to which the film gets light, but at most its corner, mm."""
+    low, high = 0.0, 0.5 * math.hypot(*lens.film_mm)
+    if yardsticks.brute_force_irradiance(lens, high, 100, 400) > 0:
+        return high
+    for _ in range(8):
+        middle = 0.5 * (low + high)
+        lit = yardsticks.brute_force_irradiance(lens, middle, 100, 400) > 0
+        low, high = (middle, high) if lit else (low, middle)
+    return low
+
+
+@pytest.mark.parametrize("name", UNLIKE)
+def test_relative_illumination_equals_the_integral_summed_by_force(name: str) -> None:
+    lens = rc.Lens.load(name)
+    (width, height), columns = lens.film_mm, 240
+    rows = round(columns * height / width)
+    pitch = width / columns
+    camera = rc.Camera(lens, film=rc.Film(width, height, (columns, rows)), exposure_time_s=1)
+    picture = rc.render(scenes.sky(), camera, effects=(), spp=64).pixels[..., 0]
+    # Film radius of 4 x 4 points in each pixel.
+    x = (np.arange(4 * columns) + 0.5) / 4 * pitch - width / 2
+    y = (np.arange(4 * rows) + 0.5) / 4 * height / rows - height / 2
+    radius = np.hypot(y[:, None], x[None, :]).reshape(rows, 4, columns, 4)
+    middle = radius.mean(axis=(1, 3))
+
+    axis = yardsticks.brute_force_irradiance(lens, 0.0, 180)
+    rendered_axis, lit_mm = axial_exposure(lens), illuminated_radius(lens)
+    for share in (0.35, 0.65, 0.9):
+        wanted = share * lit_mm
+        ring = np.abs(middle - wanted) < 0.6 * pitch
+        # Over the width of the ring, and of its pixels, the irradiance is a parabola through three sums.
+        nodes = wanted + 1.2 * pitch * np.array([-1, 0, 1])
+        sums = [yardsticks.brute_force_irradiance(lens, r, 180) for r in nodes]
+        expected = np.polyval(np.polyfit(nodes - wanted, sums, 2), radius - wanted).mean(axis=(1, 3))[ring].mean()
+        # At least 100 pixels of 64 samples lie in a ring. For the least that may pass, 60% of the samples at
+        # the edge of a fisheye, one standard deviation is sqrt(0.67 / 6400) = 1% of independent samples;
+        # these are stratified, and elsewhere more pass. The sums are good to 180^-1.5 = 0.04%.
+        assert ring.sum() >= 100
+        assert picture[ring].mean(dtype=np.float64) / rendered_axis == pytest.approx(expected / axis, rel=0.01), share
+
+
+def test_relative_illumination_of_ideal_models_is_cos_to_the_fourth() -> None:
+    lens = rc.Lens.load("double-gauss-50mm")
+    first = lens.first_order()
+    distances = {"thin": first.effective_focal_length_mm, "pinhole": first.effective_focal_length_mm}
+    distances["thick"] = lens.film_position_mm - first.exit_pupil_position_mm
+    for model, distance in distances.items():
+        # One pixel wide: the rows' heights on the film are known.
+        camera = rc.Camera(lens, film=rc.Film(0.01, 40, (1, 401)), exposure_time_s=1, model=model)
+        column = rc.render(scenes.sky(), camera, effects=(), spp=64).pixels[:, 0, 0].astype(np.float64)
+        heights = (np.arange(401) - 200) * 40 / 401
+        cosine = distance / np.hypot(distance, heights)
+        # Within a pixel of 0.1 mm cos^4 differs by at most 1%, which 64 stratified samples average to 1e-3 or
+        # better.
+        np.testing.assert_allclose(column / column[200], cosine**4, rtol=2e-3, err_msg=model)
+
+
+@pytest.mark.parametrize("name", LENSES)
+def test_camera_models_agree_on_the_axis(name: str) -> None:
+    lens = rc.Lens.load(name)
+    exposures = [axial_exposure(lens, model=model, spp=1024) for model in MODELS]
+    # The ideal models take over the real lens's exposure, by a quadrature over 4096 rays (1e-3 of the area at its
+    # edges at worst); the full lens is sampled: 1024 samples a pixel of which 2% miss, over several pixels.
+    assert max(exposures) / min(exposures) < 1.005
+
+
+def test_half_the_time_is_half_the_exposure_exactly() -> None:
+    lens = rc.Lens.load("tessar-50mm")
+    scene = scenes.scene_of(scenes.quad((0, 0, -3), 1, emission=(200, 100, 50))).with_environment(5.0)
+    film = rc.Film(36, 24, (36, 24))
+    whole, half = (
+        rc.render(scene, rc.Camera(lens, film=film, exposure_time_s=t), effects=(), spp=8).pixels
+        for t in (1 / 60, 1 / 120)
+    )
+    # Halving is exact in binary, wherever it happens.
+    np.testing.assert_array_equal(half, whole / 2)
+
+
+@pytest.mark.parametrize("name", ["double-gauss-50mm", "tessar-50mm", "wide-22mm", "zoom-70-210mm"])
+def test_one_stop_halves_the_exposure(name: str) -> None:
+    wide = rc.Lens.load(name).stopped_down(5.6)
+    closed = rc.Lens.load(name).stopped_down(5.6 * math.sqrt(2))
+    ratio = axial_exposure(wide) / axial_exposure(closed)
+    # sin(theta') of the real marginal ray is not quite in proportion to the diaphragm's radius (spherical
+    # aberration of the pupil): it says how far from 2 the ratio is, here at most 1%. The noise of both
+    # exposures is 0.06%.
+    real = yardsticks.axial_irradiance(wide) / yardsticks.axial_irradiance(closed)
+    assert ratio == pytest.approx(real, rel=0.003)
+    assert ratio == pytest.approx(2, rel=0.01)
+
+
+def grey_card_exposure(lens: rc.Lens, iso: float) -> rc.Image:
+    """Card of 18% at 5 m, square to a sun of 80 klux behind the camera; f/16, 1/125 s."""
+    scene = scenes.scene_of(scenes.quad((0, 0, -5), 5, diffuse=0.18)).with_sun((0, 0, -1), (8e4, 8e4, 8e4))
+    camera = rc.Camera(lens.stopped_down(16), film=rc.Film(1, 1, (8, 8)), exposure_time_s=1 / 125, iso=iso)
+    return rc.render(scene, camera, effects=(), spp=64)
+
+
+@pytest.mark.parametrize("name", ["double-gauss-50mm", "cooke-triplet-50mm", "telephoto-250mm", "wide-22mm"])
+def test_sunny_16_lands_on_middle_grey(name: str) -> None:
+    image = grey_card_exposure(rc.Lens.load(name), iso=100)
+    # ISO 12232 (standard output sensitivity): 10 lx s / ISO is middle grey. A third of a stop is what cameras
+    # can set.
+    stops = math.log2(float(image.pixels.mean()) / 0.1)
+    assert abs(stops) < 1 / 3
+    # The closed form: L = 0.18 E / pi on the card, pi L / (4 N^2) on the film.
+    expected = 0.18 * 8e4 / (4 * 16**2) / 125
+    # 5%: the marginal ray at f/16 is paraxial, and focusing at infinity is that of the open lens: in front of
+    # it.
+    assert image.pixels.mean() == pytest.approx(expected, rel=0.05)
+
+
+def test_middle_grey_is_code_118_and_sensitivity_scales() -> None:
+    # sRGB (IEC 61966-2-1) of 0.18 is 117.7 / 255; middle grey lies below the knee of the tone curve.
+    exposure = np.full((1, 1, 3), 0.1, np.float32)
+    for tone in ("film", "linear"):
+        assert rc._core.develop(exposure, 100, tone).tolist() == [[[118] * 3]]
+        assert rc._core.develop(exposure / 8, 800, tone).tolist() == [[[118] * 3]]
+    image = grey_card_exposure(rc.Lens.load("double-gauss-50mm"), iso=100)
+    grey = float(np.median(image.developed("linear")))
+    linear = 0.18 * float(image.pixels.mean()) / 0.1
+    # One code for rounding, one for the noise of single pixels.
+    assert grey == pytest.approx(255 * (1.055 * linear ** (1 / 2.4) - 0.055), abs=2)
+    third = [255 * (1.055 * (0.18 * 2**s) ** (1 / 2.4) - 0.055) for s in (-1 / 3, 1 / 3)]
+    assert third[0] < grey < third[1]
+
+
+def test_white_is_clipped_and_black_is_black() -> None:
+    ramp = np.array([0.0, -1.0, np.nan, 0.1, 10.0, 1e30], np.float32)
+    linear = rc._core.develop(ramp, 100, "linear")
+    assert linear.tolist() == [0, 0, 0, 118, 255, 255]
+    film = rc._core.develop(np.linspace(0, 2, 2000, dtype=np.float32), 100, "film").astype(int)
+    assert (np.diff(film) >= 0).all()
+    assert film[-1] == 255 or film[-1] > 250
+
+
+@pytest.mark.parametrize("name", LENSES)
+def test_most_sampled_rays_pass(name: str) -> None:
+    lens = rc.Lens.load(name)
+    stats = rc.render(scenes.sky(), rc.Camera(lens, film=rc.Film(*lens.film_mm, (120, 80))), effects=(), spp=16).stats
+    # The aim for whole frames wide open; at least 80000 samples have a standard deviation of 0.1%.
+    assert stats.passed_rays / stats.sampled_rays >= 0.95

@@ -1,0 +1,477 @@
+"""The command line as a stranger meets it: help, mistyped words, figures as JSON, and pictures that show nothing."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import re
+import shlex
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+import realcam as rc
+import typer
+from realcam.cli import app as cli
+from realcam.cli.examples import EXAMPLES
+from realcam.cli.help_texts import finish
+
+from ..programs import PROGRAM
+
+BENCHMARKS = Path(rc.__file__).resolve().parents[2] / "benchmarks"
+wants_benchmarks = pytest.mark.skipif(not BENCHMARKS.is_dir(), reason="a wheel comes without the benchmarks")
+# As the script that pip installs calls it.
+PYTHON_COMMAND = [sys.executable, "-c", "from realcam_command.main import main; main()"]
+
+TREE = typer.main.get_command(cli.app)
+finish(TREE)
+IN_CPP = ["render", "plan", "devices", "lens info"]
+QUAD = "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nf 1 2 3 4\n"
+
+pictures = pytest.mark.picture_files  # a build without picture files has none of these commands
+
+
+def commands(command: Any = TREE, words: tuple[str, ...] = ()) -> Iterator[str]:
+    """All that are Python, and the groups."""
+    name = " ".join(words)
+    if name not in IN_CPP:
+        yield name
+    for word, below in getattr(command, "commands", {}).items():
+        yield from commands(below, (*words, word))
+
+
+def said(words: list[str], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> tuple[int, str, str]:
+    """Exit code, stdout and stderr of the command line that is Python."""
+    monkeypatch.setattr("sys.argv", ["realcam", *words])
+    with pytest.raises(SystemExit) as ended:
+        cli.run()
+    return int(ended.value.code or 0), *capsys.readouterr()
+
+
+def run(*words: object, folder: Path | None = None) -> subprocess.CompletedProcess[str]:
+    return subprocess.run([*PROGRAM, *map(str, words)], capture_output=True, text=True, cwd=folder)
+
+
+def in_cpp(words: list[str], capfd: pytest.CaptureFixture[str]) -> tuple[int, str, str]:
+    """Exit code, stdout and stderr of a command in C++, in this process: a process of its own takes a quarter of a
+    second to start, for a page of text."""
+    code = rc._core._run_command([os.fsencode(word) for word in words])  # type: ignore[attr-defined]
+    return code, *capfd.readouterr()
+
+
+def refusal(words: list[str], capfd: pytest.CaptureFixture[str]) -> str:
+    code, output, errors = in_cpp(words, capfd)
+    assert (code, output, errors.count("\n")) == (2, "", 1)
+    return errors
+
+
+@pytest.mark.parametrize("name", sorted(commands()))
+def test_help(name: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    code, text, errors = said([*name.split(), "-h"], monkeypatch, capsys)
+    assert (code, errors) == (0, "")
+    assert said([*name.split(), "--help"], monkeypatch, capsys)[1] == text
+    assert text.startswith(f"Usage: realcam {name}".rstrip())
+    assert "-h, --help" in text
+    assert not re.search(r"<\w+(\[|>| range)", text), "a type of Python"
+    assert not re.search(r"<=|>=|\d\.0[];]", text), "a range as Python writes it"
+    usage, _, rest = text.partition("\n")
+    assert not re.search("[{}]", usage)
+    assert not re.search(r"\w\.\.\.$", rest, re.M), "a line that was cut off"
+    has_examples = name in EXAMPLES
+    assert ("\nExamples:\n  realcam " in text) == has_examples
+    assert has_examples or name in ("", "lens", "sensor")
+
+
+def test_ranges_in_the_help_are_those_of_people(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = " ".join(said(["compare", "-h"], monkeypatch, capsys)[1].split())
+    assert "[480; 8 to 4096]" in text
+    assert "[256; 4 or more]" in " ".join(said(["cost", "-h"], monkeypatch, capsys)[1].split())
+    assert "[8; 1 to 100 000]" in " ".join(said(["job", "make", "-h"], monkeypatch, capsys)[1].split())
+
+
+def test_the_help_of_plots_names_all(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    text = said(["lens", "plot", "-h"], monkeypatch, capsys)[1].partition("KIND: ")[2].partition(".\n")[0]
+    assert set(re.findall(r"[a-z]+(?:-[a-z]+)*", text)) - {"over", "the", "film"} == set(rc.analysis.KINDS)
+
+
+@pictures
+@pytest.mark.parametrize("name", IN_CPP)
+def test_help_of_what_is_in_cpp(name: str, capfd: pytest.CaptureFixture[str]) -> None:
+    code, text, errors = in_cpp([*name.split(), "-h"], capfd)
+    assert (code, errors) == (0, "")
+    assert in_cpp([*name.split(), "--help"], capfd)[1] == text
+    examples = re.findall(rf"(?m)^  realcam ({name}\b.*)$", text.partition("Examples:\n")[2])
+    assert examples
+    for example in examples:
+        for option in re.findall(r"(?<= )--?[a-z][a-z-]*", example):
+            assert re.search(rf"(^|[ ,]){option}\b", text, re.M), f"{example}: {option}"
+
+
+@pytest.mark.parametrize(
+    "name, example", [(name, line) for name, lines in EXAMPLES.items() for line in lines if f" {name} " in f"{line} "]
+)
+def test_examples_are_command_lines(name: str, example: str) -> None:
+    words = shlex.split(example)[1:]
+    command: Any = TREE
+    for word in name.split():
+        assert words.pop(0) == word
+        command = command.commands[word]
+    command.make_context(name, words)  # raises for what the command does not take
+
+
+@pytest.mark.parametrize(
+    "words, meant",
+    [
+        (
+            "expse film.exr",
+            r'command "expse" \(did you mean "expose"\?\) \(realcam --help lists the commands\)',
+        ),
+        ("lens drow", r'unknown command "drow" \(did you mean "draw"'),
+        ("lens draw tessar-50mm --f-numbr 8", r'--f-numbr \(did you mean "--f-number"\?\) \(realcam lens draw --help'),
+        ("lens photo tessar-50mm --exposur-time 1/50", 'did you mean "--exposure-time"'),
+        ("cost shot.toml --devise cpu", 'did you mean "--device"'),
+        ("lens", "a command is missing; .*draw, photo.* are known"),
+        ("sensor", "a command is missing; list, info are known"),
+        ("lens draw", r"LENS is required \(realcam lens draw --help lists the options"),
+        ("bench --threads many", '--threads: "many" is not a whole number'),
+        ("lens plot mtf-feild tessar-50mm", r'unknown plot "mtf-feild" \(did you mean "mtf" or "mtf-field"'),
+        pytest.param("bench lens-ray", 'or "lens-rays"', marks=wants_benchmarks),
+        ("lens photo tessar-50mm --iso -3", "--iso: a positive number is wanted"),
+        ("lens plot mtf tessar-50mm -o mtf.txt", r"\.json or \.csv is wanted"),
+    ],
+)
+def test_mistyped_words(
+    words: str, meant: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    code, output, errors = said(words.split(), monkeypatch, capsys)
+    assert (code, output, errors.count("\n")) == (2, "", 1)
+    assert errors.startswith("realcam: error: ")
+    assert re.search(meant, errors), errors
+
+
+@pictures
+@pytest.mark.parametrize("name", IN_CPP)
+def test_help_has_one_form(name: str, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]) -> None:
+    """What Python would print of a command in C++ is what C++ prints, but for groups of options."""
+    text = said([*name.split(), "--help"], monkeypatch, capfd)[1]
+    printed = in_cpp([*name.split(), "--help"], capfd)[1].partition("\nExamples:\n")[0]
+
+    def paragraphs(page: str) -> list[str]:
+        """One for each option, argument and heading; which column texts begin in depends on the names in a group."""
+        lines = re.sub(r"\n {4,}", " ", page).replace(" [required]", "").splitlines()
+        return sorted({" ".join(line.split()) for line in lines} - {"Camera:", "Scene:", "Picture:", "Film:", ""})
+
+    assert paragraphs(text) == paragraphs(printed)
+
+
+@pictures
+@pytest.mark.parametrize(
+    "words",
+    [
+        "",
+        "tessar-50mm more",
+        "tessar-50mm more and more",
+        "tessar-50mm --forc",
+        "tessar-50mm --zzzzzzzzzzzzz",
+        "tessar-50mm --json=3",
+        "tessar-50mm --focus",
+        "tessar-50mm --focus near",
+        "tessar-50mm --zoom wide --zoom tele",
+        "tesar-50mm",
+        "zzzzzzzz",
+        "gone.toml",
+        "tessar-50mm --zoom wide",
+        "tessar-50mm --f-number 1",
+    ],
+)
+def test_mistakes_are_told_in_the_same_words(
+    words: str, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    """By a command in Python, and by one in C++ with the same options."""
+    code, output, errors = said(["lens", "photo", *words.split()], monkeypatch, capfd)
+    assert (code, output, errors.count("\n")) == (2, "", 1)
+    assert errors.replace("lens photo", "lens info") == refusal(["lens", "info", *words.split()], capfd)
+
+
+def asked_by_bash(typed: str) -> dict[str, str]:
+    return {"_REALCAM_COMPLETE": "complete_bash", "COMP_WORDS": typed, "COMP_CWORD": str(typed.count(" "))}
+
+
+@pytest.mark.parametrize(
+    ("typed", "wanted"),
+    [
+        ("realcam re", {"render"}),
+        ("realcam lens info tessar", {"tessar-50mm"}),
+        ("realcam lens photo tessar-50mm --exp", {"--exposure-time"}),
+        ("realcam render scene.glb --lens tessar", {"tessar-50mm"}),
+        ("realcam render scene.glb --environment-s", {"--environment-scale"}),
+        ("realcam plan shot.toml --device c", {"cpu"}),
+        ("realcam expose film.exr --sensor sony-imx071-c", {"sony-imx071-color"}),
+        ("realcam render sce", set()),  # bash completes names of files
+    ],
+)
+@pictures
+def test_a_shell_completes(
+    typed: str, wanted: set[str], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for name, value in asked_by_bash(typed).items():
+        monkeypatch.setenv(name, value)
+    code, output, errors = said([], monkeypatch, capsys)
+    assert (code, errors) == (0, "")
+    assert set(output.split()) - {"cuda", "cuda:0", "cuda:1"} == wanted
+
+
+@pictures
+def test_a_shell_completes_the_command_that_pip_installs() -> None:
+    asked = asked_by_bash("realcam lens in")
+    done = subprocess.run(PYTHON_COMMAND, capture_output=True, text=True, env={**os.environ, **asked})
+    assert (done.returncode, done.stderr, done.stdout.split()) == (0, "", ["info"])
+
+
+def test_bench_says_where_the_benchmarks_are(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    # As installed: the package alone.
+    monkeypatch.setattr("realcam.cli.bench.__file__", str(tmp_path / "site-packages/realcam/cli/bench.py"))
+    code, output, errors = said(["bench", "frame"], monkeypatch, capsys)
+    assert (code, output, errors.count("\n")) == (2, "", 1)
+    assert "source repository" in errors and "./run bench" in errors
+
+
+@pictures
+@pytest.mark.parametrize(
+    "words, meant",
+    [
+        ("render scene.glb -o a.png --exposur-time 1/50", 'option --exposur-time (did you mean "--exposure-time"'),
+        ("render scene.glb -o a.png --exposur-time=1/50", 'option --exposur-time (did you mean "--exposure-time"'),
+        # Also where something else is missing.
+        ("render scene.glb --outptu a.png", 'option --outptu (did you mean "--output"'),
+        ("render --f-numbr 8", '(did you mean "--f-number"'),
+        ("render scene.glb", "--output is required (realcam render --help lists the options)"),
+        ("rendr", 'unknown command "rendr" (did you mean "render"'),
+        ("lens lst", 'unknown command "lst" (did you mean "list"'),
+        (
+            "render quad.obj -o a.png --spp 4 --noise 0.1",
+            'noise, noise_codes, seconds and max_spp belong to spp "auto"',
+        ),
+        ("render quad.obj -o a.png --noise-codes 0", "noise_codes must be a number from 1e-9 on"),
+        ("render quad.obj -o a.png --noise-codes -2", "noise_codes must be a number from 1e-9 on"),
+        ("render quad.obj -o a.png --noise-codes nan", '--noise-codes must be a number; it is "nan"'),
+        ("render quad.obj -o a.png --noise-codes inf", '--noise-codes must be a number; it is "inf"'),
+        ("render quad.obj -o a.png --noise 0", "noise must be a number from 1e-9 on"),
+        ("render quad.obj -o a.png --seconds 0", "seconds must be above 0"),
+        ("render quad.obj -o a.png --seconds -1", "seconds must be above 0"),
+        ("render quad.obj -o a.png --seconds nan", '--seconds must be a number; it is "nan"'),
+        ("render quad.obj -o a.png --max-spp 0", "max_spp must lie between 2 and"),
+        ("render quad.obj -o a.png --quality best", '--quality must be draft, photo or reference; it is "best"'),
+        ("render quad.obj -o a.png --threshold-px 0", "must be above 0"),
+        # The package has more commands.
+        ("lens", "a command is missing; info, list are known (realcam lens --help lists the commands)"),
+        ("render scene.glb -o a.png --spp 4 --spp 8", "--spp is given more than once (realcam render --help"),
+        ("render scene.glb -o a.png --zzzzzzzzzzzzzz", "unknown option --zzzzzzzzzzzzzz (realcam render --help"),
+    ],
+)
+def test_mistyped_words_for_what_is_in_cpp(words: str, meant: str, capfd: pytest.CaptureFixture[str]) -> None:
+    assert meant in refusal(words.split(), capfd)
+
+
+def render(folder: Path, *words: object) -> tuple[dict[str, Any], str]:
+    """The figures of a small picture, and what was told on the way."""
+    (folder / "quad.obj").write_text(QUAD)
+    settings = ["--resolution", "48x32", "--device", "cpu", "--effects", "none", "--json"]
+    settings += [] if "--spp" in words else ["--spp", "4"]
+    done = run("render", "quad.obj", "-o", "a.png", *settings, *words, folder=folder)
+    assert done.returncode == 0, done.stderr
+    figures: dict[str, Any] = json.loads(done.stdout)
+    return figures, done.stderr
+
+
+@pictures
+def test_figures_of_a_picture_as_json(tmp_path: Path) -> None:
+    figures, told = render(tmp_path, "--seed", 3, "--iso", 200, "--f-number", 4, "--focus", 3, "-o", "b.exr")
+    assert figures["pictures"] == ["a.png", "b.exr"]
+    assert figures["lens"]["name"] == "double-gauss-50mm"
+    assert figures["lens"]["f_number"] == pytest.approx(4)
+    assert figures["lens"]["focus_distance_m"] == pytest.approx(3)
+    assert figures["camera"]["resolution"] == [48, 32]
+    assert figures["camera"]["film_mm"] == [36, 24]
+    assert (figures["spp"], figures["seed"], figures["noise"]) == (4, 3, None)
+    assert figures["exposure"]["iso"] == 200
+    assert figures["exposure"]["is_metered"] is True
+    # The meter has a picture of its own, with other samples.
+    assert figures["exposure"]["stops_above_middle_grey"] == pytest.approx(0, abs=0.3)
+    assert figures["has_daylight"] is True
+    assert "daylight" in told
+    assert figures["effects"] == []
+    assert figures["time_s"]["all"] >= figures["time_s"]["picture"] > 0
+    assert figures["rays"]["sampled"] >= figures["rays"]["passed"] > 0
+    assert "CPU" in figures["device"]
+    assert figures["warnings"] == []
+
+
+@pytest.mark.slow
+@pictures
+def test_noise_that_was_asked_for_is_in_the_json(tmp_path: Path) -> None:
+    reached, _ = render(tmp_path, "--spp", "auto", "--noise", "0.2", "--environment", "100")
+    assert reached["noise"] == {"wanted": 0.2, "unit": "share", "is_reached": True, "shortfall": ""}
+    missed, told = render(tmp_path, "--spp", "auto", "--noise-codes", "0.001", "--max-spp", "32")
+    assert missed["noise"]["is_reached"] is False
+    assert missed["noise"]["shortfall"] in told
+    assert missed["warnings"] == [missed["noise"]["shortfall"]]
+
+
+@pytest.mark.slow
+@pictures
+def test_without_a_number_of_samples_the_noise_and_the_time_decide(tmp_path: Path) -> None:
+    (tmp_path / "quad.obj").write_text(QUAD)
+    (tmp_path / "shot.toml").write_text('format = 1\nscene = "quad.obj"\nenvironment_cd_m2 = 100\n')
+    (tmp_path / "counted.toml").write_text('format = 1\nscene = "quad.obj"\nenvironment_cd_m2 = 100\nspp = 3\n')
+
+    def figures(scene: str, *words: object) -> tuple[dict[str, Any], str]:
+        small = ["--resolution", "48x32", "--device", "cpu", "--effects", "none", "--json"]
+        done = run("render", scene, "-o", "a.png", *small, *words, folder=tmp_path)
+        assert done.returncode == 0, done.stderr
+        return json.loads(done.stdout), done.stderr
+
+    aim = "realcam: samples are taken until the noise is {}; --noise-codes, --seconds or --spp say otherwise\n"
+    for scene in ("quad.obj", "shot.toml"):
+        image, told = figures(scene)
+        assert (image["noise"]["wanted"], image["noise"]["unit"]) == (2, "codes")
+        assert image["noise"]["is_reached"]
+        assert aim.format("2 codes of 255, for 60 s at most") in told
+    # Who says what noise is wanted waits for it; who says how long, has the usual noise.
+    assert aim.format("3 codes of 255") in figures("quad.obj", "--noise-codes", 3)[1]
+    assert aim.format("10% of the light, for 9 s at most") in figures("shot.toml", "--noise", 0.1, "--seconds", 9)[1]
+    assert aim.format("2 codes of 255, for 9 s at most") in figures("shot.toml", "--seconds", 9)[1]
+    # A number of samples is one, wherever it stands.
+    for scene, words in (("counted.toml", []), ("shot.toml", ["--spp", 3])):
+        image, told = figures(scene, *words)
+        assert (image["spp"], image["noise"]) == (3, None)
+        assert "samples are taken" not in told
+
+
+@pictures
+def test_noise_and_time_that_are_out_of_reach_end_with_one_line(tmp_path: Path) -> None:
+    """The picture is written, and a warning says how far it got."""
+    for words in (["--noise-codes", 1e-9, "--max-spp", 32], ["--noise-codes", 1e-9, "--seconds", 1e-9]):
+        figures, told = render(tmp_path, "--spp", "auto", *words)
+        assert figures["noise"]["is_reached"] is False
+        assert figures["warnings"] == [figures["noise"]["shortfall"]]
+        assert told.count("realcam: warning: ") == 1
+        assert (tmp_path / "a.png").exists()
+
+
+@pytest.mark.slow
+@pictures
+def test_pictures_that_show_nothing_are_told(tmp_path: Path) -> None:
+    """By how many stops, and what to change: the figures of the metered picture give both."""
+    light = ["--environment", "100"]
+    metered, told = render(tmp_path, *light)
+    assert "nearly all" not in told
+    time_s = metered["exposure"]["exposure_time_s"]
+    for stops, word, wanted in ((-6, "black", "a higher --iso or a smaller --f-number"), (7, "white", "a lower --iso")):
+        figures, told = render(tmp_path, *light, "--exposure-time", time_s * 2**stops)
+        [warning] = figures["warnings"]
+        assert f"realcam: warning: {warning}\n" in told
+        assert f"nearly all {word}, {abs(stops)} stops {'below' if stops < 0 else 'above'} middle grey" in warning
+        assert wanted in warning
+        numerator, _, denominator = re.search(r"auto or about ([\d.]+)(/([\d.]+))?", warning).groups()  # type: ignore[union-attr]
+        advised = float(numerator) / float(denominator or 1)
+        assert math.log2(advised / time_s) == pytest.approx(0, abs=0.2)
+    # Two stops more or less are a matter of taste.
+    assert "nearly all" not in render(tmp_path, *light, "--exposure-time", time_s * 4)[1]
+    assert "nearly all" not in render(tmp_path, *light, "--exposure-time", time_s / 4)[1]
+    dark, told = render(tmp_path, "--environment", "0", "--exposure-time", "1")
+    assert dark["warnings"] == ["the picture is black: no light reaches the film"]
+    assert dark["exposure"]["stops_above_middle_grey"] is None
+
+
+@pictures
+@pytest.mark.slow
+def test_a_closed_diaphragm_before_a_fixed_shutter_is_told(tmp_path: Path) -> None:
+    """The demo's shutter is right for f/2.1, and f/8 takes four stops of its light."""
+    demo = Path(__file__).resolve().parents[3] / "scenes" / "demo.toml"
+    small = ["--resolution", "60x40", "--spp", "8", "--effects", "none", "--device", "cpu"]
+    for f_number, is_told in ((2.1, False), (4, False), (8, True), (16, True)):
+        done = run("render", demo, "-o", "a.png", "--f-number", f_number, *small, folder=tmp_path)
+        assert ("nearly all black" in done.stderr) == is_told, done.stderr
+
+
+@pictures
+def test_a_small_lit_thing_before_nothing_is_no_black_picture(tmp_path: Path) -> None:
+    (tmp_path / "lamp.mtl").write_text("newmtl lamp\nKd 0 0 0\nKe 100 100 100\n")
+    (tmp_path / "lamp.obj").write_text(
+        "mtllib lamp.mtl\nusemtl lamp\n" + QUAD.replace("1 ", "0.05 ").replace("f 0.05", "f 1")
+    )
+    done = run(
+        *("render", "lamp.obj", "-o", "a.png", "--position", "0,0,4", "--look-at", "0,0,0", "--effects", "none"),
+        *("--resolution", "60x40", "--spp", "4", "--focus", "4", "--device", "cpu"),
+        folder=tmp_path,
+    )
+    assert done.returncode == 0, done.stderr
+    assert "nearly all" not in done.stderr
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["lens", "draw", "tessar-50mm", "-o", "a.svg"],
+        ["lens", "plot", "distortion", "tessar-50mm", "-o", "a.svg", "-o", "a.csv"],
+        ["lens", "convert", "tessar-50mm", "-o", "a.toml"],
+        ["lens", "gallery", "tessar-50mm", "-o", "a.svg"],
+        ["lens", "compare", "tessar-50mm", "sonnar-50mm", "-o", "a.svg"],
+        ["lens", "photo", "tessar-50mm"],
+    ],
+)
+def test_quiet_commands_say_nothing(
+    words: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    code, text, errors = said(words, monkeypatch, capsys)
+    written = "".join(f"wrote {file}\n" for file in words if file.startswith("a."))
+    assert (code, errors) == (0, "")
+    assert text.endswith(written) and (len(text) > len(written)) == (words[1] in ("compare", "photo"))
+    for option in ("-q", "--quiet"):
+        assert said([*words, option], monkeypatch, capsys) == (0, "", "")
+
+
+@pytest.mark.slow
+@pictures
+def test_a_quiet_render_tells_warnings_alone(tmp_path: Path) -> None:
+    """Daylight is brought without a word. The shutter of an hour is warned of."""
+    (tmp_path / "quad.obj").write_text(QUAD)
+    words = ("render", "quad.obj", "-o", "a.png", "--resolution", "20x10", "--spp", "1", "--device", "cpu", "--quiet")
+    done = run(*words, folder=tmp_path)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+    done = run(*words, "--exposure-time", "3600", folder=tmp_path)
+    assert done.stdout == "" and done.stderr.startswith("realcam: warning: "), done.stderr
+    assert json.loads(run(*words, "--json", folder=tmp_path).stdout)  # which was asked for
+
+
+def test_sensors_as_json(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    listed = json.loads(said(["sensor", "list", "--json"], monkeypatch, capsys)[1])
+    assert [sensor["name"] for sensor in listed] == rc.sensor_names()
+    sensor = rc.Sensor.load("sony-imx071-color")
+    told = json.loads(said(["sensor", "info", sensor.name, "--json"], monkeypatch, capsys)[1])
+    assert told["gain_dn_per_e"] == sensor.gain_dn_per_e
+    assert tuple(told["resolution"]) == sensor.resolution
+    assert told["iso_range"] == list(sensor.iso_range())
+    ideal = json.loads(said(["sensor", "info", "ideal", "--json"], monkeypatch, capsys)[1])
+    assert ideal["iso_range"] is None  # any
+
+
+def test_all_commands_that_write_can_be_quiet() -> None:
+    """Of C++ `render` can, which has a test of its own."""
+    for name in sorted(commands()):
+        command: Any = TREE
+        for word in name.split():
+            command = command.commands[word]
+        options = {option for parameter in command.params for option in parameter.opts}
+        if ("--output" in options or name in ("lens photo", "view")) and name not in IN_CPP:
+            assert "--quiet" in options, name

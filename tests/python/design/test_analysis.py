@@ -1,0 +1,440 @@
+"""rc.analysis: arrays, plots of these arrays, and the commands."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import re
+from collections.abc import Callable
+from functools import partial
+from importlib import import_module
+from pathlib import Path
+
+import matplotlib.figure
+import numpy as np
+import pytest
+import realcam as rc
+import scipy.special
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from realcam.analysis import kinds
+from realcam.analysis.report_plots import ReportPlots
+from realcam.drawing.themes import LIGHT
+
+from ..commands.test_command_line import said
+
+analysis = rc.analysis
+LENS = rc.Lens.load("double-gauss-50mm").stopped_down(4)
+REPORT_PAGES = ReportPlots.pages
+SMALL = {"spot-through-focus": {"fields_deg": np.array([0.0, 10.0])}}
+
+
+def asked(lens: rc.Lens = LENS, **given: object) -> kinds.Asked:
+    return kinds.Asked(lens, analysis.Bundles(lens), **given)  # type: ignore[arg-type]
+
+
+@pytest.fixture(scope="module")
+def computed() -> dict[str, object]:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(kinds, "field_map", partial(kinds.field_map, points=(5, 3)))
+        return {kind: kinds.compute(kind, asked(**SMALL.get(kind, {}))) for kind in kinds.KINDS}
+
+
+@pytest.mark.pictures
+@pytest.mark.parametrize(("number", "kind"), enumerate(kinds.KINDS))
+def test_every_plot_has_labels_and_units(computed: dict[str, object], number: int, kind: str) -> None:
+    # A figure takes a second to draw, so sizes and themes take turns.
+    size, theme = [("small", "dark"), ("large", "light")][number % 2]
+    figure = analysis.plot_figure(kind, computed[kind], theme=theme, size=size)
+    drawn = [axes for axes in figure.axes if axes.get_label() != "<colorbar>"]
+    assert drawn
+    lowest = [axes for axes in drawn if axes.get_subplotspec().is_last_row()]
+    without_unit = {"contrast", "surface", "direction cosine y", "side by side, at the scale of direction cosine y"}
+    for axes in drawn:
+        for label in (axes.get_ylabel(), *([axes.get_xlabel()] if axes in lowest else [])):
+            assert label, kind
+            assert any(mark in label for mark in (" / ", "per mm", "index")) or label in without_unit, label
+        assert axes.get_title()
+    page = matplotlib.colors.to_rgb(figure.get_facecolor())
+    ink = matplotlib.colors.to_rgb(drawn[0].yaxis.label.get_color())
+    assert abs(sum(page) - sum(ink)) > 1.8, "the text stands out from the page"
+
+
+def lines_of(kind: str, data: object, number: int = 0) -> list[tuple[np.ndarray, np.ndarray]]:
+    axes = analysis.plot_figure(kind, data).axes[number]
+    return [(np.asarray(line.get_xdata()), np.asarray(line.get_ydata())) for line in axes.get_lines()]
+
+
+@pytest.mark.pictures
+def test_plots_show_the_arrays(computed: dict[str, object]) -> None:
+    fan = computed["ray-fan"]
+    for w, (x, y) in enumerate(lines_of("ray-fan", fan, 1)[:3]):
+        np.testing.assert_array_equal(x, fan.pupil)
+        np.testing.assert_array_equal(y, 1e3 * fan.tangential_mm[1, w])
+    spots = computed["spot"]
+    x, y = lines_of("spot", spots, 2)[0]
+    np.testing.assert_array_equal(np.column_stack([x, y]), 1e3 * spots.points_mm[0, 2, 0])
+    along = computed["longitudinal"]
+    np.testing.assert_array_equal(lines_of("longitudinal", along)[1][0], along.focus_mm[1])
+    curves = computed["field-curves"]
+    np.testing.assert_array_equal(lines_of("field-curves", curves)[0][0], curves.tangential_mm[0])
+    np.testing.assert_array_equal(lines_of("field-curves", curves)[1][0], curves.sagittal_mm[0])
+    bent = computed["distortion"]
+    np.testing.assert_array_equal(lines_of("distortion", bent)[0][0], bent.percent)
+    colour = computed["lateral-colour"]
+    np.testing.assert_array_equal(lines_of("lateral-colour", colour)[2][0], 1e3 * colour.shift_mm[2])
+    contrast = computed["mtf"]
+    np.testing.assert_array_equal(lines_of("mtf", contrast)[2][1], contrast.tangential[0, 1])
+    np.testing.assert_array_equal(lines_of("mtf", contrast)[3][1], contrast.sagittal[0, 1])
+    over = computed["mtf-field"]
+    np.testing.assert_array_equal(lines_of("mtf-field", over)[0][1], over.tangential[0, :, 0])
+    through = computed["mtf-focus"]
+    np.testing.assert_array_equal(lines_of("mtf-focus", through)[0][1], through.tangential[:, 0, 0])
+    light = computed["relative-illumination"]
+    np.testing.assert_array_equal(lines_of("relative-illumination", light)[0][1], 100 * light.relative_illumination)
+    front = computed["wavefront"]
+    shown = analysis.plot_figure("wavefront", front).axes[0].get_images()[0].get_array()
+    np.testing.assert_array_equal(np.ma.filled(shown, np.nan), front.map_waves)
+    bars = computed["seidel"]
+    heights = [bar.get_height() for bar in analysis.plot_figure("seidel", bars).axes[0].patches]
+    np.testing.assert_array_equal(np.reshape(heights, (7, -1))[:, :-1].T, bars.waves)
+
+
+@pytest.mark.pictures
+def test_colours_and_surfaces_are_named(computed: dict[str, object]) -> None:
+    for kind in ("ray-fan", "spot", "longitudinal", "lateral-colour"):
+        legends = [legend for axes in analysis.plot_figure(kind, computed[kind]).axes if (legend := axes.get_legend())]
+        assert "486.1 nm" in [text.get_text() for legend in legends for text in legend.get_texts()], kind
+    ticks = analysis.plot_figure("seidel", computed["seidel"]).axes[0].get_xticklabels()
+    # As `lens info` and lens files number them.
+    assert [tick.get_text() for tick in ticks] == [*map(str, range(1, 1 + len(LENS.surfaces))), "sum"]
+    assert "0°" in analysis.plot_figure("zernike", computed["zernike"]).axes[0].get_title()
+
+
+def test_curves_over_the_field_have_no_corners() -> None:
+    """Straight lines between their points leave the curve by less than a line of the plot is wide: 1 in 100 of its
+    range. Points halfway between theirs show it. The phone lens's distortion has three turns, its field curves two."""
+    lens = rc.Lens.load("phone-4mm")
+    light = analysis.Bundles(lens)
+    for compute, name in (
+        (analysis.distortion, "percent"),
+        (analysis.field_curves, "tangential_mm"),
+        (analysis.lateral_colour, "shift_mm"),
+        (analysis.film_pupils, "relative_illumination"),
+    ):
+        drawn = compute(lens, bundles=light)
+        many = compute(lens, bundles=light, samples=2 * len(drawn.fields_deg) - 1)
+        curve, fine = (np.atleast_2d(getattr(data, name))[0] for data in (drawn, many))
+        between = np.interp(many.fields_deg, drawn.fields_deg, curve)
+        assert np.abs(between - fine).max() < 0.01 * np.ptp(fine), name
+
+
+def test_contrast_has_no_corners() -> None:
+    """Between its points the contrast over frequency bends the most at its zeros."""
+    lens = rc.Lens.load("tessar-50mm")
+    light = analysis.Bundles(lens)
+    drawn = analysis.mtf_over_frequency(lens, 0.0, bundles=light)
+    many = analysis.mtf_over_frequency(lens, 0.0, samples=2 * (len(drawn.frequencies_per_mm) - 1) + 1, bundles=light)
+    between = [np.interp(many.frequencies_per_mm, drawn.frequencies_per_mm, curve) for curve in drawn.tangential[0]]
+    assert np.abs(between - many.tangential[0]).max() < 0.01
+
+
+def test_the_object_is_in_the_plane_in_focus() -> None:
+    near = rc.Lens.load("double-gauss-50mm").focused(1.2).stopped_down(8)
+    front_m = near.focus_distance_m - 1e-3 * near.film_position_mm
+    for by_default, by_name in (
+        (near.spot(10).points_mm, near.spot(10, object_distance_m=front_m).points_mm),
+        (near.wavefront(10).opd_waves, near.wavefront(10, object_distance_m=front_m).opd_waves),
+        (near.seidel(10).seidel_mm, near.seidel(10, object_distance_m=front_m).seidel_mm),
+        (near.bundle(10).points_mm, near.bundle(10, object_distance_m=front_m).points_mm),
+        (near.psf(10, size=16).values, near.psf(10, size=16, object_distance_m=front_m).values),
+        (
+            analysis.ray_fan(near, 10.0).tangential_mm,
+            analysis.ray_fan(near, 10.0, object_distance_m=front_m).tangential_mm,
+        ),
+    ):
+        np.testing.assert_allclose(by_default, by_name, rtol=1e-9, atol=1e-9, equal_nan=True)
+    # In focus the spot is a hundredth of what the same lens makes of infinity.
+    assert near.spot(0).rms_radius_mm < 0.1 * near.spot(0, object_distance_m=float("inf")).rms_radius_mm
+
+
+def test_spots_are_those_of_the_lens() -> None:
+    data = analysis.spot_diagram(LENS, [0.0, 15.0], [587.5618], rings=6)
+    for f, field in enumerate((0.0, 15.0)):
+        spot = LENS.spot(field, wavelength_nm=587.5618, samples=6)
+        np.testing.assert_allclose(data.points_mm[0, f, 0] + spot.chief_ray_mm, spot.points_mm, atol=1e-9)
+        assert data.rms_radius_mm[0, f] == pytest.approx(spot.rms_radius_mm, rel=1e-6)
+    moved = analysis.spot_diagram(LENS, [15.0], [587.5618], rings=6, defocus_mm=[0.2])
+    there = LENS.spot(15.0, wavelength_nm=587.5618, samples=6, film_distance_mm=LENS.film_distance_mm + 0.2)
+    assert moved.rms_radius_mm[0, 0] == pytest.approx(there.rms_radius_mm, rel=1e-6)
+
+
+def test_film_points_are_the_spot_of_very_many_rays() -> None:
+    for lens, field in ((LENS, 15.0), (rc.Lens.load("phone-4mm"), 25.0), (LENS.with_iris(5), 0.0)):
+        bundle = lens.bundle(field, spokes=128, nodes=12)
+        middle = bundle.energy @ bundle.points_mm
+        size = np.sqrt(bundle.energy @ ((bundle.points_mm - middle) ** 2).sum(axis=1))
+        for pattern in ("even", "grid"):
+            for dtype in ("float32", "float64"):
+                points = lens.film_points(field, 200_000, pattern=pattern, dtype=dtype).astype(float)
+                assert 100_000 < len(points) <= 200_000
+                # An edge's grid of 450 cells across is right within a thousandth; float32 within 0.3 um.
+                np.testing.assert_allclose(points.mean(axis=0), middle, atol=2e-3 * size + 3e-4)
+                found = np.sqrt(((points - points.mean(axis=0)) ** 2).sum(axis=1).mean())
+                assert found == pytest.approx(size, rel=5e-3, abs=3e-4)
+    with pytest.raises(rc.InputError, match="even or grid"):
+        LENS.film_points(pattern="random")
+
+
+@pytest.mark.parametrize(
+    ("name", "field"),
+    [("double-gauss-50mm", 5.0), ("double-gauss-50mm", 18.0), ("double-gauss-50mm", 21.0), ("tessar-50mm", 18.0),
+     ("tessar-50mm", 21.0), ("fast-50mm", 20.0), ("zoom-70-200mm", 8.0), ("wide-24mm", 38.0), ("phone-4mm", 33.0)],
+)  # fmt: skip
+def test_film_points_miss_nothing_that_passes(name: str, field: float) -> None:
+    """Against rays between the edges of the light, which real rays find one by one. Contrast tells what is missing at
+    the edge, where rays land farthest from the middle."""
+    lens = rc.Lens.load(name)
+    bundle = lens.bundle(field, spokes=512, nodes=32)
+    points = lens.film_points(field, 400_000, dtype="float64").astype(float)
+    for axis in (0, 1):
+        for frequency in (10.0, 20.0):
+            turns = 2j * np.pi * frequency
+            expected = abs(bundle.energy @ np.exp(turns * bundle.points_mm[:, axis]))
+            found = abs(np.exp(turns * points[:, axis]).mean())
+            # A sequence of 4e5 evenly spread points, cut by the edge of the light, is right within 1e-3.
+            assert found == pytest.approx(expected, abs=1.5e-3)
+    reach = np.abs(bundle.points_mm - points.mean(axis=0)).max(axis=0)
+    assert (np.abs(points - points.mean(axis=0)).max(axis=0) > 0.97 * reach).all()
+
+
+@pytest.mark.parametrize(("defocus_mm", "frequency"), [(0.0, 40.0), (0.5, 40.0), (1.0, 40.0), (3.0, 80.0)])
+def test_geometric_mtf_has_as_many_rays_as_the_frequency_asks_for(defocus_mm: float, frequency: float) -> None:
+    """Out of the focus of a hyperboloid that has no aberrations: light from the left, parallel in the glass, meets in
+    one point behind it. A ray at the height h crosses the axis with the tangent h / (f - z), z the sag there."""
+    n, radius_mm, stop_mm = 1.5, -50.0, 10.0
+    f = radius_mm / (1 - n)
+    surfaces = [
+        rc.Stop(clear_semi_diameter_mm=stop_mm, thickness_mm=0),
+        rc.Surface(thickness_mm=5, material=n, clear_semi_diameter_mm=12),
+        rc.Surface(radius_of_curvature_mm=radius_mm, conic=-(n**2), clear_semi_diameter_mm=12),
+    ]
+    lens = rc.Lens(surfaces=surfaces, film_distance_mm=f)
+    light = {"wavelengths_nm": [587.5618], "object_distance_m": np.inf, "method": "geometric"}
+    mtf = analysis.mtf(lens, [0.0], [frequency], defocus_mm=[defocus_mm], **light)
+    nodes, weights = np.polynomial.legendre.leggauss(400)
+    h = stop_mm * np.sqrt((nodes + 1) / 2)  # evenly over the area
+    sag = h**2 / radius_mm / (1 + np.sqrt(1 - (1 - n**2) * h**2 / radius_mm**2))
+    at = defocus_mm * h / (f - sag)
+    expected = abs(weights @ scipy.special.j0(2 * np.pi * frequency * at)) / 2
+    assert mtf.tangential[0, 0, 0] == pytest.approx(expected, abs=2e-4)
+    assert mtf.sagittal[0, 0, 0] == pytest.approx(expected, abs=2e-4)
+
+
+def test_contrast_that_rays_cannot_tell_is_none() -> None:
+    mtf = analysis.mtf(LENS, [10.0], [40.0, 4e5], method="geometric")
+    assert np.isfinite(mtf.tangential[0, 0, 0])
+    assert np.isnan(mtf.tangential[0, 0, 1])
+
+
+def test_bundles_carry_all_the_light() -> None:
+    bundle = LENS.bundle(20.0)
+    assert bundle.energy.sum() == pytest.approx(1)
+    half = len(bundle.energy) // 2
+    assert bundle.mirrored
+    np.testing.assert_array_equal(bundle.points_mm[:half] * (-1, 1), bundle.points_mm[half:])
+    start, end = bundle.edge_entry_mm[:, 0], bundle.edge_entry_mm[:, 1]
+    area = 0.5 * abs(np.sum(start[:, 0] * end[:, 1] - start[:, 1] * end[:, 0]))
+    edges = [LENS.bundle(20.0, spokes=s).edge_entry_mm for s in (256,)]
+    fine = 0.5 * abs(np.sum(edges[0][:, 0, 0] * edges[0][:, 1, 1] - edges[0][:, 0, 1] * edges[0][:, 1, 0]))
+    assert area == pytest.approx(fine, rel=2e-3)
+
+
+NOLL = [(0, 0), (1, 1), (1, -1), (2, 0), (2, -2), (2, 2), (3, -1), (3, 1), (3, -3), (3, 3), (4, 0), (4, 2), (4, -2),
+        (4, 4), (4, -4)]  # fmt: skip
+FRINGE = [(0, 0), (1, 1), (1, -1), (2, 0), (2, 2), (2, -2), (3, 1), (3, -1), (4, 0), (3, 3), (3, -3), (4, 2), (4, -2),
+          (5, 1), (5, -1), (6, 0)]  # fmt: skip
+
+
+@pytest.mark.parametrize(("order", "table"), [("noll", NOLL), ("fringe", FRINGE)])
+def test_zernike_orders_and_norm(order: str, table: list[tuple[int, int]]) -> None:
+    radius2, angle = np.meshgrid((np.arange(64) + 0.5) / 64, 2 * np.pi * np.arange(64) / 64)
+    x, y = (np.sqrt(radius2) * f(angle) for f in (np.cos, np.sin))
+    places = np.column_stack([x.ravel(), y.ravel()])
+    wanted = np.linspace(-1, 1, 16)
+    fit = analysis.fit_zernike(places, np.zeros(len(places)), order=order, terms=16)
+    assert list(fit.nm)[: len(table)] == table
+    value = dataclasses.replace(fit, coefficients_waves=wanted).at(places)
+    again = analysis.fit_zernike(places, value, order=order, terms=16)
+    np.testing.assert_allclose(again.coefficients_waves, wanted, atol=1e-12)
+    assert again.residual_waves < 1e-12
+    # Orthonormal: the mean square is the sum of squares, within the midpoint rule's error for 64 rings.
+    assert np.mean(value**2) == pytest.approx(np.sum(wanted**2), rel=2e-3)
+    with pytest.raises(rc.InputError, match="noll or fringe"):
+        analysis.fit_zernike(places, value, order="ansi")
+
+
+def test_zernike_polynomials_have_their_names() -> None:
+    """As J. C. Wyant and K. Creath list them (Applied Optics and Optical Engineering XI, 1992, table III)."""
+    fit = analysis.zernike_fit(LENS, order="fringe", terms=25)
+    names = dict(zip(fit.indices.tolist(), fit.names, strict=True))
+    assert names[4] == "defocus"
+    assert (names[5], names[6]) == ("astigmatism 0°", "astigmatism 45°")
+    assert (names[7], names[9]) == ("coma x", "spherical")
+    assert (names[12], names[14], names[16]) == ("secondary astigmatism 0°", "secondary coma x", "secondary spherical")
+    assert (names[23], names[25]) == ("tertiary coma x", "tertiary spherical")
+
+
+def test_lateral_and_axial_colour_are_the_lens_s_own() -> None:
+    data = analysis.lateral_colour(LENS, [20.0])
+    for shift, nm in zip(data.shift_mm[:, 0], data.wavelengths_nm, strict=True):
+        difference = LENS.spot(20, wavelength_nm=nm).chief_ray_mm[1] - LENS.spot(20).chief_ray_mm[1]
+        assert shift == pytest.approx(difference, abs=1e-9)
+    along = analysis.longitudinal_aberration(LENS)
+    first = [LENS.first_order(nm).back_focal_distance_mm - LENS.film_distance_mm for nm in along.wavelengths_nm]
+    np.testing.assert_allclose(along.focus_mm[:, 0], first, atol=1e-5)
+
+
+def test_cats_eyes_close_towards_the_corner() -> None:
+    data = analysis.film_pupils(rc.Lens.load("double-gauss-50mm"), [0.0, 20.0])
+    tall = [np.ptp(outline[..., 1]) for outline in data.outlines]
+    wide = [np.ptp(outline[..., 0]) for outline in data.outlines]
+    assert tall[0] == pytest.approx(wide[0], rel=1e-3)
+    assert tall[1] < 0.75 * wide[1]
+    ring = analysis.film_pupils(rc.Lens.load("mirror-telephoto-500mm"), [0.0])
+    outer = np.ptp(ring.outlines[0][..., 0])
+    assert ring.solid_angle_sr[0] < 0.9 * np.pi / 4 * outer**2, "the obstruction is left out"
+
+
+def test_numbers_are_written(tmp_path: Path) -> None:
+    data = analysis.distortion(LENS, [0.0, 10.0])
+    assert json.loads(analysis.as_json(data))["percent"] == data.percent.tolist()
+    analysis.save_numbers(data, tmp_path / "d.csv")
+    lines = (tmp_path / "d.csv").read_text(encoding="utf-8").splitlines()
+    assert lines[0] == "name,index_0,value"
+    assert f"percent,1,{data.percent[1].item()!r}" in lines
+    with pytest.raises(rc.ImageFileError, match=r"\.json or \.csv"):
+        analysis.save_numbers(data, tmp_path / "d.txt")
+
+
+@pytest.mark.slow
+@pytest.mark.pictures
+@pytest.mark.parametrize("name", ["fisheye-6mm-220deg", "mirror-telephoto-500mm"])
+def test_reports_of_unlike_lenses(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    made: list[tuple[str, matplotlib.figure.Figure]] = []
+
+    def pages_of(plots: ReportPlots) -> list[tuple[str, matplotlib.figure.Figure]]:
+        made.extend(REPORT_PAGES(plots))
+        return made
+
+    monkeypatch.setattr(ReportPlots, "pages", pages_of)
+    # What the fisheye's curves are is no matter here. realcam.analysis.mtf is the function.
+    monkeypatch.setattr(import_module("realcam.analysis.mtf"), "_MOST_DOUBLINGS", 2)
+    analysis.save_report(rc.Lens.load(name), tmp_path / "r.html", wavelengths_nm=[546.0], theme="dark")
+    text = (tmp_path / "r.html").read_text(encoding="utf-8")
+    assert text.count("<svg") == 4
+    assert "http://" not in text.replace("http://www.w3.org", "").replace("http://purl.org", "").replace(
+        "http://creativecommons.org", ""
+    ), "all that it shows is in it"
+    pages = [page for _, page in made]
+    assert [len(page.axes) > 4 for page in pages] == [True] * 3
+    if name != "fisheye-6mm-220deg":
+        return
+    # The edge of its light is too uneven for a transfer function; reasons stay in place.
+    titles = [axes.get_title() for axes in pages[1].axes]
+    assert "MTF of rays alone" in titles
+    assert "MTF over the field, of rays alone" in titles
+    renderer = FigureCanvasAgg(pages[2]).get_renderer()
+    reasons = [(axes, text) for axes in pages[2].axes for text in axes.texts if "no plane grid" in text.get_text()]
+    assert len(reasons) == 1
+    axes, text = reasons[0]
+    assert text.get_window_extent(renderer).width < 1.3 * axes.bbox.width
+
+
+@pytest.mark.pictures
+def test_a_report_begins_with_the_lens(tmp_path: Path) -> None:
+    lens = rc.Lens.load("tessar-50mm")
+    analysis.save_report(lens, tmp_path / "r.html")
+    text = (tmp_path / "r.html").read_text(encoding="utf-8")
+    before = text[: text.index("<h2>Rays")]
+    table = re.search(r'<table class="surfaces">.*?<tbody>(.*)</tbody>', before, re.DOTALL)
+    assert table
+    rows = [re.findall("<td[^>]*>(.*?)</td>", row) for row in table[1].strip().splitlines()]
+    assert len(rows) == len(lens.surfaces) + 1
+    assert [row[2] for row in rows[:3]] == ["19.655", "plane", "-35.52"]  # of the patent, halved
+    third = lens.seidel(analysis.field_angles_deg(lens, 1.0)[0])
+    sums = 1e3 * np.concatenate([third.seidel_mm.sum(axis=0), third.colour_mm.sum(axis=0)])
+    np.testing.assert_allclose([float(cell) for cell in rows[-1][6:]], sums, atol=0.0501)  # one digit
+    assert "angle of view" in before
+    assert lens.source in before
+
+
+@pytest.mark.slow
+@pytest.mark.pictures
+def test_a_report_follows_the_browser_and_prints_light(tmp_path: Path) -> None:
+    analysis.save_report(LENS, tmp_path / "r.html")
+    analysis.save_report(LENS, tmp_path / "dark.html", theme="dark")
+    both, dark = ((tmp_path / name).read_text(encoding="utf-8") for name in ("r.html", "dark.html"))
+    assert "prefers-color-scheme: dark" in both
+    assert "prefers-color-scheme" not in dark
+    for page in (both, dark):
+        assert f"--page: {LIGHT.page}" in page[page.index("@media print") :]
+        drawn = page[page.index("<h1>") :]
+        for colour in (LIGHT.text, LIGHT.page, LIGHT.glass, LIGHT.grid):
+            assert colour not in drawn, "a dark page would show it as it is"
+    with pytest.raises(rc.InputError, match="theme"):
+        analysis.save_report(LENS, tmp_path / "r.html", theme="pink")
+
+
+@pytest.fixture
+def realcam(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> Callable[..., tuple[int, str, str]]:
+    """Exit code, stdout and stderr of `realcam lens ...` in `tmp_path`."""
+    monkeypatch.chdir(tmp_path)
+    return lambda *words: said(["lens", *words], monkeypatch, capsys)
+
+
+@pytest.mark.slow
+@pytest.mark.pictures
+def test_commands(tmp_path: Path, realcam: Callable[..., tuple[int, str, str]]) -> None:
+    code, _, errors = realcam("report", "tessar-50mm", "--focus", "2", "--f-number", "5.6", "-o", "r.pdf")
+    assert code == 0, errors
+    assert (tmp_path / "r.pdf").read_bytes().startswith(b"%PDF")
+    code, text, errors = realcam("plot", "distortion", "tessar-50mm", "-o", "d.svg", "-o", "d.csv", "--json")
+    assert code == 0, errors
+    assert "percent" in json.loads(text)
+    assert (tmp_path / "d.svg").is_file()
+    assert (tmp_path / "d.csv").is_file()
+    fisheye = ("fisheye-6mm-220deg", "--method", "geometric", "--fields-deg", "0,100", "--wavelengths", "546")
+    code, text, errors = realcam("plot", "mtf", *fisheye, "--json")
+    assert code == 0, errors
+    assert json.loads(text)["method"] == "geometric"
+    _, text, errors = realcam("plot", "psf", "tessar-50mm", "--f-number", "8", "--method", "fft", "--json")
+    assert json.loads(text)["method"] == "fft", errors
+
+
+@pytest.mark.pictures
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["plot", "mft", "tessar-50mm"], 'unknown plot "mft"'),
+        (["plot", "mtf"], "the name of a lens is missing"),
+        (["plot", "mtf", "tessar-50mm", "-o", "x.bmp"], ".tiff, .json or .csv is wanted"),
+        (["plot", "wavefront", "tessar-50mm", "--fields-deg", "0,5"], "of one field; 2 are given"),
+        (["plot", "mtf", "tessar-50mm", "--fields-deg", "1,a"], '"a" is not a number'),
+        (["plot", "mtf", "tessar-50mm", "--theme", "blue"], "light or dark is wanted"),
+        (["plot", "mtf", "tessar-50mm", "--method", "fft"], "diffraction or geometric is wanted"),
+        (["plot", "spot", "tessar-50mm", "--method", "fft"], "--method goes with mtf"),
+        (["report", "tessar-50mm", "-o", "x.svg"], ".pdf or .html is wanted"),
+        (["report", "tessar-50mm", "--fields-deg", "1,2", "-o", "x.pdf"], "three fields; 2 are given"),
+        (["report", "tessar-50mm", "--fields-deg", "0,10,70", "-o", "x.pdf"], "70"),
+    ],
+)
+def test_mistakes_end_in_one_line(
+    arguments: list[str], message: str, tmp_path: Path, realcam: Callable[..., tuple[int, str, str]]
+) -> None:
+    code, _, errors = realcam(*arguments)
+    assert code == 2
+    assert message in errors
+    assert len(errors.splitlines()) == 1
+    assert not list(tmp_path.iterdir()), "nothing half-written"

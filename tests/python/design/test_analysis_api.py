@@ -1,0 +1,264 @@
+"""Lens.seidel, wavefront, spot, aim and ghost: shapes, patterns, choices and errors. tests/truth proves the figures."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+import realcam as rc
+
+from ...centred_lenses import CENTRED
+
+LENS = rc.Lens.load("double-gauss-50mm")
+
+
+def test_seidel_has_a_row_for_each_surface() -> None:
+    sums = LENS.seidel(10.0)
+    count = len(LENS.surfaces)
+    names = [name for name in dir(sums) if not name.startswith("_")]
+    arrays = {name: value for name in names if isinstance(value := getattr(sums, name), np.ndarray)}
+    assert len(arrays) == 18
+    for name, value in arrays.items():
+        assert value.shape[0] == count, name
+        assert np.isfinite(value).all(), name
+    assert (sums.seidel_mm.shape, sums.colour_mm.shape) == ((count, 5), (count, 2))
+    assert sums.coefficients_waves.shape == (count, 7)
+    # The stop does nothing.
+    assert not sums.seidel_mm[LENS.stop_index].any()
+    # W040 = S_I / 8, W131 = S_II / 2, W222 = S_III / 2, W220 = (S_III + S_IV) / 4, W311 = S_V / 2; in waves.
+    s = sums.seidel_mm / (sums.wavelength_nm * 1e-6)
+    expected = [s[:, 0] / 8, s[:, 1] / 2, s[:, 2] / 2, (s[:, 2] + s[:, 3]) / 4, s[:, 4] / 2]
+    np.testing.assert_allclose(sums.coefficients_waves[:, :5], np.stack(expected, axis=1), rtol=1e-14)
+
+
+def test_seidel_changes_its_sign_with_the_field_where_it_must() -> None:
+    up, down = LENS.seidel(10.0).seidel_mm, LENS.seidel(-10.0).seidel_mm
+    np.testing.assert_allclose(down, up * [1, -1, 1, 1, -1], rtol=1e-12, atol=1e-18)
+
+
+def test_a_constant_index_has_no_colour() -> None:
+    assert not rc.Lens.load("wide-22mm").seidel(10.0).colour_mm.any()
+    coloured = rc.Lens.load("double-gauss-100mm").seidel(10.0).axial_colour_mm
+    # Colours in the other order change the sign.
+    turned = rc.Lens.load("double-gauss-100mm").seidel(10.0, colours_nm=(656.2725, 486.1327)).axial_colour_mm
+    np.testing.assert_allclose(turned, -coloured, rtol=1e-12, atol=1e-18)
+
+
+@pytest.mark.parametrize(("pattern", "samples", "count"), [("grid", 20, 316), ("rings", 5, 100), ("hexapolar", 6, 127)])
+def test_patterns(pattern: str, samples: int, count: int) -> None:
+    wavefront = LENS.stopped_down(8).wavefront(0.0, pattern=pattern, samples=samples)
+    spot = LENS.stopped_down(8).spot(0.0, pattern=pattern, samples=samples)
+    assert wavefront.opd_waves.shape == wavefront.weights.shape == wavefront.status.shape == (count,)
+    assert wavefront.pupil.shape == spot.points_mm.shape == (count, 2)
+    assert (wavefront.status == rc.RayStatus.OK).all()
+    assert wavefront.weights.sum() == pytest.approx(1)
+    assert np.hypot(*wavefront.pupil.T).max() <= 1 + 1e-15
+    # Each pattern stands for the whole disc: the mean of x^2 is 1/4. Equal weights on rings up to the edge count the
+    # edge too much, by one part in the number of rings.
+    mean = (wavefront.weights * wavefront.pupil[:, 0] ** 2).sum()
+    assert mean == pytest.approx(0.25, rel={"grid": 0.02, "rings": 1e-12, "hexapolar": 0.2}[pattern])
+
+
+def test_figures_of_a_wavefront_are_those_of_its_rays() -> None:
+    wavefront = LENS.wavefront(12.0, samples=40)
+    good = wavefront.status == rc.RayStatus.OK
+    assert 100 < good.sum() < good.size
+    np.testing.assert_array_equal(np.isnan(wavefront.opd_waves), ~good)
+    w, weights = wavefront.opd_waves[good], wavefront.weights[good] / wavefront.weights[good].sum()
+    mean = (weights * w).sum()
+    assert wavefront.rms_waves == pytest.approx(math.sqrt((weights * (w - mean) ** 2).sum()), rel=1e-12)
+    assert wavefront.peak_to_valley_waves == pytest.approx(w.max() - w.min(), rel=1e-12)
+    assert wavefront.strehl == pytest.approx(abs((weights * np.exp(2j * np.pi * w)).sum()) ** 2, rel=1e-9)
+    image = wavefront.map_waves()
+    assert image.shape == (40, 40)
+    # Rows from the lowest y, columns from the lowest x.
+    row, column = np.argwhere(np.isfinite(image))[7]
+    here = np.isclose(wavefront.pupil, ((2 * column + 1) / 40 - 1, (2 * row + 1) / 40 - 1)).all(axis=1)
+    assert image[row, column] == wavefront.opd_waves[here][0]
+    # The field lies in the y-z plane.
+    np.testing.assert_allclose(image, image[:, ::-1], atol=1e-6)
+
+
+def test_what_is_removed_is_gone() -> None:
+    whole, level, focused = (LENS.wavefront(12.0, remove=what) for what in (None, "tilt", "focus"))
+    assert whole.rms_waves >= level.rms_waves >= focused.rms_waves > 0
+    good = focused.status == rc.RayStatus.OK
+    x, y = focused.pupil[good].T
+    for term in (np.ones_like(x), x, y, x * x + y * y):
+        assert abs((focused.opd_waves[good] * term).mean()) < 1e-9
+
+
+def test_the_centroid_is_another_centre() -> None:
+    chief, centroid = LENS.wavefront(12.0), LENS.wavefront(12.0, reference="centroid")
+    spot = LENS.spot(12.0, pattern="grid", samples=64)
+    assert chief.centre_mm[:2] == pytest.approx(spot.chief_ray_mm, abs=1e-12)
+    assert centroid.centre_mm[:2] == pytest.approx(spot.centroid_mm, abs=1e-12)
+    assert centroid.centre_mm[2] == pytest.approx(LENS.film_position_mm)
+    # They differ by a tilt.
+    levels = [LENS.wavefront(12.0, reference=r, remove="tilt").rms_waves for r in ("chief", "centroid")]
+    assert levels[0] == pytest.approx(levels[1], rel=0.02)
+
+
+def test_a_spot_about_its_centroid_is_the_smallest() -> None:
+    spot = LENS.spot(15.0, pattern="grid", samples=40)
+    good = spot.status == rc.RayStatus.OK
+    assert 100 < good.sum() < good.size
+    points = spot.points_mm[good]
+    assert points.mean(axis=0) == pytest.approx(spot.centroid_mm, abs=1e-12)
+    radii = np.hypot(*(points - spot.centroid_mm).T)
+    assert spot.rms_radius_mm == pytest.approx(math.sqrt((radii**2).mean()), rel=1e-12)
+    assert spot.max_radius_mm == pytest.approx(radii.max(), rel=1e-12)
+    shift = math.dist(spot.centroid_mm, spot.chief_ray_mm)
+    assert spot.rms_radius_about_chief_ray_mm == pytest.approx(math.hypot(spot.rms_radius_mm, shift), rel=1e-9)
+    # Positive field: the light rises towards +y.
+    assert spot.chief_ray_mm[1] > 0
+    assert LENS.spot(-15.0).chief_ray_mm[1] == pytest.approx(-spot.chief_ray_mm[1], rel=1e-9)
+
+
+def test_a_spot_on_another_plane() -> None:
+    there = LENS.film_distance_mm + 0.5
+    moved = rc.Lens(surfaces=LENS.surfaces, film_distance_mm=there)
+    assert LENS.spot(5.0, film_distance_mm=there).rms_radius_mm == moved.spot(5.0).rms_radius_mm
+    assert LENS.spot(5.0, film_distance_mm=there).rms_radius_mm > 3 * LENS.spot(5.0).rms_radius_mm
+
+
+def test_a_near_object_is_sharp_on_a_film_that_is_focused_on_it() -> None:
+    near = LENS.focused(0.8)
+    to_object = 0.8 - near.film_position_mm / 1000
+    # What is in focus is the object where no other is given.
+    for given in ({}, {"object_distance_m": to_object}):
+        assert near.spot(5.0, **given).rms_radius_mm < 0.03
+    assert near.spot(5.0, object_distance_m=math.inf).rms_radius_mm > 0.3
+    # A far object is one at infinity.
+    far, infinite = LENS.wavefront(5.0, object_distance_m=1e9), LENS.wavefront(5.0)
+    np.testing.assert_allclose(far.opd_waves, infinite.opd_waves, atol=1e-6)
+
+
+@pytest.mark.parametrize("name", ["double-gauss-50mm", "fisheye-6mm-220deg", "phone-4mm", "mirror-telephoto-500mm"])
+def test_aimed_rays_meet_the_stop_where_they_are_to(name: str) -> None:
+    lens = rc.Lens.load(name)
+    angle = {"fisheye-6mm-220deg": 95.0, "mirror-telephoto-500mm": 1.5}.get(name, 15.0)
+    places = np.array([(0.0, 0.3), (-0.6, 0.2), (0.4, -0.5), (0.7, 0.1)])
+    aimed = lens.aim(places, angle)
+    assert aimed.origins_mm.shape == aimed.directions.shape == (4, 3)
+    at_stop = lens.trace(aimed.origins_mm, aimed.directions, start="scene", surface_count=lens.stop_index + 1)
+    passed = aimed.status == rc.RayStatus.OK
+    assert np.isnan(aimed.origins_mm[~passed]).all()
+    assert np.isnan(aimed.directions[~passed]).all()
+    assert passed.sum() >= 2
+    np.testing.assert_allclose(np.linalg.norm(aimed.directions[passed], axis=1), 1, rtol=1e-15)
+    radius = lens.stop_semi_diameter_mm
+    np.testing.assert_allclose(at_stop.origins_mm[passed, :2], radius * places[passed], atol=1e-9 * radius)
+    # Beyond 90 degrees the light comes from behind.
+    assert (np.sign(aimed.directions[passed, 2]) == np.sign(math.cos(math.radians(angle)))).all()
+
+
+def test_a_place_that_no_ray_reaches() -> None:
+    aimed = LENS.aim([[0.0, 0.0], [9.0, 0.0]], 5.0)
+    assert aimed.status.tolist() == [rc.RayStatus.OK, rc.RayStatus.NO_CONVERGENCE]
+    assert np.isnan(aimed.origins_mm[1]).all()
+
+
+PLATE = rc.Lens(
+    surfaces=[
+        rc.Stop(clear_semi_diameter_mm=5, thickness_mm=1),
+        rc.Surface(material=1.5, thickness_mm=5, clear_semi_diameter_mm=9),
+        rc.Surface(clear_semi_diameter_mm=9),
+    ],
+    film_distance_mm=10,
+)
+TELECENTRIC = rc.Lens(
+    surfaces=[
+        rc.Surface(radius_of_curvature_mm=50, material=1.5, clear_semi_diameter_mm=9),
+        rc.Surface(thickness_mm=100, clear_semi_diameter_mm=9),
+        rc.Stop(clear_semi_diameter_mm=5),
+    ],
+    film_distance_mm=10,
+    allow_crossing=True,
+)
+
+
+@pytest.mark.parametrize(
+    ("call", "wanted"),
+    [
+        (lambda: LENS.wavefront(60.0), "no ray at a field angle of 60 deg reaches the middle of the stop"),
+        (lambda: LENS.spot(30.0), "none of 127 rays at a field angle of 30 deg passes lens"),
+        (lambda: LENS.spot(200.0), "field angle is 200 deg; less than 180 deg"),
+        (lambda: LENS.spot(95.0, object_distance_m=2.0), "less than 90 deg"),
+        (lambda: LENS.spot(math.nan), "field angle is nan"),
+        (lambda: LENS.spot(0.0, object_distance_m=0.0), "object distance must be a positive"),
+        (lambda: LENS.spot(0.0, film_distance_mm=math.inf), "film_distance_mm must be a finite length"),
+        (lambda: LENS.spot(0.0, wavelength_nm=5.0), "wavelength must lie between"),
+        (lambda: LENS.wavefront(0.0, pattern="spiral"), 'unknown pattern "spiral"; grid, rings or hexapolar'),
+        (lambda: LENS.wavefront(0.0, samples=0), "samples must lie between 1 and 2048"),
+        (lambda: LENS.wavefront(0.0, reference="film"), 'unknown reference "film"; chief or centroid'),
+        (lambda: LENS.wavefront(0.0, remove="coma"), 'cannot remove "coma"; tilt, focus or None'),
+        (lambda: LENS.wavefront(0.0, remove="focus", pupil=[[0, 0]]), "too few, or too close together"),
+        (lambda: LENS.wavefront(0.0, pupil=np.zeros((0, 2))), r"pupil must be an array of shape \(N, 2\)"),
+        (lambda: LENS.wavefront(0.0, pupil=[[50, 0]]), "shares of the stop's radius"),
+        (lambda: LENS.wavefront(0.0, pattern="rings", samples=4).map_waves(), 'the pattern "grid" only'),
+        (lambda: LENS.wavefront(0.0, film_distance_mm=-30.0), "no reference sphere"),
+        (lambda: LENS.seidel(90.0), "less than 90 deg"),
+        (lambda: PLATE.seidel(3.0), "afocal"),
+        (lambda: TELECENTRIC.spot(3.0), "telecentric on the object's side"),
+        (lambda: TELECENTRIC.seidel(3.0), "telecentric on the object's side"),
+    ],
+)
+def test_mistakes_get_one_clear_error(call: object, wanted: str) -> None:
+    assert callable(call)
+    with pytest.raises(rc.InputError, match=wanted) as error:
+        call()
+    assert "\n" not in str(error.value)
+
+
+@pytest.mark.parametrize("name", CENTRED)
+@pytest.mark.parametrize("f_number", [None, 8.0])
+def test_a_ray_aimed_at_the_edge_of_the_stop_passes_it_when_it_is_traced(name: str, f_number: float | None) -> None:
+    lens = rc.Lens.load(name)
+    if f_number is not None:
+        lens = lens.stopped_down(max(f_number, 1.4 * lens.first_order().f_number))  # some open to f/10 and less
+    turn = np.linspace(0, 2 * np.pi, 400, endpoint=False)
+    aimed = lens.aim(np.column_stack([np.cos(turn), np.sin(turn)]))
+    ok = aimed.status == rc.RayStatus.OK
+    assert ok.any() or f_number is None
+    again = lens.trace(aimed.origins_mm[ok], aimed.directions[ok], start="scene")
+    assert (again.status == rc.RayStatus.OK).all()
+    at_stop = lens.trace(aimed.origins_mm[ok], aimed.directions[ok], start="scene", surface_count=lens.stop_index + 1)
+    # As near to the edge as it says: aimed at 5e-11 further in, within half of that.
+    share = np.hypot(*at_stop.origins_mm[:, :2].T) / lens.stop_semi_diameter_mm
+    assert share.min(initial=1) > 1 - 1e-10
+    assert share.max(initial=0) <= 1
+
+
+def test_a_ray_aimed_past_the_edge_of_the_stop_is_blocked() -> None:
+    aimed = LENS.aim([[1 + 1e-8, 0.0], [1.2, 0.0]])
+    assert aimed.status.tolist() == [rc.RayStatus.VIGNETTED, rc.RayStatus.VIGNETTED]
+    assert np.isnan(aimed.origins_mm).all()
+
+
+def test_the_plane_in_focus_is_the_object_where_none_is_given() -> None:
+    near = LENS.focused(0.8)
+    to_object = 0.8 - near.film_position_mm / 1000
+    given = {"object_distance_m": to_object}
+    # Metres and back to millimetres: a rounding of the distance.
+    assert near.wavefront(5.0).strehl == pytest.approx(near.wavefront(5.0, **given).strehl, rel=1e-8)
+    assert near.wavefront(0.0).rms_waves < 0.1 * near.wavefront(0.0, object_distance_m=math.inf).rms_waves
+    np.testing.assert_allclose(near.seidel(5.0).seidel_mm, near.seidel(5.0, **given).seidel_mm, rtol=1e-9, atol=1e-15)
+    places = [[0.3, 0.4], [0.0, 0.9]]
+    np.testing.assert_allclose(near.aim(places, 5.0).directions, near.aim(places, 5.0, **given).directions, atol=1e-12)
+    # The film is where the axial spot of the plane in focus is smallest; focusing ends within 1e-9 of the distance.
+    assert near.best_focus_mm() == pytest.approx(near.film_distance_mm, rel=1e-9)
+    assert near.best_focus_mm(math.inf) == pytest.approx(LENS.film_distance_mm, rel=1e-9)
+    # Of a lens focused at infinity that is infinity, also past 90 degrees.
+    fisheye = rc.Lens.load("fisheye-6mm-220deg")
+    assert fisheye.spot(100.0).rms_radius_mm == fisheye.spot(100.0, object_distance_m=math.inf).rms_radius_mm
+    with pytest.raises(rc.InputError, match="less than 90 deg is wanted for the plane in focus"):
+        fisheye.focused(1.0).spot(100.0)
+
+
+def test_the_example_of_the_readme_is_that_of_a_lens_in_focus() -> None:
+    lens = LENS.focused(1.2).stopped_down(2.8)
+    # The figures of an image that is in focus; asking for infinity instead gave 0.0005.
+    assert lens.wavefront(10).strehl == pytest.approx(0.011, abs=0.0005)
+    assert lens.spot(10).rms_radius_mm < 0.02

@@ -1,0 +1,275 @@
+"""Least squares over a lens's numbers: the closed forms that it must find."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import realcam as rc
+
+
+def thin_lens(n: float, c1: float, c2: float) -> rc.Lens:
+    """Of f = 100 mm at f/20, the stop at its front."""
+    return rc.Lens(
+        surfaces=[
+            rc.Stop(clear_semi_diameter_mm=2.5),
+            rc.Surface(radius_of_curvature_mm=1 / c1, material=n, thickness_mm=0.01, clear_semi_diameter_mm=6),
+            rc.Surface(radius_of_curvature_mm=1 / c2, clear_semi_diameter_mm=6),
+        ],
+        film_distance_mm=100,
+        allow_crossing=True,
+    )
+
+
+@pytest.mark.parametrize("n", [1.5, 1.8])
+def test_a_thin_lens_bends_to_the_least_spherical_aberration(n: float) -> None:
+    power = 0.01 / (n - 1)
+    lens = thin_lens(n, 0.5 * power, -0.5 * power).focused(np.inf)
+    found = rc.optimised(
+        lens,
+        [rc.Variable.radius(1), rc.Variable.radius(2)],
+        rc.Targets(focal_length_mm=100.0, focal_length_weight=10.0),
+    )
+    c1, c2 = (found.lens.surfaces[i].curvature_per_mm for i in (1, 2))
+    # Jenkins and White, Fundamentals of Optics, section 9.4: q = (r2 + r1) / (r2 - r1) = -2 (n^2 - 1) p / (n + 2), with
+    # p = -1 for a far object. At f/20 fifth order is a hundredth of the third.
+    assert (c1 + c2) / (c1 - c2) == pytest.approx(2 * (n * n - 1) / (n + 2), rel=0.02)
+    assert found.lens.first_order().effective_focal_length_mm == pytest.approx(100, rel=1e-4)
+    assert found.rms_spot_mm < found.rms_spot_before_mm
+
+
+def test_a_hyperbola_is_found() -> None:
+    n = 1.6
+    lens = rc.Lens(
+        surfaces=[
+            rc.Stop(clear_semi_diameter_mm=10, thickness_mm=1),
+            rc.Surface(material=n, thickness_mm=5, clear_semi_diameter_mm=11),
+            rc.Surface(radius_of_curvature_mm=-60, conic=-1.0, clear_semi_diameter_mm=11),
+        ],
+    ).focused(np.inf)
+    found = rc.optimised(lens, [rc.Variable.conic(2)])
+    # Collimated light in a medium of index n is focused by a hyperbola of conic -n^2, to a point.
+    assert found.lens.surfaces[2].conic == pytest.approx(-n * n, abs=1e-4)
+    assert found.rms_spot_mm < 1e-6 < found.rms_spot_before_mm
+
+
+def test_bounds_hold_and_no_impossible_lens_is_stepped_to() -> None:
+    lens = rc.Lens.load("cooke-triplet-50mm")
+    seen: list[float] = []
+
+    def note(_: int, rms_mm: float) -> None:
+        seen.append(rms_mm)
+
+    gap = lens.surfaces[1].thickness_mm
+    variables = [
+        rc.Variable.radius(0, least_radius_mm=15),
+        rc.Variable.thickness(1, lower_mm=gap - 0.05, upper_mm=gap + 0.05),
+        rc.Variable.radius(5, least_radius_mm=10),
+    ]
+    targets = rc.Targets(fields_deg=(0, 10, 16), field_weights=(1, 2, 1), wavelengths_nm=(486.1, 587.6, 656.3))
+    found = rc.optimised(lens, variables, targets, most_steps=12, samples=4, progress=note)
+    assert abs(found.lens.surfaces[1].thickness_mm - gap) <= 0.05 + 1e-9
+    assert abs(found.lens.surfaces[0].radius_of_curvature_mm) >= 15 - 1e-9
+    assert found.rms_spot_mm <= found.rms_spot_before_mm
+    assert len(seen) == found.evaluations or len(seen) > 3
+    assert found.lens.crossings() == []
+
+
+def test_it_stops_where_the_progress_function_says_so() -> None:
+    found = rc.optimised(rc.Lens.load("tessar-50mm"), [rc.Variable.radius(0)], progress=lambda count, _: count < 2)
+    assert "stopped" in found.message
+    assert found.evaluations == 2
+
+
+@pytest.mark.parametrize(
+    ("variables", "targets", "message"),
+    [
+        ([], rc.Targets(), "nothing to change"),
+        ([rc.Variable("colour", 0)], rc.Targets(), "unknown quantity"),
+        ([rc.Variable.radius(99)], rc.Targets(), "no surface 99"),
+        ([rc.Variable.radius(6)], rc.Targets(), r"surface \d is a stop, a plane, and has no curvature"),
+        ([rc.Variable.thickness(7)], rc.Targets(), "last surface has no thickness"),
+        (
+            [rc.Variable.thickness(0, lower_mm=50)],
+            rc.Targets(),
+            "the thickness of surface 1 is .* does not lie between",
+        ),
+        ([rc.Variable.radius(0), rc.Variable.radius(0)], rc.Targets(), "named twice"),
+        ([rc.Variable.radius(0)], rc.Targets(fields_deg=()), "at least one field"),
+        ([rc.Variable.radius(0)], rc.Targets(field_weights=(1, 2)), "as many"),
+        ([rc.Variable.radius(0)], rc.Targets(field_weights=(-1,)), "positive"),
+    ],
+)
+def test_what_makes_no_sense_is_said(variables: list[rc.Variable], targets: rc.Targets, message: str) -> None:
+    lens = rc.Lens.load("tessar-50mm")
+    variables = [rc.Variable.radius(lens.stop_index) if "plane" in message else v for v in variables]
+    if "last surface" in message:
+        variables = [rc.Variable.thickness(len(lens.surfaces) - 1)]
+    with pytest.raises(rc.InputError, match=message):
+        rc.optimised(lens, variables, targets)
+
+
+def triplet_search(**more: object) -> dict[str, object]:
+    lens = rc.Lens.load("cooke-triplet-50mm")
+    variables = [rc.Variable.radius(i) for i, s in enumerate(lens.surfaces) if s.type == "refracting"]
+    return {"lens": lens, "variables": variables, "samples": 3, **more}
+
+
+def test_the_jacobian_is_that_of_differences() -> None:
+    from realcam.optimisation.optimiser import _Search
+
+    operands = [
+        rc.Operand("distortion_percent", weight=0.01, field_deg=14),
+        rc.Operand("edge_thickness_mm", 9.0, surface=0, bound="least"),
+        rc.Operand("mtf_tangential", 1.0, weight=0.1, frequency_per_mm=20, field_deg=9),
+        rc.Operand("centre_thickness_mm", 5.0, surface=2),
+    ]
+    lens = rc.Lens.load("cooke-triplet-50mm")
+    variables = [rc.Variable.radius(0), rc.Variable.radius(3), rc.Variable.thickness(1), rc.Variable.thickness(2)]
+    targets = rc.Targets(
+        fields_deg=(0, 14), wavelengths_nm=(486, 656), wavelength_weights=(1, 2), refocuses=False, operands=operands
+    )
+    search = _Search(lens, variables, targets, 3, None)
+    assert search.is_exact
+    here = np.zeros(len(variables))
+    exact = search.jacobian(here)
+    differences = search._differences(here)
+    # Rays are aimed within 2.5e-11 of the stop's radius, 1e-10 mm, and a difference is over 1e-2 of a step that moves
+    # rays by micrometres: 1e-5 of the largest.
+    size = np.abs(differences).max(axis=0)
+    assert (np.abs(exact - differences).max(axis=0) < 1e-4 * size).all()
+
+
+@pytest.mark.parametrize(
+    ("name", "surfaces"),
+    [
+        ("anamorphic-65mm", (0, 12, 24)),  # spheres and toroids
+        ("view-camera-210mm", (0, 2, 5)),  # before a film that is shifted and tilted
+    ],
+)
+def test_lenses_that_are_not_of_revolution_have_exact_slopes_too(name: str, surfaces: tuple[int, int, int]) -> None:
+    from realcam.optimisation.optimiser import _Search
+
+    lens = rc.Lens.load(name)
+    assert not lens.is_rotational
+    variables = [rc.Variable.radius(i) for i in surfaces] + [rc.Variable.thickness(surfaces[0], lower_mm=0)]
+    # At 5 per mm no step moves a ray by much of a period.
+    operands = [rc.Operand("mtf_tangential", 1.0, weight=0.1, frequency_per_mm=5, field_deg=3)]
+    for refocuses in (False, True):
+        targets = rc.Targets(fields_deg=(0, 5), refocuses=refocuses, operands=operands)
+        search = _Search(lens, variables, targets, 2, None)
+        assert search.is_exact
+        here = np.zeros(len(variables))
+        exact, differences = search.jacobian(here), search._differences(here)
+        # As above.
+        size = np.abs(differences).max(axis=0)
+        assert (np.abs(exact - differences).max(axis=0) < 1e-4 * size).all()
+    # The object point of a near field follows such a lens, which derivatives do not know.
+    assert not _Search(lens, variables, rc.Targets(object_distance_m=2.0), 2, None).is_exact
+
+
+def test_an_anamorphic_lens_becomes_sharper() -> None:
+    lens = rc.Lens.load("anamorphic-65mm").focused(np.inf)
+    fields = (0, 5)
+    found = rc.optimised(
+        lens, [rc.Variable.radius(0), rc.Variable.radius(20)], rc.Targets(fields_deg=fields), most_steps=4, samples=3
+    )
+    before, after = ([of.spot(field, samples=3).rms_radius_mm for field in fields] for of in (lens, found.lens))
+    assert np.hypot(*after) < 0.9 * np.hypot(*before)
+    assert found.rms_spot_mm < 0.9 * found.rms_spot_before_mm
+
+
+def test_the_film_follows_as_focusing_moves_it() -> None:
+    """Within a thousandth: Lens.focused fills the stop with paraxial heights, the derivative with real ones."""
+    from realcam.derivatives.focus import film_distance_by
+
+    for metres in (np.inf, 0.6):
+        lens = rc.Lens.load("cooke-triplet-50mm").focused(metres)
+        variable = rc.Variable.radius(2)
+        step = 1e-5
+        ends = [
+            lens.with_surface(2, radius_of_curvature_mm=1 / (lens.surfaces[2].curvature_per_mm + side * step))
+            .focused(metres)
+            .film_distance_mm
+            for side in (1, -1)
+        ]
+        assert film_distance_by(lens, [variable])[0] == pytest.approx((ends[0] - ends[1]) / (2 * step), rel=5e-3)
+
+
+def test_operands_are_met() -> None:
+    operands = [
+        rc.Operand("length_mm", 60.0),
+        rc.Operand("edge_thickness_mm", 2.0, bound="least", surface=0),
+        rc.Operand("distortion_percent", 0.5, 1.0, "most", 16.0),
+    ]
+    variables = [
+        rc.Variable.radius(0),
+        rc.Variable.radius(5),
+        rc.Variable.thickness(0),
+        rc.Variable.thickness(4, 0.1, 30),
+    ]
+    targets = rc.Targets(fields_deg=(0, 10), operands=operands)
+    found = rc.optimised(**triplet_search(variables=variables, targets=targets, most_steps=30))  # type: ignore[arg-type]
+    lens = found.lens
+    length = sum(s.thickness_mm for s in lens.surfaces[:-1]) + lens.film_distance_mm
+    # Weights of 1 against spots of hundredths of a millimetre.
+    assert length == pytest.approx(60, abs=0.02)
+    front, back = lens.surfaces[0], lens.surfaces[1]
+    rim = max(front.clear_semi_diameter_mm, back.clear_semi_diameter_mm)
+    assert front.thickness_mm + back.sag_mm(rim) - front.sag_mm(rim) >= 2 - 0.02
+
+
+def test_a_global_search_looks_all_over_the_bounds() -> None:
+    n = 1.6
+    lens = rc.Lens(
+        surfaces=[
+            rc.Stop(clear_semi_diameter_mm=10, thickness_mm=1),
+            rc.Surface(material=n, thickness_mm=5, clear_semi_diameter_mm=11),
+            rc.Surface(radius_of_curvature_mm=-60, conic=4.0, clear_semi_diameter_mm=11),
+        ],
+    ).focused(np.inf)
+    variables = [rc.Variable.conic(2, -6, 6)]
+    near, far = (
+        rc.optimised(lens, variables, most_steps=1, samples=3, global_looks=looks).lens.surfaces[2].conic
+        for looks in (0, 100)
+    )
+    # The hyperbola of the test above, a twelfth of the bounds' width away at most; one step of a local search stays.
+    assert near == 4
+    assert far == pytest.approx(-n * n, abs=1)
+    with pytest.raises(rc.InputError, match="finite bounds"):
+        rc.optimised(lens, [rc.Variable.conic(2)], global_looks=10)
+
+
+def test_an_interruption_is_answered_where_that_is_asked_for() -> None:
+    def interrupt(count: int, _: float) -> None:
+        if count == 3:
+            raise KeyboardInterrupt
+
+    found = rc.optimised(**triplet_search(progress=interrupt, answers_interrupt=True))  # type: ignore[arg-type]
+    assert found.message == "interrupted"
+    assert found.rms_spot_mm <= found.rms_spot_before_mm
+    with pytest.raises(KeyboardInterrupt):
+        rc.optimised(**triplet_search(progress=interrupt))  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("operand", "message"),
+    [
+        (rc.Operand("blur"), 'unknown operand "blur"'),
+        (rc.Operand("length_mm", bound="about"), "equal, least or most"),
+        (rc.Operand("length_mm", weight=0), "positive weight"),
+        (rc.Operand("edge_thickness_mm", surface=6), "edge_thickness_mm: surface 7 is the last; the film follows it"),
+        (rc.Operand("centre_thickness_mm", surface=99), "there is no surface 99; the lens has 7, counted from 0"),
+        (rc.Operand("mtf_sagittal"), "frequency_per_mm is wanted"),
+    ],
+)
+def test_operands_that_make_no_sense_are_refused(operand: rc.Operand, message: str) -> None:
+    with pytest.raises(rc.InputError, match=message):
+        rc.optimised(**triplet_search(targets=rc.Targets(operands=[operand])))  # type: ignore[arg-type]
+
+
+def test_what_has_no_effect_is_refused() -> None:
+    lens = rc.Lens.load("cooke-triplet-50mm").with_surface(1, radius_of_curvature_mm=np.inf)
+    with pytest.raises(rc.InputError, match="is a plane: its conic has no effect"):
+        rc.optimised(lens, [rc.Variable.conic(1)])
+    with pytest.raises(rc.InputError, match="wavelength_weights must be 1 positive"):
+        rc.optimised(lens, [rc.Variable.radius(0)], rc.Targets(wavelength_weights=(1, 2)))

@@ -1,0 +1,123 @@
+"""The programs of examples/ run, and do what they say."""
+
+from __future__ import annotations
+
+import importlib.util
+import subprocess
+import sys
+from pathlib import Path
+from types import ModuleType
+
+import numpy as np
+import pytest
+import realcam as rc
+
+EXAMPLES = Path(__file__).resolve().parents[3] / "examples"
+
+
+@pytest.fixture
+def mitsuba_rays() -> ModuleType:
+    """examples/mitsuba_rays.py, where Mitsuba can run it."""
+    pytest.importorskip("mitsuba", reason="Mitsuba 3 comes with the bench extra")
+    drjit = pytest.importorskip("drjit")
+    if not any(map(drjit.has_backend, (drjit.JitBackend.LLVM, drjit.JitBackend.CUDA))):
+        pytest.skip("Mitsuba needs LLVM or a GPU")
+    path = EXAMPLES / "mitsuba_rays.py"
+    spec = importlib.util.spec_from_file_location(path.stem, path)
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def test_every_example_has_a_test() -> None:
+    here = Path(__file__).read_text(encoding="utf-8")
+    names = [path.stem for path in EXAMPLES.glob("*.py")]
+    assert names and all(f"def test_{name}" in here for name in names)
+
+
+def test_mitsuba_rays_writes_a_picture(mitsuba_rays: ModuleType, tmp_path: Path) -> None:
+    picture = tmp_path / "box.png"
+    command = [sys.executable, EXAMPLES / "mitsuba_rays.py", picture, "--spp", "1"]
+    subprocess.run([str(part) for part in command], check=True, capture_output=True, timeout=300)
+    values = np.array(mitsuba_rays.mi.Bitmap(str(picture)))
+    assert values.shape == (480, 480, 3)
+    # The left wall is red and the right one green, and neither is too dark or too bright to be seen.
+    left, right = values[200:300, 20:40].mean(axis=(0, 1)), values[200:300, -40:-20].mean(axis=(0, 1))
+    assert 230 > left[0] > 2 * left[1] and left[0] > 40
+    assert 230 > right[1] > 1.5 * right[0] and right[1] > 40
+
+
+def test_mitsuba_rays_exposes_the_film_as_render_does(mitsuba_rays: ModuleType) -> None:
+    """An even sky of Mitsuba's and one of realcam's, by the same rays: vignetting, exposure and the factor of pi."""
+    mi = mitsuba_rays.mi
+    camera = rc.Camera(rc.Lens.load("tessar-50mm"), film=rc.Film(36, 24, (48, 32)), exposure_time_s=1 / 50)
+    sky = {"type": "constant", "radiance": {"type": "rgb", "value": [100.0, 200.0, 300.0]}}
+    scene = mi.load_dict({"type": "scene", "sky": sky})
+    seen = mitsuba_rays.photograph(scene, mi.load_dict({"type": "path"}), camera, spp=4)
+    speck = rc.Scene.from_arrays([[0, 0, 1e5], [1e-3, 0, 1e5], [0, 1e-3, 1e5]], [[0, 1, 2]])
+    ours = rc.render(
+        speck.with_environment((100, 200, 300)), camera, effects=(), spp=4, max_bounces=0, device="cpu"
+    ).pixels
+    # Four products and sums of float32 a pixel.
+    np.testing.assert_allclose(seen, ours, rtol=1e-5)
+
+
+@pytest.mark.picture_files
+def test_dataset_reads_what_the_command_makes(tmp_path: Path) -> None:
+    recipe = tmp_path / "recipe.toml"
+    recipe.write_text("format = 1\ncount = 3\nsize = [60, 40]\nspp = 2\nshard_size = 2\n")
+    make = [sys.executable, "-m", "realcam", "dataset", recipe, "-o", tmp_path / "out", "--workers", "1"]
+    read = [sys.executable, EXAMPLES / "dataset.py", tmp_path / "out", "--batch", "2"]
+    for command in (make, read):
+        done = subprocess.run(
+            [str(word) for word in command], check=True, capture_output=True, text=True, timeout=300
+        ).stdout
+    lines = [line for line in done.splitlines() if line.startswith("(")]
+    assert [line.split(", nearest")[0] for line in lines] == ["(2, 3, 40, 60)", "(1, 3, 40, 60)"]
+    assert all(0 < int(line.split()[-2].rstrip("%")) < 100 for line in lines)
+
+
+def test_paper_page_is_made_by_one_command(tmp_path: Path) -> None:
+    def run(*words: object) -> subprocess.CompletedProcess[str]:
+        command = [sys.executable, EXAMPLES / "paper_page.py", *words]
+        return subprocess.run(
+            [str(word) for word in command], check=False, capture_output=True, text=True, timeout=300, cwd=tmp_path
+        )
+
+    made = run("--only", "snell", "-o", "page.html")
+    assert made.returncode == 0 and "wrote page.html" in made.stdout, made.stderr
+    assert "degrees traced" in (tmp_path / "page.html").read_text(encoding="utf-8")
+    for words, message in ((["--only", "snel"], "snell"), (["--output", "page.pdf"], r".html is wanted")):
+        refused = run(*words)
+        assert refused.returncode == 2 and message in refused.stderr
+    assert [path.name for path in tmp_path.iterdir()] == ["page.html"]
+
+
+def test_copies_writes_a_sheet(tmp_path: Path) -> None:
+    sheet = tmp_path / "copies.png"
+    words = [
+        "--copies",
+        "2",
+        "--columns",
+        "2",
+        "--pixels",
+        "8",
+        "--spp",
+        "1",
+        "--device",
+        "cpu",
+        "--grade",
+        "precision",
+    ]
+    command = [sys.executable, str(EXAMPLES / "copies.py"), str(sheet), *words]
+    told = subprocess.run(command, check=True, capture_output=True, text=True, timeout=300).stdout
+    assert "has the softest corner" in told
+    assert sheet.stat().st_size > 1000
+
+
+def test_film_goes_from_the_lamps_to_the_chessmen() -> None:
+    shot = rc.Shot.load(EXAMPLES / "film.toml", device="cpu")
+    begin, end = (shot.camera_at(time_s).lens for time_s in (0, 5))
+    assert (begin.focus_distance_m, end.focus_distance_m) == pytest.approx((3.5, 2.0))
+    assert end.focused(float("inf")).first_order().effective_focal_length_mm == pytest.approx(135)
+    assert shot.shake is not None
