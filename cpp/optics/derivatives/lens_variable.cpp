@@ -20,11 +20,13 @@ void check_number(const LensVariable& v, int least, int most, const std::string&
 }
 
 void check_terms(const LensVariable& v, const SurfaceForm& form) {
+    if (v.row < 0 || v.row >= static_cast<int>(kFormTermsCount))
+        refuse(v.surface, "has no terms of row " + std::to_string(v.row) + " of the table of forms");
+    const FormWords& words = kFormWords[static_cast<std::size_t>(v.row)];
+    const std::string name = words.name;
     int row = 0;
     over_rows(form, [&](const auto& terms) {
         if (row++ != v.row) return;
-        const FormWords& words = kFormWords[static_cast<std::size_t>(v.row)];
-        const std::string name = words.name;
         if (!terms) refuse(v.surface, "has no " + name + " terms");
         const int count = static_cast<int>(terms->coefficients.size());
         check_number(v, words.first_number, words.first_number + count - 1, "has " + name + " terms");

@@ -70,7 +70,7 @@ TEST_CASE("a superconic's sag satisfies its equation, and so does what is traced
             const double exact = static_cast<double>(exact_sag(surface, r));
             CHECK(surface.sag(r) == about(exact, 1e-15));
             CHECK(surface.sag(0.6 * r, -0.8 * r) == about(exact, 1e-15));
-            CHECK(traced_sag(surface, 0.6 * r, -0.8 * r) == about(exact, 1e-13));
+            CHECK(traced_sag(surface, 0.6 * r, -0.8 * r) == about(exact, 1e-11));
         }
 }
 
@@ -137,7 +137,7 @@ TEST_CASE("derivatives by a superconic's numbers are those of its equation") {
         const Lanes<Dual8, 1> x = {Dual8(0.6 * r)}, y = {Dual8(0.8 * r)};
         FreeformSags<Dual8, 1> sags;
         freeform_sags<Dual8, 1>(dual.form.front(), x, y, sags);
-        CHECK(sags.height[0].value == about(surface.sag(r), 1e-13));
+        CHECK(sags.height[0].value == about(surface.sag(r), 1e-11));
         for (int lane = 0; lane < 4; ++lane) {
             const Surface more = changed(lane, step), less = changed(lane, -step);
             const Real width = lane == 0   ? Real(more.curvature) - less.curvature
