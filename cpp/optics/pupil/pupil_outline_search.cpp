@@ -15,8 +15,9 @@ PupilDirection OutlineLook::unit(int azimuth) const {
 }
 
 PupilDirection OutlineLook::direction(int azimuth, double reach) const {
-    const PupilDirection d = unit(azimuth);
-    return {centre.l + reach * d.l, centre.m + reach * d.m};
+    const OutlineLook scaled = {film, centre, reach * half_width, reach * half_height, cos, sin};
+    const PupilDirection d = scaled.unit(azimuth);
+    return {centre.l + d.l, centre.m + d.m};
 }
 
 std::vector<PupilOutline> OutlineSearch::find(const PupilLens& lens, const std::vector<OutlineLook>& looks,
