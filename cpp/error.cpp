@@ -5,13 +5,13 @@
 namespace realcam {
 
 LensFileError::LensFileError(const std::string& message, std::string file, int line, int surface)
-    : Error(place(file, line, surface) + message),
+    : Error(location(file, line, surface) + message),
       detail(message),
       file(std::move(file)),
       line(line),
       surface(surface) {}
 
-std::string LensFileError::place(const std::string& file, int line, int surface) {
+std::string LensFileError::location(const std::string& file, int line, int surface) {
     std::string where = file;
     if (line > 0) where += (where.empty() ? "line " : ":") + std::to_string(line);
     if (surface > 0) where += (where.empty() ? "surface " : ": surface ") + std::to_string(surface);

@@ -27,7 +27,7 @@ public:
     int surface;
 
 private:
-    static std::string place(const std::string& file, int line, int surface);
+    static std::string location(const std::string& file, int line, int surface);
 };
 
 /// Scene that cannot be read, or that contains no geometry.

@@ -38,7 +38,7 @@ def with_crossing_faces() -> rc.Lens:
     """A triplet whose front element somebody has made too thin."""
     triplet = rc.Lens.load("cooke-triplet-50mm")
     surfaces = [triplet.surfaces[0].replace(thickness_mm=0.6), *triplet.surfaces[1:]]
-    return rc.Lens(surfaces=surfaces, name="too thin", film_distance_mm=triplet.film_distance_mm, allow_crossing=True)
+    return rc.Lens(surfaces=surfaces, name="too thin", film_distance_mm=triplet.film_distance_mm, allow_overlap=True)
 
 
 if __name__ == "__main__":

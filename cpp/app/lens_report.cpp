@@ -63,18 +63,19 @@ std::string vector_text(Vec3d v) {
 }
 
 /// Displacement of a surface in words; empty if it is not displaced.
-std::string place_text(const SurfacePlacement& place) {
-    if (place.is_in_place()) return "";
-    std::string text = place.returns ? "moved alone" : "moved";
-    if (place.decentre != Vec3d{0, 0, 0}) text += " by " + vector_text(place.decentre) + " mm";
-    if (place.tilt_deg != Vec3d{0, 0, 0}) text += " tilted by " + vector_text(place.tilt_deg) + " degrees";
+std::string placement_text(const SurfacePlacement& placement) {
+    if (placement.is_in_place()) return "";
+    std::string text = placement.returns ? "moved alone" : "moved";
+    if (placement.decentre != Vec3d{0, 0, 0}) text += " by " + vector_text(placement.decentre) + " mm";
+    if (placement.tilt_deg != Vec3d{0, 0, 0}) text += " tilted by " + vector_text(placement.tilt_deg) + " degrees";
     return text;
 }
 
 std::string film_remarks(const LensSystem& lens) {
-    const std::string place = place_text(lens.film_placement);
-    if (std::isinf(lens.film_radius_of_curvature)) return place;
-    return "radius " + number_text(lens.film_radius_of_curvature, 6) + " mm" + (place.empty() ? "" : ", " + place);
+    const std::string placement = placement_text(lens.film_placement);
+    if (std::isinf(lens.film_radius_of_curvature)) return placement;
+    return "radius " + number_text(lens.film_radius_of_curvature, 6) + " mm" +
+           (placement.empty() ? "" : ", " + placement);
 }
 
 std::string remarks(const Surface& surface) {
@@ -86,7 +87,7 @@ std::string remarks(const Surface& surface) {
             (form.curvature_x == 0 ? "plane" : "radius " + number_text(1 / form.curvature_x, 6) + " mm") + " in xz");
     if (form.conic_x != 0) add("conic " + number_text(form.conic_x, 6) + " in xz");
     if (form.has_terms()) add("polynomial terms");
-    if (const std::string place = place_text(surface.placement); !place.empty()) add(place);
+    if (const std::string placement = placement_text(surface.placement); !placement.empty()) add(placement);
     if (surface.conic != 0) add("conic " + number_text(surface.conic, 6));
     if (surface.is_asphere()) add("asphere to r^" + std::to_string(2 * surface.aspheric.size() + 2));
     if (surface.coating.kind != CoatingKind::unknown && surface.coating.kind != CoatingKind::bare)

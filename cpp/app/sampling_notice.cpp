@@ -36,8 +36,8 @@ double SamplingNotice::took(double share) {
 }
 
 std::string SamplingNotice::expectation() {
-    if (has_told_ || !(share_ > 0) || share_ >= 1) return "";
-    has_told_ = true;
+    if (has_reported_ || !(share_ > 0) || share_ >= 1) return "";
+    has_reported_ = true;
     const double all_s = elapsed_s_ / share_;
     if (all_s < kLong_s) return "";
     const std::string all = "about " + duration_text(all_s);

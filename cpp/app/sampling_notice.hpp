@@ -29,7 +29,7 @@ private:
     shot::Sampling sampling_;
     Clock::time_point start_ = Clock::now();
     double elapsed_s_ = 0, share_ = 0;
-    bool has_told_ = false;
+    bool has_reported_ = false;
 };
 
 }  // namespace realcam::app

@@ -31,8 +31,8 @@ inline constexpr const char* kPatternText =
     R"(pattern, samples: "grid", the cells of a square of samples x samples; "rings", samples rings at Gauss's nodes,
   whose means over a round stop are exact for smooth functions; "hexapolar", a middle ray and samples rings of 6, 12,
   ... rays up to the edge, all of one weight.
-pupil: (N, 2), places on the stop as shares of its radius, in place of a pattern.
-Rays fill the real stop: each is aimed at its place there within 1e-10 of the stop's radius. One for which no ray is
+pupil: (N, 2), points of the stop in units of its radius, instead of a pattern.
+Rays fill the real stop: each is aimed at its point there within 1e-10 of the stop's radius. One for which no ray is
 found ends as NO_CONVERGENCE, and what a rim blocks as VIGNETTED.
 )";
 

@@ -45,7 +45,7 @@ constexpr const char* kPupilText =
     "(N, 2): x and y on the aperture stop, as shares of the radius of the circle that holds its opening.";
 constexpr const char* kWeightsText = "(N,): shares of the circle's area for which the rays stand; their sum is 1.";
 constexpr const char* kStatusText =
-    "(N,): RayStatus values; NO_CONVERGENCE where no ray was found that meets the place.";
+    "(N,): RayStatus values; NO_CONVERGENCE where no ray was found that hits the point.";
 
 // Wavefront, spot, aimed rays.
 
@@ -55,7 +55,7 @@ struct AimedRays {
 };
 
 AimedRays aim(const LensSystem& lens, const Points& pupil, double field_deg, std::optional<double> object_distance_m,
-              const FilmPlace& film_mm, std::optional<double> wavelength_nm) {
+              const FilmPoint& film_mm, std::optional<double> wavelength_nm) {
     const double wavelength = wavelength_or_design(lens, wavelength_nm);
     const std::vector<PupilPoint> pattern = pattern_from("", 1, pupil);
     const RayAimer aimer(lens, wavelength, field_from(field_deg, object_distance_m, film_mm));
@@ -90,7 +90,7 @@ struct PythonWavefront {
 };
 
 PythonWavefront make_wavefront(const LensSystem& lens, double field_deg, std::optional<double> object_distance_m,
-                               const FilmPlace& film_mm, std::optional<double> wavelength_nm,
+                               const FilmPoint& film_mm, std::optional<double> wavelength_nm,
                                std::optional<double> film_distance_mm, const std::string& reference,
                                const std::string& exit_pupil, const std::optional<std::string>& remove,
                                const std::string& pattern, int samples, const std::optional<Points>& pupil) {
@@ -125,7 +125,7 @@ Array map_of(const PythonWavefront& w) {
 }
 
 Spot make_spot(const LensSystem& lens, double field_deg, std::optional<double> object_distance_m,
-               const FilmPlace& film_mm, std::optional<double> wavelength_nm, std::optional<double> film_distance_mm,
+               const FilmPoint& film_mm, std::optional<double> wavelength_nm, std::optional<double> film_distance_mm,
                const std::string& pattern, int samples, const std::optional<Points>& pupil) {
     const double wavelength = wavelength_or_design(lens, wavelength_nm);
     const double distance = film_distance_from(lens, film_distance_mm);
@@ -205,11 +205,11 @@ or the lens is not of revolution: through where the chief ray meets the front su
         .def("__repr__",
              [](const AimedRays& rays) { return "<realcam.AimedRays " + counted(py::len(rays.status), "ray") + '>'; });
     static const std::string aim_text =
-        std::string(R"(Rays of one object point that meet given places on the real stop, for Lens.trace(start="scene").
-pupil: (N, 2), places on the stop as shares of its radius.
+        std::string(R"(Rays of one object point that hit given points of the real stop, for Lens.trace(start="scene").
+pupil: (N, 2), points of the stop in units of its radius.
 )") + kFieldText +
         R"(Returns AimedRays; the status is that of the ray behind the lens, and a ray that is not OK is nan. Origins may
-lie behind the front surface: Lens.trace takes a ray for the whole straight line. Places on the very edge of the stop
+lie behind the front surface: Lens.trace takes a ray for the whole straight line. Points on the very edge of the stop
 are aimed at 5e-11 of its radius further in, so that rounding does not block the ray when it is traced.
 Raises InputError where no ray of the object point reaches the middle of the stop.)";
     lens.def("aim", &aim, "pupil"_a, "field_deg"_a = 0.0, py::kw_only(), "object_distance_m"_a = py::none(),
@@ -251,7 +251,7 @@ the lowest x; nan outside. Raises InputError for other patterns.)")
             "reference_radius_mm", [](W w) { return 1 / w.wavefront.reference_curvature; },
             "Of the reference sphere; positive where the light runs from the exit pupil to the "
             "centre, inf for a plane.")
-        .def_readonly("stop_radius_mm", &PythonWavefront::stop_radius_mm, "What places in the pupil are shares of.")
+        .def_readonly("stop_radius_mm", &PythonWavefront::stop_radius_mm, "Unit of coordinates in the pupil.")
         .def_readonly("wavelength_nm", &PythonWavefront::wavelength_nm)
         .def("__repr__", [](W w) {
             return "<realcam.Wavefront " + counted(w.wavefront.opd.size(), "ray") + ", RMS " + digits(w.wavefront.rms) +

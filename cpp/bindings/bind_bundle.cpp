@@ -38,20 +38,20 @@ Array edge_array(const std::vector<EdgePiece>& edge, Vec2<double> (*of)(const Ed
     double* to = array.mutable_data();
     for (const EdgePiece& piece : edge)
         for (std::size_t end = 0; end < 2; ++end) {
-            const Vec2<double> place = of(piece, end);
-            *to++ = place.x;
-            *to++ = place.y;
+            const Vec2<double> point = of(piece, end);
+            *to++ = point.x;
+            *to++ = point.y;
         }
     return array;
 }
 
 RayBundle make_bundle(const LensSystem& lens, double field_deg, std::optional<double> object_distance_m,
-                      const FilmPlace& film_mm, std::optional<double> wavelength_nm,
-                      std::optional<double> film_distance_mm, int spokes, int nodes) {
+                      const FilmPoint& film_mm, std::optional<double> wavelength_nm,
+                      std::optional<double> film_distance_mm, int arms, int nodes) {
     const double wavelength = wavelength_or_design(lens, wavelength_nm);
     if (film_distance_mm && !std::isfinite(*film_distance_mm))
         throw InputError("film_distance_mm must be a finite length, or None for the film");
-    if (!(spokes >= 4 && spokes <= 4096)) throw InputError("spokes must lie between 4 and 4096");
+    if (!(arms >= 4 && arms <= 4096)) throw InputError("arms must lie between 4 and 4096");
     if (!(nodes >= 1 && nodes <= 256)) throw InputError("nodes must lie between 1 and 256");
     const double distance = film_distance_mm.value_or(lens.film_distance);
     const FieldPoint field = field_from(field_deg, object_distance_m, film_mm);
@@ -59,7 +59,7 @@ RayBundle make_bundle(const LensSystem& lens, double field_deg, std::optional<do
         const Unlocked unlocked;
         const RayLoop loop = parallel_ray_loop(heed_signals);
         PointBundle made(lens, wavelength, field, distance, loop, kBundleLook);
-        TracedBundle rays = traced_bundle(made, {spokes, nodes}, loop);
+        TracedBundle rays = traced_bundle(made, {arms, nodes}, loop);
         return std::pair(std::move(made), std::move(rays));
     }();
     const std::vector<BundleRay>& rays = traced.rays;
@@ -89,7 +89,7 @@ RayBundle make_bundle(const LensSystem& lens, double field_deg, std::optional<do
 
 /// Returns an array (M, 2) of float32: the film points of those of `count` rays that pass.
 py::array make_film_points(const LensSystem& lens, double field_deg, std::int64_t count,
-                           std::optional<double> object_distance_m, const FilmPlace& film_mm,
+                           std::optional<double> object_distance_m, const FilmPoint& film_mm,
                            std::optional<double> wavelength_nm, std::optional<double> film_distance_mm,
                            const std::string& pattern, const py::object& dtype) {
     const double wavelength = wavelength_or_design(lens, wavelength_nm);
@@ -207,7 +207,8 @@ of the axis; positive: behind the film. nan where the lens has none.)")
     static const std::string text =
         std::string("Rays of one object point that fill what the lens lets pass, in double precision.\n") + kFieldText +
         R"(film_distance_mm: last vertex to the plane that points_mm lie in; None: the film.
-spokes, nodes: lines from the middle of the light to its edge, which real rays find, and rays on each.
+arms, nodes: number of radial arms about the centre of the light, and of Gauss nodes on each interval of an arm on which
+light passes; real rays find the intervals' ends.
 Returns a RayBundle. Raises InputError where no light passes, or a glass is not known at the wavelength.)";
     static const std::string points_text =
         std::string(
@@ -237,8 +238,8 @@ of a lens of revolution pi sin^2 of the largest angle. 0 where no light arrives.
              [](const PythonFilmPupil& p) { return "<realcam.FilmPupil, irradiance " + digits(p.irradiance) + '>'; });
     py::reinterpret_borrow<py::class_<LensSystem>>(m.attr("Lens"))
         .def("bundle", &make_bundle, "field_deg"_a = 0.0, py::kw_only(), "object_distance_m"_a = py::none(),
-             "film_mm"_a = py::none(), "wavelength_nm"_a = py::none(), "film_distance_mm"_a = py::none(),
-             "spokes"_a = 64, "nodes"_a = 6, text.c_str())
+             "film_mm"_a = py::none(), "wavelength_nm"_a = py::none(), "film_distance_mm"_a = py::none(), "arms"_a = 64,
+             "nodes"_a = 6, text.c_str())
         .def("film_pupil", &make_film_pupil, "film_mm"_a = std::pair(0.0, 0.0), "wavelength_nm"_a = py::none(),
              "The pupil as a film point sees it, (x, y) from the film's middle, by real rays.")
         .def("film_points", &make_film_points, "field_deg"_a = 0.0, "count"_a = 1000000, py::kw_only(),

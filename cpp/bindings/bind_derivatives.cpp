@@ -70,12 +70,12 @@ void write_by_ray(const RayDerivatives& ray, Vec3d given, const LensEntry& entry
                   double* out) {
     const double size = length(given);
     const Vec3d unit = (1 / size) * given;
-    const double way = dot(entry.origin - from, unit) / size;  // entry.origin = from + way given
+    const double distance = dot(entry.origin - from, unit) / size;  // entry.origin = from + distance given
     for (int row = 0; row < RayDerivatives::kNumbers; ++row) {
         const double* by = ray.by_start[row];
         const Vec3d by_origin{by[0], by[1], by[2]}, by_optical{by[3], by[4], by[5]};
-        Vec3d by_direction = (index / size) * (by_optical - dot(by_optical, unit) * unit) + way * by_origin;
-        if (row == 6) by_direction = by_direction + index * way * unit;
+        Vec3d by_direction = (index / size) * (by_optical - dot(by_optical, unit) * unit) + distance * by_origin;
+        if (row == 6) by_direction = by_direction + index * distance * unit;
         const double numbers[6] = {by_origin.x,    by_origin.y,    by_origin.z,
                                    by_direction.x, by_direction.y, by_direction.z};
         std::copy(numbers, numbers + 6, out + 6 * row);
@@ -89,7 +89,7 @@ py::ssize_t differentiated_rays(const InputArray<double>& origins, const InputAr
     return origins.shape(0);
 }
 
-LightDirection way_of_derivatives(const std::string& start) {
+LightDirection direction_of_derivatives(const std::string& start) {
     if (start != "film" && start != "scene") throw InputError("start must be \"film\" or \"scene\"");
     return start == "film" ? LightDirection::to_scene : LightDirection::to_film;
 }
@@ -105,7 +105,7 @@ py::tuple backpropagate_rays(const LensSystem& lens, const InputArray<double>& o
             throw InputError("of_origins and of_directions must be arrays of shape (N, 3), as the rays are");
     if (of_paths.ndim() != 1 || of_paths.shape(0) != count)
         throw InputError("of_optical_paths must be an array of shape (N,), one number for each ray");
-    const AdjointPath path(lens, way_of_derivatives(start), wavelength_or_design(lens, wavelength_nm),
+    const AdjointPath path(lens, direction_of_derivatives(start), wavelength_or_design(lens, wavelength_nm),
                            variables_from(variables));
     py::array_t<double> by_origins({count, py::ssize_t{3}}), by_directions({count, py::ssize_t{3}});
     const AdjointRequest request{static_cast<std::size_t>(count),
@@ -129,7 +129,7 @@ py::tuple ray_derivatives(const LensSystem& lens, const InputArray<double>& orig
                           std::optional<double> wavelength_nm, const std::string& start, const std::string& frame,
                           std::optional<int> surface_count, bool rims) {
     const py::ssize_t count = differentiated_rays(origins, directions);
-    const DualPath path(lens, way_of_derivatives(start), wavelength_or_design(lens, wavelength_nm),
+    const DualPath path(lens, direction_of_derivatives(start), wavelength_or_design(lens, wavelength_nm),
                         variables_from(variables),
                         frame == "lens"   ? ExitFrame::lens
                         : frame == "film" ? ExitFrame::film

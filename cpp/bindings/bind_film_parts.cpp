@@ -138,7 +138,7 @@ py::list splats_to(std::vector<SplatFilm> films) {
 }
 
 void bind_film_parts(py::module_& m) {
-    PYBIND11_NUMPY_DTYPE(PixelSum, irradiance, besides, depth, met, samples, passed);
+    PYBIND11_NUMPY_DTYPE(PixelSum, irradiance, auxiliary, depth, met, samples, passed);
     PYBIND11_NUMPY_DTYPE(LayerSum, weight, met, normal, albedo, circle_mm);
     m.attr("_PIXEL_SUM") = py::dtype::of<PixelSum>();
     m.attr("_LAYER_SUM") = py::dtype::of<LayerSum>();

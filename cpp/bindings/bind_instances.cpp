@@ -87,7 +87,7 @@ Assembly moved(Assembly scene, const std::variant<py::ssize_t, std::string>& whi
         Motion motion{*times_s, std::move(transforms.list)};
         if (const std::string why = motion_error(motion); !why.empty())
             throw InputError(label(scene, instance) + ": " + why);
-        move(scene, instance, Placement(std::move(motion)));
+        move(scene, instance, AnimatedTransform(std::move(motion)));
     } else {
         if (transforms.several)
             throw InputError(

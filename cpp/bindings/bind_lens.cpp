@@ -19,13 +19,13 @@ namespace realcam::bindings {
 
 using namespace py::literals;
 
-FieldPoint field_from(double field_deg, std::optional<double> object_distance_m, const FilmPlace& film_mm) {
+FieldPoint field_from(double field_deg, std::optional<double> object_distance_m, const FilmPoint& film_mm) {
     FieldPoint field{field_deg * std::numbers::pi / 180};
     if (object_distance_m) field.object_distance = 1000 * *object_distance_m;
     if (!film_mm) return field;
     if (field_deg != 0) throw InputError("field_deg and film_mm both name a field; one of them is wanted");
     if (!std::isfinite(film_mm->first) || !std::isfinite(film_mm->second))
-        throw InputError("film_mm must be a place on the film, (x, y) in mm from its middle");
+        throw InputError("film_mm must be a point of the film, (x, y) in mm from its middle");
     field.film = Vec2<double>{film_mm->first, film_mm->second};
     return field;
 }
@@ -40,9 +40,9 @@ namespace {
 LensSystem make_lens(std::vector<Surface> surfaces, const std::string& name, std::optional<double> film_distance,
                      std::pair<double, double> film, double wavelength_nm, int blades, double rounding,
                      double rotation_deg, std::optional<std::pair<int, int>> focus_group, double nearest_focus_m,
-                     bool allow_crossing, double film_radius_of_curvature) {
+                     bool allow_overlap, double film_radius_of_curvature) {
     LensSystem lens;
-    lens.allow_crossing = allow_crossing;
+    lens.allow_overlap = allow_overlap;
     lens.name = name;
     lens.surfaces = std::move(surfaces);
     if (!lens.surfaces.empty()) lens.surfaces.back().thickness = 0;
@@ -131,13 +131,13 @@ void bind_lens(py::module_& m) {
         .def(py::init(&make_lens), py::kw_only(), "surfaces"_a, "name"_a = "", "film_distance_mm"_a = py::none(),
              "film_mm"_a = std::pair<double, double>{36, 24}, "wavelength_nm"_a = kLineD_nm, "iris_blades"_a = 0,
              "iris_rounding"_a = 0.0, "iris_rotation_deg"_a = 0.0, "focus_group"_a = py::none(),
-             "nearest_focus_m"_a = 0.0, "allow_crossing"_a = false, "film_radius_of_curvature_mm"_a = kInfinity,
+             "nearest_focus_m"_a = 0.0, "allow_overlap"_a = false, "film_radius_of_curvature_mm"_a = kInfinity,
              R"(surfaces: from the scene to the film, exactly one of them a Stop.
 film_distance_mm: last vertex to film; None: best focus at infinity by real rays.
 film_mm: (width, height) used where a Camera names no film.
 iris_blades: 0 for a round diaphragm, else 3 to 24; iris_rounding: 0 straight to 1 a circle.
 focus_group: (first, last) index of the surfaces that move to focus; None: the whole lens moves.
-allow_crossing: for experiments, faces may cross inside their rims, and the film the last face.
+allow_overlap: for experiments, faces may cross inside their rims, and the film the last face.
 film_radius_of_curvature_mm: below 0 the film is hollow towards the lens; inf: flat.
 Raises LensFileError, naming the surface (from 1), where the lens cannot be built.)")
         .def_property_readonly("zoom_positions", &zoom_position_names,
@@ -219,9 +219,9 @@ opens_as_far_as_it_can: a lens that is not as fast as the f-number is wide open.
         .def_readonly("source", &LensSystem::source)
         .def_readonly("surfaces", &LensSystem::surfaces)
         .def_readonly("wavelength_nm", &LensSystem::wavelength_nm)
-        .def_readonly("allow_crossing", &LensSystem::allow_crossing)
+        .def_readonly("allow_overlap", &LensSystem::allow_overlap)
         .def(
-            "crossings",
+            "overlaps",
             [](const LensSystem& lens) {
                 std::vector<std::tuple<int, int, double, double>> list;
                 for (const FaceOverlap& c : find_overlaps(lens))
@@ -229,7 +229,7 @@ opens_as_far_as_it_can: a lens that is not as fast as the f-number is wide open.
                 return list;
             },
             R"(Pairs of faces that cross inside their rims, as (first, second, depth_mm, radius_mm): the indices of the
-two, how far they reach into each other at most, and how far from the axis that is. Empty but with allow_crossing.)")
+two, how far they reach into each other at most, and how far from the axis that is. Empty but with allow_overlap.)")
         .def_readonly("film_distance_mm", &LensSystem::film_distance)
         .def_readonly("film_radius_of_curvature_mm", &LensSystem::film_radius_of_curvature)
         .def_property_readonly("film_position_mm", &LensSystem::film_position, "Front vertex to film.")

@@ -30,7 +30,7 @@ public:
         const ToneCurve curve = tone_curve_from(tone);
         if (settings.noise) throw InputError("spp of a frame must be a whole number");
         return session_.use([&](const auto&) {
-            return view_->shoot(camera, settings, curve, heed_signals, std::make_shared<WorkUnderWay>());
+            return view_->shoot(camera, settings, curve, heed_signals, std::make_shared<WorkInProgress>());
         });
     }
 

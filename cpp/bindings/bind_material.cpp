@@ -18,7 +18,7 @@ namespace {
 
 using Which = std::variant<py::ssize_t, py::str>;
 
-std::size_t place_of(TextureReference Material::* wanted) {
+std::size_t texture_index(TextureReference Material::* wanted) {
     std::size_t i = 0;
     while (kMaterialTextures[i] != wanted) ++i;
     return i;
@@ -44,7 +44,7 @@ std::string value(const PythonMaterial& m, std::string PythonMaterial::* member)
 }
 /// Returns a read-only array that shares the texture's memory, or None.
 py::object value(const PythonMaterial& m, TextureReference Material::* member) {
-    const std::shared_ptr<const Texture>& texture = m.textures[place_of(member)];
+    const std::shared_ptr<const Texture>& texture = m.textures[texture_index(member)];
     if (!texture) return py::none();
     using Owner = std::shared_ptr<const Texture>;
     const py::capsule owner(new Owner(texture), [](void* p) { delete static_cast<Owner*>(p); });
@@ -72,7 +72,7 @@ void set(PythonMaterial& m, std::string PythonMaterial::* member, const std::str
 }
 /// Sets or, for None, removes a texture.
 void set(PythonMaterial& m, TextureReference Material::* member, const py::object& pixels) {
-    m.textures[place_of(member)] = pixels.is_none() ? nullptr : texture_from(pixels, io::use_of(member));
+    m.textures[texture_index(member)] = pixels.is_none() ? nullptr : texture_from(pixels, io::use_of(member));
     m.values.*member = {};
 }
 

@@ -178,7 +178,7 @@ film point; "chief": where the ray through the middle of the stop lands.
 NaN where the lens images no such point. return_status: return (pixels, status), with a
 ProjectionStatus for each point. Raises InputError.)")
         .def("ray", &rays_through, "pixels"_a, py::kw_only(), "through"_a = "light", "return_light"_a = false,
-             R"(The lines along which places of the picture, (N, 2) column and row as from project, look into the
+             R"(The lines along which points of the picture, (N, 2) column and row as from project, look into the
 scene: (origins_m, directions), (N, 3) float64, the first where the line leaves the lens, the second
 unit. project takes each of their points back to the pixel.
 through: "light": the mean of the rays that a film point gets; "chief": that through the middle of

@@ -87,7 +87,7 @@ Psf psf_by_fft(const LensSystem& lens, const PsfRequest& request) {
 
 Psf make_psf(const LensSystem& lens, double field_deg, const std::optional<Wavelengths>& wavelength_nm,
              const std::string& method, int size, std::optional<double> pitch_um,
-             std::optional<double> object_distance_m, const FilmPlace& film_mm, std::optional<double> film_distance_mm,
+             std::optional<double> object_distance_m, const FilmPoint& film_mm, std::optional<double> film_distance_mm,
              const std::string& centre, std::optional<std::int64_t> rays,
              const std::optional<std::vector<double>>& weights) {
     if (centre != "chief" && centre != "centroid")
@@ -109,7 +109,7 @@ Psf make_psf(const LensSystem& lens, double field_deg, const std::optional<Wavel
     return psf_of(lens, request, parallel_ray_loop(heed_signals));
 }
 
-py::array_t<double> places_of(const Psf& psf) {
+py::array_t<double> pixel_positions_um(const Psf& psf) {
     return array_of(static_cast<std::size_t>(psf.size),
                     [&](std::size_t i) { return (static_cast<int>(i) - psf.size / 2) * psf.pitch_um; });
 }
@@ -145,8 +145,9 @@ void bind_psf(py::module_& m) {
            R"((size, size): share of the light that passes the lens, per um^2; their sum times pitch_um^2 is 1 over the
 whole film. Rows from the lowest y, columns from the lowest x.)")
         .def_readonly("pitch_um", &Psf::pitch_um, "From point to point.")
-        .def_property_readonly("x_um", &places_of, "(size,): of the columns, from the array's middle.")
-        .def_property_readonly("y_um", &places_of, "(size,): of the rows; a positive field lies in the y-z plane.")
+        .def_property_readonly("x_um", &pixel_positions_um, "(size,): of the columns, from the array's middle.")
+        .def_property_readonly("y_um", &pixel_positions_um,
+                               "(size,): of the rows; a positive field lies in the y-z plane.")
         .def_property_readonly(
             "centre_mm", [](const Psf& p) { return std::pair(p.centre_mm.x, p.centre_mm.y); },
             "(x, y) on the film, from the axis: of the point at x_um = y_um = 0.")
@@ -173,7 +174,7 @@ whole film. Rows from the lowest y, columns from the lowest x.)")
                 return energy_inside(p, radius_um, {about_um.first, about_um.second});
             },
             "radius_um"_a, "about_um"_a = std::pair(0.0, 0.0),
-            "Share of the light within a circle about a place (x, y), as far as the array reaches.")
+            "Share of the light within a circle about a point (x, y), as far as the array reaches.")
         .def("mtf", &mtf, "frequencies_per_mm"_a = py::none(),
              R"(Modulation transfer: (frequencies per mm, tangential, sagittal), three arrays of shape (N,). Tangential
 is the contrast of lines across y, sagittal of lines across x. None: 0 to half of one over pitch_um.)")

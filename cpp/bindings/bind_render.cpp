@@ -123,7 +123,7 @@ void bind_render(py::module_& m) {
         "_effect_notices",
         [](const LensSystem& lens, const RenderSettings& settings) { return effect_notices(settings.effects, lens); },
         "lens"_a, "settings"_a);
-    py::class_<EffectInfo> effect_type(m, "EffectInfo", "What can be simulated besides. str() is a line of it.");
+    py::class_<EffectInfo> effect_type(m, "EffectInfo", "Optional effect of a picture. str() is a line of it.");
     def_copy(effect_type);
     // Each effect is one Python object that refers to the static table.
     py::tuple effect_rows(std::size(kEffects));

@@ -103,8 +103,8 @@ void set_angular_response(SensorRequest& request, const Sensor& sensor, double f
 }
 
 /// Returns the colour filter, 0 to 2 for red, green and blue, at an index of the mosaic.
-std::size_t filter_at(const Sensor& sensor, std::size_t place) {
-    return sensor.has_filters() ? std::string_view("RGB").find(sensor.color_filter_array[place]) : 0;
+std::size_t filter_at(const Sensor& sensor, std::size_t position) {
+    return sensor.has_filters() ? std::string_view("RGB").find(sensor.color_filter_array[position]) : 0;
 }
 
 py::array_t<std::uint16_t> expose(const Sensor& sensor, const InputArray<float>& exposure, double pixel_pitch_um,
@@ -123,10 +123,10 @@ py::array_t<std::uint16_t> expose(const Sensor& sensor, const InputArray<float>&
     request.width = static_cast<std::int32_t>(exposure.shape(1));
     request.row_count = height;
     const SensorMatrix electrons = electrons_per_um2(sensor, illuminant_from(illuminant));
-    for (std::size_t place = 0; place < 4; ++place)
+    for (std::size_t position = 0; position < 4; ++position)
         for (std::size_t channel = 0; channel < 3; ++channel)
-            request.electrons[place][channel] =
-                static_cast<float>(pixel_pitch_um * pixel_pitch_um * electrons[3 * filter_at(sensor, place) + channel]);
+            request.electrons[position][channel] = static_cast<float>(
+                pixel_pitch_um * pixel_pitch_um * electrons[3 * filter_at(sensor, position) + channel]);
     set_angular_response(request, sensor, film_pitch_um / 1000, exit_pupil_distance_mm, height);
     const SensorNoise& noise = sensor.noise;
     request.response_deviation = static_cast<float>(noise.prnu_percent / 100);

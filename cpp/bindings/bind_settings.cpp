@@ -288,8 +288,8 @@ too dark; 0: never. threads: 0 for all.
 layers: names of what else Image.layers is to hold, or "all" (docs/layers.md), which leaves dual_pixel out.
 effects: "auto": what the shot calls for, and the cheapest camera model that shows it, by thresholds: those of
 quality, "draft" (2 pixels, 4 codes), "photo" (0.5, 1) or "reference" (0.1, 0.25), or threshold_px and
-threshold_codes; or names of what is simulated besides (rc.effects() lists them; docs/dispersion.md), () for
-none. Warns of what the lens cannot give of them.
+threshold_codes; or names of optional effects (rc.effects() lists them; docs/dispersion.md), () for none.
+Warns of what the lens cannot give of them.
 illuminant: of dispersion and diffraction, the spectrum of all light: "D65", "D50", "A", "FL2", a wavelength in nm,
 or (wavelength_nm, power) pairs; None: D65. As an attribute it is a text.
 pupil_sampling: where a full lens's rays are sent: "outline", where real rays were found to pass; to compare

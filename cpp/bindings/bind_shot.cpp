@@ -41,11 +41,11 @@ namespace {
 using Number = std::optional<double>;
 using CurvePoint = std::tuple<double, Triple, Triple>;
 
-constexpr const char* kWays[] = {"linear", "smooth", "step"};
+constexpr const char* kInterpolations[] = {"linear", "smooth", "step"};
 
 CameraKeyInterpolation camera_key_interpolation_from(const std::string& name) {
-    for (std::size_t i = 0; i < std::size(kWays); ++i)
-        if (name == kWays[i]) return static_cast<CameraKeyInterpolation>(i);
+    for (std::size_t i = 0; i < std::size(kInterpolations); ++i)
+        if (name == kInterpolations[i]) return static_cast<CameraKeyInterpolation>(i);
     throw InputError("interpolation: \"" + name + "\": linear, smooth or step is wanted");
 }
 
@@ -177,8 +177,9 @@ from here on; "smooth" goes from rest to rest, and through the smooth keys betwe
                                    if (!k.film_right_mm || !k.film_up_mm) return std::nullopt;
                                    return std::pair(*k.film_right_mm, *k.film_up_mm);
                                })
-        .def_property_readonly("interpolation",
-                               [](const CameraKey& k) { return kWays[static_cast<std::size_t>(k.way)]; })
+        .def_property_readonly(
+            "interpolation",
+            [](const CameraKey& k) { return kInterpolations[static_cast<std::size_t>(k.interpolation)]; })
         .def("__repr__", &text_of_key);
 }
 

@@ -30,7 +30,7 @@ struct TraceResult {
 
 /// Validated options of a trace.
 struct TraceOptions {
-    LightDirection way;
+    LightDirection direction;
     double wavelength_nm;
     Precision precision;
     int surface_count;
@@ -67,7 +67,7 @@ py::object transmission_of(const LensSystem& lens, const Doubles& origins, const
     double* to = result.mutable_data();
     {
         const Unlocked unlocked;
-        const PolarisedTrace trace(lens, options.way, options.wavelength_nm, options.surface_count);
+        const PolarisedTrace trace(lens, options.direction, options.wavelength_nm, options.surface_count);
         parallel_ray_loop(heed_signals).for_all(count, [&](std::size_t first, std::size_t last) {
             for (std::size_t i = first; i < last; ++i) {
                 const double *o = origins.data() + 3 * i, *d = directions.data() + 3 * i;
@@ -88,10 +88,10 @@ TraceResult trace_host_arrays(const LensSystem& lens, const Doubles& origins, co
     {
         const Unlocked unlocked;
         if (gpu)
-            trace_rays_on_gpu(*gpu, lens, options.way, options.wavelength_nm, options.precision, options.surface_count,
-                              count, origins.data(), directions.data(), out);
+            trace_rays_on_gpu(*gpu, lens, options.direction, options.wavelength_nm, options.precision,
+                              options.surface_count, count, origins.data(), directions.data(), out);
         else
-            trace_rays(lens, options.way, options.wavelength_nm, options.precision, options.surface_count, count,
+            trace_rays(lens, options.direction, options.wavelength_nm, options.precision, options.surface_count, count,
                        origins.data(), directions.data(), out, nullptr, heed_signals);
     }
     return {to, towards, path, status, surface, transmission_of(lens, origins, directions, options)};
@@ -122,7 +122,7 @@ TraceResult trace_device_arrays(const LensSystem& lens, const DeviceInput& origi
     from.ordinal = along.ordinal = gpu_of(origins, directions, device);
     const TracedArrays traced = [&] {
         const Unlocked unlocked;
-        return trace_arrays(lens, options.way, options.wavelength_nm, options.precision, options.surface_count,
+        return trace_arrays(lens, options.direction, options.wavelength_nm, options.precision, options.surface_count,
                             origins.count, from, along);
     }();
     return {py::cast(traced.origins), py::cast(traced.directions),    py::cast(traced.optical_path),

@@ -112,10 +112,10 @@ std::string glass_text(const Glass& glass);
 double wavelength_or_design(const LensSystem& lens, std::optional<double> nm);
 
 /// Film point: (x, y), mm from the film's centre; std::nullopt: the field is given by its angle.
-using FilmPlace = std::optional<std::pair<double, double>>;
+using FilmPoint = std::optional<std::pair<double, double>>;
 
 /// Converts a field point; without a distance it is in the plane of focus. Throws InputError if both an angle and a
 /// film point are given.
-FieldPoint field_from(double field_deg, std::optional<double> object_distance_m, const FilmPlace& film_mm = {});
+FieldPoint field_from(double field_deg, std::optional<double> object_distance_m, const FilmPoint& film_mm = {});
 
 }  // namespace realcam::bindings

@@ -10,7 +10,7 @@ namespace realcam::bindings {
 
 namespace {
 
-std::int32_t place_of(std::vector<Texture>& textures, const Texture& texture) {
+std::int32_t index_of(std::vector<Texture>& textures, const Texture& texture) {
     for (std::size_t i = 0; i < textures.size(); ++i)
         if (equal(textures[i], texture)) return static_cast<std::int32_t>(i);
     textures.push_back(texture);
@@ -19,18 +19,18 @@ std::int32_t place_of(std::vector<Texture>& textures, const Texture& texture) {
 
 void drop_unused_textures(Scene& scene) {
     std::vector<Texture> all = std::move(scene.textures);
-    std::vector<std::int32_t> places(all.size(), -1);
+    std::vector<std::int32_t> indices(all.size(), -1);
     scene.textures.clear();
     for (Material& material : scene.materials)
         for (const auto member : kMaterialTextures) {
             std::int32_t& number = (material.*member).texture;
             if (number < 0) continue;
             const auto from = static_cast<std::size_t>(number);
-            if (places[from] < 0) {
-                places[from] = static_cast<std::int32_t>(scene.textures.size());
+            if (indices[from] < 0) {
+                indices[from] = static_cast<std::int32_t>(scene.textures.size());
                 scene.textures.push_back(std::move(all[from]));
             }
-            number = places[from];
+            number = indices[from];
         }
 }
 
@@ -87,7 +87,7 @@ void set_material(Scene& scene, std::size_t index, const PythonMaterial& materia
     scene.materials[index] = material.values;
     for (std::size_t i = 0; i < kMaterialTextures.size(); ++i)
         if (material.textures[i])
-            (scene.materials[index].*kMaterialTextures[i]).texture = place_of(scene.textures, *material.textures[i]);
+            (scene.materials[index].*kMaterialTextures[i]).texture = index_of(scene.textures, *material.textures[i]);
     drop_unused_textures(scene);
 }
 

@@ -231,8 +231,8 @@ struct RestoredCheck<Motion> {
 template <>
 struct RestoredCheck<SceneCamera> {
     static void check(const SceneCamera& camera) {
-        const Affine<double>& place = camera.scene_from_camera;
-        for (const Vec3d& column : {place.x, place.y, place.z, place.origin})
+        const Affine<double>& transform = camera.scene_from_camera;
+        for (const Vec3d& column : {transform.x, transform.y, transform.z, transform.origin})
             require_restored(std::isfinite(column.x) && std::isfinite(column.y) && std::isfinite(column.z));
         require_restored(camera.vertical_field_rad >= 0 && camera.vertical_field_rad < std::numbers::pi);
     }

@@ -54,7 +54,7 @@ void def(std::index_sequence<row...>, py::class_<T>& type, const char* name, Fun
     using namespace py::literals;
     type.def(
         name,
-        [function](const T& self, Index<First>... place, C::Number radius, C::Number thickness,
+        [function](const T& self, Index<First>... indices, C::Number radius, C::Number thickness,
                    const py::object& material, C::Number clear, C::Number conic, const C::RadialTerms& aspheric,
                    C::Number inner, const C::Name& surface_type, const py::object& coating, const C::Numbers& decentre,
                    const C::Numbers& tilt, std::optional<bool> returns, const C::Name& form, C::Number radius_x,
@@ -74,7 +74,7 @@ void def(std::index_sequence<row...>, py::class_<T>& type, const char* name, Fun
                                          tilt,
                                          returns,
                                          {form, radius_x, conic_x, radial, xy, {terms...}, aperture, obscurations}};
-            return function(self, place..., changes);
+            return function(self, indices..., changes);
         },
         first..., py::kw_only(), "radius_of_curvature_mm"_a = py::none(), "thickness_mm"_a = py::none(),
         "material"_a = py::ellipsis(), "clear_semi_diameter_mm"_a = py::none(), "conic"_a = py::none(),

@@ -16,7 +16,7 @@ namespace py = pybind11;
 namespace {
 
 // Atomics instead of a mutex: a mutex held by another thread would stay locked in a forked process.
-std::atomic<int> under_way{0};
+std::atomic<int> in_progress{0};
 std::atomic<bool> ends{false}, lost_threads{false};
 
 std::vector<void (*)()>& others() {
@@ -31,22 +31,22 @@ void wait_for_all_work() {
     for (void (*const stop)() : others()) stop();
     // Work checks 20 times a second whether Python exits. A user's progress function that does not return must not
     // delay the exit for ever.
-    for (auto waited = 0ms; under_way > 0 && waited < 10s; waited += 5ms) std::this_thread::sleep_for(5ms);
+    for (auto waited = 0ms; in_progress > 0 && waited < 10s; waited += 5ms) std::this_thread::sleep_for(5ms);
 }
 
 }  // namespace
 
-WorkUnderWay::WorkUnderWay() {
+WorkInProgress::WorkInProgress() {
     stop_at_exit();
     if (lost_threads)
         throw InputError(
             "this process was forked while another thread was at work in realcam, and cannot work itself; fork before, "
             "or start processes with the method \"spawn\"");
-    ++under_way;
+    ++in_progress;
 }
 
-WorkUnderWay::~WorkUnderWay() {
-    --under_way;
+WorkInProgress::~WorkInProgress() {
+    --in_progress;
 }
 
 bool has_lost_threads() {
@@ -65,7 +65,7 @@ void watch_exit_and_fork() {
     py::module_::import("atexit").attr("register")(py::cpp_function(&wait_for_all_work));
     pthread_atfork(nullptr, nullptr, [] {
         // The child lacks the threads that would finish that work, so its exit must not wait for them.
-        if (under_way.exchange(0) > 0) lost_threads = true;
+        if (in_progress.exchange(0) > 0) lost_threads = true;
     });
 }
 

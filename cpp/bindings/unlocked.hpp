@@ -7,18 +7,18 @@ namespace realcam::bindings {
 
 /// Counts a call that runs without the GIL. Python's exit waits for these calls, because their threads can no longer
 /// take the GIL afterwards; and a process that is forked meanwhile lacks their threads.
-class WorkUnderWay {
+class WorkInProgress {
 public:
     /// Throws Cancelled while Python exits, and InputError in a process that was forked during a call without the GIL.
-    WorkUnderWay();
-    ~WorkUnderWay();
-    WorkUnderWay(const WorkUnderWay&) = delete;
-    WorkUnderWay& operator=(const WorkUnderWay&) = delete;
+    WorkInProgress();
+    ~WorkInProgress();
+    WorkInProgress(const WorkInProgress&) = delete;
+    WorkInProgress& operator=(const WorkInProgress&) = delete;
 };
 
 /// Releases the GIL for its lifetime, like py::gil_scoped_release.
 class Unlocked {
-    WorkUnderWay work_;  // destroyed after the GIL has been reacquired
+    WorkInProgress work_;  // destroyed after the GIL has been reacquired
     pybind11::gil_scoped_release release_;
 };
 

@@ -74,7 +74,7 @@ private:
             above->box = without;
             above->triangles -= node.triangles;
         }
-        BinaryNode* beside = best_place(node, sibling, gain);
+        BinaryNode* beside = best_position(node, sibling, gain);
         replace(beside, parent);
         parent->child[0] = beside;
         parent->child[1] = &node;
@@ -90,7 +90,7 @@ private:
 
     /// Returns the new sibling for `node` that adds the least area; `known` would add `known_cost`. Best-first search:
     /// below a node the cost is at least what its ancestors grow by, plus the area of `node` for the new parent.
-    BinaryNode* best_place(const BinaryNode& node, BinaryNode* known, double known_cost) {
+    BinaryNode* best_position(const BinaryNode& node, BinaryNode* known, double known_cost) {
         const double own = half_area(node.box);
         BinaryNode* best = known;
         double best_cost = known_cost;

@@ -5,8 +5,8 @@ namespace REALCAM_NAMESPACE {
 
 /// Ray in the form that tests the eight boxes of a node at once.
 ///
-/// The test must find the box of every triangle that meets_triangle would accept, or light leaks through edges.
-/// meets_triangle sees vertices displaced by up to 6 roundings of their distance from the ray's origin (along the
+/// The test must find the box of every triangle that intersects_triangle would accept, or light leaks through edges.
+/// intersects_triangle sees vertices displaced by up to 6 roundings of their distance from the ray's origin (along the
 /// dominant axis). The parameter of a plane, converted back to a coordinate, is off by up to 7 roundings. All boxes of
 /// a node are therefore enlarged by 16 roundings of the distance of its farthest corner, and no other tolerance is
 /// needed.

@@ -29,7 +29,7 @@ public:
         if (!triangles_) enter_node<true>(nodes_, stack);
         if (level_ == Level::objects) {
             put_off_objects(stack);
-        } else if (meet_triangles(triangles_of_mesh_, instance_, scene_ray) && any_) {
+        } else if (intersect_triangles(triangles_of_mesh_, instance_, scene_ray) && any_) {
             pending_.slots = triangles_ = 0;
             return;
         }

@@ -32,7 +32,7 @@ public:
     template <class SceneRay>
     REALCAM_INLINE void step(const WideBvhView& bvh, TraversalStack& stack, const SceneRay& scene_ray) {
         if (!triangles_) enter_node<false>(bvh.nodes, stack);
-        if (meet_triangles(bvh.triangles, kNoInstance, scene_ray) && any_)
+        if (intersect_triangles(bvh.triangles, kNoInstance, scene_ray) && any_)
             pending_.slots = triangles_ = 0;
         else if (!active() && waiting_ > 0)
             pending_ = stack[--waiting_];
@@ -83,8 +83,8 @@ protected:
     /// Tests up to kTrianglesPerStep triangles of the last node; with `any`, only until the first hit. Returns true if
     /// there was a hit.
     template <class SceneRay>
-    REALCAM_INLINE bool meet_triangles(const BvhTriangle* triangles, std::uint32_t instance,
-                                       const SceneRay& scene_ray) {
+    REALCAM_INLINE bool intersect_triangles(const BvhTriangle* triangles, std::uint32_t instance,
+                                            const SceneRay& scene_ray) {
         bool met = false;
         for (int i = 0; i < kTrianglesPerStep; ++i) {
             if (!triangles_) break;
@@ -92,7 +92,7 @@ protected:
             triangles_ ^= first;
             const std::uint32_t number = first_triangle_ + count_bits(content_ & (first - 1u));
             const Hit last = hit_;
-            if (!meets_triangle(sheared_, load_constant(triangles + number), hit_)) continue;
+            if (!intersects_triangle(sheared_, load_constant(triangles + number), hit_)) continue;
             hit_.instance = instance;
             if constexpr (!SceneRay::is_plain) {
                 if (!scene_ray.stops(hit_)) {

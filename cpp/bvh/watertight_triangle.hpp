@@ -48,7 +48,7 @@ private:
 };
 
 /// True if the ray hits the triangle, from either side, at a parameter in [0, hit.distance); then sets `hit`.
-REALCAM_INLINE bool meets_triangle(const ShearedRay& ray, const BvhTriangle& triangle, Hit& hit) {
+REALCAM_INLINE bool intersects_triangle(const ShearedRay& ray, const BvhTriangle& triangle, Hit& hit) {
     const Vec3f a = ray.sheared(triangle.a), b = ray.sheared(triangle.b), c = ray.sheared(triangle.c);
     const float u = difference_of_products(c.x, b.y, c.y, b.x);
     const float v = difference_of_products(a.x, c.y, a.y, c.x);

@@ -25,7 +25,7 @@ bool lies_between(double least, double value, double most) {
     return value >= least && value <= most;
 }
 
-bool is_place(Vec3d v) {
+bool is_bounded_point(Vec3d v) {
     const auto in_reach = [](double x) { return std::fabs(x) <= kFarthestPosition; };
     return in_reach(v.x) && in_reach(v.y) && in_reach(v.z);
 }
@@ -49,7 +49,7 @@ void validate(const Film& film) {
 
 void validate(const Pose& pose) {
     using namespace camera_detail;
-    if (!is_place(pose.position_m) || !is_place(pose.look_at_m))
+    if (!is_bounded_point(pose.position_m) || !is_bounded_point(pose.look_at_m))
         throw InputError("the camera's position and look_at must be finite numbers of at most 1e12 m");
     if (!lies_between(kShortestUp, length(pose.up), kLongestUp))
         throw InputError("the camera's up direction must have a finite length, from 1e-100 to 1e100");

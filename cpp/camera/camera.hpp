@@ -27,11 +27,11 @@ struct Film {
     }
     /// Converts pixel coordinates (column and row from the upper left corner) to film coordinates in mm from the
     /// optical axis, x to the right and y up as in the developed image; and back.
-    Vec2<double> place_of(Vec2<double> pixel) const {
+    Vec2<double> point_of(Vec2<double> pixel) const {
         return {(pixel.x / width - 0.5) * width_mm + shift_mm.x, (0.5 - pixel.y / height) * height_mm + shift_mm.y};
     }
-    Vec2<double> pixel_of(Vec2<double> place) const {
-        return {(0.5 + (place.x - shift_mm.x) / width_mm) * width, (0.5 - (place.y - shift_mm.y) / height_mm) * height};
+    Vec2<double> pixel_of(Vec2<double> point) const {
+        return {(0.5 + (point.x - shift_mm.x) / width_mm) * width, (0.5 - (point.y - shift_mm.y) / height_mm) * height};
     }
 };
 

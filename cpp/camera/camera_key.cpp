@@ -100,13 +100,13 @@ std::optional<double> value_at(Keys all, const Ring& ring, double time_s) {
                                         [](double time, const CameraKey* key) { return time < key->time_s; });
     const auto at = static_cast<std::size_t>(above - keys.begin()) - 1;
     // Returned directly: the transform to the scale and back would change the last digits of a constant value.
-    if (above == keys.end() || keys[at]->way == CameraKeyInterpolation::step || keys[at]->time_s == time_s ||
+    if (above == keys.end() || keys[at]->interpolation == CameraKeyInterpolation::step || keys[at]->time_s == time_s ||
         value(at) == value(at + 1))
         return value(at);
-    const bool is_smooth = keys[at]->way == CameraKeyInterpolation::smooth;
+    const bool is_smooth = keys[at]->interpolation == CameraKeyInterpolation::smooth;
     std::size_t first = at, last = at + 1;
-    while (is_smooth && first > 0 && keys[first - 1]->way == CameraKeyInterpolation::smooth) --first;
-    while (is_smooth && last + 1 < keys.size() && keys[last]->way == CameraKeyInterpolation::smooth) ++last;
+    while (is_smooth && first > 0 && keys[first - 1]->interpolation == CameraKeyInterpolation::smooth) --first;
+    while (is_smooth && last + 1 < keys.size() && keys[last]->interpolation == CameraKeyInterpolation::smooth) ++last;
     std::vector<double> times, scaled;
     for (std::size_t i = first; i <= last; ++i) {
         times.push_back(keys[i]->time_s);

@@ -26,7 +26,7 @@ struct CameraKey {
     std::optional<double> f_number = {};
     std::optional<double> exposure_time_s = {};
     std::optional<double> iso = {};
-    CameraKeyInterpolation way = CameraKeyInterpolation::linear;  ///< interpolation from this key on
+    CameraKeyInterpolation interpolation = CameraKeyInterpolation::linear;  ///< interpolation from this key on
     std::optional<LensSystem> lens = {};  ///< lens from this key on; before the first key with a lens: the camera's own
     std::optional<int> blades = {};  ///< from this key on; without a value, this and the following stay as the lens and
                                      ///< camera have them

@@ -22,7 +22,7 @@ REALCAM_INLINE FilmRaySample sample_film_ray(const CameraView& camera, Vec2f fil
         if (camera.pupil_grid.nodes) {
             const PupilSample pupil = sample_pupil(camera.pupil_grid, film.x, film.y, u.x, u.y);
             const FilmSurface<float> surface = film_surface(camera);
-            return {surface.place(film), surface.direction(film, pupil.direction), pupil.weight};
+            return {surface.point(film), surface.direction(film, pupil.direction), pupil.weight};
         }
     }
     const PupilSample pupil = sample_pupil(camera.pupil, film.x, film.y, u.x, u.y);

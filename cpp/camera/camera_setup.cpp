@@ -26,11 +26,13 @@ std::vector<Affine<double>> exposure_keys(const Camera& camera) {
     const Motion motion = motion_of(camera.motion);
     const TimeInterval exposure = camera.exposure();
     // Near objects show the camera's translation, and far ones its rotation, so each must be resolved by itself.
-    Motion turns = motion, ways = motion;
-    for (Affine<double>& turn : turns.transforms) turn.origin = {0, 0, 0};
-    for (Affine<double>& way : ways.transforms) way = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, way.origin};
+    Motion rotations = motion, translations = motion;
+    for (Affine<double>& rotation : rotations.transforms) rotation.origin = {0, 0, 0};
+    for (Affine<double>& translation : translations.transforms)
+        translation = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, translation.origin};
     const Vec3d axes[] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, middle[] = {{0, 0, 0}};
-    const std::optional<int> turning = key_steps(turns, exposure, axes), going = key_steps(ways, exposure, middle);
+    const std::optional<int> turning = key_steps(rotations, exposure, axes),
+                             going = key_steps(translations, exposure, middle);
     if (!turning || !going)
         throw InputError("the camera turns too fast; in one exposure about 20 turns can be followed");
     const int steps = std::max(*turning, *going);
@@ -146,7 +148,7 @@ void CameraSetup::set_pupil(const PupilTracer& tracer, const CameraSetup* last, 
     const std::vector<double>& wavelengths = tables_.pupil_wavelengths();
     const bool is_alike = last && last->has_pupil_for(wavelengths, effects_.pupil_sampling);
     const bool is_same = is_alike && last->has_lens_and_film_of(camera_);
-    if (is_same && last->has_pupil_anew()) {
+    if (is_same && last->has_new_pupil()) {
         pupil_ = last->pupil_;
         pupil_grid_ = last->pupil_grid_;
         return;

@@ -21,7 +21,7 @@ public:
     /// set-up, whose pupil is reused if it is the same: finding the pupil is most of the work, and a camera that only
     /// moves keeps it.
     explicit CameraSetup(const Camera& camera, PupilTracer tracer = {}, const CameraSetup* last = nullptr,
-                         const LensEffects& effects = {}, PupilStart start = PupilStart::anew);
+                         const LensEffects& effects = {}, PupilStart start = PupilStart::from_scratch);
 
     /// `origin_m`: origin of the render space. `scene_moves`: true if the scene moves during the exposure.
     CameraView view(Vec3d origin_m, bool scene_moves = false) const;
@@ -33,7 +33,7 @@ public:
     /// Pupil of a lens without rotational symmetry; null for other cameras.
     const PupilGrid* pupil_grid() const { return pupil_grid_.get(); }
     /// True if the pupil does not depend on the earlier set-up that the search started from (PupilStart).
-    bool has_pupil_anew() const { return !pupil_ || !pupil_->is_moved(); }
+    bool has_new_pupil() const { return !pupil_ || !pupil_->is_moved(); }
     FilmArea film_area() const;
     /// True if lights can be traced through every surface of the lens.
     bool traces_lights() const {

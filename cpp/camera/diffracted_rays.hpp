@@ -32,11 +32,11 @@ REALCAM_HD inline void diffract(const CameraView& camera, const SampleBlock<N>& 
     const LaneNumbers<N> u(block, dimension::diffraction), v(block, dimension::diffraction + 1);
     REALCAM_LANES
     for (int i = 0; i < N; ++i) {
-        const Vec2f place = samples[i];
-        const DiffractionKick kick = draw_kick(view, place, u[i], v[i]);
-        const Vec2f from = {place.x - nm[i] * kick.mm_per_nm.x, place.y - nm[i] * kick.mm_per_nm.y};
+        const Vec2f point = samples[i];
+        const DiffractionKick kick = draw_kick(view, point, u[i], v[i]);
+        const Vec2f from = {point.x - nm[i] * kick.mm_per_nm.x, point.y - nm[i] * kick.mm_per_nm.y};
         const bool on_film = from.x * from.x + from.y * from.y < reach_squared;
-        film.points.set(i, {select(on_film, from.x, place.x), select(on_film, from.y, place.y)});
+        film.points.set(i, {select(on_film, from.x, point.x), select(on_film, from.y, point.y)});
         film.kicks.set(i, {select(on_film, kick.mm_per_nm.x, 0.0f), select(on_film, kick.mm_per_nm.y, 0.0f)});
         film.from_edge[i] = select(on_film, kick.from_edge, 0);
     }

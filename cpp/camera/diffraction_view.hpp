@@ -84,15 +84,15 @@ REALCAM_INLINE Vec2f cell_frequency(std::int32_t cell, Vec2f u) {
     const std::int32_t ring = cell / kDiffractionAzimuths, azimuth = cell - ring * kDiffractionAzimuths;
     const float low = ring_edge_squared(ring), high = ring_edge_squared(ring + 1);
     const float f = sqrt_or_zero(low + u.x * (high - low));
-    const Vec2f way =
+    const Vec2f direction =
         cos_sin_of_turn((static_cast<float>(azimuth) + u.y) * static_cast<float>(0.5 / kDiffractionAzimuths));
-    return {f * way.x, f * way.y};
+    return {f * direction.x, f * direction.y};
 }
 
-/// Random frequency of an edge segment. `f`: component along the edge's normal; `place`: position on the segment, 0 to
-/// 1; `u`: random number for the component along the edge.
-REALCAM_INLINE Vec2f edge_frequency(const DiffractionEdge& edge, float f, float place, float u) {
-    const float turns = edge.angle + place * edge.turn;
+/// Random frequency of an edge segment. `f`: component along the edge's normal; `position`: position on the segment, 0
+/// to 1; `u`: random number for the component along the edge.
+REALCAM_INLINE Vec2f edge_frequency(const DiffractionEdge& edge, float f, float position, float u) {
+    const float turns = edge.angle + position * edge.turn;
     const Vec2f normal = cos_sin_of_turn(turns - select(turns >= 1.0f, 1.0f, select(turns < 0.0f, -1.0f, 0.0f)));
     const float along = edge.spread * frequency_along_edge(u);
     return {f * normal.x - along * normal.y, f * normal.y + along * normal.x};
@@ -126,10 +126,10 @@ REALCAM_INLINE DiffractionKick draw_kick(const DiffractionView& view, Vec2f film
     const std::int32_t drawn =
         draw_entry(view.entries, at * kDiffractionEntries + select(is_edge, 0, kDiffractionEdges),
                    select(is_edge, kDiffractionEdges, kDiffractionCells), fresh);
-    const float side = select(v.y < 0.5f, 1.0f, -1.0f), place = behind_bits(v.y, 2.0f);
-    const Vec2f in_cell = cell_frequency(select(is_edge, 0, drawn), {v.x, place});
+    const float side = select(v.y < 0.5f, 1.0f, -1.0f), position = behind_bits(v.y, 2.0f);
+    const Vec2f in_cell = cell_frequency(select(is_edge, 0, drawn), {v.x, position});
     const Vec2f from_edge = edge_frequency(view.edges[at * kDiffractionEdges + select(is_edge, drawn, 0)],
-                                           quotient(kDiffractionReach, 1.0f - v.x), place, along_number(u, v));
+                                           quotient(kDiffractionReach, 1.0f - v.x), position, along_number(u, v));
     const float scale = side * node.mm_per_nm;
     const Vec2f kick = {scale * select(is_edge, from_edge.x, in_cell.x),
                         scale * select(is_edge, from_edge.y, in_cell.y)};

@@ -15,22 +15,23 @@ DirectLensPath::DirectLensPath(const LensSystem& lens, const std::optional<FilmS
     : effects_(effects),
       path_(lens, LightDirection::to_film, lens.wavelength_nm, film_path_ends(lens, LightDirection::to_film)),
       kind_(is_round_lens(lens) ? path_.view().kind : LensKind::any),
-      way_{0, path_.view().count, 1},
+      only_path_{0, path_.view().count, 1},
       reach_(entry_reach(lens)) {
     const double design = lens.wavelength_nm;
-    const std::vector<Crossing> way = crossings_of(lens);
+    const std::vector<Crossing> crossings = crossings_of(lens);
     if (!spectrum) {
         if (effects.coatings)
-            coatings_ = ghost_coatings(lens, way, fit_coatings<kOneWavelengthTerms>(lens, way, {design}), {design});
+            coatings_ =
+                ghost_coatings(lens, crossings, fit_coatings<kOneWavelengthTerms>(lens, crossings, {design}), {design});
         return;
     }
     const std::vector<double> all = spectrum->even_wavelengths();
     const WavelengthVariable variable = variable_over(spectrum->range());
     const std::vector<double> refracted = effects.dispersion ? all : std::vector{design};
-    indices_ = index_cubics(lens, way, refracted, variable);
+    indices_ = index_cubics(lens, crossings, refracted, variable);
     if (effects.coatings)
-        spectral_coatings_ =
-            ghost_coatings(lens, way, fit_coatings<kGhostSpectrumTerms>(lens, way, all, variable), refracted, variable);
+        spectral_coatings_ = ghost_coatings(
+            lens, crossings, fit_coatings<kGhostSpectrumTerms>(lens, crossings, all, variable), refracted, variable);
 }
 
 GhostView DirectLensPath::view(GhostLight light, std::int32_t pixel_samples) const {
@@ -40,8 +41,8 @@ GhostView DirectLensPath::view(GhostLight light, std::int32_t pixel_samples) con
     view.light = light;
     view.effects = effects_;
     view.pixel_samples = pixel_samples;
-    view.ways = &way_;
-    view.way_count = 1;
+    view.paths = &only_path_;
+    view.path_count = 1;
     view.cdf = kCdf.data();
     view.crossing_count = lens.count;
     view.surfaces = lens.surfaces;

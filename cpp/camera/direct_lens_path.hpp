@@ -31,7 +31,7 @@ private:
     Effects effects_;
     LensPath<float> path_;
     LensKind kind_;
-    GhostLensPath way_;
+    GhostLensPath only_path_;
     float reach_;
     std::vector<IndexCubic> indices_;
     std::vector<GhostCoating<kOneWavelengthTerms>> coatings_;

@@ -55,11 +55,11 @@ REALCAM_INLINE void draw_wavelengths(const DispersionView& view, const SampleBlo
     const LaneNumbers<N> u(block, dimension::time);
     REALCAM_LANES
     for (int i = 0; i < N; ++i) {
-        wavelengths.place[i] = u[i].y * static_cast<float>(view.cell_count);
+        wavelengths.cell_position[i] = u[i].y * static_cast<float>(view.cell_count);
         wavelengths.shares[i] = 1;
     }
     REALCAM_LANES
-    for (int i = 0; i < N; ++i) wavelengths.nm[i] = wavelength_at(view, wavelengths.place[i]);
+    for (int i = 0; i < N; ++i) wavelengths.nm[i] = wavelength_at(view, wavelengths.cell_position[i]);
 }
 
 /// Finds the pixels in which rays that have left the lens count at the further wavelengths, and the lens's
@@ -80,7 +80,7 @@ REALCAM_HD inline void find_shares(const CameraView& camera, const SampleBlock<N
             back.origin.set(i, left.origin[i]);
             back.direction.set(i, -left.direction[i]);
             back.status[i] = left.status[i];
-            nm[i] = wavelength_at(view, shared_place(view, wavelengths.place[i], step));
+            nm[i] = wavelength_at(view, shared_cell_position(view, wavelengths.cell_position[i], step));
             variable[i] = view.variable.at(nm[i]);
         }
         trace_surfaces<lens_kind, coated>(to_film, back, ManyWavelengths{view.to_film, variable},
@@ -102,7 +102,7 @@ REALCAM_INLINE void find_shares_of_landings(const CameraView& camera, const Samp
     for (int step = 1; step < kSharedWavelengths; ++step) {
         REALCAM_LANES
         for (int i = 0; i < N; ++i) {
-            const float nm = wavelength_at(view, shared_place(view, wavelengths.place[i], step));
+            const float nm = wavelength_at(view, shared_cell_position(view, wavelengths.cell_position[i], step));
             share(camera, block, i, step, true, film.landing(i, film[i], nm), wavelengths);
         }
     }

@@ -34,11 +34,11 @@ struct DispersionView {
 /// SampleWavelengths::shares of a sample that counts for all wavelengths alike, in its own pixel.
 inline constexpr std::int32_t kAllWavelengths = 1 << kSharedWavelengths;
 
-/// Wavelengths for which samples count: the sampled one, at position `place` in the list of cells, and others at steps
-/// from it.
+/// Wavelengths for which samples count: the sampled one, at position `cell_position` in the list of cells, and others
+/// at steps from it.
 template <int N>
 struct SampleWavelengths {
-    Lanes<float, N> nm, place;
+    Lanes<float, N> nm, cell_position;
     Lanes<std::int32_t, N> shares;  ///< bit mask of the steps that count, including step 0; or kAllWavelengths
     Lanes<std::int32_t, N> away[kSharedWavelengths - 1];  ///< offset in the film from its own pixel to that of each
                                                           ///< further step
@@ -46,17 +46,17 @@ struct SampleWavelengths {
 };
 
 /// Wavelength at a position in the list of cells. Wavelengths are uniform within a cell.
-REALCAM_INLINE float wavelength_at(const DispersionView& view, float place) {
-    const auto cell = static_cast<std::int32_t>(place);
-    const float share = place - static_cast<float>(cell);
+REALCAM_INLINE float wavelength_at(const DispersionView& view, float cell_position) {
+    const auto cell = static_cast<std::int32_t>(cell_position);
+    const float share = cell_position - static_cast<float>(cell);
     const WavelengthCell& in = view.cells[cell];
     return in.first_nm + share * (in.last_nm - in.first_nm);
 }
 
 /// Position `step` steps further in the list of cells, wrapping around from the last cell to the first.
-REALCAM_INLINE float shared_place(const DispersionView& view, float place, int step) {
+REALCAM_INLINE float shared_cell_position(const DispersionView& view, float cell_position, int step) {
     const auto cells = static_cast<float>(view.cell_count);
-    const float at = place + static_cast<float>(step * (view.cell_count / kSharedWavelengths));
+    const float at = cell_position + static_cast<float>(step * (view.cell_count / kSharedWavelengths));
     return at < cells ? at : at - cells;
 }
 
@@ -66,8 +66,8 @@ REALCAM_INLINE Color film_color(const float (&m)[9], Color scene) {
             m[6] * scene.r + m[7] * scene.g + m[8] * scene.b};
 }
 /// Film colour of light with the wavelengths of the cell at a position.
-REALCAM_INLINE Color film_color(const DispersionView& view, float place, Color scene) {
-    return film_color(view.cells[static_cast<std::int32_t>(place)].film, scene);
+REALCAM_INLINE Color film_color(const DispersionView& view, float cell_position, Color scene) {
+    return film_color(view.cells[static_cast<std::int32_t>(cell_position)].film, scene);
 }
 
 }  // namespace REALCAM_NAMESPACE

@@ -98,9 +98,9 @@ void EffectTables::set_coatings(const EffectTables* same) {
 
 std::shared_ptr<const DirectLensPath> EffectTables::shared_direct_lens_path() const {
     std::call_once(direct_lens_path_->once, [&] {
-        direct_lens_path_->way = std::make_shared<const DirectLensPath>(lens_, spectrum_, effects_);
+        direct_lens_path_->path = std::make_shared<const DirectLensPath>(lens_, spectrum_, effects_);
     });
-    return direct_lens_path_->way;
+    return direct_lens_path_->path;
 }
 
 }  // namespace realcam

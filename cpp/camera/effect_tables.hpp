@@ -57,7 +57,7 @@ private:
 
     struct LazyDirectLensPath {
         std::once_flag once;
-        std::shared_ptr<const DirectLensPath> way;
+        std::shared_ptr<const DirectLensPath> path;
     };
 
     LensEffects effects_;

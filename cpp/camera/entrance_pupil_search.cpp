@@ -164,7 +164,7 @@ void FilmCells::start(const TargetRectangle<float>& in, const TargetStratum<floa
                       grid.corner.y + cell_size * (static_cast<float>(ray.film_cell / kGhostColumns) + u.y)};
     ray.target = ray.rear = {in.low.x + (static_cast<float>(stratum.column) + v.x) * step.x,
                              in.low.y + (static_cast<float>(stratum.row) + v.y) * step.y};
-    const Vec3f from = film.place(at), to = Vec3f{ray.rear.x, ray.rear.y, 0} - from;
+    const Vec3f from = film.point(at), to = Vec3f{ray.rear.x, ray.rear.y, 0} - from;
     const float squared = dot(to, to), cosines = -to.z * dot(to, film.direction(at, {0, 0, -1})) / squared;
     ray.etendue = cosines / squared * cell_size * cell_size * step.x * step.y;
     rays.origin.set(lane, from);
@@ -190,25 +190,26 @@ GhostGrid FilmCells::directions_of(const FoundRays& rays) {
 }
 
 template <class Map>
-std::vector<FoundRay> EntrancePupilSearch<Map>::along(const LensSystem& lens, const std::vector<Crossing>& way) const {
+std::vector<FoundRay> EntrancePupilSearch<Map>::along(const LensSystem& lens,
+                                                      const std::vector<Crossing>& crossings) const {
     const LensSystem round = with_stop_around_blades(lens);
     LensSystem open = round;
     open.stop_semi_diameter = open.stop().clear_semi_diameter;
     Targets targets;
     for (int cell = 0; cell < kCells; ++cell) targets[static_cast<std::size_t>(cell)] = map_.all_targets(cell);
-    targets = around(traced<Map::kFew>(open, way, targets), targets);
-    targets = around(traced<Map::kFew>(round, way, targets), targets);
-    return traced<Map::kMany>(round, way, targets);
+    targets = around(traced<Map::kFew>(open, crossings, targets), targets);
+    targets = around(traced<Map::kFew>(round, crossings, targets), targets);
+    return traced<Map::kMany>(round, crossings, targets);
 }
 
 template <class Map>
 template <int kStrataRows>
-std::vector<FoundRay> EntrancePupilSearch<Map>::traced(const LensSystem& lens, const std::vector<Crossing>& way,
+std::vector<FoundRay> EntrancePupilSearch<Map>::traced(const LensSystem& lens, const std::vector<Crossing>& crossings,
                                                        const Targets& targets) const {
     constexpr int kStrataColumns = Map::kColumnsPerRow * kStrataRows, kPerCell = kStrataColumns * kStrataRows;
     constexpr int kCount = kCells * kPerCell;
     static_assert(kCount % PupilTracer::kBlock == 0);
-    const LensPath<float> back(lens, way, LightDirection::to_scene, lens.wavelength_nm, map_.ends());
+    const LensPath<float> back(lens, crossings, LightDirection::to_scene, lens.wavelength_nm, map_.ends());
     std::vector<FoundRay> found;
     for (int first = 0; first < kCount; first += PupilTracer::kBlock) {
         PupilTracer::Rays rays;

@@ -122,9 +122,9 @@ public:
 
     const Map& map() const { return map_; }
 
-    /// Rays that pass along an optical path. `way`: its crossings, in the direction of light to the film; `lens`: the
+    /// Rays that pass along an optical path. `crossings`: in the direction of light to the film; `lens`: the
     /// lens whose surfaces they index.
-    std::vector<FoundRay> along(const LensSystem& lens, const std::vector<Crossing>& way) const;
+    std::vector<FoundRay> along(const LensSystem& lens, const std::vector<Crossing>& crossings) const;
 
 private:
     static constexpr int kCells = Map::kColumns * Map::kRows;
@@ -133,7 +133,7 @@ private:
     using Targets = std::array<Rectangle, kCells>;  ///< of each cell
 
     template <int kStrataRows>
-    std::vector<FoundRay> traced(const LensSystem& lens, const std::vector<Crossing>& way,
+    std::vector<FoundRay> traced(const LensSystem& lens, const std::vector<Crossing>& crossings,
                                  const Targets& targets) const;
 
     /// Bounds of the strata of all rays found in a cell and its neighbours; those of `before` if there are no rays.

@@ -12,7 +12,7 @@ struct FilmRegion {
     std::size_t pixels() const { return static_cast<std::size_t>(width) * static_cast<std::size_t>(height); }
 
     /// Row-major index in the region of a pixel of the film.
-    std::size_t place(int film_column, int film_row) const {
+    std::size_t index(int film_column, int film_row) const {
         return static_cast<std::size_t>(film_row - row) * static_cast<std::size_t>(width) +
                static_cast<std::size_t>(film_column - column);
     }

@@ -207,10 +207,10 @@ std::vector<double> FilmSpectrum::even_wavelengths() const {
     constexpr std::size_t kCount = 32;
     std::vector<double> wavelengths;
     for (std::size_t i = 0; i < kCount; ++i) {
-        const double place = (static_cast<double>(i) + 0.5) / kCount * static_cast<double>(cells_.size());
-        const WavelengthCell& cell = cells_[static_cast<std::size_t>(place)];
+        const double position = (static_cast<double>(i) + 0.5) / kCount * static_cast<double>(cells_.size());
+        const WavelengthCell& cell = cells_[static_cast<std::size_t>(position)];
         // If there are many cells, each is narrow, and its centre is used.
-        const double within = cells_.size() > kCount ? 0.5 : place - std::floor(place);
+        const double within = cells_.size() > kCount ? 0.5 : position - std::floor(position);
         wavelengths.push_back(std::lerp(static_cast<double>(cell.first_nm), static_cast<double>(cell.last_nm), within));
     }
     return wavelengths;

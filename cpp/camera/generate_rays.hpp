@@ -66,7 +66,8 @@ REALCAM_INLINE LensFrameRay thick_lens_ray(const CameraView& camera, Vec2f film,
 
 /// Transforms a ray from the lens frame to render space. Lanes without light get a valid ray of weight 0.
 template <int N>
-REALCAM_INLINE void place_ray(const CameraView& camera, CameraRays<N>& rays, int lane, LensFrameRay ray, bool lit) {
+REALCAM_INLINE void set_camera_ray(const CameraView& camera, CameraRays<N>& rays, int lane, LensFrameRay ray,
+                                   bool lit) {
     const Vec3f o = select(lit, ray.origin_mm, Vec3f{0, 0, 0});
     const Vec3f d = select(lit, ray.direction, Vec3f{0, 0, -1});
     const float z = 0.001f * o.z - camera.front_vertex_m;
@@ -100,7 +101,7 @@ REALCAM_HD inline void generate_ideal_rays(const CameraView& camera, const Sampl
     REALCAM_LANES
     for (int i = 0; i < N; ++i) {
         const bool used = block.used[i] != 0;
-        place_ray(camera, rays, i, ray_of(film[i], i), used);
+        set_camera_ray(camera, rays, i, ray_of(film[i], i), used);
         rays.sampled[i] = rays.passed[i] = block.used[i];
     }
 }
@@ -132,12 +133,12 @@ REALCAM_INLINE void start_lens_rays(const CameraView& camera, const SampleBlock<
 
 /// Transforms the rays that have left the lens to render space.
 template <class T, int N>
-REALCAM_INLINE void place_lens_rays(const CameraView& camera, const LensRays<T, N>& inside, CameraRays<N>& rays) {
+REALCAM_INLINE void set_camera_rays(const CameraView& camera, const LensRays<T, N>& inside, CameraRays<N>& rays) {
     REALCAM_LANES
     for (int i = 0; i < N; ++i) {
         const bool passed = inside.status[i] == 0;
         // Tracing keeps the length only near 1: to 1e-4 for a ray from far beside the lens.
-        place_ray(
+        set_camera_ray(
             camera, rays, i,
             {static_cast<Vec3f>(inside.origin[i]), static_cast<Vec3f>(normalized(inside.direction[i])), rays.weight[i]},
             passed);
@@ -151,7 +152,7 @@ REALCAM_HD inline void generate_lens_rays(const CameraView& camera, const Sample
     LensRays<float, N> inside;
     start_lens_rays<lens_kind>(camera, block, film, u, inside, rays);
     trace_lens<lens_kind>(camera.lens, inside);
-    place_lens_rays(camera, inside, rays);
+    set_camera_rays(camera, inside, rays);
 }
 
 template <int N, class Points>
@@ -160,7 +161,7 @@ REALCAM_HD inline void generate_lens_rays_in_double(const CameraView& camera, co
     LensRays<double, N> inside;
     start_lens_rays<LensKind::any>(camera, block, film, u, inside, rays);
     trace_lens(*camera.lens_in_double, inside);
-    place_lens_rays(camera, inside, rays);
+    set_camera_rays(camera, inside, rays);
 }
 
 /// generate_lens_rays for a camera whose pixels learn where light passes the lens (PixelPupil).
@@ -172,16 +173,16 @@ REALCAM_HD inline void generate_learning_rays(const CameraView& camera, const Sa
     const auto pixel_of = [&](int lane) { return block.row[lane] * camera.width + block.column[lane]; };
     for (int i = 0; i < N; ++i) {
         const Vec2f at = film[i];
-        const GuidedPlace u = guided(camera.pixel_pupils.known[pixel_of(i)].promising(), numbers[i]);
-        cells[i] = pixel_pupil::cell_of(u.place);
-        const FilmRaySample ray = sample_film_ray<lens_kind>(camera, at, u.place);
+        const GuidedSample u = guided(camera.pixel_pupils.known[pixel_of(i)].promising(), numbers[i]);
+        cells[i] = pixel_pupil::cell_of(u.point);
+        const FilmRaySample ray = sample_film_ray<lens_kind>(camera, at, u.point);
         inside.origin.set(i, ray.origin);
         inside.direction.set(i, ray.direction);
         rays.weight[i] = ray.weight * u.weight;
     }
     mark_sampled(block, inside, rays);
     trace_lens<lens_kind>(camera.lens, inside);
-    place_lens_rays(camera, inside, rays);
+    set_camera_rays(camera, inside, rays);
     for (int i = 0; i < N; ++i) {
         PixelPupil& pupil = camera.pixel_pupils.found[pixel_of(i)];
         if (rays.sampled[i]) add_bits(&pupil.tried, 1u << cells[i]);
@@ -199,17 +200,18 @@ REALCAM_HD inline void generate_polynomial_rays(const CameraView& camera, const 
     for (int i = 0; i < N; ++i) {
         const Vec2f at = film[i];
         const PupilSample pupil = sample_pupil(camera.pupil, at.x, at.y, u[i].x, u[i].y);
-        const float way = camera.film_distance / pupil.direction.z;
-        const Vec2f last = {at.x - way * pupil.direction.x, at.y - way * pupil.direction.y};
+        const float distance = camera.film_distance / pupil.direction.z;
+        const Vec2f last = {at.x - distance * pupil.direction.x, at.y - distance * pupil.direction.y};
         const LensPolynomialRay ray = evaluate(lens, at, last);
         const float rest = 1.0f - squared(ray.direction), down = -sqrt_or_zero(rest);
-        const float to_front = (lens.front_rim - lens.plane) / down, back = way - lens.last_rim / pupil.direction.z;
+        const float to_front = (lens.front_rim - lens.plane) / down,
+                    back = distance - lens.last_rim / pupil.direction.z;
         const Vec2f rim = {at.x - back * pupil.direction.x, at.y - back * pupil.direction.y};
         const Vec2f front = {ray.position.x + to_front * ray.direction.x, ray.position.y + to_front * ray.direction.y};
         const bool sampled = (block.used[i] != 0) & (pupil.weight > 0.0f);
         const bool passes = sampled & (squared(rim) <= lens.last_radius_squared) & (squared(ray.at_stop) <= 1.0f) &
                             (rest > 0.0f) & (squared(front) <= lens.front_radius_squared);
-        place_ray(
+        set_camera_ray(
             camera, rays, i,
             {{ray.position.x, ray.position.y, lens.plane}, {ray.direction.x, ray.direction.y, down}, pupil.weight},
             passes);

@@ -37,9 +37,9 @@ GhostTables::GhostTables(const LensSystem& of_lens, double film_radius, const Gh
     std::vector<AxialShares> of_wavelengths;
     for (const double wavelength : spectrum ? spectrum->even_wavelengths() : std::vector{lens.wavelength_nm})
         of_wavelengths.emplace_back(lens, wavelength);
-    const auto axial_share = [&](const std::vector<Crossing>& way) {
+    const auto axial_share = [&](const std::vector<Crossing>& crossings) {
         double sum = 0;
-        for (const AxialShares& share : of_wavelengths) sum += share(way);
+        for (const AxialShares& share : of_wavelengths) sum += share(crossings);
         return sum / static_cast<double>(of_wavelengths.size());
     };
     const auto look_at = [&](const std::vector<GhostPair>& wanted) {
@@ -53,11 +53,11 @@ GhostTables::GhostTables(const LensSystem& of_lens, double film_radius, const Gh
     if (choice.film_reflectance > 0) look_at(film_ghost_pairs(of_lens));
     make_crossings(lens, spectrum);
     if (is_round_lens(of_lens))
-        find_ways(EntrancePupilSearch<FilmRings>(of_lens, film_radius, tracer), of_lens, lens, pairs,
-                  choice.least_share, tracer);
+        find_lens_paths(EntrancePupilSearch<FilmRings>(of_lens, film_radius, tracer), of_lens, lens, pairs,
+                        choice.least_share, tracer);
     else
-        find_ways(EntrancePupilSearch<FilmCells>(of_lens, film_radius, tracer), of_lens, lens, pairs,
-                  choice.least_share, tracer);
+        find_lens_paths(EntrancePupilSearch<FilmCells>(of_lens, film_radius, tracer), of_lens, lens, pairs,
+                        choice.least_share, tracer);
     set_probabilities();
     const LensPath<float> straight(of_lens, LightDirection::to_film, lens.wavelength_nm);
     iris_ = straight.view().iris;
@@ -65,13 +65,14 @@ GhostTables::GhostTables(const LensSystem& of_lens, double film_radius, const Gh
 }
 
 template <class Map>
-void GhostTables::find_ways(const EntrancePupilSearch<Map>& search, const LensSystem& of_lens, const LensSystem& lens,
-                            const std::vector<AxialPair>& pairs, double least_share, const PupilTracer& tracer) {
+void GhostTables::find_lens_paths(const EntrancePupilSearch<Map>& search, const LensSystem& of_lens,
+                                  const LensSystem& lens, const std::vector<AxialPair>& pairs, double least_share,
+                                  const PupilTracer& tracer) {
     FoundRays found(pairs.size() + 1);  // the last element: the lens's direct path
     tracer.for_each(static_cast<int>(found.size()), [&](int i) {
         const auto k = static_cast<std::size_t>(i);
-        const auto way = k < pairs.size() ? crossings_of(of_lens, pairs[k].pair) : crossings_of(of_lens);
-        found[k] = search.along(lens, way);
+        const auto crossings = k < pairs.size() ? crossings_of(of_lens, pairs[k].pair) : crossings_of(of_lens);
+        found[k] = search.along(lens, crossings);
     });
     const auto directions = Map::directions_of(found);
     set_maps(directions, search.map());
@@ -85,12 +86,12 @@ void GhostTables::find_ways(const EntrancePupilSearch<Map>& search, const LensSy
         if (!(share > least_share)) continue;
         pairs_.push_back(pairs[k].pair);
         shares_.push_back(share);
-        const std::vector<Crossing> way = crossings_of(of_lens, pairs[k].pair);
+        const std::vector<Crossing> crossings = crossings_of(of_lens, pairs[k].pair);
         const auto path = [&](LightDirection direction) {
-            return LensPath<float>(lens, way, direction, lens.wavelength_nm, film_path_ends(of_lens, direction));
+            return LensPath<float>(lens, crossings, direction, lens.wavelength_nm, film_path_ends(of_lens, direction));
         };
-        add(to_film_, path(LightDirection::to_film), way);
-        add(to_scene_, path(LightDirection::to_scene), reversed(way));
+        add(to_film_, path(LightDirection::to_film), crossings);
+        add(to_scene_, path(LightDirection::to_scene), reversed(crossings));
         append(to_film_.entries, entries_of<Map>(found[k], directions));
         append(to_scene_.entries, exits_of<Map>(found[k]));
     }
@@ -103,14 +104,14 @@ GhostView GhostTables::view_of_objects() const {
     return view_of(to_scene_, GhostLight::of_objects, samples, exit_reach_, film_grid_);
 }
 
-GhostView GhostTables::view_of(const Ways& of, GhostLight light, std::int32_t pixel_samples, float reach,
+GhostView GhostTables::view_of(const LensPaths& of, GhostLight light, std::int32_t pixel_samples, float reach,
                                const GhostGrid& grid) const {
     const auto data_of = [](const auto& list) { return list.empty() ? nullptr : list.data(); };
     return {light,
             effects_,
             pixel_samples,
-            of.ways.data(),
-            static_cast<int>(of.ways.size()),
+            of.paths.data(),
+            static_cast<int>(of.paths.size()),
             cdf_.data(),
             data_of(of.entries),
             static_cast<int>(of.surfaces.size()),
@@ -142,20 +143,20 @@ void GhostTables::make_crossings(const LensSystem& lens, const FilmSpectrum* spe
                                    wavelengths, variable);
 }
 
-void GhostTables::add(Ways& to, const LensPath<float>& path, const std::vector<Crossing>& crossings) {
-    const LensView<float> way = path.view();
+void GhostTables::add(LensPaths& to, const LensPath<float>& path, const std::vector<Crossing>& crossings) {
+    const LensView<float> view = path.view();
     const std::size_t first = to.surfaces.size();
-    to.ways.push_back({static_cast<std::int32_t>(first), way.count, 0});
-    to.surfaces.insert(to.surfaces.end(), way.surfaces, way.surfaces + way.count);
+    to.paths.push_back({static_cast<std::int32_t>(first), view.count, 0});
+    to.surfaces.insert(to.surfaces.end(), view.surfaces, view.surfaces + view.count);
     // Data that one path does not need may be needed by another: missing arrays are padded.
     const auto append = [&](auto& list, const auto* from) {
         if (list.empty() && !from) return;
         list.resize(to.surfaces.size());
-        if (from) std::copy(from, from + way.count, list.begin() + static_cast<std::ptrdiff_t>(first));
+        if (from) std::copy(from, from + view.count, list.begin() + static_cast<std::ptrdiff_t>(first));
     };
-    append(to.frames, way.free.frames);
-    append(to.freeforms, way.free.freeforms);
-    append(to.apertures, way.free.apertures);
+    append(to.frames, view.free.frames);
+    append(to.freeforms, view.free.freeforms);
+    append(to.apertures, view.free.apertures);
     for (const Crossing& crossing : crossings) {
         const std::size_t number = ghost_tables_detail::number_of(crossing);
         if (!all_coatings_.empty()) to.coatings.push_back(all_coatings_[number]);
@@ -172,8 +173,8 @@ void GhostTables::set_probabilities() {
     std::vector<double> weights;
     for (const double share : shares_) weights.push_back(0.9 * share / sum + 0.1 / static_cast<double>(shares_.size()));
     append_cdf(weights, cdf_);
-    for (Ways* of : {&to_film_, &to_scene_})
-        for (std::size_t k = 0; k < weights.size(); ++k) of->ways[k].probability = cdf_[k + 1] - cdf_[k];
+    for (LensPaths* of : {&to_film_, &to_scene_})
+        for (std::size_t k = 0; k < weights.size(); ++k) of->paths[k].probability = cdf_[k + 1] - cdf_[k];
 }
 
 }  // namespace realcam

@@ -38,8 +38,8 @@ public:
 
 private:
     /// Optical paths of all ghosts, for light towards the film or from the film to the scene.
-    struct Ways {
-        std::vector<GhostLensPath> ways;
+    struct LensPaths {
+        std::vector<GhostLensPath> paths;
         std::vector<GhostEntry> entries;
         std::vector<SurfaceView<float>> surfaces;
         // One element for each crossing of all paths, or empty:
@@ -51,7 +51,7 @@ private:
         std::vector<GhostCoating<kGhostSpectrumTerms>> spectral_coatings;
     };
 
-    GhostView view_of(const Ways& of, GhostLight light, std::int32_t pixel_samples, float reach,
+    GhostView view_of(const LensPaths& of, GhostLight light, std::int32_t pixel_samples, float reach,
                       const GhostGrid& grid) const;
 
     /// A pair whose ghost may be bright enough, and the product of its surfaces' axial reflectances and transmittances
@@ -63,8 +63,8 @@ private:
 
     /// Finds the optical paths of these pairs. `lens`: `of_lens` with the film as a mirror surface.
     template <class Map>
-    void find_ways(const EntrancePupilSearch<Map>& search, const LensSystem& of_lens, const LensSystem& lens,
-                   const std::vector<AxialPair>& pairs, double least_share, const PupilTracer& tracer);
+    void find_lens_paths(const EntrancePupilSearch<Map>& search, const LensSystem& of_lens, const LensSystem& lens,
+                         const std::vector<AxialPair>& pairs, double least_share, const PupilTracer& tracer);
 
     // Store the maps of directions and of the film.
     void set_maps(const HalfTangentBins& directions, const FilmRings&) { largest_half_tangent_ = directions.largest; }
@@ -77,7 +77,7 @@ private:
     void make_crossings(const LensSystem& lens, const FilmSpectrum* spectrum);
 
     /// Appends a path. `crossings`: in the order in which light along `path` meets them.
-    void add(Ways& to, const LensPath<float>& path, const std::vector<Crossing>& crossings);
+    void add(LensPaths& to, const LensPath<float>& path, const std::vector<Crossing>& crossings);
 
     /// Sampling probabilities: 90% by the paths' shares, 10% uniform, because the actual light is not a uniform
     /// surround.
@@ -86,7 +86,7 @@ private:
     Effects effects_;
     std::vector<GhostPair> pairs_;
     std::vector<double> shares_;
-    Ways to_film_, to_scene_;
+    LensPaths to_film_, to_scene_;
     std::vector<float> cdf_;
     std::vector<Crossing> all_;  ///< the next three hold one element for each, indexed by
                                  ///< ghost_tables_detail::number_of

@@ -29,8 +29,8 @@ struct GhostGrid {
     Vec2f cells_per_unit;
 
     /// Index of the cell of a point; -1 outside the grid.
-    REALCAM_INLINE int cell_of(Vec2f place) const {
-        const float x = (place.x - corner.x) * cells_per_unit.x, y = (place.y - corner.y) * cells_per_unit.y;
+    REALCAM_INLINE int cell_of(Vec2f point) const {
+        const float x = (point.x - corner.x) * cells_per_unit.x, y = (point.y - corner.y) * cells_per_unit.y;
         const float end = static_cast<float>(kGhostColumns);
         const bool inside = (x >= 0.0f) & (x < end) & (y >= 0.0f) & (y < end);
         const int column = static_cast<int>(select(inside, x, 0.0f)), row = static_cast<int>(select(inside, y, 0.0f));
@@ -78,9 +78,9 @@ struct GhostView {
     GhostLight light;
     Effects effects;  ///< effects that are simulated for it
     std::int32_t pixel_samples;  ///< number of pixel samples for each sample of this light
-    const GhostLensPath* ways;
-    int way_count;
-    const float* cdf;  ///< cumulative probabilities of the paths, way_count + 1
+    const GhostLensPath* paths;
+    int path_count;
+    const float* cdf;  ///< cumulative probabilities of the paths, path_count + 1
     const GhostEntry* entries;  ///< kGhostBins for each path, or kGhostCells without rotational symmetry
     int crossing_count;
     const SurfaceView<float>* surfaces;  ///< crossings of all paths, as the next three
@@ -103,9 +103,9 @@ GhostView with_copied_arrays(GhostView view, Copy&& copy) {
     const auto move = [&](auto*& array, int count) {
         if (array) array = copy(array, static_cast<std::size_t>(count));
     };
-    move(view.ways, view.way_count);
-    move(view.cdf, view.way_count + 1);
-    move(view.entries, view.way_count * (view.kind == LensKind::any ? kGhostCells : kGhostBins));
+    move(view.paths, view.path_count);
+    move(view.cdf, view.path_count + 1);
+    move(view.entries, view.path_count * (view.kind == LensKind::any ? kGhostCells : kGhostBins));
     move(view.surfaces, view.crossing_count);
     move(view.coatings, view.crossing_count);
     view.free.move_arrays(view.crossing_count, move);

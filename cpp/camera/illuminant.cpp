@@ -85,9 +85,9 @@ std::string Illuminant::text() const {
 }
 
 double Illuminant::at(const VisibleSpectrum& spectrum, double wavelength_nm) {
-    const double place = (wavelength_nm - kFirstWavelength_nm) / kSpectrumStep_nm;
-    const auto i = static_cast<std::size_t>(std::clamp(place, 0.0, static_cast<double>(spectrum.size() - 2)));
-    const double share = place - static_cast<double>(i);
+    const double position = (wavelength_nm - kFirstWavelength_nm) / kSpectrumStep_nm;
+    const auto i = static_cast<std::size_t>(std::clamp(position, 0.0, static_cast<double>(spectrum.size() - 2)));
+    const double share = position - static_cast<double>(i);
     return (1 - share) * spectrum[i] + share * spectrum[i + 1];
 }
 

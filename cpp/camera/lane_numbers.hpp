@@ -16,44 +16,44 @@ public:
         else
             kept_.set(0, block.random(0, dimension));
     }
-    /// Draws numbers for the lanes `lane_of(i)`, i from 0 to `places` - 1.
+    /// Draws numbers for the lanes `lane_of(i)`, i from 0 to `slots` - 1.
     template <class LaneOf>
-    REALCAM_INLINE LaneNumbers(const SampleBlock<N>& block, std::uint32_t dimension, int places, LaneOf&& lane_of) {
+    REALCAM_INLINE LaneNumbers(const SampleBlock<N>& block, std::uint32_t dimension, int slots, LaneOf&& lane_of) {
         Lanes<std::uint32_t, N> stream, sample;
         REALCAM_LANES
-        for (int i = 0; i < places; ++i) {
+        for (int i = 0; i < slots; ++i) {
             stream[i] = block.stream[lane_of(i)];
             sample[i] = block.sample[lane_of(i)];
         }
-        draw(stream, sample, places, dimension, kept_);
+        draw(stream, sample, slots, dimension, kept_);
     }
-    REALCAM_INLINE Vec2f operator[](int place) const { return kept_[place]; }
+    REALCAM_INLINE Vec2f operator[](int slot) const { return kept_[slot]; }
 
 private:
     using Integers = std::uint32_t[N];
 
     /// The code for a dimension of the joint sequence, and for few or many samples, is selected outside the loops.
-    [[gnu::noinline]] static void draw(const Integers& stream, const Integers& sample, int places,
+    [[gnu::noinline]] static void draw(const Integers& stream, const Integers& sample, int slots,
                                        std::uint32_t dimension, Vec2Lanes<float, N>& numbers) {
         switch (dimension) {
-            case 0: return draw_joint<0>(stream, sample, places, numbers);
-            case 1: return draw_joint<1>(stream, sample, places, numbers);
-            case 2: return draw_joint<2>(stream, sample, places, numbers);
-            case 3: return draw_joint<3>(stream, sample, places, numbers);
-            case 4: return draw_joint<4>(stream, sample, places, numbers);
+            case 0: return draw_joint<0>(stream, sample, slots, numbers);
+            case 1: return draw_joint<1>(stream, sample, slots, numbers);
+            case 2: return draw_joint<2>(stream, sample, slots, numbers);
+            case 3: return draw_joint<3>(stream, sample, slots, numbers);
+            case 4: return draw_joint<4>(stream, sample, slots, numbers);
             default: break;
         }
         static_assert(kJointPairs == 5);
         REALCAM_LANES
-        for (int i = 0; i < places; ++i) numbers.set(i, sample_2d(stream[i], sample[i], dimension));
+        for (int i = 0; i < slots; ++i) numbers.set(i, sample_2d(stream[i], sample[i], dimension));
     }
     template <std::uint32_t pair>
-    static void draw_joint(const Integers& stream, const Integers& sample, int places, Vec2Lanes<float, N>& numbers) {
+    static void draw_joint(const Integers& stream, const Integers& sample, int slots, Vec2Lanes<float, N>& numbers) {
         std::uint32_t all = 0;
-        for (int i = 0; i < places; ++i) all |= sample[i];
+        for (int i = 0; i < slots; ++i) all |= sample[i];
         const auto draw_with = [&]<int bits>(std::integral_constant<int, bits>) {
             REALCAM_LANES
-            for (int i = 0; i < places; ++i) numbers.set(i, sample_joint_2d<bits>(stream[i], sample[i], pair));
+            for (int i = 0; i < slots; ++i) numbers.set(i, sample_joint_2d<bits>(stream[i], sample[i], pair));
         };
         if (all >> 8 == 0)
             draw_with(std::integral_constant<int, 8>{});

@@ -11,7 +11,8 @@ class LastSetup {
 public:
     /// Throws InputError; the last set-up is kept then.
     std::shared_ptr<const CameraSetup> make(const Camera& camera, const PupilTracer& tracer,
-                                            const LensEffects& effects = {}, PupilStart start = PupilStart::anew);
+                                            const LensEffects& effects = {},
+                                            PupilStart start = PupilStart::from_scratch);
 
 private:
     std::shared_ptr<const CameraSetup> get() const;

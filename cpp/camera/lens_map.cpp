@@ -24,7 +24,7 @@ LensMap::LensMap(const LensSystem& lens, double film_radius, double thin_image_d
         if (!(seen.light > 0)) return;
         // A thin lens images the direction of slope r / image distance, from its centre, at the film radius r.
         const double distance = lens.focus_distance - lens.film_position() + pupil_position;
-        const double slope = std::isfinite(lens.focus_distance) ? seen.place / distance : seen.place;
+        const double slope = std::isfinite(lens.focus_distance) ? seen.position / distance : seen.position;
         nodes_[k].scale = static_cast<float>(slope * thin_image_distance / radius);
     });
     for (std::size_t k = 1; k < nodes_.size(); ++k) {
@@ -59,9 +59,9 @@ LensMap::Seen LensMap::seen_at(const LensSystem& lens, const PupilView& pupil, c
             const Vec3d o = static_cast<Vec3d>(rays.origin[k]), d = static_cast<Vec3d>(rays.direction[k]);
             is_behind |= d.z > -1e-3 * length(d);
             const double weight = static_cast<double>(weights[k]), slope = d.x / d.z;
-            const double place = std::isfinite(plane) ? o.x + (plane - o.z) * slope : -slope;
+            const double position = std::isfinite(plane) ? o.x + (plane - o.z) * slope : -slope;
             light += weight;
-            sum -= weight * place;  // what a film point at +x sees lies at -x
+            sum -= weight * position;  // what a film point at +x sees lies at -x
         }
     }
     static_assert(kSamples % PupilTracer::kBlock == 0);

@@ -24,8 +24,8 @@ private:
 
     struct Seen {
         double light;  ///< irradiance for unit radiance
-        double place;  ///< mean over the light of its distance from the axis in the plane in focus, mm; at infinity, of
-                       ///< its slope
+        double position;  ///< mean over the light of its distance from the axis in the plane in focus, mm; at infinity,
+                          ///< of its slope
         bool is_behind;  ///< true if some of the light comes from 90 degrees or more from the axis
     };
 

@@ -17,10 +17,10 @@ struct LensMapView {
 };
 
 REALCAM_INLINE LensMapNode lens_map_at(const LensMapView& map, Vec2f film) {
-    const float place = map.steps_per_mm * sqrt_or_zero(film.x * film.x + film.y * film.y);
-    int step = static_cast<int>(place);
+    const float position = map.steps_per_mm * sqrt_or_zero(film.x * film.x + film.y * film.y);
+    int step = static_cast<int>(position);
     step = select(step < map.count - 1, step, map.count - 2);
-    const float share = place - static_cast<float>(step);
+    const float share = position - static_cast<float>(step);
     const LensMapNode &near = map.nodes[step], &far = map.nodes[step + 1];
     return {near.scale + share * (far.scale - near.scale), near.light + share * (far.light - near.light)};
 }

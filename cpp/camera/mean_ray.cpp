@@ -57,20 +57,20 @@ std::optional<MeanRay> MeanRays::of(const FilmBundle& bundle) const {
     if (bundle.mirrored) sum.x = 0;
     const Vec3d towards = normalized(sum);
     const AcrossRay across(towards);
-    Vec2<double> place = {0, 0}, slope = {0, 0};
+    Vec2<double> position = {0, 0}, slope = {0, 0};
     double start = 0;
     for (const Part& part : parts) {
         const auto& [origin, direction] = part.ray;
-        const Vec2<double> at = across.of(origin), way = across.of(direction);
+        const Vec2<double> at = across.of(origin), lateral = across.of(direction);
         const double along = dot(origin, towards), ahead = dot(direction, towards), share = part.area / area;
-        const Vec2<double> tangent = {way.x / ahead, way.y / ahead};
+        const Vec2<double> tangent = {lateral.x / ahead, lateral.y / ahead};
         slope = {slope.x + share * tangent.x, slope.y + share * tangent.y};
-        place = {place.x + share * (at.x - along * tangent.x), place.y + share * (at.y - along * tangent.y)};
+        position = {position.x + share * (at.x - along * tangent.x), position.y + share * (at.y - along * tangent.y)};
         start += share * along;
     }
-    if (bundle.mirrored) slope.x = place.x = 0;
-    const Vec3d way = towards + across.at(slope);
-    const SceneRay ray = {across.at(place) + start * way, normalized(way)};
+    if (bundle.mirrored) slope.x = position.x = 0;
+    const Vec3d direction = towards + across.at(slope);
+    const SceneRay ray = {across.at(position) + start * direction, normalized(direction)};
     return MeanRay{ray, middle_of_light(ray, parts, bundle.mirrored), area};
 }
 
@@ -99,8 +99,8 @@ Vec2<double> MeanRays::middle_of_light(const SceneRay& ray, const std::vector<Pa
     Vec2<double> squares = {0, 0};
     for (const Part& part : parts) {
         const Vec3d from = part.ray.origin - ray.origin;
-        const double way = -dot(from, ray.direction) / dot(part.ray.direction, ray.direction);
-        const Vec2<double> at = across.of(from + way * part.ray.direction);
+        const double distance = -dot(from, ray.direction) / dot(part.ray.direction, ray.direction);
+        const Vec2<double> at = across.of(from + distance * part.ray.direction);
         area += part.area;
         squares = {squares.x + part.area * at.x * at.x, squares.y + part.area * at.y * at.y};
     }

@@ -45,20 +45,22 @@ FilmPinhole pinhole_of_any_lens(const LensSystem& lens) {
     if (!middle) return {{kNone, kNone, kNone}, {}, {}};
     const Vec3d towards = -middle->scene_direction;
     const AcrossRay across(towards);
-    // `direction`: x / z and y / z in the axes of computer vision. `place`, `slope`: position and slope in the plane
+    // `direction`: x / z and y / z in the axes of computer vision. `position`, `slope`: position and slope in the plane
     // perpendicular to the central chief ray.
     struct Seen {
-        Vec2<double> direction = {kNone, kNone}, place = direction, slope = direction;
+        Vec2<double> direction = {kNone, kNone}, position = direction, slope = direction;
     };
     const auto seen_from = [&](const std::optional<ChiefRay>& chief) {
         if (!chief) return Seen{};
         const Vec3d d = -chief->scene_direction, from = chief->scene - middle->scene;
         const double ahead = dot(d, towards), along = dot(from, towards);
-        const Vec2<double> at = across.of(from), way = across.of(d), slope = {way.x / ahead, way.y / ahead};
+        const Vec2<double> at = across.of(from), direction = across.of(d),
+                           slope = {direction.x / ahead, direction.y / ahead};
         return Seen{{-d.x / d.z, d.y / d.z}, {at.x - along * slope.x, at.y - along * slope.y}, slope};
     };
     const double step = 1e-3 * rays.film_distance();
-    Matrix2 direction{}, place{}, slope{};  // derivatives by x to the right and y down on the film, as in the picture
+    Matrix2 direction{}, position{},
+        slope{};  // derivatives by x to the right and y down on the film, as in the picture
     for (const bool is_y : {false, true}) {
         const auto at = [&](double steps) {
             return seen_from(
@@ -74,11 +76,11 @@ FilmPinhole pinhole_of_any_lens(const LensSystem& lens) {
             (is_y ? to.second.y : to.second.x) = by(&Vec2<double>::y);
         };
         set(direction, &Seen::direction);
-        set(place, &Seen::place);
+        set(position, &Seen::position);
         set(slope, &Seen::slope);
     }
     // Distance along the central chief ray to where the chief rays cross, averaged over both meridians.
-    const double ahead = -0.5 * (place * slope.inverse()).trace();
+    const double ahead = -0.5 * (position * slope.inverse()).trace();
     const Vec3d centre = middle->scene + ahead * towards - Vec3d{0, 0, camera_film_position(lens)};
     const Matrix2 scale = direction.inverse();
     const Vec2<double> shown = scale * seen_from(middle).direction;

@@ -5,7 +5,7 @@ namespace REALCAM_NAMESPACE {
 
 /// Largest number of pupil points that are tried before a pixel counts as dark. Their spacing is two percent of the
 /// pupil's radius.
-inline constexpr int kMiddlePlaces = 2048;
+inline constexpr int kPupilTrials = 2048;
 
 namespace pixel_centre_rays_detail {
 
@@ -16,21 +16,21 @@ REALCAM_INLINE Vec2f spiral(int index) {
     const float turns = static_cast<float>(index) * kGoldenTurn;
     const Vec2f azimuth = cos_sin_of_turn(turns - std::floor(turns));
     // Radius up to sqrt(2), because a pupil with blades may fill the corners of the box.
-    const float reach = 1.4142136f * std::sqrt(static_cast<float>(index) / static_cast<float>(kMiddlePlaces));
+    const float reach = 1.4142136f * std::sqrt(static_cast<float>(index) / static_cast<float>(kPupilTrials));
     return {reach * azimuth.x, reach * azimuth.y};
 }
 
 /// Optical direction from a film point to a point in the box around its pupil.
 template <class View>
-REALCAM_INLINE Vec3f direction_to(const View& pupil, Vec2f film, Vec2f place) {
+REALCAM_INLINE Vec3f direction_to(const View& pupil, Vec2f film, Vec2f pupil_point) {
     const auto at = pupil_lookup(pupil, film.x, film.y);
-    const Vec2f d = at.from_box(place), cosines = at.to_film(d);
+    const Vec2f d = at.from_box(trial), cosines = at.to_film(d);
     return {cosines.x, cosines.y, -sqrt_or_zero(pupil.index_squared - d.x * d.x - d.y * d.y)};
 }
 
-REALCAM_INLINE Vec3f direction_to(const CameraView& camera, Vec2f film, Vec2f place) {
-    if (camera.pupil_grid.nodes) return direction_to(camera.pupil_grid, film, place);
-    return direction_to(camera.pupil, film, place);
+REALCAM_INLINE Vec3f direction_to(const CameraView& camera, Vec2f film, Vec2f pupil_point) {
+    if (camera.pupil_grid.nodes) return direction_to(camera.pupil_grid, film, trial);
+    return direction_to(camera.pupil, film, trial);
 }
 
 /// False if no light can reach a film point.
@@ -39,51 +39,51 @@ REALCAM_INLINE bool may_be_lit(const CameraView& camera, Vec2f film) {
     return may_be_lit(camera.pupil, pupil_lookup(camera.pupil, film.x, film.y));
 }
 
-/// Index of the next point, from `first` on, that lies in the tabulated pupil; kMiddlePlaces if there is none.
-REALCAM_INLINE int next_place(const CameraView& camera, Vec2f film, int first) {
-    for (int k = first; k < kMiddlePlaces; ++k) {
+/// Index of the next point, from `first` on, that lies in the tabulated pupil; kPupilTrials if there is none.
+REALCAM_INLINE int next_trial(const CameraView& camera, Vec2f film, int first) {
+    for (int k = first; k < kPupilTrials; ++k) {
         const Vec3f direction = direction_to(camera, film, spiral(k));
         if (direction.z < 0.0f && camera_pupil_pdf(camera, film, direction) > 0.0f) return k;
     }
-    return kMiddlePlaces;
+    return kPupilTrials;
 }
 
 template <int N>
 REALCAM_HD inline void lens_rays(const CameraView& camera, const SampleBlock<N>& block, CameraRays<N>& rays) {
     LensRays<float, N> inside;
-    Lanes<std::int32_t, N> place;
+    Lanes<std::int32_t, N> trial;
     int searching = 0;
     for (int i = 0; i < N; ++i) {
         const Vec2f film = film_point(camera, block.column[i], block.row[i], {0.5f, 0.5f});
         // The centre is tried even if it lies outside the tabulated pupil, which is a polygon.
-        place[i] = block.used[i] && may_be_lit(camera, film) ? 0 : kMiddlePlaces;
+        trial[i] = block.used[i] && may_be_lit(camera, film) ? 0 : kPupilTrials;
         rays.passed[i] = 0;
         rays.sampled[i] = block.used[i];
-        place_ray(camera, rays, i, {}, false);
-        searching |= place[i] < kMiddlePlaces;
+        set_camera_ray(camera, rays, i, {}, false);
+        searching |= trial[i] < kPupilTrials;
     }
     while (searching) {
         searching = 0;
         for (int i = 0; i < N; ++i) {
             const Vec2f film = film_point(camera, block.column[i], block.row[i], {0.5f, 0.5f});
-            const bool tries = !rays.passed[i] && place[i] < kMiddlePlaces;
-            const Vec3f direction = direction_to(camera, film, spiral(tries ? place[i] : 0));
+            const bool tries = !rays.passed[i] && trial[i] < kPupilTrials;
+            const Vec3f direction = direction_to(camera, film, spiral(tries ? trial[i] : 0));
             const FilmSurface<float> surface = film_surface(camera);
-            inside.origin.set(i, surface.place(film));
+            inside.origin.set(i, surface.point(film));
             inside.direction.set(i, surface.direction(film, direction));
             inside.status[i] = tries ? 0 : static_cast<int>(RayStatus::vignetted);
         }
         trace_lens(camera.lens, inside);
         for (int i = 0; i < N; ++i) {
-            if (rays.passed[i] || place[i] == kMiddlePlaces) continue;
+            if (rays.passed[i] || trial[i] == kPupilTrials) continue;
             if (inside.status[i] == 0) {
-                place_ray(camera, rays, i, {inside.origin[i], normalized(inside.direction[i]), 1.0f}, true);
+                set_camera_ray(camera, rays, i, {inside.origin[i], normalized(inside.direction[i]), 1.0f}, true);
                 rays.passed[i] = 1;
                 continue;
             }
             const Vec2f film = film_point(camera, block.column[i], block.row[i], {0.5f, 0.5f});
-            place[i] = next_place(camera, film, place[i] + 1);
-            searching |= place[i] < kMiddlePlaces;
+            trial[i] = next_trial(camera, film, trial[i] + 1);
+            searching |= trial[i] < kPupilTrials;
         }
     }
 }
@@ -100,7 +100,7 @@ REALCAM_HD inline void still_rays(const CameraView& camera, const SampleBlock<N>
                            : camera.model == CameraModel::mapped_lens ? mapped_lens_ray(camera, film, middle)
                                                                       : thin_lens_ray(camera, film, middle, 0.0f);
         ray.weight = 1.0f;
-        place_ray(camera, rays, i, ray, block.used[i] != 0);
+        set_camera_ray(camera, rays, i, ray, block.used[i] != 0);
         rays.sampled[i] = rays.passed[i] = block.used[i];
     }
 }

@@ -36,47 +36,47 @@ REALCAM_INLINE int cell_of(Vec2f u) {
 inline constexpr std::uint32_t kFirstPass = 4;
 
 /// Index of the set bit that has `below` set bits below it.
-REALCAM_INLINE int place_of_bit(std::uint32_t bits, std::uint32_t below) {
-    int place = 0;
+REALCAM_INLINE int position_of_bit(std::uint32_t bits, std::uint32_t below) {
+    int position = 0;
     for (int half = 16; half > 0; half /= 2) {
         const std::uint32_t low = bits & ((1u << half) - 1u), count = count_bits(low);
         const bool is_above = below >= count;
         below -= select(is_above, count, 0u);
         bits = select(is_above, bits >> half, low);
-        place += select(is_above, half, 0);
+        position += select(is_above, half, 0);
     }
-    return place;
+    return position;
 }
 
 }  // namespace pixel_pupil
 
 /// Point in the unit square, and the inverse of its density.
-struct GuidedPlace {
-    Vec2f place;
+struct GuidedSample {
+    Vec2f point;
     float weight;
 };
 
 /// Defensive mixture: samples the given cells and, with probability kAnywhere, all cells, so that every cell keeps a
 /// non-zero probability.
-REALCAM_INLINE GuidedPlace guided(std::uint32_t cells, Vec2f u) {
+REALCAM_INLINE GuidedSample guided(std::uint32_t cells, Vec2f u) {
     using namespace pixel_pupil;
     if (cells == 0) return {u, 1.0f};
     const std::uint32_t count = count_bits(cells);
-    Vec2f place = {u.x * (1.0f / kAnywhere), u.y};
+    Vec2f point = {u.x * (1.0f / kAnywhere), u.y};
     if (u.x >= kAnywhere) {
         const float along = (u.x - kAnywhere) * (1.0f / (1.0f - kAnywhere)) * static_cast<float>(count);
         const std::uint32_t below = std::min(static_cast<std::uint32_t>(along), count - 1u);
-        const int cell = place_of_bit(cells, below);
+        const int cell = position_of_bit(cells, below);
         // The sum of a cell's index and a fraction must not be rounded up to the next cell.
         const auto within = [](int number, float share) {
             return static_cast<float>(number) + std::min(share, 0x1.ffffep-1f);
         };
-        place = {within(cell % kColumns, along - static_cast<float>(below)) * (1.0f / kColumns),
+        point = {within(cell % kColumns, along - static_cast<float>(below)) * (1.0f / kColumns),
                  within(cell / kColumns, u.y) * (1.0f / kRows)};
     }
-    const bool is_chosen = (cells >> cell_of(place) & 1u) != 0;
+    const bool is_chosen = (cells >> cell_of(point) & 1u) != 0;
     const float of_cells = select(is_chosen, (1.0f - kAnywhere) * (kColumns * kRows) / static_cast<float>(count), 0.0f);
-    return {place, 1.0f / (kAnywhere + of_cells)};
+    return {point, 1.0f / (kAnywhere + of_cells)};
 }
 
 }  // namespace REALCAM_NAMESPACE

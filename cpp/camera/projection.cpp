@@ -12,18 +12,18 @@ Projection::Projection(const Camera& camera, std::shared_ptr<const ProjectionRay
     const double begin = exposure.begin_s + 0.5 * camera.seen_time();
     const int rows = row_time > 0 ? film_.height : 1;
     for (int row = 0; row < rows; ++row)
-        places_.push_back(camera_detail::scene_from_camera(pose_at(camera, begin + row * row_time)));
+        scene_from_camera_.push_back(camera_detail::scene_from_camera(pose_at(camera, begin + row * row_time)));
 }
 
 ProjectedPoint Projection::pixel_of(Vec3d point_m) const {
     if (!std::isfinite(point_m.x) || !std::isfinite(point_m.y) || !std::isfinite(point_m.z))
         return {kNowhere, ProjectionStatus::bad_input};
-    if (places_.size() == 1) return seen_from(places_.front(), point_m);
+    if (scene_from_camera_.size() == 1) return seen_from(scene_from_camera_.front(), point_m);
     // Rolling shutter: the row determines the time, and the time determines the row. Iterated until they agree.
-    int row = static_cast<int>(places_.size()) / 2;
+    int row = static_cast<int>(scene_from_camera_.size()) / 2;
     ProjectedPoint found{};
     for (int i = 0; i < kMostTurns; ++i) {
-        found = seen_from(places_[static_cast<std::size_t>(row)], point_m);
+        found = seen_from(scene_from_camera_[static_cast<std::size_t>(row)], point_m);
         const int next = std::isfinite(found.pixel.y) ? row_of(found.pixel.y) : row;
         if (next == row) break;
         row = next;
@@ -32,16 +32,18 @@ ProjectedPoint Projection::pixel_of(Vec3d point_m) const {
 }
 
 PixelRay Projection::ray_of(Vec2<double> pixel) const {
-    const Affine<double>& place = places_[places_.size() == 1 ? 0 : static_cast<std::size_t>(row_of(pixel.y))];
-    const std::optional<FilmProjection> sight = lines_->from(film_.place_of(pixel));
-    if (!sight) return {kNowhere3, kNowhere3};
-    return {place.point(0.001 * sight->origin), place.direction(sight->direction), sight->light};
+    const Affine<double>& scene_from_camera =
+        scene_from_camera_[scene_from_camera_.size() == 1 ? 0 : static_cast<std::size_t>(row_of(pixel.y))];
+    const std::optional<FilmProjection> ray = lines_->ray(film_.point_of(pixel));
+    if (!ray) return {kNowhere3, kNowhere3};
+    return {scene_from_camera.point(0.001 * ray->origin), scene_from_camera.direction(ray->direction), ray->light};
 }
 
-ProjectedPoint Projection::seen_from(const Affine<double>& place, Vec3d point_m) const {
-    const Vec3d from = 1000.0 * (point_m - place.origin);
-    const Vec3d point = {dot(from, place.x), dot(from, place.y), dot(from, place.z)};
-    const std::optional<Vec2<double>> at = lines_->place_of(point);
+ProjectedPoint Projection::seen_from(const Affine<double>& scene_from_camera, Vec3d point_m) const {
+    const Vec3d from = 1000.0 * (point_m - scene_from_camera.origin);
+    const Vec3d point = {dot(from, scene_from_camera.x), dot(from, scene_from_camera.y),
+                         dot(from, scene_from_camera.z)};
+    const std::optional<Vec2<double>> at = lines_->project(point);
     if (!at) {
         if (!lines_->is_in_front(point)) return {kNowhere, ProjectionStatus::behind};
         return {kNowhere, lines_->ends_in_film() ? ProjectionStatus::blocked : ProjectionStatus::outside_picture};

@@ -47,12 +47,12 @@ private:
 
     int row_of(double y) const { return static_cast<int>(std::clamp(y, 0.0, static_cast<double>(film_.height - 1))); }
 
-    ProjectedPoint seen_from(const Affine<double>& place, Vec3d point_m) const;
+    ProjectedPoint seen_from(const Affine<double>& scene_from_camera, Vec3d point_m) const;
 
     Film film_;
     std::shared_ptr<const ProjectionRays> lines_;
-    std::vector<Affine<double>> places_;  ///< scene-from-camera transform of each row of pixels; a single one if all
-                                          ///< rows share it
+    std::vector<Affine<double>> scene_from_camera_;  ///< scene-from-camera transform of each row of pixels; a single
+                                                     ///< one if all rows share it
 };
 
 }  // namespace REALCAM_NAMESPACE

@@ -150,9 +150,9 @@ void ProjectionGrid::finish(std::vector<Grid::Values> lines) {
     lines_.emplace(kColumns + 1, kRows + 1, lines);
 }
 
-std::optional<FilmProjection> ProjectionGrid::from(Vec2<double> place) const {
+std::optional<FilmProjection> ProjectionGrid::ray(Vec2<double> film) const {
     const Vec2<double> size = cell_size();
-    const double column = (-place.x - area_.least.x) / size.x, row = (-place.y - area_.least.y) / size.y;
+    const double column = (-film.x - area_.least.x) / size.x, row = (-film.y - area_.least.y) / size.y;
     // Margin that keeps the film's corners inside despite rounding.
     constexpr double kRounding = 1e-6;
     if (!(column > -kRounding && column < kColumns + kRounding && row > -kRounding && row < kRows + kRounding))
@@ -165,17 +165,17 @@ std::optional<FilmProjection> ProjectionGrid::from(Vec2<double> place) const {
     return FilmProjection{origin, direction, line[kLight]};
 }
 
-std::optional<Vec2<double>> ProjectionGrid::place_of(Vec3d point) const {
+std::optional<Vec2<double>> ProjectionGrid::project(Vec3d point) const {
     const Vec3d from = point + Vec3d{0, 0, film_z_} - reference_;
-    std::optional<GridPlace> at = nearest_node(from);
+    std::optional<GridPosition> at = nearest_node(from);
     if (!at || !follow(from, *at)) return std::nullopt;
     const Vec2<double> size = cell_size();
     return Vec2<double>{-(area_.least.x + at->column * size.x), -(area_.least.y + at->row * size.y)};
 }
 
-std::optional<ProjectionGrid::GridPlace> ProjectionGrid::nearest_node(Vec3d from) const {
+std::optional<ProjectionGrid::GridPosition> ProjectionGrid::nearest_node(Vec3d from) const {
     constexpr int kEvery = 2;
-    std::optional<GridPlace> nearest;
+    std::optional<GridPosition> nearest;
     double least = std::numeric_limits<double>::infinity();
     for (int row = 0; row <= kRows; row += kEvery)
         for (int column = 0; column <= kColumns; column += kEvery) {
@@ -189,7 +189,7 @@ std::optional<ProjectionGrid::GridPlace> ProjectionGrid::nearest_node(Vec3d from
     return nearest;
 }
 
-bool ProjectionGrid::follow(Vec3d from, GridPlace& at) const {
+bool ProjectionGrid::follow(Vec3d from, GridPosition& at) const {
     constexpr int kMostSteps = 30, kMostHalvings = 8;
     constexpr double kClose = 1e-11, kLargestStep = 4;
     Grid::Point line = lines_->at(at.column, at.row);
@@ -204,7 +204,7 @@ bool ProjectionGrid::follow(Vec3d from, GridPlace& at) const {
         double column = dot(cross(to, by_row), direction) / volume, row = dot(cross(by_column, to), direction) / volume;
         const double size = std::max(std::fabs(column), std::fabs(row));
         if (size > kLargestStep) column *= kLargestStep / size, row *= kLargestStep / size;
-        GridPlace next = at;
+        GridPosition next = at;
         for (int halving = 0; halving <= kMostHalvings; ++halving, column *= 0.5, row *= 0.5) {
             next = {std::clamp(at.column + column, 0.0, static_cast<double>(kColumns)),
                     std::clamp(at.row + row, 0.0, static_cast<double>(kRows))};

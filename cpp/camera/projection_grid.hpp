@@ -18,8 +18,8 @@ public:
 
     bool ends_in_film() const override { return ends_in_film_; }
     bool is_in_front(Vec3d point) const override { return point.z + film_z_ < reference_.z; }
-    std::optional<FilmProjection> from(Vec2<double> place) const override;
-    std::optional<Vec2<double>> place_of(Vec3d point) const override;
+    std::optional<FilmProjection> ray(Vec2<double> film) const override;
+    std::optional<Vec2<double>> project(Vec3d point) const override;
 
 private:
     /// Number of grid cells. If the lens has a plane of symmetry, only one half of the grid is traced.
@@ -55,14 +55,14 @@ private:
     void finish(std::vector<Grid::Values> lines);
 
     /// Position in the grid, in columns and rows.
-    struct GridPlace {
+    struct GridPosition {
         double column, row;
     };
     /// Node whose ray passes nearest to a point, by angle; std::nullopt if the point lies in front of no ray's start.
     /// Points are relative to the reference point.
-    std::optional<GridPlace> nearest_node(Vec3d from) const;
+    std::optional<GridPosition> nearest_node(Vec3d from) const;
     /// Moves `at` to the position in the grid whose ray passes through the point. Returns false if no ray does.
-    bool follow(Vec3d from, GridPlace& at) const;
+    bool follow(Vec3d from, GridPosition& at) const;
 
     FilmArea area_;
     MirrorPlanes planes_;

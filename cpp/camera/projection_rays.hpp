@@ -26,10 +26,10 @@ public:
     virtual ~ProjectionRays() = default;
 
     /// Returns std::nullopt if no light reaches the film point, and beyond the corners of the film.
-    virtual std::optional<FilmProjection> from(Vec2<double> place) const = 0;
+    virtual std::optional<FilmProjection> ray(Vec2<double> film) const = 0;
     /// Film point whose ray passes through a scene point, which is in the frame of FilmProjection. Returns std::nullopt
     /// if no ray does.
-    virtual std::optional<Vec2<double>> place_of(Vec3d point) const = 0;
+    virtual std::optional<Vec2<double>> project(Vec3d point) const = 0;
     /// True if a point lies farther in front than the entrance pupil.
     virtual bool is_in_front(Vec3d point) const = 0;
     /// True if the lens's image ends within the film.

@@ -12,11 +12,11 @@ std::vector<FoundRay> rays_of(const PupilView& pupil, const LensView<float>& len
     tracer.for_each(kBlocks, [&](int block) {
         PupilTracer::Rays& rays = blocks[static_cast<std::size_t>(block)];
         for (int k = 0; k < kBlock; ++k) {
-            const int ring = (block * kBlock + k) / kPerRing, place = (block * kBlock + k) % kPerRing;
+            const int ring = (block * kBlock + k) / kPerRing, index = (block * kBlock + k) % kPerRing;
             const float radius = static_cast<float>(film_radius) * (static_cast<float>(ring) + 0.5f) / kRings;
             const PupilSample sample =
-                sample_pupil(pupil, radius, 0, (static_cast<float>(place % kSide) + 0.5f) / kSide,
-                             (static_cast<float>(place / kSide) + 0.5f) / kSide);
+                sample_pupil(pupil, radius, 0, (static_cast<float>(index % kSide) + 0.5f) / kSide,
+                             (static_cast<float>(index / kSide) + 0.5f) / kSide);
             rays.origin.set(k, {radius, 0, static_cast<float>(film_distance)});
             rays.direction.set(k, sample.direction);
             rays.status[k] = sample.weight > 0 ? 0 : static_cast<int>(RayStatus::vignetted);

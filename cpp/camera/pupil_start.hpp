@@ -5,7 +5,7 @@ namespace REALCAM_NAMESPACE {
 
 /// Start of the pupil search for a lens that differs from the last one.
 enum class PupilStart {
-    anew,  ///< from scratch: the result does not depend on the last lens
+    from_scratch,  ///< the result does not depend on the last lens
     near_last,  ///< faster, near the edges of the last pupil (see Pupil); from scratch if the lens is unchanged
 };
 

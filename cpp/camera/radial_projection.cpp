@@ -23,7 +23,7 @@ constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 /// Projection ray of a film radius, and the film radius at which it is shown: the centroid of the light of the ray's
 /// point in focus. Radii are in steps.
 struct Seen {
-    SightLine line;
+    MeridionalRay line;
     double shown;
 };
 
@@ -43,7 +43,7 @@ public:
     }
 
     /// Ray that is shown at a radius, without its light.
-    SightLine shown_at(double radius) const {
+    MeridionalRay shown_at(double radius) const {
         const std::optional<LocalCubic> cubic = LocalCubic::at(shown_, radius);
         if (!cubic) return {kUnknown, kUnknown, kUnknown, kUnknown};
         return {cubic->odd([&](std::size_t i) { return lines_[i].angle; }),
@@ -60,7 +60,7 @@ public:
 private:
     std::vector<double> radii_, light_;
     std::vector<double> shown_;  ///< strictly increasing
-    std::vector<SightLine> lines_;
+    std::vector<MeridionalRay> lines_;
 };
 
 }  // namespace
@@ -90,20 +90,20 @@ RadialProjection::RadialProjection(const CameraSetup& setup, ProjectionRay ray, 
     }
     end_where_lines_turn_back();
     const double middle = lines_[0].light > 0 ? lines_[0].light : lines_[1].light;
-    for (SightLine& line : lines_) line.light /= middle;
-    angle_ = curve_of(&SightLine::angle, true);
-    offset_ = curve_of(&SightLine::offset);
-    for (const SightLine& line : lines_) {
+    for (MeridionalRay& line : lines_) line.light /= middle;
+    angle_ = curve_of(&MeridionalRay::angle, true);
+    offset_ = curve_of(&MeridionalRay::offset);
+    for (const MeridionalRay& line : lines_) {
         cosines_.push_back(std::cos(line.angle));
         sines_.push_back(std::sin(line.angle));
     }
 }
 
-std::optional<FilmProjection> RadialProjection::from(Vec2<double> place) const {
-    const auto [x, y] = place;
+std::optional<FilmProjection> RadialProjection::ray(Vec2<double> film) const {
+    const auto [x, y] = film;
     const double radius = hypotenuse(x, y);
     if (!(radius <= reach_)) return std::nullopt;
-    const std::optional<SightLine> line = at(radius);
+    const std::optional<MeridionalRay> line = at(radius);
     if (!line) return std::nullopt;
     const double c = radius > 0 ? sign_ * x / radius : 1, s = radius > 0 ? sign_ * y / radius : 0;
     const double cosine = std::cos(line->angle), sine = std::sin(line->angle);
@@ -112,7 +112,7 @@ std::optional<FilmProjection> RadialProjection::from(Vec2<double> place) const {
     return FilmProjection{{c * away, s * away, -ahead}, {c * sine, s * sine, -cosine}, line->light};
 }
 
-std::optional<Vec2<double>> RadialProjection::place_of(Vec3d point) const {
+std::optional<Vec2<double>> RadialProjection::project(Vec3d point) const {
     const double away = hypotenuse(point.x, point.y);
     const std::optional<double> radius = radius_towards({away, -point.z - reference_});
     if (!radius) return std::nullopt;
@@ -120,37 +120,37 @@ std::optional<Vec2<double>> RadialProjection::place_of(Vec3d point) const {
     return Vec2<double>{share * point.x, share * point.y};
 }
 
-std::optional<SightLine> RadialProjection::at(double film_radius) const {
-    const double place = film_radius / reach_ * kSteps;
-    const auto k = static_cast<std::size_t>(std::min(static_cast<int>(place), kSteps - 1));
-    const double share = place - static_cast<double>(k), angle = angle_.at(place).value;
+std::optional<MeridionalRay> RadialProjection::at(double film_radius) const {
+    const double step = film_radius / reach_ * kSteps;
+    const auto k = static_cast<std::size_t>(std::min(static_cast<int>(step), kSteps - 1));
+    const double share = step - static_cast<double>(k), angle = angle_.at(step).value;
     if (!std::isfinite(angle)) return std::nullopt;
-    const SightLine &a = lines_[k], &b = lines_[k + 1];
-    return SightLine{angle, offset_.at(place).value, a.start + share * (b.start - a.start),
-                     a.light + share * (b.light - a.light)};
+    const MeridionalRay &a = lines_[k], &b = lines_[k + 1];
+    return MeridionalRay{angle, offset_.at(step).value, a.start + share * (b.start - a.start),
+                         a.light + share * (b.light - a.light)};
 }
 
-std::optional<double> RadialProjection::radius_towards(Place place) const {
-    if (place.away == 0 && place.ahead > lines_[0].start) return 0.0;
-    double before = place.away;
+std::optional<double> RadialProjection::radius_towards(MeridionalPoint point) const {
+    if (point.away == 0 && point.ahead > lines_[0].start) return 0.0;
+    double before = point.away;
     for (int k = 1; k <= kSteps; ++k) {
         const auto i = static_cast<std::size_t>(k);
-        const double here = place.away * cosines_[i] - place.ahead * sines_[i] - offset_[k];
-        if (before > 0 && here <= 0 && place.away * sines_[i] + place.ahead * cosines_[i] > lines_[i].start)
-            return reach_ / kSteps * (k - 1 + root(k - 1, place));
+        const double here = point.away * cosines_[i] - point.ahead * sines_[i] - offset_[k];
+        if (before > 0 && here <= 0 && point.away * sines_[i] + point.ahead * cosines_[i] > lines_[i].start)
+            return reach_ / kSteps * (k - 1 + root(k - 1, point));
         before = here;
     }
     return std::nullopt;
 }
 
-OddCurve RadialProjection::curve_of(double SightLine::* value, bool rises) const {
+OddCurve RadialProjection::curve_of(double MeridionalRay::* value, bool rises) const {
     std::vector<double> values;
-    for (const SightLine& line : lines_) values.push_back(line.*value);
+    for (const MeridionalRay& line : lines_) values.push_back(line.*value);
     return OddCurve(std::move(values), rises);
 }
 
 void RadialProjection::set(int k, const std::optional<SceneRay>& ray, double light) {
-    SightLine& line = lines_[static_cast<std::size_t>(k)];
+    MeridionalRay& line = lines_[static_cast<std::size_t>(k)];
     line = {kNone, kNone, kNone, light};
     if (!ray) return;
     const double away = -ray->origin.y, ahead = vertex_ - ray->origin.z;
@@ -170,7 +170,7 @@ void RadialProjection::follow_light(const LensSystem& lens, const PupilView& pup
     std::vector<std::optional<Seen>> seen(lines_.size());
     const auto is_foretold = [&](const KnownLines& known, int k) {
         const auto& [line, shown] = *seen[static_cast<std::size_t>(k)];
-        const SightLine foretold = known.shown_at(shown);
+        const MeridionalRay foretold = known.shown_at(shown);
         const double light = known.light_at(k);
         return std::fabs(foretold.angle - line.angle) < kPrecision &&
                std::fabs(foretold.offset - line.offset) < kPrecision * reach_ &&
@@ -201,7 +201,7 @@ void RadialProjection::follow_light(const LensSystem& lens, const PupilView& pup
     }
     const KnownLines known(seen);
     for (int k = 1; k <= kSteps; ++k) {
-        SightLine& line = lines_[static_cast<std::size_t>(k)];
+        MeridionalRay& line = lines_[static_cast<std::size_t>(k)];
         line = known.shown_at(k);
         line.light = known.light_at(k);
     }
@@ -229,7 +229,7 @@ void RadialProjection::follow_chief_rays(const LensSystem& lens, const PupilView
     }
 }
 
-void RadialProjection::set_ideal(int k, const CameraView& view, ThinLensPlace thin) {
+void RadialProjection::set_ideal(int k, const CameraView& view, ThinLensPosition thin) {
     const Vec2f film = {0, static_cast<float>(radius_of(k))}, middle = {0, 0};
     if (view.model == CameraModel::thick_lens) {
         const LensFrameRay ray = thick_lens_ray(view, film, middle);
@@ -248,30 +248,30 @@ void RadialProjection::set_ideal(int k, const CameraView& view, ThinLensPlace th
 }
 
 void RadialProjection::end_where_lines_turn_back() {
-    const auto first =
-        std::find_if(lines_.begin() + 1, lines_.end(), [](const SightLine& line) { return std::isfinite(line.angle); });
+    const auto first = std::find_if(lines_.begin() + 1, lines_.end(),
+                                    [](const MeridionalRay& line) { return std::isfinite(line.angle); });
     sign_ = first != lines_.end() && (first->angle < 0 || (first->angle == 0 && first->offset < 0)) ? -1 : 1;
-    for (SightLine& line : lines_) line = {sign_ * line.angle, sign_ * line.offset, line.start, line.light};
+    for (MeridionalRay& line : lines_) line = {sign_ * line.angle, sign_ * line.offset, line.start, line.light};
     const double distance = std::min(focus_, 1e9);
     for (std::size_t k = 1; k < lines_.size(); ++k) {
-        const SightLine& line = lines_[k - 1];
+        const MeridionalRay& line = lines_[k - 1];
         const double cosine = std::cos(line.angle), sine = std::sin(line.angle);
-        const Place place = {line.offset * cosine + distance * sine, distance * cosine - line.offset * sine};
-        const double beside = place.away * std::cos(lines_[k].angle) - place.ahead * std::sin(lines_[k].angle);
+        const MeridionalPoint point = {line.offset * cosine + distance * sine, distance * cosine - line.offset * sine};
+        const double beside = point.away * std::cos(lines_[k].angle) - point.ahead * std::sin(lines_[k].angle);
         if (!(beside >= lines_[k].offset)) continue;
         for (; k < lines_.size(); ++k) lines_[k].angle = lines_[k].offset = lines_[k].start = kNone;
         ends_in_film_ = true;
     }
 }
 
-double RadialProjection::root(int k, Place place) const {
+double RadialProjection::root(int k, MeridionalPoint point) const {
     double low = 0, high = 1, share = 0.5;
     for (int i = 0; i < 60 && high - low > 1e-15; ++i) {
         const OddCurve::Point angle = angle_.between(k, share), offset = offset_.between(k, share);
         const double cosine = std::cos(angle.value), sine = std::sin(angle.value);
-        const double beside = place.away * cosine - place.ahead * sine - offset.value;
+        const double beside = point.away * cosine - point.ahead * sine - offset.value;
         (beside > 0 ? low : high) = share;
-        const double slope = -(place.away * sine + place.ahead * cosine) * angle.slope - offset.slope;
+        const double slope = -(point.away * sine + point.ahead * cosine) * angle.slope - offset.slope;
         const double next = share - beside / slope;
         if (std::fabs(next - share) < 1e-14) return next;
         share = next > low && next < high ? next : 0.5 * (low + high);

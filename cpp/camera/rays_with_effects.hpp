@@ -53,7 +53,7 @@ REALCAM_HD inline void generate_surface_rays(const CameraView& camera, const Sam
         REALCAM_LANES
         for (int i = 0; i < N; ++i) rays.weight[i] *= passed[i];
     }
-    place_lens_rays(camera, inside, rays);
+    set_camera_rays(camera, inside, rays);
 }
 
 /// generate_rays_from with effects. Wavelengths must have been sampled already; the further wavelengths for which

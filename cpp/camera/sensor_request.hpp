@@ -78,9 +78,9 @@ namespace sensor_detail {
 
 REALCAM_INLINE float angular_response(const AngularResponse& response, float column, float row) {
     const float x = column - response.middle_column, y = row - response.middle_row;
-    const float place = (x * x + y * y) * response.steps_per_square;
+    const float position = (x * x + y * y) * response.steps_per_square;
     const float last = AngularResponse::kSteps;
-    const float inside = place < last ? place : last;
+    const float inside = position < last ? position : last;
     const std::int32_t step = static_cast<std::int32_t>(inside), lower = step < 63 ? step : 63;
     const float share = inside - static_cast<float>(lower);
     return response.at[lower] + share * (response.at[lower + 1] - response.at[lower]);
@@ -232,8 +232,8 @@ void expose_rows(const SensorRequest& request) {
             normal_pair(hash32(row_stream, sensor_noise::kRow), hash32(row_stream, sensor_noise::kRow + 1)).x;
         for (std::int32_t column = 0; column < request.width; column += N) {
             const std::int32_t left = request.width - column, used = left < N ? left : N;
-            const std::ptrdiff_t place = static_cast<std::ptrdiff_t>(y) * request.width + column;
-            const float* from = request.exposure + 3 * place;
+            const std::ptrdiff_t position = static_cast<std::ptrdiff_t>(y) * request.width + column;
+            const float* from = request.exposure + 3 * position;
             if (used < N) {
                 for (int k = 0; k < 3 * N; ++k) exposure[k] = k < 3 * used ? from[k] : 0.0f;
                 from = exposure;
@@ -249,7 +249,8 @@ void expose_rows(const SensorRequest& request) {
             draw_large_means(lanes);
             add_read_noise(request, row_offset_e, lanes);
             convert(request, lanes, dn);
-            for (int k = 0; k < used; ++k) request.raw[place + k] = static_cast<std::uint16_t>(static_cast<int>(dn[k]));
+            for (int k = 0; k < used; ++k)
+                request.raw[position + k] = static_cast<std::uint16_t>(static_cast<int>(dn[k]));
         }
     }
 }

@@ -23,7 +23,7 @@ template <class Point, class At, class Value>
 double interpolated(const std::vector<Point>& points, double x, double beyond, At&& at, Value&& value) {
     if (points.empty() || x < at(points.front()) || x > at(points.back())) return beyond;
     const auto next = std::lower_bound(points.begin(), points.end(), x,
-                                       [&](const Point& point, double place) { return at(point) < place; });
+                                       [&](const Point& point, double position) { return at(point) < position; });
     if (next == points.begin()) return value(*next);
     const Point &a = *(next - 1), &b = *next;
     return value(a) + (x - at(a)) / (at(b) - at(a)) * (value(b) - value(a));

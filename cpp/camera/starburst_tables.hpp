@@ -10,14 +10,14 @@ namespace REALCAM_NAMESPACE {
 /// Entrance-pupil bounds of the light that makes starbursts. Owns the memory of its view.
 class StarburstTables {
 public:
-    /// `film_radius`: radius of a circle that contains the film, mm. `way`: direct path of the same lens.
-    StarburstTables(const LensSystem& lens, double film_radius, std::shared_ptr<const DirectLensPath> way,
+    /// `film_radius`: radius of a circle that contains the film, mm. `direct_path`: of the same lens.
+    StarburstTables(const LensSystem& lens, double film_radius, std::shared_ptr<const DirectLensPath> direct_path,
                     const PupilTracer& tracer);
 
     GhostView view() const;
 
 private:
-    std::shared_ptr<const DirectLensPath> way_;
+    std::shared_ptr<const DirectLensPath> direct_path_;
     HalfTangentBins directions_;
     std::vector<GhostEntry> entries_;
 };

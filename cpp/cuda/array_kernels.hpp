@@ -15,10 +15,10 @@ void launch_widen(const float* from, std::int64_t count, double* to, cudaStream_
 /// Converts rays whose origins are relative to the camera, spp for each pixel, starting at ray `range.first`: writes
 /// origins in scene space, times and pixel indices. The camera position is added in double, as on the CPU: far from the
 /// scene's origin float would not resolve the pupil.
-struct PlaceRays {
+struct RaysToScene {
     const float* relative;  ///< range.count x 3, m
     const float* shares;  ///< range.count; times as fractions of the exposure
-    Vec3d place;
+    Vec3d camera_position;
     TimeInterval exposure;
     RayRange range;
     std::uint32_t spp;
@@ -26,6 +26,6 @@ struct PlaceRays {
     double* times;  ///< range.count, s
     int* pixels;
 };
-void launch_place(const PlaceRays& rays, cudaStream_t stream);
+void launch_rays_to_scene(const RaysToScene& rays, cudaStream_t stream);
 
 }  // namespace realcam

@@ -53,12 +53,12 @@ private:
                  const KeepGoing& keep_going, OwnStop& stop) override {
         validate_on_gpu(camera);
         setup_ = last_setup_.make(camera, tracer_, settings.lens_effects(), start);
-        const auto place = [&] { scene_.place(scene, camera, [&] { return !stop; }); };
+        const auto prepare = [&] { scene_.place(scene, camera, [&] { return !stop; }); };
         if (scene_.change_to(scene, camera) == SceneChange::all) {
-            run_heeding(place, keep_going, stop);
+            run_heeding(prepare, keep_going, stop);
             if (stop) throw Cancelled();
         } else {
-            place();  // takes less time than starting a thread
+            prepare();  // takes less time than starting a thread
         }
         CameraView view = setup_->view(scene_.placed().origin_m(), scene_.placed().moves());
         traced_lights_ = traced_lights(scene_.placed().view(), view, *setup_, settings.lights_traced(), tracer_);
@@ -67,7 +67,7 @@ private:
         set_splats(view);
     }
 
-    bool has_pupil_anew() const override { return setup_->has_pupil_anew(); }
+    bool has_new_pupil() const override { return setup_->has_new_pupil(); }
 
     void set_splats(const CameraView& camera) { front().set_splats(splat_sources(camera)); }
 
@@ -133,26 +133,26 @@ private:
             front().see_layers({row, rows, range.first, range.count}, range.seed, seen.data(), done);
             for (int r = 0; r < rows; ++r)
                 for (int column = region.column; column < region.column + region.width; ++column)
-                    film[region.place(column, row + r)] +=
+                    film[region.index(column, row + r)] +=
                         seen[static_cast<std::size_t>(r) * columns + static_cast<std::size_t>(column)];
         });
     }
 
     void see_pixel_centre_surfaces(std::vector<PixelCentreSurface>& film, OwnStop& stop) override {
         for_bands(0, height(), stop, [&](int row, int rows) {
-            front().see_pixel_centre_surfaces({row, rows, 0, 1}, &film[whole_film().place(0, row)]);
+            front().see_pixel_centre_surfaces({row, rows, 0, 1}, &film[whole_film().index(0, row)]);
         });
     }
 
-    std::vector<LayerImage> develop_besides() override {
+    std::vector<LayerImage> develop_auxiliary_layers() override {
         const std::vector<SplatFilm> splats = front().download_splats();
         FilmSums downloaded;
         if (fits()) {
             downloaded.resize(static_cast<std::size_t>(width()) * static_cast<std::size_t>(height()));
             front().download_film(downloaded.data());
         }
-        return developed_besides(on_host(fits() ? downloaded : film_, splats), settings().layers,
-                                 camera().exposure_time_s);
+        return developed_auxiliary_layers(on_host(fits() ? downloaded : film_, splats), settings().layers,
+                                          camera().exposure_time_s);
     }
 
     std::shared_ptr<LiveFrame> start(const std::vector<SampleRange>& ranges, ToneCurve curve,

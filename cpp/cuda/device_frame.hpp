@@ -17,7 +17,7 @@ struct FrameMemory {
     explicit FrameMemory(std::size_t size) : codes(size), stopped(1) {}
 
     PinnedArray<std::uint8_t> codes;
-    PinnedArray<int> stopped;  ///< not 0: the frame was stopped and may lack samples
+    PinnedArray<int> stopped;  ///< if not 0, the frame was stopped and may lack samples
 };
 
 /// Pool of pinned frame memory, reused when a frame is released: pinning takes longer than a frame.

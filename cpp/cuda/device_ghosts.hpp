@@ -39,14 +39,14 @@ public:
         height_ = height;
         films_ = films;
         const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
-        sums_.resize(view_.way_count > 0 ? static_cast<std::size_t>(films) * pixels : 0);
+        sums_.resize(view_.path_count > 0 ? static_cast<std::size_t>(films) * pixels : 0);
         blocks_done_.resize(static_cast<std::size_t>(films));
         sums_.clear(stream);
         blocks_done_.clear(stream);
     }
 
     /// Launches the samples that correspond to a range of the pixels' samples. Stops launching when the stop flag is
-    /// raised: even empty launches, of which there may be a great number, would take minutes.
+    /// raised: a great number of even empty launches would take minutes.
     void add(const DeviceScene& scene, const CameraView& camera, const StopFlag& stop, const SampleRange& range,
              const PathSettings& settings, CudaStream& stream) {
         if (sums_.size() == 0) return;

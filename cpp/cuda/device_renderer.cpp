@@ -144,7 +144,7 @@ FilmSums DeviceRenderer::expose_region(const FilmRegion& region, const SampleRan
     for (int row = region.row; row < region.row + region.height; ++row)
         for (int column = region.column; column < region.column + region.width; ++column)
             of_pixels[static_cast<std::size_t>(row - region.row) * columns + static_cast<std::size_t>(column)] =
-                counts.of(region.place(column, row), range);
+                counts.of(region.index(column, row), range);
     sample_counts_.upload(of_pixels.data(), pixels, stream_);
     region_sums_.resize(pixels);
     region_sums_.clear(stream_);

@@ -63,9 +63,9 @@ CameraRayArrays generate_ray_arrays(int ordinal, const CameraSetup& setup, std::
     generate_camera_rays_on_device(
         ordinal, setup, spp, seed, range,
         {relative.data(), directions.data(), weights.data(), shares.data(), wavelengths.data()});
-    launch_place({relative.data(), shares.data(), camera.pose.position_m, camera.exposure(), range, spp, origins.data(),
-                  times.data(), pixels.data()},
-                 stream);
+    launch_rays_to_scene({relative.data(), shares.data(), camera.pose.position_m, camera.exposure(), range, spp,
+                          origins.data(), times.data(), pixels.data()},
+                         stream);
     stream.wait("placing rays");
     return {share(std::move(origins), ordinal, {count, 3}), share(std::move(directions), ordinal, {count, 3}),
             share(std::move(weights), ordinal, {count}),    share(std::move(wavelengths), ordinal, {count}),

@@ -48,7 +48,7 @@ struct RenderJob {
     const std::uint32_t* of_pixels;
     std::uint32_t pixels_taken;
     int first_row, row_count;  ///< rows of the picture
-    bool adds_squares, adds_half, balances;  ///< if one of them is set, PixelSum::besides is summed for it
+    bool adds_squares, adds_half, balances;  ///< if one of them is set, PixelSum::auxiliary is summed for it
 };
 
 /// Throws UnsupportedGpu if the current device cannot run this build's code.

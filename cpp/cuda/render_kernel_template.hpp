@@ -65,12 +65,12 @@ struct ThreadSums {
     __device__ void clear() {
         for (int i = 0; i < 8; ++i) (*this)[i] = 0;
     }
-    __device__ void add(const PixelSum& sample, bool has_besides) {
+    __device__ void add(const PixelSum& sample, bool has_auxiliary) {
         for (int c = 0; c < 3; ++c) (*this)[c] += sample.irradiance[c];
         (*this)[3] += sample.depth;
         (*this)[4] += sample.met;
-        if (!has_besides) return;
-        for (int c = 0; c < 3; ++c) (*this)[5 + c] += sample.besides[c];
+        if (!has_auxiliary) return;
+        for (int c = 0; c < 3; ++c) (*this)[5 + c] += sample.auxiliary[c];
     }
     /// Sum over all threads of the pixel, without the sample counts.
     __device__ PixelSum of_pixel(int lanes) {
@@ -78,7 +78,7 @@ struct ThreadSums {
         for (int c = 0; c < 3; ++c) sum.irradiance[c] = sum_of_neighbours((*this)[c], lanes);
         sum.depth = sum_of_neighbours((*this)[3], lanes);
         sum.met = sum_of_neighbours((*this)[4], lanes);
-        for (int c = 0; c < 3; ++c) sum.besides[c] = sum_of_neighbours((*this)[5 + c], lanes);
+        for (int c = 0; c < 3; ++c) sum.auxiliary[c] = sum_of_neighbours((*this)[5 + c], lanes);
         return sum;
     }
 };
@@ -105,7 +105,7 @@ __device__ inline void add_shared(const SampleBlock<1>& block, const PathResults
         const float dither = unit_float(block.bits(0, static_cast<std::uint32_t>(step)));
         const Color c = results.shared.irradiance[step][0];
         if (!is_black(c)) add_shared(own[away].irradiance, c, dither);
-        add_shared(own[away].besides, results.shared.white[step][0], dither);
+        add_shared(own[away].auxiliary, results.shared.white[step][0], dither);
     }
 }
 
@@ -116,9 +116,10 @@ __device__ inline std::uint32_t samples_of(const RenderJob& job, std::int64_t pi
     return wanted > job.pixels_taken ? min(wanted - job.pixels_taken, job.sample_count) : 0;
 }
 
-/// Sums PixelSum::besides of a sample. Returns true if the job uses them.
+/// Sums PixelSum::auxiliary of a sample. Returns true if the job uses them.
 template <Effects effects>
-__device__ inline bool add_besides(const RenderJob& job, const PathResultsWith<1, effects>& results, PixelSum& sample) {
+__device__ inline bool add_auxiliary(const RenderJob& job, const PathResultsWith<1, effects>& results,
+                                     PixelSum& sample) {
     if constexpr (effects.have_wavelengths()) {
         if (job.balances) {
             sample.add_excess(results.excess[0]);
@@ -168,8 +169,8 @@ __global__ void __launch_bounds__(kBlockSize, kBlocksPerMultiprocessor)
                 sample.add_half(results, 0, is_right[0] != 0);
                 sums.add(sample, true);
             } else {
-                const bool has_besides = add_besides<effects>(job, results, sample);
-                sums.add(sample, has_besides);
+                const bool has_auxiliary = add_auxiliary<effects>(job, results, sample);
+                sums.add(sample, has_auxiliary);
             }
             if constexpr (effects.share_pixels())
                 if (shares) add_shared(block, results, job.sums + pixel);
@@ -187,7 +188,7 @@ __global__ void __launch_bounds__(kBlockSize, kBlocksPerMultiprocessor)
                 hash32(pixel_stream((job.first_row + row) * job.camera.width + column, job.seed), job.first_sample);
             for (int c = 0; c < 3; ++c) {
                 add_shared(job.sums[pixel].irradiance[c], sum.irradiance[c], unit_float(bits));
-                add_shared(job.sums[pixel].besides[c], sum.besides[c], unit_float(bits));
+                add_shared(job.sums[pixel].auxiliary[c], sum.auxiliary[c], unit_float(bits));
             }
             job.sums[pixel].add_all_but_colours(sum);
         } else {

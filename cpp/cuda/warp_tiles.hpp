@@ -22,9 +22,9 @@ struct WarpTiles {
     /// Returns the pixel of a thread of the launch, in a part of the picture with this many columns.
     __device__ Pixel pixel_of(std::int64_t thread, int columns) const {
         const std::int64_t warp = thread / kWarpSize, tiles = across(columns);
-        const int place = static_cast<int>(thread % kWarpSize) / lanes;
-        return {static_cast<int>(warp % tiles) * width + place % width,
-                static_cast<int>(warp / tiles) * height + place / width};
+        const int index = static_cast<int>(thread % kWarpSize) / lanes;
+        return {static_cast<int>(warp % tiles) * width + index % width,
+                static_cast<int>(warp / tiles) * height + index / width};
     }
 };
 

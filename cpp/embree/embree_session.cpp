@@ -114,8 +114,8 @@ private:
 
     void see_layers(const FilmRegion& region, const SampleRange& range, std::vector<LayerSum>& film,
                     std::atomic<std::int64_t>& done, OwnStop&) override {
-        for_tiles(region, range, settings(), [&](const realcam_tile& place) {
-            realcam_tile tile = place;
+        for_tiles(region, range, settings(), [&](const realcam_tile& part) {
+            realcam_tile tile = part;
             std::vector<LayerSum> sums(pixels_of(tile));
             tile.sums = sums.data();
             kernels().see_layers(&tile);
@@ -125,8 +125,8 @@ private:
     }
 
     void see_pixel_centre_surfaces(std::vector<PixelCentreSurface>& film, OwnStop&) override {
-        for_tiles(whole_film(), {settings().seed, 0, 1}, settings(), [&](const realcam_tile& place) {
-            realcam_tile tile = place;
+        for_tiles(whole_film(), {settings().seed, 0, 1}, settings(), [&](const realcam_tile& part) {
+            realcam_tile tile = part;
             std::vector<PixelCentreSurface> surfaces(pixels_of(tile));
             tile.sums = surfaces.data();
             kernels().see_pixel_centre_surfaces(&tile);
@@ -134,15 +134,15 @@ private:
         });
     }
 
-    std::vector<LayerImage> develop_besides() override {
-        return developed_besides(view(), settings().layers, camera().exposure_time_s);
+    std::vector<LayerImage> develop_auxiliary_layers() override {
+        return developed_auxiliary_layers(view(), settings().layers, camera().exposure_time_s);
     }
 
     std::shared_ptr<LiveFrame> start(const std::vector<SampleRange>& ranges, ToneCurve curve,
-                                     std::shared_ptr<void> under_way) override {
+                                     std::shared_ptr<void> in_progress) override {
         // Later calls wait for the frame, so that the members which this thread uses do not change.
         auto work = [this, ranges, curve, film = camera().film, dials = Dials{camera().exposure_time_s, camera().iso},
-                     settings = settings(), token = std::move(under_way)]() mutable {
+                     settings = settings(), token = std::move(in_progress)]() mutable {
             const std::shared_ptr<void> until_the_end = std::move(token);
             std::atomic<std::int64_t> done{0};
             for (const SampleRange& range : ranges) {
@@ -226,8 +226,8 @@ private:
                 const RenderSettings& settings, std::atomic<std::int64_t>& done, FilmSums& film, RenderStats& stats) {
         const PathSettings path = settings.path();
         const bool shares = shares_samples(camera_view_, settings, counts);
-        for_tiles(region, range, settings, [&](const realcam_tile& place) {
-            realcam_tile tile = place;
+        for_tiles(region, range, settings, [&](const realcam_tile& part) {
+            realcam_tile tile = part;
             tile.shares = shares;
             const std::vector<std::uint32_t> wanted = counts_of(tile, region, counts, range);
             if (!wanted.empty() && *std::max_element(wanted.begin(), wanted.end()) == 0) return;
@@ -358,7 +358,7 @@ private:
     static void for_pixels(const realcam_tile& tile, const FilmRegion& region, F&& f) {
         for (int row = 0; row < tile.height; ++row)
             for (int column = 0; column < tile.width; ++column)
-                f(static_cast<std::size_t>(row * tile.width + column), region.place(tile.x + column, tile.y + row));
+                f(static_cast<std::size_t>(row * tile.width + column), region.index(tile.x + column, tile.y + row));
     }
 
     void count(const realcam_tile& tile, RenderStats& stats) {

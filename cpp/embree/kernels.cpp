@@ -60,13 +60,13 @@ struct PixelOrder {
     }
 };
 
-/// Calls f(block, lanes, place) for all samples of a tile, kLanes at a time. `place`: index in the tile's sums of the
-/// pixel of each of the first `lanes` samples.
+/// Calls f(block, lanes, pixel_index) for all samples of a tile, kLanes at a time. `pixel_index`: index in the tile's
+/// sums of the pixel of each of the first `lanes` samples.
 template <class F>
 void for_blocks_of(const realcam_tile& tile, int film_width, F&& f) {
     const PixelOrder order{tile.width, tile.height};
     SampleBlock<kLanes> block;
-    int place[kLanes];
+    int pixel_index[kLanes];
     const int pixels = order.count();
     int pixel = 0;
     std::uint32_t sample = 0;
@@ -89,7 +89,7 @@ void for_blocks_of(const realcam_tile& tile, int film_width, F&& f) {
                     block.used[lanes + k] = 1;
                     block.stream[lanes + k] = stream;
                     block.sample[lanes + k] = tile.first_sample + sample + static_cast<std::uint32_t>(k);
-                    place[lanes + k] = y * tile.width + x;
+                    pixel_index[lanes + k] = y * tile.width + x;
                 }
                 lanes += take;
                 sample += static_cast<std::uint32_t>(take);
@@ -103,7 +103,7 @@ void for_blocks_of(const realcam_tile& tile, int film_width, F&& f) {
             block.column[k] = block.row[k] = block.used[k] = 0;
             block.stream[k] = block.sample[k] = 0;
         }
-        f(block, lanes, place);
+        f(block, lanes, pixel_index);
     }
 }
 
@@ -116,20 +116,20 @@ PacketScene<scene_kind> packet_scene_of(const realcam_tile& tile, const SceneVie
 /// Adds the dual-pixel halves. Out of line, because most pictures do not have these layers.
 template <Effects effects>
 [[gnu::noinline]] void add_halves(const CameraView& camera, const SampleBlock<kLanes>& block, int lanes,
-                                  const int* place, const PathResults<kLanes>& results, PixelSum* sums) {
+                                  const int* pixel_index, const PathResults<kLanes>& results, PixelSum* sums) {
     Lanes<std::int32_t, kLanes> is_right;
     find_right_half<effects>(camera, block, is_right);
-    for (int k = 0; k < lanes; ++k) sums[place[k]].add_half(results, k, is_right[k] != 0);
+    for (int k = 0; k < lanes; ++k) sums[pixel_index[k]].add_half(results, k, is_right[k] != 0);
 }
 
 /// Adds the contributions of samples to pixels other than their own.
 template <Effects effects>
-void add_shared(const PathResultsWith<kLanes, effects>& results, int lanes, const int* place, PixelSum* sums) {
+void add_shared(const PathResultsWith<kLanes, effects>& results, int lanes, const int* pixel_index, PixelSum* sums) {
     for (int step = 0; step < kSharedWavelengths - 1; ++step)
         for (int k = 0; k < lanes; ++k)
             if (const int away = results.shared.away[step][k]; away != 0) {
-                sums[place[k] + away].add(results.shared.irradiance[step][k]);
-                sums[place[k] + away].add_excess(results.shared.white[step][k]);
+                sums[pixel_index[k] + away].add(results.shared.irradiance[step][k]);
+                sums[pixel_index[k] + away].add_excess(results.shared.white[step][k]);
             }
 }
 
@@ -143,20 +143,20 @@ void render_tile_of(realcam_tile* tile) {
     auto* const sums = static_cast<PixelSum*>(tile->sums);
     StageClock clock;
     PacketScene<scene_kind> scene = packet_scene_of<scene_kind>(*tile, view);
-    for_blocks_of(*tile, camera.width, [&](const SampleBlock<kLanes>& block, int lanes, const int* place) {
+    for_blocks_of(*tile, camera.width, [&](const SampleBlock<kLanes>& block, int lanes, const int* pixel_index) {
         scene.order = RayOrder::coherent;
         render_samples<lens_kind, scene_kind, effects>(view, camera, settings, block, scene, clock, results);
         for (int k = 0; k < lanes;) {
-            const int pixel = place[k];
+            const int pixel = pixel_index[k];
             PixelSum sum = sums[pixel];  // stays in registers while consecutive samples are in the same pixel
-            for (; k < lanes && place[k] == pixel; ++k) sum.add(results, k);
+            for (; k < lanes && pixel_index[k] == pixel; ++k) sum.add(results, k);
             sums[pixel] = sum;
         }
         if constexpr (effects.share_pixels())
-            if (tile->shares) add_shared(results, lanes, place, sums);
+            if (tile->shares) add_shared(results, lanes, pixel_index, sums);
         if constexpr (effects.have_wavelengths())
             if (tile->balances)
-                for (int k = 0; k < lanes; ++k) sums[place[k]].add_excess(results.excess[k]);
+                for (int k = 0; k < lanes; ++k) sums[pixel_index[k]].add_excess(results.excess[k]);
         std::int32_t sampled = 0, passed = 0;
         for (int k = 0; k < lanes; ++k) {
             sampled += results.sampled[k];
@@ -165,8 +165,8 @@ void render_tile_of(realcam_tile* tile) {
         tile->sampled_rays += static_cast<std::uint64_t>(sampled);
         tile->passed_rays += static_cast<std::uint64_t>(passed);
         if (tile->adds_squares)
-            for (int k = 0; k < lanes; ++k) sums[place[k]].add_squares(results, k);
-        if (tile->adds_half) add_halves<effects>(camera, block, lanes, place, results, sums);
+            for (int k = 0; k < lanes; ++k) sums[pixel_index[k]].add_squares(results, k);
+        if (tile->adds_half) add_halves<effects>(camera, block, lanes, pixel_index, results, sums);
     });
     clock.enter(RenderStage::other);
     tile->lens_seconds += clock.seconds[static_cast<int>(RenderStage::lens)];
@@ -204,10 +204,10 @@ void see_layers_of_tile(realcam_tile* tile) {
     LayerResults<kLanes> results;
     auto* const sums = static_cast<LayerSum*>(tile->sums);
     auto scene = packet_scene_of<SceneKind::any>(*tile, view);
-    for_blocks_of(*tile, camera.width, [&](const SampleBlock<kLanes>& block, int lanes, const int* place) {
+    for_blocks_of(*tile, camera.width, [&](const SampleBlock<kLanes>& block, int lanes, const int* pixel_index) {
         scene.order = RayOrder::coherent;
         see_layers(view, camera, block, scene, results);
-        for (int k = 0; k < lanes; ++k) sums[place[k]].add(results, k);
+        for (int k = 0; k < lanes; ++k) sums[pixel_index[k]].add(results, k);
     });
 }
 
@@ -217,10 +217,10 @@ void see_pixel_centre_surfaces_of_tile(realcam_tile* tile) {
     PixelCentreSurface seen[kLanes];
     auto* const surfaces = static_cast<PixelCentreSurface*>(tile->sums);
     auto scene = packet_scene_of<SceneKind::any>(*tile, view);
-    for_blocks_of(*tile, camera.width, [&](const SampleBlock<kLanes>& block, int lanes, const int* place) {
+    for_blocks_of(*tile, camera.width, [&](const SampleBlock<kLanes>& block, int lanes, const int* pixel_index) {
         scene.order = RayOrder::coherent;
         see_pixel_centre_surfaces(view, camera, block, scene, seen);
-        for (int k = 0; k < lanes; ++k) surfaces[place[k]] = seen[k];
+        for (int k = 0; k < lanes; ++k) surfaces[pixel_index[k]] = seen[k];
     });
 }
 

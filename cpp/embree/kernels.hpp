@@ -18,7 +18,7 @@ struct realcam_tile {
     int (*stopped)(const void* stop);  // called before each block of samples; if true, the remaining ones are skipped
     const void* stop;
     void* sums;  // PixelSum, LayerSum or PixelCentreSurface per pixel, row by row; sums are accumulated
-    int adds_squares, adds_half, balances;  // PixelSum::besides holds one of these
+    int adds_squares, adds_half, balances;  // PixelSum::auxiliary holds one of these
     int shares;  // pixels share samples (SampleSharing); all sums are invalid if stopped
     double lens_seconds, scene_seconds, other_seconds;
     std::uint64_t sampled_rays, passed_rays, scene_rays;

@@ -114,9 +114,9 @@ void trace_rays(const LensSystem& lens, LightDirection direction, double wavelen
 
 void generate_camera_rays(const CameraSetup& setup, std::uint32_t spp, std::uint32_t seed, RayRange range,
                           const CameraRayOutput& out) {
-    const Vec3d place = setup.camera().pose.position_m;
+    const Vec3d camera_position = setup.camera().pose.position_m;
     const TimeInterval exposure = setup.camera().exposure();
-    const CameraView view = setup.view(place, true);
+    const CameraView view = setup.view(camera_position, true);
     in_chunks(0, range.count, [&](std::int64_t begin, std::int64_t end) {
         const CameraRayOutput to = out.from(begin);
         std::vector<float> origins(static_cast<std::size_t>(3 * (end - begin)));
@@ -135,9 +135,9 @@ void generate_camera_rays(const CameraSetup& setup, std::uint32_t spp, std::uint
         // The camera's position is added in double: far from the scene's origin, float could not resolve the pupil.
         for (std::int64_t i = 0; i < end - begin; ++i) {
             const float* from = origins.data() + 3 * i;
-            to.origins_m[3 * i] = place.x + static_cast<double>(from[0]);
-            to.origins_m[3 * i + 1] = place.y + static_cast<double>(from[1]);
-            to.origins_m[3 * i + 2] = place.z + static_cast<double>(from[2]);
+            to.origins_m[3 * i] = camera_position.x + static_cast<double>(from[0]);
+            to.origins_m[3 * i + 1] = camera_position.y + static_cast<double>(from[1]);
+            to.origins_m[3 * i + 2] = camera_position.z + static_cast<double>(from[2]);
             to.times_s[i] = exposure.at(static_cast<double>(times[static_cast<std::size_t>(i)]));
         }
     });

@@ -86,14 +86,14 @@ std::vector<SceneCamera> cameras_of(const FileScene& file, SceneObjects& objects
     for (std::uint32_t i = 0; i < file.nodes.size(); ++i) {
         if (file.nodes[i].camera < 0) continue;
         const FileCamera& from = file.cameras[static_cast<std::size_t>(file.nodes[i].camera)];
-        const Placement place = objects.placement(i, transforms[i]);
+        const AnimatedTransform transform = objects.placement(i, transforms[i]);
         std::string name = !file.nodes[i].name.empty() ? file.nodes[i].name : from.name;
         if (name.empty()) name = "camera " + std::to_string(file.nodes[i].camera);
-        if (const std::string why = transform_error(place.scene_from_object); !why.empty()) {
+        if (const std::string why = transform_error(transform.scene_from_object); !why.empty()) {
             warnings.push_back(file.path + ": camera " + in_quotes(name) + " is left out: " + why);
             continue;
         }
-        cameras.push_back({names.take(name), place.scene_from_object, from.vertical_field_rad, place.motion});
+        cameras.push_back({names.take(name), transform.scene_from_object, from.vertical_field_rad, transform.motion});
     }
     return cameras;
 }

@@ -17,9 +17,9 @@ struct AliasEntry {
 REALCAM_INLINE std::int32_t draw_entry(const AliasEntry* tables, std::int32_t first, std::int32_t count, float u) {
     const float scaled = u * static_cast<float>(count);
     const auto rounded_down = static_cast<std::int32_t>(scaled);
-    const std::int32_t place = select(rounded_down < count, rounded_down, count - 1);
-    const AliasEntry& at = tables[first + place];
-    return select(scaled - static_cast<float>(place) < at.kept, place, at.other);
+    const std::int32_t bucket = select(rounded_down < count, rounded_down, count - 1);
+    const AliasEntry& at = tables[first + bucket];
+    return select(scaled - static_cast<float>(bucket) < at.kept, bucket, at.other);
 }
 
 }  // namespace REALCAM_NAMESPACE

@@ -49,20 +49,20 @@ REALCAM_INLINE CdfChoice choose_from_cdf(const float* cdf, int count, float u) {
     return cdf_choice(index, cdf[index], cdf[index + 1], u);
 }
 
-/// Draws entries for `places` numbers in lockstep, which is vector code and waits for memory for many at once.
+/// Draws entries for `slots` numbers in lockstep, which is vector code and waits for memory for many at once.
 /// `tables`: tables of the same length; that of number i begins at `begin[i]`.
 template <int N>
 REALCAM_INLINE void choose_from_cdfs(const float* tables, const std::int32_t (&begin)[N], int count,
-                                     const float (&u)[N], int places, CdfChoices<N>& chosen) {
+                                     const float (&u)[N], int slots, CdfChoices<N>& chosen) {
     Lanes<std::int32_t, N> first, last;
     REALCAM_LANES
-    for (int i = 0; i < places; ++i) {
+    for (int i = 0; i < slots; ++i) {
         first[i] = begin[i];
         last[i] = begin[i] + count;
     }
     for (int width = count; width > 1; width = (width + 1) / 2) {
         REALCAM_LANES
-        for (int i = 0; i < places; ++i) {
+        for (int i = 0; i < slots; ++i) {
             const std::int32_t middle = first[i] + (last[i] - first[i]) / 2;
             // If only one entry is left, it is the middle, and stays.
             const bool is_below = tables[middle] <= u[i];
@@ -71,7 +71,7 @@ REALCAM_INLINE void choose_from_cdfs(const float* tables, const std::int32_t (&b
         }
     }
     REALCAM_LANES
-    for (int i = 0; i < places; ++i) {
+    for (int i = 0; i < slots; ++i) {
         const std::int32_t at = first[i];
         const CdfChoice choice = cdf_choice(at - begin[i], tables[at], tables[at + 1], u[i]);
         chosen.index[i] = choice.index;

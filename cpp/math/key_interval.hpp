@@ -13,10 +13,10 @@ struct KeyInterval {
 
 /// Returns the interval of a time among `count` keys, which are at least 2.
 REALCAM_INLINE KeyInterval key_interval(float time, std::int32_t count) {
-    const float place = time * static_cast<float>(count - 1);
-    const auto whole = static_cast<std::int32_t>(place);
+    const float position = time * static_cast<float>(count - 1);
+    const auto whole = static_cast<std::int32_t>(position);
     const std::int32_t first = whole < 0 ? 0 : whole < count - 1 ? whole : count - 2;
-    return {first, place - static_cast<float>(first)};
+    return {first, position - static_cast<float>(first)};
 }
 
 }  // namespace REALCAM_NAMESPACE

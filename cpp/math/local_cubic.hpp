@@ -13,11 +13,11 @@ namespace REALCAM_NAMESPACE {
 /// that are odd or even. Nodes need not be equidistant.
 class LocalCubic {
 public:
-    /// `nodes` increase from 0. Returns std::nullopt if `place` is not between two of them, or if there are fewer than
-    /// three.
-    static std::optional<LocalCubic> at(const std::vector<double>& nodes, double place) {
+    /// `nodes` increase from 0. Returns std::nullopt if `position` is not between two of them, or if there are fewer
+    /// than three.
+    static std::optional<LocalCubic> at(const std::vector<double>& nodes, double position) {
         const auto count = static_cast<std::ptrdiff_t>(nodes.size());
-        const std::ptrdiff_t above = std::upper_bound(nodes.begin(), nodes.end(), place) - nodes.begin();
+        const std::ptrdiff_t above = std::upper_bound(nodes.begin(), nodes.end(), position) - nodes.begin();
         if (count < 3 || above < 1 || above >= count) return std::nullopt;
         const std::ptrdiff_t first = std::min(above - 2, count - 4);
         std::array<double, 4> x{};
@@ -32,7 +32,7 @@ public:
         for (std::size_t i = 0; i < 4; ++i) {
             cubic.shares_[i] = 1;
             for (std::size_t j = 0; j < 4; ++j)
-                if (j != i) cubic.shares_[i] *= (place - x[j]) / (x[i] - x[j]);
+                if (j != i) cubic.shares_[i] *= (position - x[j]) / (x[i] - x[j]);
         }
         return cubic;
     }

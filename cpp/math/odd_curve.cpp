@@ -21,9 +21,9 @@ OddCurve::Point OddCurve::between(int k, double share) const {
     return {values_[i] + share * (from + share * (c + share * d)), from + share * (2 * c + 3 * share * d)};
 }
 
-OddCurve::Point OddCurve::at(double place) const {
-    const int k = std::clamp(static_cast<int>(place), 0, count() - 2);
-    return between(k, place - k);
+OddCurve::Point OddCurve::at(double position) const {
+    const int k = std::clamp(static_cast<int>(position), 0, count() - 2);
+    return between(k, position - k);
 }
 
 double OddCurve::value_at(int k) const {

@@ -25,7 +25,7 @@ public:
 
     /// Evaluates the function in the interval that begins at k; `share` from 0 to 1.
     Point between(int k, double share) const;
-    Point at(double place) const;
+    Point at(double position) const;
 
 private:
     double value_at(int k) const;

@@ -81,12 +81,12 @@ private:
     /// Stores the slopes of `from` in `to`, along lines of `count` nodes that lie `stride` apart.
     void set_slopes(Values Node::* from, Values Node::* to, int stride, int count) {
         for (int i = 0; i < columns_ * rows_; ++i) {
-            const int place = i / stride % count;
+            const int position = i / stride % count;
             const auto value = [&](int offset) -> const Values& {
                 return nodes_[static_cast<std::size_t>(i + offset * stride)].*from;
             };
             const auto is_known = [&](int offset) {
-                return place + offset >= 0 && place + offset < count && std::isfinite(value(offset)[0]);
+                return position + offset >= 0 && position + offset < count && std::isfinite(value(offset)[0]);
             };
             nodes_[static_cast<std::size_t>(i)].*to = slope_of(value, is_known);
         }

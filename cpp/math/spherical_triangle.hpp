@@ -55,8 +55,8 @@ public:
         const float twice = 2.0f * forward / at_least(squared, 1e-36f);
         const float of_c = at_least(twice * sideward, 0.0f), of_a = at_least(twice * forward - 1.0f - of_c * ac_, 0.0f);
         // The point on the arc from b to that point, drawn uniformly in the cosine of the angle from b.
-        const Vec3f way = of_a * a_ + of_c * c_ - b_;
-        const float all = 0.5f * dot(way, way), part = u.y * all;
+        const Vec3f offset = of_a * a_ + of_c * c_ - b_;
+        const float all = 0.5f * dot(offset, offset), part = u.y * all;
         const float of_arc = std::sqrt(u.y * (2.0f - part) / at_least(2.0f - all, 1e-7f));
         const float of_b = (1.0f - part) - of_arc * (1.0f - all);
         // Directions are sums of vertices with these weights, and so is the point.

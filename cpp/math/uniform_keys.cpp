@@ -12,7 +12,7 @@ std::vector<Affine<double>> uniform_keys(const Motion& motion, const TimeInterva
 }
 
 std::optional<int> key_steps(const Motion& motion, const TimeInterval& interval, std::span<const Vec3d> points) {
-    constexpr double kOfWay = 1e-3, kOfSize = 1e-5, kTooFar = 0.1;
+    constexpr double kOfPath = 1e-3, kOfSize = 1e-5, kTooFar = 0.1;
     // The path is checked at the motion's own keys, and at sevenths between them, which also lie at sevenths of every
     // power of two of steps, and so near the middles of some.
     std::vector<double> times = {interval.begin_s};
@@ -29,21 +29,21 @@ std::optional<int> key_steps(const Motion& motion, const TimeInterval& interval,
         for (const Vec3d p : points) most = std::max(most, length(a.point(p) - b.point(p)));
         return most;
     };
-    double way = 0, size = 0, reach = 0;
-    for (const auto& map : path) way = std::max(way, farthest(map, path[0]));
+    double path_length = 0, size = 0, reach = 0;
+    for (const auto& map : path) path_length = std::max(path_length, farthest(map, path[0]));
     for (const Vec3d p : points) reach = std::max(reach, length(path[0].point(p)));
     constexpr double kRounding = 1e-14;  // relative to the distance from the origin, for points at rest
-    if (way <= kRounding * reach) return 0;
+    if (path_length <= kRounding * reach) return 0;
     for (const Vec3d p : points) size = std::max(size, length(path[0].direction(p - points[0])));
-    const double close = std::max(kOfWay * way, kOfSize * size);
+    const double close = std::max(kOfPath * path_length, kOfSize * size);
     for (int steps = 1;; steps *= 2) {
         const std::vector<Affine<double>> keys = uniform_keys(motion, interval, steps);
-        const double wanted = steps < kMostKeySteps ? close : std::max(kTooFar * way, close);
+        const double wanted = steps < kMostKeySteps ? close : std::max(kTooFar * path_length, close);
         double most = 0;
         for (std::size_t i = 0; i < times.size() && most <= wanted; ++i) {
-            const double place = (times[i] - interval.begin_s) / (interval.end_s - interval.begin_s) * steps;
-            const auto k = static_cast<std::size_t>(std::clamp(std::floor(place), 0.0, steps - 1.0));
-            const double share = place - static_cast<double>(k);
+            const double position = (times[i] - interval.begin_s) / (interval.end_s - interval.begin_s) * steps;
+            const auto k = static_cast<std::size_t>(std::clamp(std::floor(position), 0.0, steps - 1.0));
+            const double share = position - static_cast<double>(k);
             most = std::max(most, farthest(path[i], mix(keys[k], keys[k + 1], share)));
         }
         if (most <= wanted) return steps;

@@ -65,8 +65,8 @@ REALCAM_INLINE constexpr Vec3<T> cross(Vec3<T> a, Vec3<T> b) {
 /// Returns x and y of the point where a line through `origin` crosses the plane at z.
 template <class T>
 REALCAM_INLINE Vec2<T> crossing_at(T z, Vec3<T> origin, Vec3<T> direction) {
-    const T way = quotient(z - origin.z, direction.z);
-    return {origin.x + way * direction.x, origin.y + way * direction.y};
+    const T distance = quotient(z - origin.z, direction.z);
+    return {origin.x + distance * direction.x, origin.y + distance * direction.y};
 }
 /// Interpolates linearly between a and b.
 template <class T>

@@ -33,18 +33,18 @@ inline double codes_between(double dark, double added) {
 }
 
 /// Point of the picture in fractions of its width and height, as imaged by a lens without aberrations.
-struct PicturePlace {
+struct PicturePosition {
     double across, down;
 };
 
-inline PicturePlace place_of(const Camera& camera, double film_x, double film_y) {
+inline PicturePosition picture_position(const Camera& camera, double film_x, double film_y) {
     const Film& film = camera.film;
     const Vec2<double> pixel = film.pixel_of({-film_x, -film_y});
     return {pixel.x / film.width, pixel.y / film.height};
 }
 
 /// Value of the darkest tile around a point, within these radii; std::nullopt if no tile is.
-inline std::optional<double> darkest_within(const SceneFacts& facts, PicturePlace place, double radius_across,
+inline std::optional<double> darkest_within(const SceneFacts& facts, PicturePosition position, double radius_across,
                                             double radius_down) {
     const auto range = [](double middle, double radius, int count) {
         const auto bounded = [&](double share) {
@@ -52,8 +52,8 @@ inline std::optional<double> darkest_within(const SceneFacts& facts, PicturePlac
         };
         return std::pair(std::max(0, bounded(middle - radius)), std::min(count - 1, bounded(middle + radius)));
     };
-    const auto [first_column, last_column] = range(place.across, radius_across, facts.columns);
-    const auto [first_row, last_row] = range(place.down, radius_down, facts.rows);
+    const auto [first_column, last_column] = range(position.across, radius_across, facts.columns);
+    const auto [first_row, last_row] = range(position.down, radius_down, facts.rows);
     std::optional<double> least;
     for (int row = first_row; row <= last_row; ++row)
         for (int column = first_column; column <= last_column; ++column) {
@@ -64,8 +64,8 @@ inline std::optional<double> darkest_within(const SceneFacts& facts, PicturePlac
 }
 
 /// Value of the darkest tile next to a point of the picture.
-inline std::optional<double> darkest_beside(const SceneFacts& facts, PicturePlace place) {
-    return darkest_within(facts, place, 1.0 / facts.columns, 1.0 / facts.rows);
+inline std::optional<double> darkest_beside(const SceneFacts& facts, PicturePosition position) {
+    return darkest_within(facts, position, 1.0 / facts.columns, 1.0 / facts.rows);
 }
 
 /// The brightest lights in front of the camera, enough to include the one whose effects are the most visible.
@@ -165,9 +165,9 @@ struct LightChange {
 inline LightChange coating_codes(const Camera& camera, const SceneFacts& facts) {
     using namespace light_effects_detail;
     const double value = std::min(brightest(facts), 1.0);
-    const auto way = crossings_of(camera.lens);
+    const auto crossings = crossings_of(camera.lens);
     const std::vector<AxialShares> shares = shares_of(camera.lens);
-    const auto codes_of = [&](const AxialShares& share) { return code_of(value) - code_of(value * share(way)); };
+    const auto codes_of = [&](const AxialShares& share) { return code_of(value) - code_of(value * share(crossings)); };
     const double of_one = codes_of(shares.back());
     LightChange change;
     for (const AxialShares& share : shares) {
@@ -204,8 +204,8 @@ inline std::optional<GhostDisc> ghost_disc(const Camera& camera, const SceneFact
     const double image = light.solid_angle_sr * chief * chief;
     const double radius =
         std::sqrt(std::max(spot->radius * spot->radius, pixel * pixel / 4) + image / std::numbers::pi);
-    const PicturePlace place = place_of(camera, -chief * across, -chief * down);
-    const auto dark = darkest_within(facts, place, radius / camera.film.width_mm, radius / camera.film.height_mm);
+    const PicturePosition position = picture_position(camera, -chief * across, -chief * down);
+    const auto dark = darkest_within(facts, position, radius / camera.film.width_mm, radius / camera.film.height_mm);
     if (!dark) return {};
     const double gathered = spot->radius_in_front / radius;
     const double lux = light.illuminance_lux * -light.from.z * gathered * gathered;
@@ -243,11 +243,11 @@ inline GhostChange ghost_codes(const Camera& camera, const SceneFacts& facts) {
     std::vector<Discs> all;
     std::array<double, kColours + 1> veil{};
     for (const GhostPair pair : ghost_pairs(lens)) {
-        const auto way = crossings_of(lens, pair);
+        const auto crossings = crossings_of(lens, pair);
         std::vector<Discs> of_lights(lights.size(), Discs{pair, {}});
         for (std::size_t c = 0; c <= kColours; ++c) {
             const GhostBundle bundle(lens, pair, c < kColours ? kColours_nm[c] : lens.wavelength_nm);
-            const double share = shares[c](way);
+            const double share = shares[c](crossings);
             const GhostBundle::View view = bundle.view_from_the_middle();
             const double relative = (view.sine / sine_of_lens) * (view.sine / sine_of_lens);
             veil[c] += share * relative * facts.surroundings.mean_within(view.slope_in_scene);
@@ -292,8 +292,8 @@ inline double starburst_codes(const Camera& camera, const SceneFacts& facts) {
     const double away = 2 * camera.film.width_mm / camera.film.width;
     const double radius = 0.5 * data.entrance_pupil_diameter;
     double codes = 0;
-    const auto add = [&](PicturePlace place, double value) {
-        if (const auto dark = darkest_beside(facts, place)) codes = std::max(codes, codes_between(*dark, value));
+    const auto add = [&](PicturePosition position, double value) {
+        if (const auto dark = darkest_beside(facts, position)) codes = std::max(codes, codes_between(*dark, value));
     };
     for (int row = 0; row < facts.rows; ++row)
         for (int column = 0; column < facts.columns; ++column) {
@@ -304,7 +304,7 @@ inline double starburst_codes(const Camera& camera, const SceneFacts& facts) {
         if (!light.is_point()) continue;
         const double f = data.effective_focal_length;
         const double flux = light.illuminance_lux * std::numbers::pi * radius * radius;  // lux mm^2
-        add(place_of(camera, f * light.from.x / light.from.z, f * light.from.y / light.from.z),
+        add(picture_position(camera, f * light.from.x / light.from.z, f * light.from.y / light.from.z),
             value_of(camera, flux * spread / (away * away * away)));
     }
     return codes;

@@ -86,28 +86,29 @@ inline WideView wide_view(Session& session, const Assembly& scene, Camera camera
 inline void add_lights_of(const Scene& object, const Affine<double>& scene_from_object, Vec3d lens_m,
                           const InverseAffine<double>& camera_from_scene, SceneFacts& facts) {
     for (const ScenePointLight& point : object.points) {
-        const Vec3d way = scene_from_object.point(point.position_m) - lens_m;
-        add_light(camera_from_scene, way, luminance_of(point.intensity) / dot(way, way), 0, false, facts);
+        const Vec3d to_light = scene_from_object.point(point.position_m) - lens_m;
+        add_light(camera_from_scene, to_light, luminance_of(point.intensity) / dot(to_light, to_light), 0, false,
+                  facts);
     }
     struct Lamp {
         double solid_angle = 0;
-        Vec3d way = {0, 0, 0};  ///< integral of the vector from the lens over the solid angle
+        Vec3d to_light = {0, 0, 0};  ///< integral of the vector from the lens over the solid angle
     };
     std::vector<Lamp> lamps(object.materials.size());
     for (const Triangle& triangle : object.triangles) {
         if (!object.materials[triangle.material].emits()) continue;
         const auto corner = [&](int k) { return scene_from_object.point(object.positions_m[triangle.vertices[k]]); };
         const Vec3d a = corner(0), edges = cross(corner(1) - a, corner(2) - a);
-        const Vec3d way = (1.0 / 3) * (a + corner(1) + corner(2)) - lens_m;
-        const double distance = length(way), cosine_area = 0.5 * std::max(0.0, -dot(edges, way)) / distance;
+        const Vec3d to_light = (1.0 / 3) * (a + corner(1) + corner(2)) - lens_m;
+        const double distance = length(to_light), cosine_area = 0.5 * std::max(0.0, -dot(edges, to_light)) / distance;
         const double solid_angle = cosine_area / (distance * distance);
         lamps[triangle.material].solid_angle += solid_angle;
-        lamps[triangle.material].way = lamps[triangle.material].way + solid_angle * way;
+        lamps[triangle.material].to_light = lamps[triangle.material].to_light + solid_angle * to_light;
     }
     for (std::size_t m = 0; m < lamps.size(); ++m) {
         const double solid_angle = lamps[m].solid_angle;
         if (solid_angle > 0)
-            add_light(camera_from_scene, (1 / solid_angle) * lamps[m].way,
+            add_light(camera_from_scene, (1 / solid_angle) * lamps[m].to_light,
                       luminance_of(object.materials[m].emission) * solid_angle, solid_angle, false, facts);
     }
 }

@@ -80,9 +80,9 @@ inline BundleSpot spot_of(const SampledBundle& bundle, const CircleOfConfusion& 
     for (std::size_t k = 0; k < bundle.rays.size(); ++k) {
         if (!bundle.passes[k]) continue;
         const Vec3d o = static_cast<Vec3d>(bundle.rays[k].origin_mm), d = static_cast<Vec3d>(bundle.rays[k].direction);
-        const double slope_x = d.x / -d.z, slope_y = d.y / -d.z, way = distance_mm + o.z;
-        const double at_x = (is_far ? slope_x : o.x + way * slope_x) / scale;
-        const double at_y = (is_far ? slope_y : o.y + way * slope_y) / scale;
+        const double slope_x = d.x / -d.z, slope_y = d.y / -d.z, distance = distance_mm + o.z;
+        const double at_x = (is_far ? slope_x : o.x + distance * slope_x) / scale;
+        const double at_y = (is_far ? slope_y : o.y + distance * slope_y) / scale;
         const auto weight = static_cast<double>(bundle.rays[k].weight);
         sum += weight;
         x += weight * at_x;

@@ -53,11 +53,11 @@ struct SceneFacts {
     WideView surroundings;
 
     const SeenTile& tile_at(double across, double down) const {
-        const auto place = [](double share, int count) {
+        const auto tile_index = [](double share, int count) {
             const int at = static_cast<int>(share * count);
             return static_cast<std::size_t>(at < 0 ? 0 : at < count ? at : count - 1);
         };
-        return tiles[place(down, rows) * static_cast<std::size_t>(columns) + place(across, columns)];
+        return tiles[tile_index(down, rows) * static_cast<std::size_t>(columns) + tile_index(across, columns)];
     }
 };
 

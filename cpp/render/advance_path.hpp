@@ -17,15 +17,15 @@ inline constexpr int kFirstRoulette = 3;
 
 /// Ends a path with the probability 1 - q, where q is the ratio of its throughput to its initial weight.
 template <int N>
-REALCAM_INLINE void play_roulette(const SampleBlock<N>& block, int bounce, int place, PathState<N>& path) {
-    const Color throughput = path.throughput[place];
-    const float kept = largest(throughput) / path.weight[place];
+REALCAM_INLINE void play_roulette(const SampleBlock<N>& block, int bounce, int slot, PathState<N>& path) {
+    const Color throughput = path.throughput[slot];
+    const float kept = largest(throughput) / path.weight[slot];
     if (!(kept < 1.0f)) return;
-    const float u = block.random(path.lane(place), dimension::roulette + static_cast<std::uint32_t>(bounce)).x;
+    const float u = block.random(path.lane(slot), dimension::roulette + static_cast<std::uint32_t>(bounce)).x;
     if (u < kept)
-        path.throughput.set(place, (1.0f / kept) * throughput);
+        path.throughput.set(slot, (1.0f / kept) * throughput);
     else
-        path.rays.active[place] = 0;
+        path.rays.active[slot] = 0;
 }
 
 template <int N>
@@ -45,8 +45,8 @@ REALCAM_INLINE void add_light(const ShadowRays<N>& light, SceneT&& scene, Probe&
     probe.enter(RenderStage::scene);
     scene.occluded(light.rays, hidden);
     probe.enter(RenderStage::other);
-    const int places = path.places();
-    for (int i = 0; i < places; ++i) {
+    const int slots = path.slots();
+    for (int i = 0; i < slots; ++i) {
         const int lane = path.lane(i);
         if (light.rays.active[i] & !hidden[i])
             results.irradiance.set(lane, results.irradiance[lane] + light.unshadowed[i]);
@@ -58,10 +58,10 @@ REALCAM_INLINE void add_light(const ShadowRays<N>& light, SceneT&& scene, Probe&
 
 /// Sets the properties of the shadow ray for light sample `number` that only scenes of SceneKind::any need.
 template <SceneKind scene_kind, int N>
-REALCAM_INLINE void number_shadow_ray(const PathState<N>& path, int place, int number, SceneRays<N>& rays) {
+REALCAM_INLINE void number_shadow_ray(const PathState<N>& path, int slot, int number, SceneRays<N>& rays) {
     if constexpr (scene_kind == SceneKind::any) {
-        rays.number[place] = shadow_ray_number(hash32(path.rays.number[place] + static_cast<std::uint32_t>(number)));
-        rays.time[place] = path.rays.time[place];
+        rays.number[slot] = shadow_ray_number(hash32(path.rays.number[slot] + static_cast<std::uint32_t>(number)));
+        rays.time[slot] = path.rays.time[slot];
     }
 }
 
@@ -146,21 +146,21 @@ REALCAM_HD inline bool advance_paths(const SceneView& view, const CameraView& ca
     Hits<N> hits;
     std::conditional_t<N == 1, Surfaces<N>, std::conditional_t<kIsPlain, PlainSurfaces<N>, GlossySurfaces<N>>> surfaces;
     if constexpr (scene_kind == SceneKind::any) {
-        const int places = path.places();
-        for (int i = 0; i < places; ++i) path.rays.number[i] = ray_number(block, path.lane(i), bounce);
+        const int slots = path.slots();
+        for (int i = 0; i < slots; ++i) path.rays.number[i] = ray_number(block, path.lane(i), bounce);
     }
     probe.enter(RenderStage::scene);
     scene.intersect(path.rays, hits);
     probe.enter(RenderStage::other);
     shade_hits<scene_kind>(view, camera, settings, block, bounce, hits, path, results, surfaces);
     if (path.count == 0) return false;  // on a GPU this frees the registers of what only continuing paths need
-    const int places = path.places();
+    const int slots = path.slots();
     if constexpr (N == 1)
         scatter_one<scene_kind>(view, settings, block, bounce, surfaces, scene, probe, path, results);
     else
         scatter_many<scene_kind>(view, settings, block, bounce, surfaces, scene, probe, path, results);
     if (bounce >= kFirstRoulette) {
-        for (int i = 0; i < places; ++i)
+        for (int i = 0; i < slots; ++i)
             if (path.rays.active[i]) play_roulette(block, bounce, i, path);
     }
     return any_active(path.rays);

@@ -125,7 +125,7 @@ const SceneCamera* chosen_camera(const Assembly& assembly, const ViewRequest& re
     const bool is_placed = request.position_m || request.look_at_m;
     if (request.camera.empty()) {
         for (const SceneCamera& camera : assembly.cameras)
-            if (camera.has_place() && !is_placed) return &camera;
+            if (camera.has_pose() && !is_placed) return &camera;
         return nullptr;
     }
     std::string names;
@@ -133,7 +133,7 @@ const SceneCamera* chosen_camera(const Assembly& assembly, const ViewRequest& re
         names += (names.empty() ? "\"" : ", \"") + camera.name + '"';
         if (camera.name != request.camera) continue;
         if (is_placed) throw InputError("a camera of the scene and a position or look-at exclude each other");
-        if (camera.has_place()) return &camera;
+        if (camera.has_pose()) return &camera;
         throw InputError("the scene's camera \"" + camera.name + "\" is orthographic, which no lens is");
     }
     if (request.camera == ViewRequest::kNoCamera) return nullptr;
@@ -152,21 +152,21 @@ Pose pose_of(const Affine<double>& scene_from_camera, const LensSystem& lens) {
 void take_view(Camera& camera, const Assembly& assembly, const SceneCamera& from,
                const std::optional<double>& focus_distance_m) {
     const LensSystem lens = camera.lens;
-    const Affine<double> place = from.transform_at(camera.shutter.opens_s);
+    const Affine<double> transform = from.transform_at(camera.shutter.opens_s);
     if (focus_distance_m) {
         camera.lens = focused(lens, 1000 * *focus_distance_m);
-        camera.pose = pose_of(place, camera.lens);
+        camera.pose = pose_of(transform, camera.lens);
         validate(camera);
     } else {
         const BoundingBox box = Subject(assembly).box;
         // The film position depends on the focus, and the focus on the film position, so both are iterated.
         for (int i = 0; i < 4; ++i) {
-            camera.pose = pose_of(place, camera.lens);
+            camera.pose = pose_of(transform, camera.lens);
             validate(camera);
-            const AxisCrossings axis(assembly, camera.pose.position_m, -normalized(place.z));
+            const AxisCrossings axis(assembly, camera.pose.position_m, -normalized(transform.z));
             autofocus(camera, lens, axis, 0, box);
         }
-        camera.pose = pose_of(place, camera.lens);
+        camera.pose = pose_of(transform, camera.lens);
     }
     if (!from.motion) return;
     std::vector<PoseKey> keys;
@@ -215,12 +215,12 @@ void stand_outside(Camera& camera, const Assembly& assembly, const BoundingBox& 
     if (focus_distance_m) camera.lens = focused(lens, 1000 * *focus_distance_m);
     // The field of view and the focus depend on each other, so both are iterated.
     double least = 0;
-    for (int i = 0, settled = 0; i < 100 && settled < 4; ++i) {
+    for (int i = 0, calm_steps = 0; i < 100 && calm_steps < 4; ++i) {
         const double distance =
             std::max(least, std::min(limit, filling_distance(subject, camera, target, is_open_room)));
         const double film_m = distance + film_to_pupil_m(camera.lens);
         camera.pose.position_m = target + film_m * backward;
-        ++settled;
+        ++calm_steps;
         if (focus_distance_m) continue;
         try {
             autofocus(camera, lens, axis, -film_m, subject);
@@ -228,7 +228,7 @@ void stand_outside(Camera& camera, const Assembly& assembly, const BoundingBox& 
             if (i == 99) throw;
             least = 1.2 * distance;
             limit = kInfinity;
-            settled = 0;
+            calm_steps = 0;
         }
     }
 }

@@ -71,10 +71,10 @@ REALCAM_INLINE Color emitter_light(const SceneView& scene, const CameraView& cam
     } else if (pdf < kDelta) {
         const LightReceiver receiver = receiver_of<scene_kind>(path, lane);
         const float cosine = -dot(path.rays.direction[lane], point.geometric_normal);
-        const Vec3f way = point.position - receiver.position;
+        const Vec3f offset = point.position - receiver.position;
         weight = mis_weight(
             pdf, emitter_light_pdf<scene_kind>(scene, receiver_sky<scene_kind>(scene, settings, path, bounce, lane),
-                                               receiver, area_light_of(scene, hit), length(way), cosine));
+                                               receiver, area_light_of(scene, hit), length(offset), cosine));
     }
     return (weight * path.throughput[lane]) * point.emission;
 }

@@ -108,7 +108,7 @@ struct PixelNeighbourhood {
     /// Excess per sample of a pixel, clamped: a few samples may by chance have a larger excess than should be removed.
     REALCAM_HD static double excess_of(const PixelSum& pixel, int channel) {
         constexpr double kMost = 0.5;
-        return std::clamp(pixel.besides[channel] / static_cast<double>(pixel.samples), -kMost, kMost);
+        return std::clamp(pixel.auxiliary[channel] / static_cast<double>(pixel.samples), -kMost, kMost);
     }
     REALCAM_HD double mean_excess(int channel) const { return excess[channel] / pixels; }
     /// Mean of d (1 - d), where d is the excess over the mean, weighted with the light of a channel, which may be

@@ -65,7 +65,7 @@ Image developed(const FilmView& film, double exposure_time_s, const RayLoop& loo
     image.exposure = PictureFloats(3 * pixels);
     image.depth = PictureFloats(pixels);
     for_exposures(film, exposure_time_s, loop,
-                  [&](std::size_t place, float exposure) { image.exposure[place] = exposure; });
+                  [&](std::size_t index, float exposure) { image.exposure[index] = exposure; });
     for (std::size_t i = 0; i < pixels; ++i) image.depth[i] = film.pixels[i].mean_depth();
     return image;
 }
@@ -75,7 +75,7 @@ std::vector<std::uint8_t> developed_codes(const FilmView& film, double exposure_
     std::vector<std::uint8_t> codes(3 * pixels_of(film));
     const CodeTable code_of(iso, curve);
     for_exposures(film, exposure_time_s, loop,
-                  [&](std::size_t place, float exposure) { codes[place] = code_of(exposure); });
+                  [&](std::size_t index, float exposure) { codes[index] = code_of(exposure); });
     return codes;
 }
 
@@ -113,7 +113,7 @@ LayerImage developed_half(const FilmView& film, Layer half, double exposure_time
 
 }  // namespace
 
-std::vector<LayerImage> developed_besides(const FilmView& film, LayerSet wanted, double exposure_time_s) {
+std::vector<LayerImage> developed_auxiliary_layers(const FilmView& film, LayerSet wanted, double exposure_time_s) {
     std::vector<LayerImage> images;
     if (wanted.has(Layer::variance)) images.push_back(developed_variance(film, exposure_time_s));
     if (wanted.has(Layer::traced_light)) images.push_back(developed_traced(film, exposure_time_s));

@@ -25,7 +25,7 @@ LayerImage developed_traced(const FilmView& film, double exposure_time_s);
 LayerImage developed_variance(const FilmView& film, double exposure_time_s);
 
 /// The requested layers among the variance, the traced light and the halves of dual pixels.
-std::vector<LayerImage> developed_besides(const FilmView& film, LayerSet wanted, double exposure_time_s);
+std::vector<LayerImage> developed_auxiliary_layers(const FilmView& film, LayerSet wanted, double exposure_time_s);
 
 /// Number of samples of each pixel.
 std::vector<std::int64_t> samples_of(const FilmSums& film);

@@ -37,7 +37,7 @@ REALCAM_INLINE FilmRay round_film_ray(const CameraView& camera, const GhostView&
     const float radius = std::sqrt(x * x + y * y), inverse = 1.0f / select(radius > 0.0f, radius, 1.0f);
     const float out_x = select(radius > 0.0f, x * inverse, 1.0f), out_y = y * inverse;
     const int bin = static_cast<int>(radius / ghosts.film_radius * static_cast<float>(kGhostBins));
-    const EntryPlace at = entry_place(entries[select(bin < kGhostBins, bin, kGhostBins - 1)], ghosts.reach, u);
+    const EntryPoint at = entry_point(entries[select(bin < kGhostBins, bin, kGhostBins - 1)], ghosts.reach, u);
     const float to_x = at.along * out_x - at.across * out_y - x, to_y = at.along * out_y + at.across * out_x - y;
     const float to_z = -camera.film_distance, squared = to_x * to_x + to_y * to_y + to_z * to_z;
     const float scale = ghosts.film_index / std::sqrt(squared), cosine2 = to_z * to_z / squared;
@@ -49,9 +49,9 @@ REALCAM_INLINE FilmRay round_film_ray(const CameraView& camera, const GhostView&
 REALCAM_INLINE FilmRay free_film_ray(const CameraView& camera, const GhostView& ghosts, const GhostEntry* entries,
                                      Vec2f film, Vec2f u) {
     const int cell = ghosts.grid.cell_of(film);
-    const EntryPlace at = entry_place(entries[select(cell < 0, 0, cell)], ghosts.reach, u);
+    const EntryPoint at = entry_point(entries[select(cell < 0, 0, cell)], ghosts.reach, u);
     const FilmSurface<float> surface = film_surface(camera);
-    const Vec3f from = surface.place(film), to = Vec3f{at.along, at.across, 0} - from;
+    const Vec3f from = surface.point(film), to = Vec3f{at.along, at.across, 0} - from;
     const float squared = dot(to, to), index = ghosts.film_index, scale = index / std::sqrt(squared);
     // Product of the cosines at the film and in the plane, times the squared distance.
     const float cosines = -to.z * dot(to, surface.direction(film, {0, 0, -1}));
@@ -60,11 +60,11 @@ REALCAM_INLINE FilmRay free_film_ray(const CameraView& camera, const GhostView& 
 }
 
 template <LensKind lens_kind>
-REALCAM_INLINE FilmRay film_ray(const CameraView& camera, const GhostView& ghosts, int way, Vec2f film, Vec2f u) {
+REALCAM_INLINE FilmRay film_ray(const CameraView& camera, const GhostView& ghosts, int path, Vec2f film, Vec2f u) {
     if constexpr (lens_kind == LensKind::any)
-        return free_film_ray(camera, ghosts, ghosts.entries + way * kGhostCells, film, u);
+        return free_film_ray(camera, ghosts, ghosts.entries + path * kGhostCells, film, u);
     else
-        return round_film_ray(camera, ghosts, ghosts.entries + way * kGhostBins, film, u);
+        return round_film_ray(camera, ghosts, ghosts.entries + path * kGhostBins, film, u);
 }
 
 template <LensKind lens_kind, int N>
@@ -103,26 +103,28 @@ REALCAM_HD inline void gather_ghosts(const SceneView& view, const CameraView& ca
     const GhostBlock block = ghost_block(ghosts, range);
     FilmRays<N> film;
     start_film_rays<lens_kind>(camera, ghosts, block, first, film);
-    [[maybe_unused]] Lanes<float, N> place, variable;  // position among the wavelength cells, and dispersion variable
+    [[maybe_unused]] Lanes<float, N> cell_position,
+        variable;  // position among the wavelength cells, and dispersion variable
     if constexpr (has_wavelengths) {
         REALCAM_LANES
         for (int i = 0; i < N; ++i) {
-            place[i] = film.block.random(i, dimension::time).y * static_cast<float>(camera.dispersion.cell_count);
-            variable[i] = camera.dispersion.variable.at(wavelength_at(camera.dispersion, place[i]));
+            cell_position[i] =
+                film.block.random(i, dimension::time).y * static_cast<float>(camera.dispersion.cell_count);
+            variable[i] = camera.dispersion.variable.at(wavelength_at(camera.dispersion, cell_position[i]));
         }
     }
     PassedPower<N> passed;
-    pass_ghost_lens_path<lens_kind, has_wavelengths>(ghosts, block.way, film.rays, variable, passed);
+    pass_ghost_lens_path<lens_kind, has_wavelengths>(ghosts, block.path, film.rays, variable, passed);
     CameraRays<N> camera_rays;
     // A sample lands on one of width * height pixels, and takes this path with the given probability.
-    const float scale = static_cast<float>(camera.width) * static_cast<float>(camera.height) / block.way.probability;
+    const float scale = static_cast<float>(camera.width) * static_cast<float>(camera.height) / block.path.probability;
     REALCAM_LANES
     for (int i = 0; i < N; ++i) {
         camera_rays.weight[i] =
             select(film.rays.status[i] == 0, scale * passed.of_unpolarised(i) * film.weight[i], 0.0f);
         camera_rays.sampled[i] = 1;
     }
-    place_lens_rays(camera, film.rays, camera_rays);
+    set_camera_rays(camera, film.rays, camera_rays);
     PathState<N> path;
     PathResults<N> results;
     if constexpr (scene_kind == SceneKind::any) expose_rays(camera, film.block, camera_rays, path.rays.time);
@@ -135,7 +137,7 @@ REALCAM_HD inline void gather_ghosts(const SceneView& view, const CameraView& ca
     for (int i = 0; i < N; ++i) {
         Color c = results.irradiance[i];
         if (is_black(c)) continue;
-        if constexpr (has_wavelengths) c = film_color(camera.dispersion, place[i], c);
+        if constexpr (has_wavelengths) c = film_color(camera.dispersion, cell_position[i], c);
         const std::int32_t pixel = film.block.row[i] * camera.width + film.block.column[i];
         splat(pixel, c, unit_float(film.block.bits(i, 0)));
     }

@@ -85,7 +85,7 @@ private:
         if (light == GhostLight::starbursts || light == GhostLight::direct) return units_at(pixel) / scale;
         constexpr double kWeights[] = {1, 4, 6, 4, 1}, kSum = 256;
         // Pixels beyond the border repeat the border's own pixel.
-        const auto inside = [](int place, int count) { return place < 0 ? 0 : place < count ? place : count - 1; };
+        const auto inside = [](int index, int count) { return index < 0 ? 0 : index < count ? index : count - 1; };
         const int column = static_cast<int>(pixel % width), row = static_cast<int>(pixel / width);
         std::int64_t columns[5];
         REALCAM_UNROLL

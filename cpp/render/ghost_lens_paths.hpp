@@ -21,7 +21,7 @@ struct GhostRange {
 
 /// Properties that the samples of a block share.
 struct GhostBlock {
-    GhostLensPath way;
+    GhostLensPath path;
     std::int32_t number;  ///< index of that path
     std::uint32_t stream, first_sample;
 };
@@ -30,8 +30,8 @@ struct GhostBlock {
 REALCAM_INLINE GhostBlock ghost_block(const GhostView& ghosts, GhostRange range) {
     const auto block = static_cast<std::uint32_t>(range.first_block);
     const std::uint32_t round = hash32(range.seed, static_cast<std::uint32_t>(range.first_block >> 24) + 1u);
-    const int number = find_in_cdf(ghosts.cdf, ghosts.way_count, sample_2d(round, block, 0).x);
-    return {ghosts.ways[number], number, hash32(static_cast<std::uint32_t>(number), round), block * kGhostBlock};
+    const int number = find_in_cdf(ghosts.cdf, ghosts.path_count, sample_2d(round, block, 0).x);
+    return {ghosts.paths[number], number, hash32(static_cast<std::uint32_t>(number), round), block * kGhostBlock};
 }
 
 namespace ghost_lens_paths_detail {
@@ -43,12 +43,12 @@ inline constexpr float kAround = 1.0f / 16, kAnywhere = 1.0f / 64, kAroundScale 
 }  // namespace ghost_lens_paths_detail
 
 /// Point in the plane of a GhostEntry.
-struct EntryPlace {
+struct EntryPoint {
     float along, across;  ///< radial and tangential coordinates, mm
     float density;  ///< per mm^2
 };
 
-REALCAM_INLINE EntryPlace entry_place(const GhostEntry& entry, float reach, Vec2f u) {
+REALCAM_INLINE EntryPoint entry_point(const GhostEntry& entry, float reach, Vec2f u) {
     using namespace ghost_lens_paths_detail;
     const bool known = entry.half_width > 0.0f;
     const float middle = 0.5f * (entry.low + entry.high), half_length = 0.5f * (entry.high - entry.low);
@@ -75,22 +75,22 @@ REALCAM_INLINE EntryPlace entry_place(const GhostEntry& entry, float reach, Vec2
 
 /// Traces rays along a ghost path. `variable`: dispersion variable of each ray's wavelength.
 template <LensKind lens_kind, bool has_wavelengths, int N>
-REALCAM_INLINE void pass_ghost_lens_path(const GhostView& ghosts, const GhostLensPath& way, LensRays<float, N>& rays,
+REALCAM_INLINE void pass_ghost_lens_path(const GhostView& ghosts, const GhostLensPath& path, LensRays<float, N>& rays,
                                          const float (&variable)[N], PassedPower<N>& passed) {
-    LensView<float> lens{ghosts.surfaces + way.first, way.count, ghosts.kind, ghosts.iris};
-    if constexpr (lens_kind == LensKind::any) lens.free = ghosts.free.from(way.first);
+    LensView<float> lens{ghosts.surfaces + path.first, path.count, ghosts.kind, ghosts.iris};
+    if constexpr (lens_kind == LensKind::any) lens.free = ghosts.free.from(path.first);
     if constexpr (has_wavelengths) {
         if (ghosts.effects.coatings)
             trace_lens<lens_kind>(
                 lens, rays, NoRecord{},
-                GhostMedia<kGhostSpectrumTerms, N>{ghosts.indices + way.first, ghosts.spectral_coatings + way.first,
+                GhostMedia<kGhostSpectrumTerms, N>{ghosts.indices + path.first, ghosts.spectral_coatings + path.first,
                                                    variable, passed});
         else
-            trace_lens<lens_kind>(lens, rays, NoRecord{}, ManyWavelengths{ghosts.indices + way.first, variable});
+            trace_lens<lens_kind>(lens, rays, NoRecord{}, ManyWavelengths{ghosts.indices + path.first, variable});
     } else if (ghosts.effects.coatings) {
         trace_lens<lens_kind>(
             lens, rays, NoRecord{},
-            GhostMedia<kOneWavelengthTerms, N>{nullptr, ghosts.coatings + way.first, nullptr, passed});
+            GhostMedia<kOneWavelengthTerms, N>{nullptr, ghosts.coatings + path.first, nullptr, passed});
     } else {
         trace_lens<lens_kind>(lens, rays, NoRecord{}, OneWavelength{});
     }

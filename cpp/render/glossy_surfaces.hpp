@@ -15,14 +15,14 @@ struct GlossySurfaces {
     Lanes<float, N> lobe_share;  ///< LightLobe::share; set by find_lobes
     Surfaces<N> others;
 
-    REALCAM_INLINE void set(int place, const SurfacePoint& point) {
-        position.set(place, point.position);
-        geometric_normal.set(place, point.geometric_normal);
-        normal.set(place, point.normal);
-        self_offset[place] = point.self_offset;
-        is_glossy[place] = realcam::is_glossy(point);
-        set(place, is_glossy[place] ? glossy_surface(point) : GlossySurface{});
-        if (!is_glossy[place]) others.set(place, point);
+    REALCAM_INLINE void set(int slot, const SurfacePoint& point) {
+        position.set(slot, point.position);
+        geometric_normal.set(slot, point.geometric_normal);
+        normal.set(slot, point.normal);
+        self_offset[slot] = point.self_offset;
+        is_glossy[slot] = realcam::is_glossy(point);
+        set(slot, is_glossy[slot] ? glossy_surface(point) : GlossySurface{});
+        if (!is_glossy[slot]) others.set(slot, point);
     }
     /// Fills an unused slot with the values of a slot in use.
     REALCAM_INLINE void copy(int from, int to) {
@@ -33,29 +33,28 @@ struct GlossySurfaces {
         is_glossy[to] = 0;
         set(to, glossy(from));
     }
-    REALCAM_INLINE SurfacePlace operator[](int place) const {
-        return {position[place], geometric_normal[place], self_offset[place]};
+    REALCAM_INLINE RaySpawnPoint operator[](int slot) const {
+        return {position[slot], geometric_normal[slot], self_offset[slot]};
     }
-    REALCAM_INLINE GlossySurface glossy(int place) const {
-        return {base[place], f0[place], f90[place], metallic[place], alpha[place]};
+    REALCAM_INLINE GlossySurface glossy(int slot) const {
+        return {base[slot], f0[slot], f90[slot], metallic[slot], alpha[slot]};
     }
     /// Computes the lobes once, because each step down the tree of lights reads them.
     REALCAM_INLINE void find_lobes(const PathState<N>& path) {
-        const int places = whole_vectors<N>(path.count);
+        const int slots = whole_vectors<N>(path.count);
         REALCAM_LANES
-        for (int i = 0; i < places; ++i)
-            lobe_share[i] = light_lobe(glossy(i), normal[i], -path.rays.direction[i]).share;
+        for (int i = 0; i < slots; ++i) lobe_share[i] = light_lobe(glossy(i), normal[i], -path.rays.direction[i]).share;
     }
-    REALCAM_INLINE LightLobe lobe(int place, Vec3f to_eye) const { return {to_eye, alpha[place], lobe_share[place]}; }
-    REALCAM_INLINE bool is_in_lanes(int place) const { return is_glossy[place] != 0; }
+    REALCAM_INLINE LightLobe lobe(int slot, Vec3f to_eye) const { return {to_eye, alpha[slot], lobe_share[slot]}; }
+    REALCAM_INLINE bool is_in_lanes(int slot) const { return is_glossy[slot] != 0; }
 
 private:
-    REALCAM_INLINE void set(int place, const GlossySurface& surface) {
-        base.set(place, surface.base);
-        f0.set(place, surface.f0);
-        f90[place] = surface.f90;
-        metallic[place] = surface.metallic;
-        alpha[place] = surface.alpha;
+    REALCAM_INLINE void set(int slot, const GlossySurface& surface) {
+        base.set(slot, surface.base);
+        f0.set(slot, surface.f0);
+        f90[slot] = surface.f90;
+        metallic[slot] = surface.metallic;
+        alpha[slot] = surface.alpha;
     }
 };
 

@@ -9,7 +9,7 @@ struct LightChoices {
     Lanes<std::int32_t, N> light;
     Lanes<float, N> probability, fresh;
 
-    REALCAM_INLINE LightChoice operator[](int place) const { return {light[place], probability[place], fresh[place]}; }
+    REALCAM_INLINE LightChoice operator[](int slot) const { return {light[slot], probability[slot], fresh[slot]}; }
 };
 
 namespace light_choices_detail {
@@ -48,11 +48,11 @@ private:
 /// `receiver(i)`: the receiver of lane i. `u`: below 1.
 template <int N, class Receivers>
 REALCAM_INLINE void choose_lights(const SceneView& scene, const Receivers& receiver, const float (&u)[N],
-                                  const std::uint32_t (&seed)[N], int places, LightChoices<N>& chosen) {
+                                  const std::uint32_t (&seed)[N], int slots, LightChoices<N>& chosen) {
     // One vector at a time, because each takes as many steps as its deepest light.
     constexpr int kWidth = whole_vectors<N>(1);
     const LightNode* const nodes = scene.light_nodes;
-    for (int begin = 0; begin < places; begin += kWidth) {
+    for (int begin = 0; begin < slots; begin += kWidth) {
         Lanes<std::int32_t, kWidth> node, second;
         Lanes<std::uint32_t, kWidth> bits;
         Lanes<float, kWidth> rest, probability;

@@ -40,24 +40,24 @@ LightEntries::LightEntries(const SceneView& scene, const CameraView& camera, con
       pupil_entries_(setup.pupil_entries()),
       front_reach_(entry_reach(setup.camera().lens)) {}
 
-Vec3f LightEntries::place_of(const LightGroup& group, std::uint32_t number) const {
+Vec3f LightEntries::sample_position(const LightGroup& group, std::uint32_t number) const {
     const Vec2f u = sample_joint_2d(0, number, 1), v = sample_joint_2d(0, number, 2);
     const float time = v.x * splat_ghosts_detail::all_times(camera_);
     const splat_ghosts_detail::LensFrame frame = splat_ghosts_detail::lens_frame(camera_, time);
     const std::int32_t light = group.lights[static_cast<std::size_t>(v.y * static_cast<float>(group.lights.size()))];
     if (group.kind == TracedLightKind::sun) return frame.direction(-scene_.suns[light].direction);
-    Vec3f place;
+    Vec3f position;
     if (group.kind == TracedLightKind::point) {
-        place = point_light_at(scene_, scene_.points[light], time).position;
+        position = point_light_at(scene_, scene_.points[light], time).position;
     } else {
         const AreaLight triangle = area_light_at(scene_, scene_.areas[light], time);
         const Vec2f at = sample_triangle(u);
-        place = triangle.corner + at.x * triangle.edge_u + at.y * triangle.edge_v;
+        position = triangle.corner + at.x * triangle.edge_u + at.y * triangle.edge_v;
     }
-    return 1000.0f * frame.direction(place - front_vertex(frame.camera, frame.front_vertex_m));
+    return 1000.0f * frame.direction(position - front_vertex(frame.camera, frame.front_vertex_m));
 }
 
-LightEntries::Probe LightEntries::probe(const Places& places, const TracedLight& light, const PlaneRectangle& in,
+LightEntries::Probe LightEntries::probe(const Positions& positions, const TracedLight& light, const PlaneRectangle& in,
                                         int count) const {
     const EntryPlane plane = plane_in_lens(light);
     const float columns_per_mm = static_cast<float>(camera_.width) / (2 * camera_.film_half_width);
@@ -73,17 +73,18 @@ LightEntries::Probe LightEntries::probe(const Places& places, const TracedLight&
         for (int k = 0; k < kBlock; ++k) {
             const auto number = static_cast<std::uint32_t>(first + k);
             at[k] = in.at(sample_joint_2d(0, number, 0));
-            const Vec3f entry = at[k].x * plane.along + at[k].y * plane.across, place = places[number % places.size()];
-            const Vec3f way = light.kind == TracedLightKind::sun ? -place : entry - place;
+            const Vec3f entry = at[k].x * plane.along + at[k].y * plane.across,
+                        position = positions[number % positions.size()];
+            const Vec3f direction = light.kind == TracedLightKind::sun ? -position : entry - position;
             rays.origin.set(k, entry);
-            rays.direction.set(k, normalized(way));
-            rays.status[k] = dot(way, plane.from) < 0 ? 0 : static_cast<int>(RayStatus::vignetted);
+            rays.direction.set(k, normalized(direction));
+            rays.status[k] = dot(direction, plane.from) < 0 ? 0 : static_cast<int>(RayStatus::vignetted);
         }
         tracer_.trace(to_film_, rays);
         for (int k = 0; k < kBlock; ++k) {
             if (rays.status[k] != 0) continue;
-            const Vec2f place = film_surface(camera_).landing(rays.origin[k], rays.direction[k]);
-            const Vec2f film = {place.x - camera_.film_middle.x, place.y - camera_.film_middle.y};
+            const Vec2f landing = film_surface(camera_).landing(rays.origin[k], rays.direction[k]);
+            const Vec2f film = {landing.x - camera_.film_middle.x, landing.y - camera_.film_middle.y};
             // One pixel more, for other wavelengths and for diffraction.
             if (!(std::fabs(film.x) <= camera_.film_half_width + 1 / columns_per_mm) ||
                 !(std::fabs(film.y) <= camera_.film_half_height + 1 / columns_per_mm))
@@ -99,11 +100,11 @@ LightEntries::Probe LightEntries::probe(const Places& places, const TracedLight&
 std::optional<FoundLight> LightEntries::of(const LightGroup& group) const {
     TracedLight light{};
     light.kind = group.kind;
-    Places places;
+    Positions positions;
     Vec3f middle = {0, 0, 0};
-    for (std::size_t k = 0; k < places.size(); ++k) {
-        places[k] = place_of(group, static_cast<std::uint32_t>(k));
-        middle = middle + places[k];
+    for (std::size_t k = 0; k < positions.size(); ++k) {
+        positions[k] = sample_position(group, static_cast<std::uint32_t>(k));
+        middle = middle + positions[k];
     }
     if (!(dot(middle, middle) > 0) || !std::isfinite(dot(middle, middle))) return std::nullopt;
     light.from = normalized(middle);
@@ -113,7 +114,7 @@ std::optional<FoundLight> LightEntries::of(const LightGroup& group) const {
     // A point of the front that is nearer to the light may see it within the field even if the front's centre does not.
     Vec3f nearest = middle;
     if (light.kind != TracedLightKind::sun) {
-        nearest = (1.0f / static_cast<float>(places.size())) * middle;
+        nearest = (1.0f / static_cast<float>(positions.size())) * middle;
         const float beside = hypotenuse(nearest.x, nearest.y);
         nearest = {std::max(0.0f, beside - front_reach_), 0, nearest.z};
     }
@@ -135,8 +136,8 @@ std::optional<FoundLight> LightEntries::of(const LightGroup& group) const {
     for (int round = 0; round < kMostRounds; ++round) {
         // Light outside the rectangle of a point or a sun is lost, while pixel samples find that of an emitter.
         int rays = light.kind == TracedLightKind::triangles ? kBlock : 4 * kBlock;
-        found = probe(places, light, in, rays);
-        if (found.hits < kEnoughHits && rays == kBlock) found = probe(places, light, in, rays = 4 * kBlock);
+        found = probe(positions, light, in, rays);
+        if (found.hits < kEnoughHits && rays == kBlock) found = probe(positions, light, in, rays = 4 * kBlock);
         if (found.hits == 0) {
             if (is_front) return std::nullopt;
             is_front = true;

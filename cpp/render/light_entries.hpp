@@ -32,11 +32,11 @@ private:
         PlaneRectangle entries{}, film{};  ///< bounds of the hits: at the entry, mm, and on the film, pixels
     };
 
-    using Places = std::array<Vec3f, 64>;
+    using Positions = std::array<Vec3f, 64>;
 
     /// Point of the group in the lens's frame, mm; for a sun, the direction towards it.
-    Vec3f place_of(const LightGroup& group, std::uint32_t number) const;
-    Probe probe(const Places& places, const TracedLight& light, const PlaneRectangle& in, int rays) const;
+    Vec3f sample_position(const LightGroup& group, std::uint32_t number) const;
+    Probe probe(const Positions& positions, const TracedLight& light, const PlaneRectangle& in, int rays) const;
 
     const SceneView& scene_;
     const CameraView& camera_;

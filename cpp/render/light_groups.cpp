@@ -36,13 +36,13 @@ double area_in_circle(Vec3d a, Vec3d b, Vec3d axis, double radius) {
     const auto sector = [&](Vec3d from, Vec3d to) {
         return 0.5 * radius * radius * std::atan2(double_area(from, to), dot(from, to));
     };
-    const Vec3d way = b - a;
-    const double way2 = dot(way, way), along = dot(a, way),
-                 discriminant = along * along - way2 * (dot(a, a) - radius * radius);
+    const Vec3d offset = b - a;
+    const double squared_length = dot(offset, offset), along = dot(a, offset),
+                 discriminant = along * along - squared_length * (dot(a, a) - radius * radius);
     if (!(discriminant > 0)) return sector(a, b);
     const double root = std::sqrt(discriminant);
-    const Vec3d enters = a + std::clamp((-along - root) / way2, 0.0, 1.0) * way,
-                leaves = a + std::clamp((-along + root) / way2, 0.0, 1.0) * way;
+    const Vec3d enters = a + std::clamp((-along - root) / squared_length, 0.0, 1.0) * offset,
+                leaves = a + std::clamp((-along + root) / squared_length, 0.0, 1.0) * offset;
     return sector(a, enters) + 0.5 * double_area(enters, leaves) + sector(leaves, b);
 }
 
@@ -54,8 +54,8 @@ struct Surroundings {
     double area() const { return std::numbers::pi * radius * radius; }
     /// Returns true if a sphere about a point may intersect the cylinder.
     bool reaches(Vec3d point, double ball) const {
-        const Vec3d way = point - middle;
-        const double along = dot(way, axis), across = length(way - along * axis);
+        const Vec3d offset = point - middle;
+        const double along = dot(offset, axis), across = length(offset - along * axis);
         return std::fabs(along) < kDepth * radius + ball && across < radius + ball;
     }
     /// Area of the cylinder's cross-section that the light covers, projected along the axis.
@@ -189,9 +189,9 @@ private:
             *std::min_element(group.lights.begin(), group.lights.end(),
                               [&](std::int32_t a, std::int32_t b) { return distance(a) < distance(b); });
 
-        const Vec3d place = middle_of(scene_.areas[central]);
-        const Surroundings seen = {place, normalized(static_cast<Vec3d>(front_) - place),
-                                   std::sqrt(footprint(static_cast<Vec3f>(place)).area() / std::numbers::pi)};
+        const Vec3d centre = middle_of(scene_.areas[central]);
+        const Surroundings seen = {centre, normalized(static_cast<Vec3d>(front_) - centre),
+                                   std::sqrt(footprint(static_cast<Vec3f>(centre)).area() / std::numbers::pi)};
         const double all = kLargestShare * seen.area();
         double left = all;
         subtract_lights(0, seen, brightness, left);

@@ -89,23 +89,23 @@ class LightKindsLanes {
 public:
     template <class SurfacesT>
     REALCAM_INLINE LightKindsLanes(const SceneView& scene, SkySampling sky, const SurfacesT& surfaces, int count) {
-        const int places = whole_vectors<N>(count);
+        const int slots = whole_vectors<N>(count);
         Lanes<float, N> local = {}, suns = {};
         if (count_light_kinds(scene) > 1) {
             if (scene.light_node_count > 0) {
                 const LightNode all = scene.light_nodes[0];
                 REALCAM_LANES
-                for (int i = 0; i < places; ++i)
+                for (int i = 0; i < slots; ++i)
                     local[i] = most_illuminance(all, {surfaces.position[i], surfaces.normal[i]});
             }
             for (int k = 0; k < scene.sun_count; ++k) {
                 const SunLight sun = scene.suns[k];
                 REALCAM_LANES
-                for (int i = 0; i < places; ++i) suns[i] += sun_importance(sun, surfaces.normal[i]);
+                for (int i = 0; i < slots; ++i) suns[i] += sun_importance(sun, surfaces.normal[i]);
             }
         }
         REALCAM_LANES
-        for (int i = 0; i < places; ++i) {
+        for (int i = 0; i < slots; ++i) {
             const LightKinds kinds = light_kinds(scene, sky, local[i], suns[i]);
             even_[i] = kinds.shares.even;
             scale_[i] = kinds.shares.scale;
@@ -127,7 +127,7 @@ namespace light_samples_detail {
 
 /// Points on the area lights that were picked for the lanes.
 template <int N>
-struct LightPlaces {
+struct LightPoints {
     Vec2Lanes<float, N> at;  ///< barycentric
     Lanes<std::int32_t, N> is_near;
     Lanes<float, N> solid_angle;  ///< for near lights
@@ -135,12 +135,12 @@ struct LightPlaces {
 
 /// Samples points as sample_area_light does.
 template <int N, class SurfacesT>
-REALCAM_INLINE void sample_places(const PickedLights<N>& picked, const SurfacesT& surfaces, int places,
-                                  LightPlaces<N>& drawn) {
+REALCAM_INLINE void sample_light_points(const PickedLights<N>& picked, const SurfacesT& surfaces, int slots,
+                                        LightPoints<N>& drawn) {
     using realcam::select;
     std::int32_t any_near = 0;
     REALCAM_LANES
-    for (int i = 0; i < places; ++i) {
+    for (int i = 0; i < slots; ++i) {
         const bool is_near =
             (picked.source[i] == Source::area) & realcam::is_near(picked.area_light(i), surfaces.position[i]);
         drawn.is_near[i] = is_near ? 1 : 0;
@@ -149,8 +149,8 @@ REALCAM_INLINE void sample_places(const PickedLights<N>& picked, const SurfacesT
     }
     if (any_near == 0) return;
     REALCAM_LANES
-    for (int i = 0; i < places; ++i) {
-        const NearPlace near = sample_near(picked.area_light(i), surfaces.position[i], picked.u[i]);
+    for (int i = 0; i < slots; ++i) {
+        const SolidAngleSample near = sample_near(picked.area_light(i), surfaces.position[i], picked.u[i]);
         const bool is_near = drawn.is_near[i] != 0;
         const Vec2f far = drawn.at[i];
         drawn.at.set(i, {select(is_near, near.at.x, far.x), select(is_near, near.at.y, far.y)});
@@ -168,18 +168,18 @@ template <int N, class SurfacesT, class Seeds>
 REALCAM_INLINE void choose_local_lights(const SceneView& scene, const LightKindsLanes<N>& kinds,
                                         const SurfacesT& surfaces, const PathState<N>& path, const PathNumbers<N>& u,
                                         const Seeds& seed, LightChoices<N>& chosen) {
-    const int places = whole_vectors<N>(path.count);
+    const int slots = whole_vectors<N>(path.count);
     Lanes<float, N> rest;
     Lanes<std::uint32_t, N> seeds;
-    for (int i = 0; i < places; ++i) seeds[i] = seed(i);
+    for (int i = 0; i < slots; ++i) seeds[i] = seed(i);
     REALCAM_LANES
-    for (int i = 0; i < places; ++i) rest[i] = left_over(u[i].x, kinds[i].local_probability);
+    for (int i = 0; i < slots; ++i) rest[i] = left_over(u[i].x, kinds[i].local_probability);
     choose_lights<N>(
         scene,
         [&](int i) -> LightReceiver {
             return {surfaces.position[i], surfaces.normal[i], 0.0f, surfaces.lobe(i, -path.rays.direction[i])};
         },
-        rest, seeds, places, chosen);
+        rest, seeds, slots, chosen);
 }
 
 /// Picks lights as pick_light does for one receiver.
@@ -187,8 +187,8 @@ template <SceneKind scene_kind, int N, class SurfacesT, class Seeds>
 REALCAM_INLINE void pick_lights(const SceneView& scene, const LightKindsLanes<N>& kinds, int number,
                                 const SurfacesT& surfaces, const PathState<N>& path, const PathNumbers<N>& u,
                                 const Seeds& seed, PickedLights<N>& picked) {
-    const int places = whole_vectors<N>(path.count);
-    for (int i = 0; i < places; ++i) picked.source[i] = Source::none;  // unused slots, too
+    const int slots = whole_vectors<N>(path.count);
+    for (int i = 0; i < slots; ++i) picked.source[i] = Source::none;  // unused slots, too
     LightChoices<N> local;
     if (number == 0 && scene.light_node_count > 0) choose_local_lights(scene, kinds, surfaces, path, u, seed, local);
     for (int i = 0; i < path.count; ++i) {
@@ -209,8 +209,8 @@ REALCAM_INLINE void pick_lights(const SceneView& scene, const LightKindsLanes<N>
 
 }  // namespace light_samples_detail
 
-/// Draws light sample `number` for each path whose surface is_in_lanes(place). Others get no light, with their normal
-/// as the direction. `u`, `seed(place)`: as in sample_light.
+/// Draws light sample `number` for each path whose surface is_in_lanes(slot). Others get no light, with their normal
+/// as the direction. `u`, `seed(slot)`: as in sample_light.
 template <SceneKind scene_kind, int N, class SurfacesT, class Seeds>
 REALCAM_INLINE void sample_lights(const SceneView& scene, const LightKindsLanes<N>& kinds, int number,
                                   const SurfacesT& surfaces, const PathState<N>& path, const PathNumbers<N>& u,
@@ -218,10 +218,10 @@ REALCAM_INLINE void sample_lights(const SceneView& scene, const LightKindsLanes<
     using namespace light_samples_detail;
     PickedLights<N> picked;
     pick_lights<scene_kind>(scene, kinds, number, surfaces, path, u, seed, picked);
-    const int count = path.count, places = whole_vectors<N>(count);
+    const int count = path.count, slots = whole_vectors<N>(count);
     if (picked.any_area) {
-        LightPlaces<N> drawn;
-        sample_places(picked, surfaces, places, drawn);
+        LightPoints<N> drawn;
+        sample_light_points(picked, surfaces, slots, drawn);
         if constexpr (scene_kind != SceneKind::plain) {
             for (int i = 0; i < count; ++i)
                 if (picked.source[i] == Source::area)
@@ -229,17 +229,17 @@ REALCAM_INLINE void sample_lights(const SceneView& scene, const LightKindsLanes<
                         i, emitted_radiance<scene_kind>(scene, picked.area_light(i), drawn.at[i].x, drawn.at[i].y));
         }
         REALCAM_LANES
-        for (int i = 0; i < places; ++i) {
+        for (int i = 0; i < slots; ++i) {
             const AreaLight light = picked.area_light(i);
-            const WayToLight way =
-                way_to(light, shines_on_both_sides<scene_kind>(light), surfaces.position[i], drawn.at[i]);
+            const DirectionToLight to_light =
+                direction_to_light(light, shines_on_both_sides<scene_kind>(light), surfaces.position[i], drawn.at[i]);
             const bool is_near = drawn.is_near[i] != 0;
-            const float scale = select(is_near, drawn.solid_angle[i], 1.0f / way.pdf);
-            samples.direction.set(i, way.direction);
-            samples.irradiance.set(i, select(way.cosine > 0.0f, scale, 0.0f) * picked.radiance[i]);
-            samples.distance[i] = way.distance;
-            samples.reach[i] = way.reach;
-            samples.pdf[i] = select(is_near, 1.0f / drawn.solid_angle[i], way.pdf);
+            const float scale = select(is_near, drawn.solid_angle[i], 1.0f / to_light.pdf);
+            samples.direction.set(i, to_light.direction);
+            samples.irradiance.set(i, select(to_light.cosine > 0.0f, scale, 0.0f) * picked.radiance[i]);
+            samples.distance[i] = to_light.distance;
+            samples.reach[i] = to_light.reach;
+            samples.pdf[i] = select(is_near, 1.0f / drawn.solid_angle[i], to_light.pdf);
         }
     }
     if (picked.any_sky) {
@@ -248,13 +248,13 @@ REALCAM_INLINE void sample_lights(const SceneView& scene, const LightKindsLanes<
             samples.set(i, select(is_sky, sky, samples[i]));
         };
         if (scene.environment.pixels) {
-            const EnvironmentSamples<N> sky(scene.environment, picked.u, places);
+            const EnvironmentSamples<N> sky(scene.environment, picked.u, slots);
             REALCAM_LANES
-            for (int i = 0; i < places; ++i) set(i, sky[i]);
+            for (int i = 0; i < slots; ++i) set(i, sky[i]);
         } else {
             const Color radiance = scene.environment.constant;
             REALCAM_LANES
-            for (int i = 0; i < places; ++i) {
+            for (int i = 0; i < slots; ++i) {
                 const Vec3f direction = sample_cosine(surfaces.normal[i], picked.u[i]);
                 const float pdf = cosine_pdf(surfaces.normal[i], direction);
                 set(i, {direction, kFarAway, 1.0f, select(pdf > 0.0f, 1.0f / pdf, 0.0f) * radiance, pdf});
@@ -267,7 +267,7 @@ REALCAM_INLINE void sample_lights(const SceneView& scene, const LightKindsLanes<
     }
     // Lanes without a light hold uninitialised memory, and a BSDF indexes tables by the direction.
     REALCAM_LANES
-    for (int i = 0; i < places; ++i) {
+    for (int i = 0; i < slots; ++i) {
         const float probability = picked.probability[i];
         const bool is_lit = picked.source[i] != Source::none;
         samples.direction.set(i, select(is_lit, samples.direction[i], surfaces.normal[i]));

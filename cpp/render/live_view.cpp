@@ -3,8 +3,8 @@
 namespace realcam {
 
 std::shared_ptr<const LiveFrame> LiveView::shoot(const Camera& camera, const RenderSettings& settings, ToneCurve curve,
-                                                 const KeepGoing& keep_going, std::shared_ptr<void> under_way) {
-    auto frame = session_->shoot(scene_, camera, settings, curve, keep_going, std::move(under_way));
+                                                 const KeepGoing& keep_going, std::shared_ptr<void> in_progress) {
+    auto frame = session_->shoot(scene_, camera, settings, curve, keep_going, std::move(in_progress));
     has_frame_ = true;
     return frame;
 }

@@ -16,7 +16,7 @@ public:
 
     /// Starts settings.spp more samples of each pixel (see Session::shoot).
     std::shared_ptr<const LiveFrame> shoot(const Camera& camera, const RenderSettings& settings, ToneCurve curve,
-                                           const KeepGoing& keep_going = {}, std::shared_ptr<void> under_way = {});
+                                           const KeepGoing& keep_going = {}, std::shared_ptr<void> in_progress = {});
 
     /// Sets the scene of the following frames. If only transforms differ, only these are prepared.
     void show(Assembly scene);

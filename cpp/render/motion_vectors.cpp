@@ -26,19 +26,19 @@ public:
             from_scene_[k] = camera_detail::scene_from_camera(pose_at(camera, times_[k])).inverse();
     }
 
-    /// Position in the axes of the camera at `when`, for a point that lies at `place` in the scene in mid-exposure.
-    Vec3d point(Vec3d place, std::uint32_t instance, When when) {
-        return from_scene_[when].point(moved(place, instance, when));
+    /// Position in the axes of the camera at `when`, for a point that lies at `point_m` in the scene in mid-exposure.
+    Vec3d point(Vec3d point_m, std::uint32_t instance, When when) {
+        return from_scene_[when].point(moved(point_m, instance, when));
     }
     Vec3d direction(Vec3d direction, When when) const { return from_scene_[when].direction(direction); }
 
 private:
-    Vec3d moved(Vec3d place, std::uint32_t instance, When when) {
-        if (instance == kNoInstance || !scene_.instances[instance].motion) return place;
+    Vec3d moved(Vec3d point_m, std::uint32_t instance, When when) {
+        if (instance == kNoInstance || !scene_.instances[instance].motion) return point_m;
         const auto [known, is_new] = transforms_.try_emplace(instance);
         if (is_new)
             for (std::size_t k = 0; k < 3; ++k) known->second[k] = scene_.instances[instance].transform_at(times_[k]);
-        return known->second[when].point(known->second[middle].inverse().point(place));
+        return known->second[when].point(known->second[middle].inverse().point(point_m));
     }
 
     const Assembly& scene_;
@@ -66,10 +66,10 @@ LayerImage motion_vectors(const std::vector<PixelCentreSurface>& film, const Ass
             const bool may_move =
                 camera.moves() || (is_surface && seen.instance != kNoInstance && scene.instances[seen.instance].motion);
             if (!is_dark && !(anything_moves && may_move)) continue;
-            const Vec3d place = static_cast<Vec3d>(seen.position);
+            const Vec3d point_m = static_cast<Vec3d>(seen.position);
             const auto pixel_at = [&](RowMotion::When when) {
-                return is_surface ? map->pixel_of(motion->point(place + origin_m, seen.instance, when), false)
-                                  : map->pixel_of(motion->direction(place, when), true);
+                return is_surface ? map->pixel_of(motion->point(point_m + origin_m, seen.instance, when), false)
+                                  : map->pixel_of(motion->direction(point_m, when), true);
             };
             std::optional<Vec2<double>> from, to;
             if (!is_dark) from = pixel_at(RowMotion::begin), to = pixel_at(RowMotion::end);

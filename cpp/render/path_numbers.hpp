@@ -10,9 +10,9 @@ template <int N>
 class PathNumbers {
 public:
     REALCAM_INLINE PathNumbers(const SampleBlock<N>& block, const PathState<N>& path, std::uint32_t dimension)
-        : numbers_(block, dimension, whole_vectors<N>(path.count), [&](int place) { return path.lane(place); }) {}
+        : numbers_(block, dimension, whole_vectors<N>(path.count), [&](int slot) { return path.lane(slot); }) {}
 
-    REALCAM_INLINE Vec2f operator[](int place) const { return numbers_[place]; }
+    REALCAM_INLINE Vec2f operator[](int slot) const { return numbers_[slot]; }
 
 private:
     LaneNumbers<N> numbers_;

@@ -72,19 +72,19 @@ struct PathState {
     }
 
     /// Number of slots in use: count or, on a GPU, the constant 1.
-    REALCAM_INLINE int places() const { return N > 1 ? count : 1; }
+    REALCAM_INLINE int slots() const { return N > 1 ? count : 1; }
     /// Lane of the block, and so the sample, to which the path in a slot belongs.
-    REALCAM_INLINE int lane(int place) const {
-        if constexpr (N > 1) return lane_[place];
+    REALCAM_INLINE int lane(int slot) const {
+        if constexpr (N > 1) return lane_[slot];
         return 0;
     }
-    REALCAM_INLINE LightLobe receiver_lobe(int place) const {
-        return {receiver_to_eye[place], receiver_alpha[place], receiver_share[place]};
+    REALCAM_INLINE LightLobe receiver_lobe(int slot) const {
+        return {receiver_to_eye[slot], receiver_alpha[slot], receiver_share[slot]};
     }
-    REALCAM_INLINE void set_receiver_lobe(int place, LightLobe lobe) {
-        receiver_to_eye.set(place, lobe.to_eye);
-        receiver_alpha[place] = lobe.alpha;
-        receiver_share[place] = lobe.share;
+    REALCAM_INLINE void set_receiver_lobe(int slot, LightLobe lobe) {
+        receiver_to_eye.set(slot, lobe.to_eye);
+        receiver_alpha[slot] = lobe.alpha;
+        receiver_share[slot] = lobe.share;
     }
     /// Moves the state that a path still needs once it has reached a surface to another slot.
     template <SceneKind scene_kind>

@@ -11,9 +11,9 @@ namespace REALCAM_NAMESPACE {
 /// pixels of a picture may have different numbers of samples.
 struct PixelSum {
     double irradiance[3];   ///< lux, summed over the samples
-    double besides[3];  ///< additional sums: squares of the samples' irradiance (Layer::variance), or the irradiance
-                        ///< through the right half of the exit pupil (kHalfLayers); otherwise, for samples with
-                        ///< wavelengths, their excess (film_control_variates.hpp)
+    double auxiliary[3];  ///< additional sums: squares of the samples' irradiance (Layer::variance), or the irradiance
+                          ///< through the right half of the exit pupil (kHalfLayers); otherwise, for samples with
+                          ///< wavelengths, their excess (film_control_variates.hpp)
     double depth;  ///< metres, summed over samples that hit a surface, times their weight in the exposure
     double met;  ///< sum of these weights
     std::uint64_t samples, passed;  ///< passed: through the lens; a small picture that is never finished has more than
@@ -21,7 +21,7 @@ struct PixelSum {
 
     REALCAM_HD PixelSum& operator+=(const PixelSum& other) {
         for (int c = 0; c < 3; ++c) irradiance[c] += other.irradiance[c];
-        for (int c = 0; c < 3; ++c) besides[c] += other.besides[c];
+        for (int c = 0; c < 3; ++c) auxiliary[c] += other.auxiliary[c];
         add_all_but_colours(other);
         return *this;
     }
@@ -51,25 +51,25 @@ struct PixelSum {
     }
 
     REALCAM_INLINE void add_excess(Color c) {
-        besides[0] += static_cast<double>(c.r);
-        besides[1] += static_cast<double>(c.g);
-        besides[2] += static_cast<double>(c.b);
+        auxiliary[0] += static_cast<double>(c.r);
+        auxiliary[1] += static_cast<double>(c.g);
+        auxiliary[2] += static_cast<double>(c.b);
     }
 
     template <int N>
     REALCAM_INLINE void add_squares(const PathResults<N>& results, int lane) {
         const Color c = results.irradiance[lane];
         const double rgb[3] = {static_cast<double>(c.r), static_cast<double>(c.g), static_cast<double>(c.b)};
-        for (int i = 0; i < 3; ++i) besides[i] += rgb[i] * rgb[i];
+        for (int i = 0; i < 3; ++i) auxiliary[i] += rgb[i] * rgb[i];
     }
     /// `is_right`: true if the sample came through the right half (find_right_half).
     template <int N>
     REALCAM_INLINE void add_half(const PathResults<N>& results, int lane, bool is_right) {
         if (!is_right) return;
         const Color c = results.irradiance[lane];
-        besides[0] += static_cast<double>(c.r);
-        besides[1] += static_cast<double>(c.g);
-        besides[2] += static_cast<double>(c.b);
+        auxiliary[0] += static_cast<double>(c.r);
+        auxiliary[1] += static_cast<double>(c.g);
+        auxiliary[2] += static_cast<double>(c.b);
     }
 
     /// Lux seconds on the film; 0 without samples. `ghosts`: irradiance that was traced apart from the samples, lux.
@@ -83,13 +83,13 @@ struct PixelSum {
     REALCAM_HD float variance(int channel, double exposure_time_s, double ghosts = 0) const {
         if (samples < 2) return std::numeric_limits<float>::quiet_NaN();
         const double n = static_cast<double>(samples), sum = irradiance[channel];
-        const double spread = besides[channel] - sum * sum / n;
+        const double spread = auxiliary[channel] - sum * sum / n;
         return film_exposure(((spread > 0 ? spread : 0) / (n * (n - 1)) + ghosts) * exposure_time_s * exposure_time_s);
     }
     /// Exposure through the right half of the exit pupil. Half of the ghosts is counted for it.
     REALCAM_HD float right_exposure(int channel, double exposure_time_s, double ghosts = 0, double balance = 1) const {
         if (samples == 0) return 0;
-        const double mean = balance * besides[channel] / static_cast<double>(samples);
+        const double mean = balance * auxiliary[channel] / static_cast<double>(samples);
         return film_exposure((mean + 0.5 * ghosts) * exposure_time_s);
     }
     /// Mean depth, metres; infinite if no sample hit a surface.

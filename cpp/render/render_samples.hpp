@@ -26,9 +26,9 @@ REALCAM_INLINE void count_wavelengths(const DispersionView& view, const SampleWa
         std::int32_t away = 0;
         if (shares >> step & 1) {
             const float weight = coated ? part * of.passed[step][lane] : part;
-            const float place = shared_place(view, of.place[lane], step);
-            color = weight * film_color(view, place, scene);
-            white = passed * weight * film_color(view, place, {1, 1, 1});
+            const float cell_position = shared_cell_position(view, of.cell_position[lane], step);
+            color = weight * film_color(view, cell_position, scene);
+            white = passed * weight * film_color(view, cell_position, {1, 1, 1});
             if (step > 0) away = of.away[step - 1][lane];
         }
         if (away == 0) {

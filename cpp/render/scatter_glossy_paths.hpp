@@ -38,11 +38,11 @@ REALCAM_INLINE void light_glossy(const PathSettings& settings, int bounce, const
                                  const LightSamples<N>& lights, const PathState<N>& path, ShadowRays<N>& shadow) {
     const GlossySenders senders(settings, bounce);
     const float clamp = bounce > 0 ? settings.clamp : 0.0f;
-    const int places = whole_vectors<N>(path.count);
+    const int slots = whole_vectors<N>(path.count);
     REALCAM_LANES
-    for (int i = 0; i < places; ++i) {
-        const SurfacePlace place = surfaces[i];
-        const GlossyBsdf bsdf(surfaces.glossy(i), surfaces.normal[i], place.geometric_normal, -path.rays.direction[i]);
+    for (int i = 0; i < slots; ++i) {
+        const RaySpawnPoint spawn = surfaces[i];
+        const GlossyBsdf bsdf(surfaces.glossy(i), surfaces.normal[i], spawn.geometric_normal, -path.rays.direction[i]);
         const LightSample light = lights[i];
         const GlossyBsdf::Value to_light = bsdf.eval(light.direction);
         const float weight = mis_weight(light.pdf, senders.shares_of(bsdf).pdf_of(to_light));
@@ -50,7 +50,7 @@ REALCAM_INLINE void light_glossy(const PathSettings& settings, int bounce, const
         const Color scattered = diffuse_weight * to_light.diffuse + weight * to_light.specular;
         const Color seen = scattered * path.throughput[i] * light.irradiance;
         const bool is_used = surfaces.is_glossy[i] != 0;
-        shadow.set(i, place, light, clamped(select(is_used, seen, Color{0, 0, 0}), clamp * path.weight[i]));
+        shadow.set(i, spawn, light, clamped(select(is_used, seen, Color{0, 0, 0}), clamp * path.weight[i]));
     }
 }
 
@@ -59,12 +59,12 @@ template <SceneKind scene_kind, int N>
 REALCAM_INLINE void scatter_glossy(const PathSettings& settings, int bounce, SkySampling sky,
                                    const GlossySurfaces<N>& surfaces, const PathNumbers<N>& u, PathState<N>& path) {
     const GlossySenders senders(settings, bounce);
-    const int places = whole_vectors<N>(path.count);
+    const int slots = whole_vectors<N>(path.count);
     REALCAM_LANES
-    for (int i = 0; i < places; ++i) {
-        const SurfacePlace place = surfaces[i];
+    for (int i = 0; i < slots; ++i) {
+        const RaySpawnPoint spawn = surfaces[i];
         const Vec3f normal = surfaces.normal[i], arriving = path.rays.direction[i];
-        const GlossyBsdf bsdf(surfaces.glossy(i), normal, place.geometric_normal, -arriving);
+        const GlossyBsdf bsdf(surfaces.glossy(i), normal, spawn.geometric_normal, -arriving);
         const GlossySenders::Shares shares = senders.shares_of(bsdf);
         const Color throughput = path.throughput[i];
         const bool is_used = surfaces.is_glossy[i] != 0;
@@ -80,12 +80,12 @@ REALCAM_INLINE void scatter_glossy(const PathSettings& settings, int bounce, Sky
         const Color next = select(pdf > 0.0f, (1.0f / pdf) * throughput * sum, Color{0, 0, 0});
         path.rays.active[i] = (is_used & !is_black(next)) ? 1 : 0;
         path.throughput.set(i, select(is_used, next, throughput));
-        path.rays.origin.set(i, ray_start(place, direction));
+        path.rays.origin.set(i, ray_start(spawn, direction));
         path.rays.direction.set(i, select(is_used, direction, arriving));
         path.pdf[i] = select(is_used, pdf, path.pdf[i]);
         path.set_receiver_lobe(i, select(is_used, surfaces.lobe(i, -arriving), path.receiver_lobe(i)));
         if constexpr (scene_kind == SceneKind::any) path.receiver_sky[i] = select(is_used, sky, path.receiver_sky[i]);
-        path.receiver_position.set(i, select(is_used, place.position, path.receiver_position[i]));
+        path.receiver_position.set(i, select(is_used, spawn.position, path.receiver_position[i]));
         path.receiver_normal.set(i, select(is_used, normal, path.receiver_normal[i]));
     }
 }

@@ -17,7 +17,7 @@ REALCAM_INLINE void keep_senders(const PathSettings& settings, BsdfT& bsdf) {
 
 /// Sets the shadow ray and the unoccluded contribution of a light sample, for a path at a surface.
 template <int N, class BsdfT>
-REALCAM_INLINE void light_path(const PathSettings& settings, int bounce, int lane, const SurfacePlace& place,
+REALCAM_INLINE void light_path(const PathSettings& settings, int bounce, int lane, const RaySpawnPoint& spawn,
                                BsdfT bsdf, const LightSample& light, const PathState<N>& path, ShadowRays<N>& shadow) {
     const Color all_lobes = bsdf.eval(light.direction);
     Color seen;
@@ -32,20 +32,20 @@ REALCAM_INLINE void light_path(const PathSettings& settings, int bounce, int lan
     }
     seen *= path.throughput[lane] * light.irradiance;
     const float limit = bounce > 0 ? settings.clamp * path.weight[lane] : 0.0f;
-    shadow.set(lane, place, light, clamped(seen, limit));
+    shadow.set(lane, spawn, light, clamped(seen, limit));
 }
 
 /// Samples the next ray of a path at a surface. `u`, `chance`: random numbers for it. Returns true if the ray is
 /// refracted through the surface.
 template <int N, class BsdfT>
-REALCAM_INLINE bool scatter_path(const PathSettings& settings, int bounce, int lane, const SurfacePlace& place,
+REALCAM_INLINE bool scatter_path(const PathSettings& settings, int bounce, int lane, const RaySpawnPoint& spawn,
                                  const LightReceiver& receiver, BsdfT& bsdf, const PathNumbers<N>& u, float chance,
                                  PathState<N>& path) {
     if (!goes_on(settings, bounce)) keep_senders(settings, bsdf);
     const BsdfSample next = bsdf.sample(u[lane], chance);
     const Color throughput = path.throughput[lane] * next.weight;
     path.throughput.set(lane, throughput);
-    path.rays.origin.set(lane, ray_start(place, next.direction));
+    path.rays.origin.set(lane, ray_start(spawn, next.direction));
     path.rays.direction.set(lane, next.direction);
     path.rays.active[lane] = !is_black(throughput);
     path.pdf[lane] = next.pdf;
@@ -84,23 +84,23 @@ REALCAM_ONE_COPY LightSample light_by_illuminance(const SceneView& scene, LightR
 /// Scatters a path at a point. `seed`: of the sample at this bounce. `shadow`: a LightRays, or a type with the same
 /// interface that traces each ray once it is set. Returns true if the surface shows only shadows.
 template <SceneKind scene_kind, int N, class LightRaysT>
-REALCAM_INLINE bool scatter_at(const SceneView& view, const PathSettings& settings, int bounce, int place,
+REALCAM_INLINE bool scatter_at(const SceneView& view, const PathSettings& settings, int bounce, int slot,
                                const SurfacePoint& point, const PathNumbers<N>& light_numbers,
                                const PathNumbers<N>& scatter_numbers, std::uint32_t seed, PathState<N>& path,
                                LightRaysT& shadow) {
     using namespace scatter_paths_detail;
-    const Vec3f direction = path.rays.direction[place];
-    const float time = time_of<scene_kind>(path, place);
+    const Vec3f direction = path.rays.direction[slot];
+    const float time = time_of<scene_kind>(path, slot);
     if constexpr (scene_kind == SceneKind::any) {
         if (point.material->only_shadows) {
             // The background is visible to the extent that the light here is not occluded. The ray keeps its direction,
             // and therefore its density.
             const LightSample light =
                 light_by_illuminance<scene_kind>(view, {point.position, point.normal, time}, seed);
-            path.rays.origin.set(place, ray_start(point, direction));
-            path.rays.active[place] = 1;
-            shadow[0].set(place, point, light, {0, 0, 0});
-            shadow[0].rays.active[place] = !is_black(light.irradiance);
+            path.rays.origin.set(slot, ray_start(point, direction));
+            path.rays.active[slot] = 1;
+            shadow[0].set(slot, point, light, {0, 0, 0});
+            shadow[0].rays.active[slot] = !is_black(light.irradiance);
             shadow.trace(0, true);
             return true;
         }
@@ -113,16 +113,16 @@ REALCAM_INLINE bool scatter_at(const SceneView& view, const PathSettings& settin
     REALCAM_NO_UNROLL
     for (int k = 0; k < kLightSampleCount; ++k) {
         if (!has_light(view, sky, k)) continue;
-        const LightSample light = sample_light<scene_kind>(view, sky, receiver, k, light_numbers[place], seed);
-        light_path(settings, bounce, place, point, bsdf, light, path, shadow[k]);
+        const LightSample light = sample_light<scene_kind>(view, sky, receiver, k, light_numbers[slot], seed);
+        light_path(settings, bounce, slot, point, bsdf, light, path, shadow[k]);
         shadow.trace(k, false);
     }
     const bool refracted =
-        scatter_path(settings, bounce, place, point, receiver, bsdf, scatter_numbers, unit_float(seed), path);
-    if constexpr (scene_kind == SceneKind::any) path.receiver_sky[place] = sky;
+        scatter_path(settings, bounce, slot, point, receiver, bsdf, scatter_numbers, unit_float(seed), path);
+    if constexpr (scene_kind == SceneKind::any) path.receiver_sky[slot] = sky;
     if constexpr (scene_kind != SceneKind::plain) {
-        path.set_receiver_lobe(place, receiver.lobe);
-        if (refracted) path.absorption.set(place, point.is_front ? point.material->absorption : Color{0, 0, 0});
+        path.set_receiver_lobe(slot, receiver.lobe);
+        if (refracted) path.absorption.set(slot, point.is_front ? point.material->absorption : Color{0, 0, 0});
     }
     return false;
 }

@@ -12,37 +12,37 @@ template <bool goes_on, int N>
 REALCAM_INLINE void light_lambert(const PathSettings& settings, int bounce, const PlainSurfaces<N>& surfaces,
                                   const LightSamples<N>& lights, const PathState<N>& path, ShadowRays<N>& shadow) {
     const float clamp = bounce > 0 ? settings.clamp : 0.0f;
-    const int count = path.count, places = whole_vectors<N>(count);
+    const int count = path.count, slots = whole_vectors<N>(count);
     REALCAM_LANES
-    for (int i = 0; i < places; ++i) {
-        const SurfacePlace place = surfaces[i];
+    for (int i = 0; i < slots; ++i) {
+        const RaySpawnPoint spawn = surfaces[i];
         const Vec3f normal = surfaces.normal[i];
         const LightSample light = lights[i];
         const float density = cosine_pdf(normal, light.direction);
-        const bool is_seen = (i < count) & (dot(place.geometric_normal, light.direction) > 0.0f);
+        const bool is_seen = (i < count) & (dot(spawn.geometric_normal, light.direction) > 0.0f);
         const float weight = goes_on ? mis_weight(light.pdf, density) : 1.0f;
         const Color seen = (weight * density) * surfaces.diffuse[i] * path.throughput[i] * light.irradiance;
-        shadow.set(i, place, light, clamped(select(is_seen, seen, Color{0, 0, 0}), clamp * path.weight[i]));
+        shadow.set(i, spawn, light, clamped(select(is_seen, seen, Color{0, 0, 0}), clamp * path.weight[i]));
     }
 }
 
 /// Next rays for the Lambert lobe, as scatter_path computes them for one path.
 template <int N>
 REALCAM_INLINE void scatter_lambert(const PlainSurfaces<N>& surfaces, const PathNumbers<N>& u, PathState<N>& path) {
-    const int count = path.count, places = whole_vectors<N>(count);
+    const int count = path.count, slots = whole_vectors<N>(count);
     REALCAM_LANES
-    for (int i = 0; i < places; ++i) {
-        const SurfacePlace place = surfaces[i];
+    for (int i = 0; i < slots; ++i) {
+        const RaySpawnPoint spawn = surfaces[i];
         const Vec3f normal = surfaces.normal[i], direction = sample_cosine(normal, u[i]);
         const float density = cosine_pdf(normal, direction);
-        const float above = select(density > 0.0f, dot(place.geometric_normal, direction), 0.0f);
+        const float above = select(density > 0.0f, dot(spawn.geometric_normal, direction), 0.0f);
         const Color throughput = path.throughput[i] * surfaces.diffuse[i];
         path.rays.active[i] = ((above > 0.0f) & (i < count) & !is_black(throughput)) ? 1 : 0;
         path.throughput.set(i, throughput);
-        path.rays.origin.set(i, ray_start(place, direction));
+        path.rays.origin.set(i, ray_start(spawn, direction));
         path.rays.direction.set(i, direction);
         path.pdf[i] = density;
-        path.receiver_position.set(i, place.position);
+        path.receiver_position.set(i, spawn.position);
         path.receiver_normal.set(i, normal);
     }
 }

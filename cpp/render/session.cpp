@@ -25,13 +25,13 @@ void Session::set(const Assembly& scene, const Camera& camera, const RenderSetti
                   const KeepGoing& keep_going) {
     const Turn turn(mutex_, keep_going);
     check_all(scene, camera, settings, keep_going);
-    make_way(keep_going);
-    make_ready(scene, camera, settings, PupilStart::anew, keep_going);
+    wait_for_free_frame(keep_going);
+    make_ready(scene, camera, settings, PupilStart::from_scratch, keep_going);
 }
 
 void Session::restart(const KeepGoing& keep_going) {
     const Turn turn(mutex_, keep_going);
-    make_way(keep_going);
+    wait_for_free_frame(keep_going);
     give_up_samples();
 }
 
@@ -40,7 +40,7 @@ void Session::add(int spp, const Progress& progress) {
     const KeepGoing keep_going = progress ? KeepGoing([&] { return progress(0.0); }) : KeepGoing();
     const Turn turn(mutex_, keep_going);
     if (!ready_) throw InputError("nothing is set that could be photographed; set() prepares it");
-    make_way(keep_going);
+    wait_for_free_frame(keep_going);
     OwnStop stop(*this);
     std::atomic<std::int64_t> done{0};
     const double total = static_cast<double>(spp) * camera_.film.width * camera_.film.height *
@@ -62,7 +62,7 @@ ReachedNoise Session::add_until(const NoiseGoal& goal, const Progress& progress)
     const KeepGoing keep_going = progress ? KeepGoing([&] { return progress(0.0); }) : KeepGoing();
     const Turn turn(mutex_, keep_going);
     if (!ready_) throw InputError("nothing is set that could be photographed; set() prepares it");
-    settle(keep_going);
+    wait_for_frames(keep_going);
     OwnStop stop(*this);
     std::atomic<double> share{0};
     ReachedNoise reached;
@@ -80,16 +80,16 @@ ReachedNoise Session::add_until(const NoiseGoal& goal, const Progress& progress)
 
 std::shared_ptr<const LiveFrame> Session::shoot(const Assembly& scene, const Camera& camera,
                                                 const RenderSettings& settings, ToneCurve curve,
-                                                const KeepGoing& keep_going, std::shared_ptr<void> under_way) {
+                                                const KeepGoing& keep_going, std::shared_ptr<void> in_progress) {
     const Turn turn(mutex_, keep_going);
     check_all(scene, camera, settings, keep_going);
-    make_way(keep_going);
+    wait_for_free_frame(keep_going);
     make_ready(scene, camera, settings, PupilStart::near_last, keep_going);
     std::vector<SampleRange> ranges;
     expose(settings.spp, [&](const SampleRange& range) { ranges.push_back(range); });
     mean_samples_ += settings.spp;
     try {
-        frames_.push_back(start(ranges, curve, std::move(under_way)));
+        frames_.push_back(start(ranges, curve, std::move(in_progress)));
     } catch (...) {
         ready_ = false;
         throw;
@@ -106,7 +106,7 @@ Image Session::picture(const KeepGoing& keep_going, std::int64_t most_layer_samp
             if (stop) throw Cancelled();
         }
         Image image = develop();
-        add_layers(image, layer_film_, [&] { return develop_besides(); }, [&] { return count_samples(); });
+        add_layers(image, layer_film_, [&] { return develop_auxiliary_layers(); }, [&] { return count_samples(); });
         image.spp = mean_samples_ == samples_ ? samples_ : mean_of(count_samples());
         image.stats.setup_seconds = setup_seconds_;
         image.stats.seconds = setup_seconds_ + exposing_seconds_;
@@ -124,7 +124,7 @@ void Session::take_part(std::int64_t first, int count, const Progress& progress,
     const KeepGoing keep_going = progress ? KeepGoing([&] { return progress(0.0); }) : KeepGoing();
     const Turn turn(mutex_, keep_going);
     if (!ready_) throw InputError("nothing is set that could be photographed; set() prepares it");
-    settle(keep_going);
+    wait_for_frames(keep_going);
     OwnStop stop(*this);
     const double total = static_cast<double>(count) * static_cast<double>(pixels);
     run_with_progress([&] { work(next_samples(settings_.seed, first, first + count), stop); },
@@ -170,7 +170,7 @@ std::vector<SplatFilm> Session::expose_splats(std::int64_t first, int count, con
 Image Session::picture_of(const AccumulatedFilm& film, const KeepGoing& keep_going) {
     const Turn turn(mutex_, keep_going);
     if (!ready_) throw InputError("nothing is set that could be photographed; set() prepares it");
-    settle(keep_going);
+    wait_for_frames(keep_going);
     const LayerSet wanted = settings_.layers;
     const auto is_of_film = [&](const auto& sums) { return sums.size() == pixel_count(); };
     if (!is_of_film(film.pixels) || (wanted.has_any(kSampledLayers) && !is_of_film(film.layers)))
@@ -188,7 +188,7 @@ Image Session::picture_of(const AccumulatedFilm& film, const KeepGoing& keep_goi
     }
     Image image = developed(view, camera_.exposure_time_s);
     add_layers(
-        image, layers, [&] { return developed_besides(view, wanted, camera_.exposure_time_s); },
+        image, layers, [&] { return developed_auxiliary_layers(view, wanted, camera_.exposure_time_s); },
         [&] { return samples_of(film.pixels); });
     image.spp = mean_of(samples_of(film.pixels));
     image.stats = film.stats;
@@ -197,7 +197,7 @@ Image Session::picture_of(const AccumulatedFilm& film, const KeepGoing& keep_goi
 
 SampleCounts Session::sample_counts(const KeepGoing& keep_going) {
     const Turn turn(mutex_, keep_going);
-    settle(keep_going);
+    wait_for_frames(keep_going);
     const auto [width, height] = std::pair(camera_.film.width, camera_.film.height);
     const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
     return {width, height, ready_ && !is_blank_ ? count_samples() : std::vector<std::int64_t>(pixels)};
@@ -207,7 +207,7 @@ void Session::cancel(Collected collected) {
     raise_stop();
     const std::unique_lock lock(mutex_);
     const LowerStop lower{*this};
-    settle({});
+    wait_for_frames({});
     if (collected == Collected::drop) give_up_samples();
 }
 
@@ -269,7 +269,7 @@ void Session::make_ready(const Assembly& wanted_scene, const Camera& wanted_came
     const Camera& camera = changed ? changed->camera : wanted_camera;
     const bool is_same = ready_ && is_same_picture(scene, camera, settings);
     // Frames of a camera that stands still add up to a picture, which has the pupil that any session would find.
-    const bool stands_still = is_same && start == PupilStart::near_last && !has_pupil_anew();
+    const bool stands_still = is_same && start == PupilStart::near_last && !has_new_pupil();
     if (!is_same || stands_still) {
         ready_ = false;  // if anything fails from here on, the next call prepares everything
         give_up_samples();
@@ -332,8 +332,8 @@ void Session::see_what_is_missing(std::atomic<std::int64_t>& done, OwnStop& stop
     if (stop) forget_layers();
 }
 
-template <class Besides, class Counts>
-void Session::add_layers(Image& image, const LayerFilm& layers, Besides&& besides, Counts&& counts) {
+template <class AuxiliaryLayers, class Counts>
+void Session::add_layers(Image& image, const LayerFilm& layers, AuxiliaryLayers&& auxiliary, Counts&& counts) {
     const LayerSet wanted = settings_.layers;
     if (wanted.has_any(kSampledLayers) || wanted.has_any(kPixelCentreLayers)) {
         const SurfaceIds ids(scene_);
@@ -346,7 +346,7 @@ void Session::add_layers(Image& image, const LayerFilm& layers, Besides&& beside
         if (wanted.has(Layer::material_id)) image.material_names = ids.names_of_materials();
     }
     if (wanted.has_any({Layer::variance, Layer::traced_light}) || wanted.has_any(kHalfLayers))
-        for (LayerImage& layer : besides()) image.layers.push_back(std::move(layer));
+        for (LayerImage& layer : auxiliary()) image.layers.push_back(std::move(layer));
     if (wanted.has(Layer::sample_count)) {
         constexpr std::int64_t kMost = std::numeric_limits<std::uint32_t>::max();
         LayerImage image_of_counts{Layer::sample_count, {}, {}};

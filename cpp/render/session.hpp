@@ -76,16 +76,16 @@ public:
     ReachedNoise noise_so_far() const { return noise_so_far_; }
 
     /// Calls `set`, starts to take settings.spp more samples of each pixel and to develop them, and returns meanwhile.
-    /// The next frame may be shot before this one is complete; if the device has its maximum number of frames under
-    /// way, this waits for the oldest. `under_way`: kept alive by work on the host until that has ended. If the lens
-    /// changes from frame to frame, a GPU searches for the pupil near the last one. The second frame without a change
-    /// begins a new picture, with the pupil of `set`.
+    /// The next frame may be shot before this one is complete; if the device has its maximum number of frames in
+    /// progress, this waits for the oldest. `in_progress`: kept alive by work on the host until that has ended. If the
+    /// lens changes from frame to frame, a GPU searches for the pupil near the last one. The second frame without a
+    /// change begins a new picture, with the pupil of `set`.
     std::shared_ptr<const LiveFrame> shoot(const Assembly& scene, const Camera& camera, const RenderSettings& settings,
                                            ToneCurve curve, const KeepGoing& keep_going = {},
-                                           std::shared_ptr<void> under_way = {});
+                                           std::shared_ptr<void> in_progress = {});
 
     /// Picture of all samples so far, developed with the camera's exposure time, with the layers of the settings; waits
-    /// for frames under way. Throws InputError if there are no samples, and Cancelled if another thread stops it
+    /// for frames in progress. Throws InputError if there are no samples, and Cancelled if another thread stops it
     /// meanwhile. `most_layer_samples`: largest number of samples up to which layers are completed.
     Image picture(const KeepGoing& keep_going = {}, std::int64_t most_layer_samples = kAllSamples);
 
@@ -109,10 +109,10 @@ public:
     /// film does not fit this picture, and Cancelled.
     Image picture_of(const AccumulatedFilm& film, const KeepGoing& keep_going = {});
 
-    /// Sample counts of the current film. Waits for frames under way.
+    /// Sample counts of the current film. Waits for frames in progress.
     SampleCounts sample_counts(const KeepGoing& keep_going = {});
 
-    /// Ends all work under way, from any thread: frames and other threads' calls throw Cancelled. No further sample
+    /// Ends all work in progress, from any thread: frames and other threads' calls throw Cancelled. No further sample
     /// begins, so that this takes the time of one sample.
     void cancel(Collected collected = Collected::keep);
 
@@ -138,7 +138,7 @@ protected:
     };
 
     // Implemented by a device. Except for the three functions of the stop, calls run one after the other, with fewer
-    // frames under way than frames_in_flight().
+    // frames in progress than frames_in_flight().
 
     /// Prepares the samples that follow. Scene, camera and settings are valid, and the film is discarded. `start`:
     /// method of the pupil search. Throws Cancelled if a stop, which `keep_going` may request, has left something
@@ -146,7 +146,7 @@ protected:
     virtual void prepare(const Assembly& scene, const Camera& camera, const RenderSettings& settings, PupilStart start,
                          const KeepGoing& keep_going, OwnStop& stop) = 0;
     /// True if the pupil is the same as that of a new session.
-    virtual bool has_pupil_anew() const { return true; }
+    virtual bool has_new_pupil() const { return true; }
     /// Clears the film and all counts.
     virtual void clear() = 0;
     /// Takes samples of the pixels, fewer of some if it is stopped. `traces_lights`: also takes the light that is
@@ -155,12 +155,12 @@ protected:
                       std::atomic<std::int64_t>& done, OwnStop& stop) = 0;
     /// Starts to take samples, and to develop the film after them.
     virtual std::shared_ptr<LiveFrame> start(const std::vector<SampleRange>& ranges, ToneCurve curve,
-                                             std::shared_ptr<void> under_way) = 0;
+                                             std::shared_ptr<void> in_progress) = 0;
     virtual Image develop() = 0;
     virtual std::vector<float> develop_traced() = 0;  ///< see traced_exposure
     virtual double least_lamp_share() const { return 1; }  ///< see least_lamp_share in traced_lights.hpp
-    /// developed_besides of a film whose samples were taken while the settings requested it.
-    virtual std::vector<LayerImage> develop_besides() = 0;
+    /// developed_auxiliary_layers of a film whose samples were taken while the settings requested it.
+    virtual std::vector<LayerImage> develop_auxiliary_layers() = 0;
     /// Takes samples of a region apart from the film. `counts`: of the region's pixels.
     virtual RegionSums take_region(const FilmRegion& region, const SampleRange& range, const PixelCounts& counts,
                                    std::atomic<std::int64_t>& done, OwnStop& stop) = 0;
@@ -190,7 +190,7 @@ protected:
     template <class F>
     auto of_all_collected(const KeepGoing& keep_going, F&& f) -> decltype(f()) {
         const Turn turn(mutex_, keep_going);
-        settle(keep_going);
+        wait_for_frames(keep_going);
         if (is_stopped()) throw Cancelled();
         if (!ready_ || is_blank_) throw InputError("there is no picture yet; samples have to be taken first");
         return f();
@@ -221,10 +221,10 @@ private:
 
     void check_region(const FilmRegion& region) const;
 
-    void make_way(const KeepGoing& keep_going) {
+    void wait_for_free_frame(const KeepGoing& keep_going) {
         while (frames_.size() >= frames_in_flight()) wait_for_oldest(keep_going);
     }
-    void settle(const KeepGoing& keep_going) {
+    void wait_for_frames(const KeepGoing& keep_going) {
         while (!frames_.empty()) wait_for_oldest(keep_going);
     }
     void wait_for_oldest(const KeepGoing& keep_going);
@@ -255,12 +255,12 @@ private:
     /// Completes the requested layers up to the samples of the picture. If it is stopped, they start from scratch.
     void see_what_is_missing(std::atomic<std::int64_t>& done, OwnStop& stop, std::int64_t most = kAllSamples);
 
-    /// `besides`, `counts`: functions that return the arrays of developed_besides and the sample counts, for the same
-    /// film.
-    template <class Besides, class Counts>
-    void add_layers(Image& image, const LayerFilm& layers, Besides&& besides, Counts&& counts);
+    /// `auxiliary`, `counts`: functions that return the arrays of developed_auxiliary_layers and the sample counts, for
+    /// the same film.
+    template <class AuxiliaryLayers, class Counts>
+    void add_layers(Image& image, const LayerFilm& layers, AuxiliaryLayers&& auxiliary, Counts&& counts);
 
-    /// Calls work(range, stop) for the samples of a part of the picture, with nothing else under way.
+    /// Calls work(range, stop) for the samples of a part of the picture, with nothing else in progress.
     template <class Work>
     void take_part(std::int64_t first, int count, const Progress& progress, const std::atomic<std::int64_t>& done,
                    std::size_t pixels, Work&& work);
@@ -300,7 +300,7 @@ private:
     ReachedNoise noise_so_far_;
     std::int64_t layer_samples_ = 0;  ///< number of samples that layer_film_.sums holds
     double setup_seconds_ = 0, exposing_seconds_ = 0;  ///< for the current picture
-    std::deque<std::shared_ptr<const LiveFrame>> frames_;  ///< frames under way
+    std::deque<std::shared_ptr<const LiveFrame>> frames_;  ///< frames in progress
 };
 
 }  // namespace REALCAM_NAMESPACE

@@ -9,7 +9,7 @@ template <int N>
 struct Surfaces {
     SurfacePoint points[N];
 
-    REALCAM_INLINE void set(int place, const SurfacePoint& point) { points[place] = point; }
+    REALCAM_INLINE void set(int slot, const SurfacePoint& point) { points[slot] = point; }
 };
 
 /// Surfaces of a plain scene, in lanes.
@@ -20,18 +20,18 @@ struct PlainSurfaces {
     Lanes<float, N> self_offset, shininess;
     bool has_phong = false;  ///< true if any surface has a Phong lobe
 
-    REALCAM_INLINE void set(int place, const SurfacePoint& point) {
-        position.set(place, point.position);
-        geometric_normal.set(place, point.geometric_normal);
-        normal.set(place, point.normal);
-        diffuse.set(place, point.diffuse);
-        phong.set(place, point.material->specular);
-        self_offset[place] = point.self_offset;
-        shininess[place] = point.material->shininess;
+    REALCAM_INLINE void set(int slot, const SurfacePoint& point) {
+        position.set(slot, point.position);
+        geometric_normal.set(slot, point.geometric_normal);
+        normal.set(slot, point.normal);
+        diffuse.set(slot, point.diffuse);
+        phong.set(slot, point.material->specular);
+        self_offset[slot] = point.self_offset;
+        shininess[slot] = point.material->shininess;
         has_phong |= !is_black(point.material->specular);
     }
-    REALCAM_INLINE SurfacePlace operator[](int place) const {
-        return {position[place], geometric_normal[place], self_offset[place]};
+    REALCAM_INLINE RaySpawnPoint operator[](int slot) const {
+        return {position[slot], geometric_normal[slot], self_offset[slot]};
     }
     REALCAM_INLINE LightLobe lobe(int, Vec3f) const { return {}; }
     REALCAM_INLINE bool is_in_lanes(int) const { return true; }
@@ -39,8 +39,8 @@ struct PlainSurfaces {
 
 namespace shade_hits_detail {
 
-REALCAM_INLINE Color absorbed(Color absorption, float way) {
-    return {std::exp(-way * absorption.r), std::exp(-way * absorption.g), std::exp(-way * absorption.b)};
+REALCAM_INLINE Color absorbed(Color absorption, float distance) {
+    return {std::exp(-distance * absorption.r), std::exp(-distance * absorption.g), std::exp(-distance * absorption.b)};
 }
 
 template <SceneKind scene_kind>
@@ -95,9 +95,9 @@ REALCAM_INLINE void shade_hits(const SceneView& view, const CameraView& camera, 
         if (view.has_environment && view.environment.pixels)
             end_at_image<scene_kind>(view, settings, bounce, hits, path, results);
     }
-    const int places = path.places();
+    const int slots = path.slots();
     path.count = 0;
-    for (int i = 0; i < places; ++i) {
+    for (int i = 0; i < slots; ++i) {
         if (!path.rays.active[i]) continue;
         path.rays.active[i] = 0;
         const Hit hit = hits[i];

@@ -25,7 +25,7 @@ struct LensFrame {
         return {dot(scene, camera.right), dot(scene, camera.up), dot(scene, camera.backward)};
     }
     /// Scene coordinates of a point that is given in mm, relative to the front vertex.
-    REALCAM_INLINE Vec3f place_in_scene(Vec3f lens_mm) const {
+    REALCAM_INLINE Vec3f point_in_scene(Vec3f lens_mm) const {
         return camera.position + (0.001f * lens_mm.x) * camera.right + (0.001f * lens_mm.y) * camera.up +
                (0.001f * lens_mm.z - front_vertex_m) * camera.backward;
     }
@@ -64,7 +64,7 @@ REALCAM_INLINE float exposure_weight(const CameraView& camera, std::int32_t row,
 template <int N>
 struct GhostSamples {
     Lanes<std::uint32_t, N> number;
-    Lanes<float, N> place, variable;  ///< wavelength's position among the cells, and dispersion variable
+    Lanes<float, N> cell_position, variable;  ///< wavelength's position among the cells, and dispersion variable
     Lanes<float, N> time;
     LightPick lights[N];
     Vec3Lanes<float, N> from;  ///< unit, towards the light from the front vertex, in the lens's axes
@@ -123,7 +123,7 @@ REALCAM_INLINE LightEntry round_light_entry(const GhostView& ghosts, const Ghost
     const bool seen = (half_tangent < ghosts.largest_half_tangent) & (z < 0.9f);
     const int bin = static_cast<int>(select(seen, half_tangent / ghosts.largest_half_tangent, 0.0f) *
                                      static_cast<float>(kGhostBins));
-    const EntryPlace at = entry_place(entries[select(bin < kGhostBins, bin, kGhostBins - 1)], ghosts.reach, u);
+    const EntryPoint at = entry_point(entries[select(bin < kGhostBins, bin, kGhostBins - 1)], ghosts.reach, u);
     const float inverse = 1.0f / select(sine > 0.0f, sine, 1.0f);
     const float away_x = select(sine > 0.0f, x * inverse, 1.0f), away_y = y * inverse;
     return {{-at.along * z * away_x - at.across * away_y, -at.along * z * away_y + at.across * away_x, at.along * sine},
@@ -135,17 +135,17 @@ REALCAM_INLINE LightEntry free_light_entry(const GhostView& ghosts, const GhostE
     const bool ahead = from.z < 0.9f;
     const Vec3f light = select(ahead, from, Vec3f{0, 0, -1});
     const int cell = ghosts.grid.cell_of(half_tangents(light));
-    const EntryPlace at = entry_place(entries[select(cell < 0, 0, cell)], ghosts.reach, u);
+    const EntryPoint at = entry_point(entries[select(cell < 0, 0, cell)], ghosts.reach, u);
     const LightAxes axes = light_axes(light);
     return {at.along * axes.x + at.across * axes.y, at.density, ahead && cell >= 0};
 }
 
 template <LensKind lens_kind>
-REALCAM_INLINE LightEntry light_entry(const GhostView& ghosts, int way, Vec3f from, Vec2f u) {
+REALCAM_INLINE LightEntry light_entry(const GhostView& ghosts, int path, Vec3f from, Vec2f u) {
     if constexpr (lens_kind == LensKind::any)
-        return free_light_entry(ghosts, ghosts.entries + way * kGhostCells, from, u);
+        return free_light_entry(ghosts, ghosts.entries + path * kGhostCells, from, u);
     else
-        return round_light_entry(ghosts, ghosts.entries + way * kGhostBins, from, u);
+        return round_light_entry(ghosts, ghosts.entries + path * kGhostBins, from, u);
 }
 
 template <LensKind lens_kind, int N>
@@ -169,7 +169,7 @@ REALCAM_INLINE void send_light(const SceneView& view, const CameraView& camera, 
     for (int i = 0; i < N; ++i) {
         if (rays.status[i] != 0) continue;
         const LensFrame frame = lens_frame(camera, samples.time[i]);
-        const LightReceiver here{frame.place_in_scene(rays.origin[i]), {0, 0, 0}, samples.time[i]};
+        const LightReceiver here{frame.point_in_scene(rays.origin[i]), {0, 0, 0}, samples.time[i]};
         const LightSample light = sample_picked<scene_kind>(view, here, samples.lights[i]);
         // A near light has another direction here than at the front vertex, and the entry plane is perpendicular to the
         // latter.
@@ -192,7 +192,7 @@ REALCAM_INLINE void send_light(const SceneView& view, const CameraView& camera, 
 template <int N>
 REALCAM_INLINE Vec2f diffracted(const CameraView& camera, GhostLight light, Vec2f film, Vec2f u, Vec2f v, int lane,
                                 GhostSamples<N>& samples) {
-    const float nm = wavelength_at(camera.dispersion, samples.place[lane]);
+    const float nm = wavelength_at(camera.dispersion, samples.cell_position[lane]);
     Vec2f kick;
     float weight = 1.0f;
     if (light == GhostLight::direct) {
@@ -231,7 +231,7 @@ REALCAM_INLINE void reach_film(const CameraView& camera, const GhostView& ghosts
         pixel[i] = pixel_at(camera, film.x, film.y);
         if (pixel[i] < 0) continue;
         Color c = (irradiance * passed.of_unpolarised(i)) * samples.color[i];
-        if constexpr (has_wavelengths) c = film_color(camera.dispersion, samples.place[i], c);
+        if constexpr (has_wavelengths) c = film_color(camera.dispersion, samples.cell_position[i], c);
         if constexpr (scene_kind == SceneKind::any) {
             c = exposure_weight(camera, pixel[i] / camera.width, samples.time[i]) * c;
             samples.shadow.number[i] = shadow_ray_number(samples.number[i]);
@@ -258,21 +258,22 @@ REALCAM_HD inline void splat_ghosts(const SceneView& view, const CameraView& cam
     for (int i = 0; i < N; ++i) {
         const std::uint32_t sample = first_sample + static_cast<std::uint32_t>(i);
         samples.number[i] = hash32(stream, sample);
-        samples.time[i] = samples.place[i] = samples.variable[i] = 0;
+        samples.time[i] = samples.cell_position[i] = samples.variable[i] = 0;
         if constexpr (scene_kind == SceneKind::any || has_wavelengths) {
             const Vec2f u = sample_2d(stream, sample, ghost_dimension::time);
             if constexpr (scene_kind == SceneKind::any) samples.time[i] = u.x * all_times(camera);
             if constexpr (has_wavelengths) {
-                samples.place[i] = u.y * static_cast<float>(camera.dispersion.cell_count);
-                samples.variable[i] = camera.dispersion.variable.at(wavelength_at(camera.dispersion, samples.place[i]));
+                samples.cell_position[i] = u.y * static_cast<float>(camera.dispersion.cell_count);
+                samples.variable[i] =
+                    camera.dispersion.variable.at(wavelength_at(camera.dispersion, samples.cell_position[i]));
             }
         }
     }
     choose_lights<scene_kind>(view, camera, stream, first_sample, samples);
     choose_entries<lens_kind>(ghosts, block, first_sample, samples);
-    send_light<scene_kind>(view, camera, 1.0f / block.way.probability, samples);
+    send_light<scene_kind>(view, camera, 1.0f / block.path.probability, samples);
     PassedPower<N> passed;
-    pass_ghost_lens_path<lens_kind, has_wavelengths>(ghosts, block.way, samples.rays, samples.variable, passed);
+    pass_ghost_lens_path<lens_kind, has_wavelengths>(ghosts, block.path, samples.rays, samples.variable, passed);
     Lanes<std::int32_t, N> pixel, hidden;
     reach_film<lens_kind, scene_kind, has_wavelengths>(camera, ghosts, stream, first_sample, passed, samples, pixel);
     scene.occluded(samples.shadow, hidden);

@@ -9,7 +9,7 @@ namespace REALCAM_NAMESPACE {
 /// Subject of a scene: the scene without its surroundings. The default view shows it.
 ///
 /// A scene consists of parts: triangles that share vertices, or whole instances if there are too many triangles to test
-/// each (kMostTrianglesAsked). Two rules remove parts until neither applies:
+/// each (kMostTrianglesTested). Two rules remove parts until neither applies:
 /// - Parts that enclose or carry the others, such as a sky or a floor. Each must be four times as long as all the
 ///   others together, and be flat, or have fewer triangles than they, or keep away from them.
 /// - Small parts that are farther away than eight times the length of the large parts.

@@ -17,17 +17,17 @@ public:
     explicit SurfaceIds(const Assembly& assembly);
 
     std::uint32_t object(const PixelCentreSurface& surface) const {
-        return surface.triangle == kNoTriangle ? 0 : place_of(surface) + 1;
+        return surface.triangle == kNoTriangle ? 0 : index_of(surface) + 1;
     }
     std::uint32_t material(const PixelCentreSurface& surface) const {
-        return surface.triangle == kNoTriangle ? 0 : first_material_[place_of(surface)] + surface.material;
+        return surface.triangle == kNoTriangle ? 0 : first_material_[index_of(surface)] + surface.material;
     }
 
     const IdNames& object_names() const { return objects_; }
     const IdNames& names_of_materials() const { return materials_; }
 
 private:
-    static std::uint32_t place_of(const PixelCentreSurface& surface) {
+    static std::uint32_t index_of(const PixelCentreSurface& surface) {
         return surface.instance == kNoInstance ? 0 : surface.instance + 1;
     }
 

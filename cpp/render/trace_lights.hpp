@@ -15,19 +15,20 @@ using splat_ghosts_detail::GhostSamples;
 
 /// Dimension pairs of the random sequence of a light.
 namespace traced_dimension {
-inline constexpr std::uint32_t entry = 0, place = 1, time = 2;
+inline constexpr std::uint32_t entry = 0, point = 1, time = 2;
 }
 
 /// Point on a light, as seen from one entry point.
-struct TracedPlace {
+struct TracedLightSample {
     LightSample sample;  ///< irradiance over the density of the point
     float traced = 0;  ///< traced_samples without the entry's cosine; unused unless is_met
     bool is_met = false;  ///< true if samples of pixels can hit it
 };
 
 template <SceneKind scene_kind>
-REALCAM_INLINE TracedPlace place_on(const SceneView& scene, const TracedLightsView& lights, std::int32_t number,
-                                    const TracedLight& light, Vec3f entry, float time, Vec2f u) {
+REALCAM_INLINE TracedLightSample sample_traced_light(const SceneView& scene, const TracedLightsView& lights,
+                                                     std::int32_t number, const TracedLight& light, Vec3f entry,
+                                                     float time, Vec2f u) {
     if (light.kind == TracedLightKind::sun) {
         const SunLight& sun = scene.suns[light.first];
         return {{-sun.direction, kFarAway, 1.0f, sun.illuminance, kDelta}};
@@ -41,12 +42,12 @@ REALCAM_INLINE TracedPlace place_on(const SceneView& scene, const TracedLightsVi
     const std::int32_t area = lights.triangles[light.first + chosen.index];
     const AreaLight triangle = area_light_at<scene_kind>(scene, area, time);
     const LightSample sample = sample_area<scene_kind>(scene, triangle, entry, {chosen.fresh, u.y});
-    TracedPlace place{sample, 0, true};
-    place.sample.irradiance = (1.0f / chosen.probability) * sample.irradiance;
+    TracedLightSample traced{sample, 0, true};
+    traced.sample.irradiance = (1.0f / chosen.probability) * sample.irradiance;
     // The density per steradian contains the cosine and the distance.
     if (sample.pdf < kDelta)
-        place.traced = lights.scale * light.probability * chosen.probability * sample.pdf / light.entries.area();
-    return place;
+        traced.traced = lights.scale * light.probability * chosen.probability * sample.pdf / light.entries.area();
+    return traced;
 }
 
 /// Chooses light, time, point and entry of each sample, and sends the light there. `wavelength`: position of each
@@ -61,7 +62,7 @@ REALCAM_INLINE void send_traced_light(const SceneView& view, const CameraView& c
         const TracedLight light = lights.lights[at];
         const std::uint32_t stream = hash32(static_cast<std::uint32_t>(at), round), sample = number >> light.halvings;
         samples.number[i] = hash32(round, number);
-        samples.time[i] = samples.place[i] = samples.variable[i] = 0;
+        samples.time[i] = samples.cell_position[i] = samples.variable[i] = 0;
         samples.light_density[i] = kDelta;
         if constexpr (scene_kind == SceneKind::any || has_wavelengths) {
             const Vec2f u = sample_joint_2d(stream, sample, traced_dimension::time);
@@ -73,20 +74,20 @@ REALCAM_INLINE void send_traced_light(const SceneView& view, const CameraView& c
         if constexpr (scene_kind == SceneKind::any) placement = camera_at(camera, samples.time[i]);
         const EntryPlane plane = entry_plane(placement, camera.front_vertex_m, light);
         const Vec3f entry = plane.middle + (0.001f * enters.x) * plane.along + (0.001f * enters.y) * plane.across;
-        const TracedPlace place = place_on<scene_kind>(view, lights, at, light, entry, samples.time[i],
-                                                       sample_joint_2d(stream, sample, traced_dimension::place));
-        const float cosine = dot(place.sample.direction, plane.from);
+        const TracedLightSample traced = sample_traced_light<scene_kind>(
+            view, lights, at, light, entry, samples.time[i], sample_joint_2d(stream, sample, traced_dimension::point));
+        const float cosine = dot(traced.sample.direction, plane.from);
         samples.rays.status[i] = static_cast<int>(RayStatus::vignetted);
-        if (is_black(place.sample.irradiance) || !(cosine > 0.0f)) continue;
+        if (is_black(traced.sample.irradiance) || !(cosine > 0.0f)) continue;
         samples.rays.status[i] = 0;
         // Equals 1 / (1 + 1 / r^2), for any r.
-        const float weight = place.is_met ? 1.0f - mis_weight(1.0f, place.traced / cosine) : 1.0f;
+        const float weight = traced.is_met ? 1.0f - mis_weight(1.0f, traced.traced / cosine) : 1.0f;
         const float scale = weight * cosine * light.entries.area() / light.probability;
-        samples.color.set(i, bounded_light(scale * place.sample.irradiance));
+        samples.color.set(i, bounded_light(scale * traced.sample.irradiance));
         const splat_ghosts_detail::LensFrame frame{placement, camera.front_vertex_m};
         samples.rays.origin.set(i, frame.direction(enters.x * plane.along + enters.y * plane.across));
-        samples.rays.direction.set(i, -frame.direction(place.sample.direction));
-        splat_ghosts_detail::set_shadow_ray(entry, place.sample, i, samples);
+        samples.rays.direction.set(i, -frame.direction(traced.sample.direction));
+        splat_ghosts_detail::set_shadow_ray(entry, traced.sample, i, samples);
     }
 }
 
@@ -96,8 +97,8 @@ REALCAM_INLINE void set_wavelengths(const DispersionView& view, const float (&fi
                                     GhostSamples<N>& samples) {
     REALCAM_LANES
     for (int i = 0; i < N; ++i) {
-        samples.place[i] = shared_place(view, first[i], step);
-        samples.variable[i] = view.variable.at(wavelength_at(view, samples.place[i]));
+        samples.cell_position[i] = shared_cell_position(view, first[i], step);
+        samples.variable[i] = view.variable.at(wavelength_at(view, samples.cell_position[i]));
     }
 }
 
@@ -106,7 +107,7 @@ REALCAM_INLINE void set_wavelengths(const DispersionView& view, const float (&fi
 /// splat_ghosts for the images of lights. All lights take the direct path through the lens, so that each sample of a
 /// block has a light of its own.
 template <LensKind lens_kind, SceneKind scene_kind, bool has_wavelengths, int N, class SceneT, class Splat>
-REALCAM_HD inline void trace_lights(const SceneView& view, const CameraView& camera, const GhostView& way,
+REALCAM_HD inline void trace_lights(const SceneView& view, const CameraView& camera, const GhostView& direct,
                                     GhostRange range, std::uint32_t first, SceneT&& scene, Splat&& splat) {
     using namespace splat_ghosts_detail;
     using namespace trace_lights_detail;
@@ -129,8 +130,9 @@ REALCAM_HD inline void trace_lights(const SceneView& view, const CameraView& cam
         samples.rays = entering;
         samples.color = sent;
         PassedPower<N> passed;
-        pass_ghost_lens_path<lens_kind, has_wavelengths>(way, way.ways[0], samples.rays, samples.variable, passed);
-        reach_film<lens_kind, scene_kind, has_wavelengths>(camera, way, round, first_sample, passed, samples,
+        pass_ghost_lens_path<lens_kind, has_wavelengths>(direct, direct.paths[0], samples.rays, samples.variable,
+                                                         passed);
+        reach_film<lens_kind, scene_kind, has_wavelengths>(camera, direct, round, first_sample, passed, samples,
                                                            pixels[step]);
         for (int i = 0; i < N; ++i) {
             if (!samples.shadow.active[i]) pixels[step][i] = -1;

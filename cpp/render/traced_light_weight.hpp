@@ -38,18 +38,18 @@ REALCAM_INLINE float traced_samples(const TracedLightsView& lights, const Traced
 /// MIS weight of an emitter's light that a ray hits straight from the film.
 template <SceneKind scene_kind, int N>
 REALCAM_INLINE float seen_light_weight(const SceneView& scene, const CameraView& camera, const PathState<N>& path,
-                                       int place, Hit hit, const SurfacePoint& point) {
+                                       int slot, Hit hit, const SurfacePoint& point) {
     const TracedLightsView& lights = camera.traced_lights;
     if (lights.light_count == 0) return 1.0f;
     const std::int32_t area = area_light_of(scene, hit), number = lights.light_of_area[area];
     if (number < 0) return 1.0f;
     const TracedLight light = lights.lights[number];
-    const float time = time_of<scene_kind>(path, place);
+    const float time = time_of<scene_kind>(path, slot);
     CameraPlacement placement = camera;
     if constexpr (scene_kind == SceneKind::any) placement = camera_at(camera, time);
     const float area_m2 = area_light_at<scene_kind>(scene, area, time).area;
     const EntryPlane plane = entry_plane(placement, camera.front_vertex_m, light);
-    const Vec3f direction = path.rays.direction[place];
+    const Vec3f direction = path.rays.direction[slot];
     const float entry_cosine = dot(direction, plane.from);
     if (!(entry_cosine > 0.0f)) return 1.0f;
     // Measured from the light, because the ray may begin anywhere on the path.

@@ -159,9 +159,9 @@ double least_lamp_share(const SceneView& scene, const CameraView& camera, const 
     double least = 1;
     for (const LightGroup& group : light_groups(scene, camera)) {
         if (group.kind != TracedLightKind::triangles) continue;  // no ray hits the others
-        const Vec3f way = scene.areas[group.lights.front()].corner - front;
+        const Vec3f offset = scene.areas[group.lights.front()].corner - front;
         const bool is_in_view =
-            static_cast<double>(-dot(way, camera.backward)) > cosine * static_cast<double>(length(way));
+            static_cast<double>(-dot(offset, camera.backward)) > cosine * static_cast<double>(length(offset));
         if (is_in_view || camera.key_count > 0) least = std::min(least, group.share);
     }
     return least;

@@ -4,7 +4,7 @@
 
 namespace realcam {
 
-void Instance::put(const Placement& placement) {
+void Instance::put(const AnimatedTransform& placement) {
     scene_from_object = placement.scene_from_object;
     motion = placement.motion;
 }
@@ -127,7 +127,7 @@ std::vector<double> all_times(std::initializer_list<const Motion*> motions) {
     return sorted_once(std::move(times));
 }
 
-void move(Assembly& assembly, std::size_t instance, const Placement& placement) {
+void move(Assembly& assembly, std::size_t instance, const AnimatedTransform& placement) {
     const Instance whole = assembly.instances[instance];
     std::vector<bool> moves(assembly.instances.size(), false);
     moves[instance] = true;
@@ -146,8 +146,8 @@ void move(Assembly& assembly, std::size_t instance, const Placement& placement) 
         const std::vector<double> times =
             is_fixed ? all_times({placement.motion.get()})
                      : all_times({placement.motion.get(), whole.motion.get(), part.motion.get()});
-        part.put(
-            placement_by(times, [&](double time) { return placement.at(time) * (is_fixed ? first : within(time)); }));
+        part.put(animated_transform(
+            times, [&](double time) { return placement.at(time) * (is_fixed ? first : within(time)); }));
     }
     assembly.instances[instance].put(placement);
 }

@@ -15,13 +15,14 @@
 namespace REALCAM_NAMESPACE {
 
 /// Animated transform of an object: a fixed transform or keyframes. Metres in both frames.
-struct Placement {
+struct AnimatedTransform {
     Affine<double> scene_from_object;  ///< for an animated object: at time 0
     std::shared_ptr<const Motion> motion;  ///< null: not animated
 
-    Placement(const Affine<double>& map = {}) : scene_from_object(map) {}
+    AnimatedTransform(const Affine<double>& map = {}) : scene_from_object(map) {}
     /// The keys must be valid (motion_error returns an empty string).
-    Placement(Motion keys) : scene_from_object(keys.at(0)), motion(std::make_shared<const Motion>(std::move(keys))) {}
+    AnimatedTransform(Motion keys)
+        : scene_from_object(keys.at(0)), motion(std::make_shared<const Motion>(std::move(keys))) {}
 
     Affine<double> at(double time_s) const { return motion ? motion->at(time_s) : scene_from_object; }
 };
@@ -31,14 +32,14 @@ struct Instance {
     static constexpr std::ptrdiff_t kNoWhole = -1;
 
     std::shared_ptr<const Scene> object;
-    Affine<double> scene_from_object;  ///< see Placement
+    Affine<double> scene_from_object;  ///< see AnimatedTransform
     std::string name;  ///< for messages and look-up
     /// Index of the parent instance, with which this one moves, or kNoWhole. A part comes after its parent.
     std::ptrdiff_t part_of = kNoWhole;
     std::shared_ptr<const Motion> motion = nullptr;
 
     Affine<double> transform_at(double time_s) const { return motion ? motion->at(time_s) : scene_from_object; }
-    void put(const Placement& placement);
+    void put(const AnimatedTransform& placement);
 };
 
 /// A scene as static geometry and instances of objects, with value semantics: copies share the geometry. Backends
@@ -104,11 +105,11 @@ std::vector<double> all_times(std::initializer_list<const Motion*> motions);
 
 /// Animated transform with keys at `times`, where it equals at(time); fixed, at(0), if `times` is empty.
 template <class At>
-Placement placement_by(const std::vector<double>& times, At&& at) {
-    return times.empty() ? Placement(at(0.0)) : Placement(sampled_motion(times, at));
+AnimatedTransform animated_transform(const std::vector<double>& times, At&& at) {
+    return times.empty() ? AnimatedTransform(at(0.0)) : AnimatedTransform(sampled_motion(times, at));
 }
 
 /// Sets the transform or motion of an instance and moves its parts, recursively, along with it.
-void move(Assembly& assembly, std::size_t instance, const Placement& placement);
+void move(Assembly& assembly, std::size_t instance, const AnimatedTransform& placement);
 
 }  // namespace REALCAM_NAMESPACE

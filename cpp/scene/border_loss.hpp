@@ -18,15 +18,15 @@ namespace border_loss_detail {
 using ggx_albedo_detail::between;
 using ggx_albedo_detail::read_table;
 using ggx_albedo_detail::row_of;
-using ggx_albedo_detail::table_place;
-using ggx_albedo_detail::TablePlace;
+using ggx_albedo_detail::table_position;
+using ggx_albedo_detail::TablePosition;
 
 inline constexpr int kBorderLayers = REALCAM_BORDER_LAYERS, kBorderRows = REALCAM_BORDER_ROWS,
                      kBorderColumns = REALCAM_BORDER_COLUMNS, kBorderMeanRows = REALCAM_BORDER_MEAN_ROWS;
 
-REALCAM_INLINE TablePlace layer_of(float critical) {
+REALCAM_INLINE TablePosition layer_of(float critical) {
     constexpr float kLeast = REALCAM_BORDER_LEAST_CRITICAL, kMost = REALCAM_BORDER_MOST_CRITICAL;
-    return table_place((critical - kLeast) / (kMost - kLeast), kBorderLayers);
+    return table_position((critical - kLeast) / (kMost - kLeast), kBorderLayers);
 }
 
 }  // namespace border_loss_detail
@@ -37,8 +37,8 @@ REALCAM_HD inline float border_loss(BorderSide side, float cosine, float alpha, 
     using namespace border_loss_detail;
     static constexpr float kLoss[] = {REALCAM_BORDER_LOSS};
     static_assert(sizeof kLoss == sizeof(float) * 2 * kBorderLayers * kBorderRows * kBorderColumns);
-    const TablePlace layer = layer_of(critical), row = row_of(alpha, kBorderRows),
-                     column = table_place(std::sqrt(cosine), kBorderColumns);
+    const TablePosition layer = layer_of(critical), row = row_of(alpha, kBorderRows),
+                        column = table_position(std::sqrt(cosine), kBorderColumns);
     const float* upper = kLoss + (static_cast<int>(side) * kBorderLayers + layer.index) * kBorderRows * kBorderColumns;
     const float factor =
         between(read_table(upper, row, column, kBorderColumns),

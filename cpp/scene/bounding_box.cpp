@@ -21,9 +21,9 @@ void add_triangles(BoundingBox& box, const Scene& scene, const Affine<double>& m
 }
 
 const BoundingBox& ObjectBoxes::of(const Scene& object) {
-    const auto [place, is_new] = boxes_.try_emplace(&object);
-    if (is_new) add_triangles(place->second, object, {});
-    return place->second;
+    const auto [entry, is_new] = boxes_.try_emplace(&object);
+    if (is_new) add_triangles(entry->second, object, {});
+    return entry->second;
 }
 
 BoundingBox ObjectBoxes::of(const Instance& instance) {

@@ -43,13 +43,13 @@ private:
 };
 
 /// Up to this many instanced triangles bounding boxes are exact; beyond, the transformed box of an object is used.
-inline constexpr std::size_t kMostTrianglesAsked = std::size_t{1} << 22;
+inline constexpr std::size_t kMostTrianglesTested = std::size_t{1} << 22;
 
 inline bool asks_every_triangle(const Assembly& assembly) {
-    return assembly.triangle_count() - assembly.static_geometry->triangles.size() <= kMostTrianglesAsked;
+    return assembly.triangle_count() - assembly.static_geometry->triangles.size() <= kMostTrianglesTested;
 }
 
-/// Bounding box of a scene in metres. Above kMostTrianglesAsked instanced triangles it encloses the transformed boxes
+/// Bounding box of a scene in metres. Above kMostTrianglesTested instanced triangles it encloses the transformed boxes
 /// of the objects, which are not tight for rotated instances.
 BoundingBox bounding_box(const Assembly& assembly);
 

@@ -165,13 +165,13 @@ LightNode LightTree::node_of(const LightBounds& bounds) {
 }
 
 LightBounds LightTree::add(Leaves first, Leaves last, std::uint64_t turns, int depth, Checkpoint& checkpoint) {
-    const std::size_t place = nodes_.size();
+    const std::size_t index = nodes_.size();
     nodes_.emplace_back();
     if (last - first <= kMostInLeaf) {
         const LightBounds all = around(first, last);
         if (last - first == 1 || is_one_lamp(first, last, all)) {
-            nodes_[place] = node_of(all);
-            fill_leaf(nodes_[place], first, last, turns);
+            nodes_[index] = node_of(all);
+            fill_leaf(nodes_[index], first, last, turns);
             return all;
         }
     }
@@ -180,8 +180,8 @@ LightBounds LightTree::add(Leaves first, Leaves last, std::uint64_t turns, int d
     const auto second = static_cast<std::int32_t>(nodes_.size());
     const LightBounds other = add(middle, last, turns | std::uint64_t{1} << depth, depth + 1, checkpoint);
     const LightBounds all = around(one, other);
-    nodes_[place] = node_of(all);
-    nodes_[place].second_child = second;
+    nodes_[index] = node_of(all);
+    nodes_[index].second_child = second;
     return all;
 }
 

@@ -12,8 +12,8 @@ namespace coat_loss_detail {
 
 using ggx_albedo_detail::between;
 using ggx_albedo_detail::read_table;
-using ggx_albedo_detail::table_place;
-using ggx_albedo_detail::TablePlace;
+using ggx_albedo_detail::table_position;
+using ggx_albedo_detail::TablePosition;
 
 inline constexpr int kCoatLayers = REALCAM_COAT_LAYERS, kCoatRows = REALCAM_COAT_ROWS,
                      kCoatColumns = REALCAM_COAT_COLUMNS;
@@ -25,9 +25,9 @@ REALCAM_HD inline float coat_loss(float cosine, float coat_alpha, float metal_al
     using namespace coat_loss_detail;
     static constexpr float kLoss[] = {REALCAM_COAT_LOSS};
     static_assert(sizeof kLoss == sizeof(float) * kCoatLayers * kCoatRows * kCoatColumns);
-    const TablePlace layer = table_place(std::sqrt(coat_alpha), kCoatLayers),
-                     row = table_place(std::sqrt(metal_alpha), kCoatRows),
-                     column = table_place(std::sqrt(cosine), kCoatColumns);
+    const TablePosition layer = table_position(std::sqrt(coat_alpha), kCoatLayers),
+                        row = table_position(std::sqrt(metal_alpha), kCoatRows),
+                        column = table_position(std::sqrt(cosine), kCoatColumns);
     const float* upper = kLoss + layer.index * kCoatRows * kCoatColumns;
     return between(read_table(upper, row, column, kCoatColumns),
                    read_table(upper + kCoatRows * kCoatColumns, row, column, kCoatColumns), layer.fraction);
@@ -38,8 +38,8 @@ REALCAM_HD inline float coat_mean_loss(float coat_alpha, float metal_alpha) {
     using namespace coat_loss_detail;
     static constexpr float kLoss[] = {REALCAM_COAT_MEAN_LOSS};
     static_assert(sizeof kLoss == sizeof(float) * kCoatLayers * kCoatRows);
-    return read_table(kLoss, table_place(std::sqrt(coat_alpha), kCoatLayers),
-                      table_place(std::sqrt(metal_alpha), kCoatRows), kCoatRows);
+    return read_table(kLoss, table_position(std::sqrt(coat_alpha), kCoatLayers),
+                      table_position(std::sqrt(metal_alpha), kCoatRows), kCoatRows);
 }
 
 }  // namespace REALCAM_NAMESPACE

@@ -111,9 +111,9 @@ private:
         const Vec3f upper = is_thin ? Vec3f{light.x, light.y, std::fabs(light.z)} : light;
         const float both = ggx_density(h, alpha) * ggx_visible_to_both(eye, upper, alpha);
         if (is_thin || light.z > 0.0f) return both * (light.z > 0.0f ? reflected : 1.0f - reflected) / (4.0f * eye.z);
-        const float d = dot(light, h), way = c + eta * d;
-        if (!(d < 0.0f) || way == 0.0f) return 0.0f;
-        return (1.0f - reflected) * both * c * -d / (eye.z * way * way);
+        const float d = dot(light, h), denominator = c + eta * d;
+        if (!(d < 0.0f) || denominator == 0.0f) return 0.0f;
+        return (1.0f - reflected) * both * c * -d / (eye.z * denominator * denominator);
     }
 
     REALCAM_INLINE float pdf_once(Vec3f eye, Vec3f light) const {
@@ -122,9 +122,9 @@ private:
         if (!(c > 0.0f)) return 0.0f;
         const float reflected = reflectance(c), facets = ggx_pdf(eye, h, alpha);
         if (is_thin || light.z > 0.0f) return (light.z > 0.0f ? reflected : 1.0f - reflected) * facets / (4.0f * c);
-        const float d = dot(light, h), way = c + eta * d;
-        if (!(d < 0.0f) || way == 0.0f) return 0.0f;
-        return (1.0f - reflected) * facets * eta * eta * -d / (way * way);
+        const float d = dot(light, h), denominator = c + eta * d;
+        if (!(d < 0.0f) || denominator == 0.0f) return 0.0f;
+        return (1.0f - reflected) * facets * eta * eta * -d / (denominator * denominator);
     }
 
     /// Multiple scattering: BSDF times cosine, without weight and filter. Below the surface the energy grows by the

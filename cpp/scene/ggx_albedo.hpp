@@ -21,12 +21,12 @@ namespace ggx_albedo_detail {
 
 inline constexpr int kRows = REALCAM_GGX_ROWS, kColumns = REALCAM_GGX_COLUMNS;
 
-struct TablePlace {
+struct TablePosition {
     int index;
     float fraction;
 };
 
-REALCAM_INLINE TablePlace table_place(float position, int count) {
+REALCAM_INLINE TablePosition table_position(float position, int count) {
     const float scaled = position * static_cast<float>(count - 1);
     const int index = static_cast<int>(scaled);
     // Two selects in sequence, of integers: otherwise gcc emits branches and does not vectorise the loop.
@@ -35,9 +35,9 @@ REALCAM_INLINE TablePlace table_place(float position, int count) {
     return {held, select(fraction < 0.0f, 0.0f, select(fraction > 1.0f, 1.0f, fraction))};
 }
 
-REALCAM_INLINE TablePlace row_of(float alpha, int rows = kRows) {
+REALCAM_INLINE TablePosition row_of(float alpha, int rows = kRows) {
     constexpr float kSmoothest = 0.0316227766f;  // square root of kSmoothAlpha
-    return table_place((std::sqrt(alpha) - kSmoothest) / (1.0f - kSmoothest), rows);
+    return table_position((std::sqrt(alpha) - kSmoothest) / (1.0f - kSmoothest), rows);
 }
 
 /// Cube root of a number from 0 to 1, with a relative error of 2e-6. It uses Newton's steps from a third of the
@@ -49,17 +49,17 @@ REALCAM_INLINE float cube_root(float x) {
 }
 
 /// Table column: the cosine on the surface stretched to alpha 1, to the power 2/3.
-REALCAM_INLINE TablePlace column_of(float cosine, float alpha) {
+REALCAM_INLINE TablePosition column_of(float cosine, float alpha) {
     const float sine2 = 1.0f - cosine * cosine;
     const float root = cube_root(cosine / std::sqrt(cosine * cosine + alpha * alpha * (sine2 > 0.0f ? sine2 : 0.0f)));
-    return table_place(root * root, kColumns);
+    return table_position(root * root, kColumns);
 }
 
 REALCAM_INLINE float between(float a, float b, float fraction) {
     return a + fraction * (b - a);
 }
 
-REALCAM_INLINE float read_table(const float* table, TablePlace row, TablePlace column, int columns = kColumns) {
+REALCAM_INLINE float read_table(const float* table, TablePosition row, TablePosition column, int columns = kColumns) {
     const int upper = row.index * columns + column.index, lower = upper + columns;
     return between(between(table[upper], table[upper + 1], column.fraction),
                    between(table[lower], table[lower + 1], column.fraction), row.fraction);
@@ -73,9 +73,9 @@ REALCAM_INLINE GgxAlbedo inlined_ggx_albedo(float cosine, float alpha) {
     static constexpr float kAll[] = {REALCAM_GGX_ALBEDO};
     static constexpr float kGrazingOfAll[] = {REALCAM_GGX_SCHLICK};
     static_assert(sizeof kAll == sizeof(float) * kRows * kColumns && sizeof kGrazingOfAll == sizeof kAll);
-    const TablePlace row = row_of(alpha);
+    const TablePosition row = row_of(alpha);
     const float all = read_table(kAll, row, column_of(cosine, alpha));
-    return {all, all * read_table(kGrazingOfAll, row, table_place(std::sqrt(cosine), kColumns))};
+    return {all, all * read_table(kGrazingOfAll, row, table_position(std::sqrt(cosine), kColumns))};
 }
 
 /// Directional albedo at a cosine, for all other callers.
@@ -88,7 +88,7 @@ REALCAM_INLINE GgxAlbedo inlined_ggx_mean_albedo(float alpha) {
     using namespace ggx_albedo_detail;
     static constexpr float kLoss[] = {REALCAM_GGX_MEAN_LOSS};  // divided by alpha^2
     static constexpr float kGrazing[] = {REALCAM_GGX_MEAN_SCHLICK};
-    const TablePlace row = row_of(alpha);
+    const TablePosition row = row_of(alpha);
     const int i = row.index;
     return {1.0f - alpha * alpha * between(kLoss[i], kLoss[i + 1], row.fraction),
             between(kGrazing[i], kGrazing[i + 1], row.fraction)};

@@ -19,7 +19,7 @@ void make_names_distinct(Assembly& assembly) {
     for (Instance& instance : assembly.instances) instance.name = names.take(instance.name);
 }
 
-void add(Assembly& assembly, const Assembly& object, const Placement& placement, const std::string& name,
+void add(Assembly& assembly, const Assembly& object, const AnimatedTransform& placement, const std::string& name,
          DistinctNames& names) {
     const std::vector<Instance> parts = object.instances;  // a copy, because the object may be the assembly itself
     const std::string own = names.take(name);
@@ -32,8 +32,8 @@ void add(Assembly& assembly, const Assembly& object, const Placement& placement,
     const std::ptrdiff_t first = std::ssize(assembly.instances);
     for (const Instance& part : parts) {
         Instance placed = part;
-        placed.put(placement_by(all_times({placement.motion.get(), part.motion.get()}),
-                                [&](double time) { return placement.at(time) * part.transform_at(time); }));
+        placed.put(animated_transform(all_times({placement.motion.get(), part.motion.get()}),
+                                      [&](double time) { return placement.at(time) * part.transform_at(time); }));
         placed.name = names.take(own + (own.empty() || part.name.empty() ? "" : "/") + part.name);
         placed.part_of = part.part_of == Instance::kNoWhole ? whole : first + part.part_of;
         assembly.instances.push_back(std::move(placed));

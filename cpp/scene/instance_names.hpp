@@ -29,7 +29,7 @@ void make_names_distinct(Assembly& assembly);
 
 /// Instances an object in a scene. The object's own instances become parts of the new one, named name/part. `names`:
 /// the names that the scene already uses.
-void add(Assembly& assembly, const Assembly& object, const Placement& placement, const std::string& name,
+void add(Assembly& assembly, const Assembly& object, const AnimatedTransform& placement, const std::string& name,
          DistinctNames& names);
 
 }  // namespace REALCAM_NAMESPACE

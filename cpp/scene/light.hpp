@@ -19,12 +19,12 @@ REALCAM_INLINE Color emitted_radiance(const SceneView& scene, const AreaLight& l
     if constexpr (scene_kind == SceneKind::plain) return light.radiance;
     const MeshView& mesh = mesh_of(scene, light.instance);
     const Triangle& triangle = mesh.triangles[light.triangle];
-    const Hit place = {0.0f, light.triangle, along_u, along_v, light.instance};
+    const Hit hit = {0.0f, light.triangle, along_u, along_v, light.instance};
     Color radiance = light.radiance;
     const TextureReference& map = mesh.materials[triangle.material].emission_texture;
-    if (mesh.materials[triangle.material].vertex_emission) radiance *= vertex_color(mesh, triangle, place);
-    if (map.texture >= 0) radiance *= texture_color(mesh, map, surface_uv(mesh, triangle, place, map).at);
-    if constexpr (scene_kind == SceneKind::any) radiance = opacity_at(mesh, triangle, place) * radiance;
+    if (mesh.materials[triangle.material].vertex_emission) radiance *= vertex_color(mesh, triangle, hit);
+    if (map.texture >= 0) radiance *= texture_color(mesh, map, surface_uv(mesh, triangle, hit, map).at);
+    if constexpr (scene_kind == SceneKind::any) radiance = opacity_at(mesh, triangle, hit) * radiance;
     return radiance;
 }
 
@@ -67,7 +67,7 @@ REALCAM_INLINE PointLight point_light_at(const SceneView& scene, const PointLigh
 }
 
 /// Direction and distance from a position to a point on an area light.
-struct WayToLight {
+struct DirectionToLight {
     Vec3f direction;  ///< unit
     float distance, reach;  ///< see LightSample
     /// Between the light's normal and the direction to the position; positive if the light emits towards it.
@@ -77,10 +77,11 @@ struct WayToLight {
 
 /// `u`: barycentric coordinates of the point. Free of branches, so that loops vectorise. If the position lies on the
 /// light, the cosine is NaN.
-REALCAM_INLINE WayToLight way_to(const AreaLight& light, bool on_both_sides, Vec3f position, Vec2f u) {
-    const Vec3f way = light.corner + u.x * light.edge_u + u.y * light.edge_v - position;
-    const float squared = dot(way, way), distance = std::sqrt(squared);
-    const Vec3f direction = (1.0f / distance) * way;
+REALCAM_INLINE DirectionToLight direction_to_light(const AreaLight& light, bool on_both_sides, Vec3f position,
+                                                   Vec2f u) {
+    const Vec3f to_light = light.corner + u.x * light.edge_u + u.y * light.edge_v - position;
+    const float squared = dot(to_light, to_light), distance = std::sqrt(squared);
+    const Vec3f direction = (1.0f / distance) * to_light;
     const float on_side = -dot(direction, light.normal);
     const float cosine = select(on_both_sides, std::fabs(on_side), on_side);
     const float reach = 1.0f - (light.margin + kMarginShare * distance) / (cosine * distance);
@@ -105,37 +106,37 @@ REALCAM_INLINE bool is_near(const AreaLight& light, Vec3f position) {
 }
 
 /// Point sampled uniformly by solid angle, in barycentric coordinates.
-struct NearPlace {
+struct SolidAngleSample {
     Vec2f at;
     float solid_angle;  ///< solid angle of the whole light, in steradians
 };
 
 /// A function call on GPUs, because few receivers are near a light.
-REALCAM_ONE_COPY NearPlace sample_spherical_triangle(Vec3f a, Vec3f b, Vec3f c, float double_area, float height,
-                                                     Vec2f u) {
+REALCAM_ONE_COPY SolidAngleSample sample_spherical_triangle(Vec3f a, Vec3f b, Vec3f c, float double_area, float height,
+                                                            Vec2f u) {
     const SphericalTriangle seen(a, b, c, double_area, height);
     return {seen.sample(u), seen.solid_angle};
 }
 
-REALCAM_INLINE NearPlace sample_near(const AreaLight& light, Vec3f position, Vec2f u) {
-    const Vec3f way = light.corner - position;
-    return sample_spherical_triangle(way, way + light.edge_u, way + light.edge_v, 2.0f * light.area,
-                                     std::fabs(dot(way, light.normal)), u);
+REALCAM_INLINE SolidAngleSample sample_near(const AreaLight& light, Vec3f position, Vec2f u) {
+    const Vec3f corner = light.corner - position;
+    return sample_spherical_triangle(corner, corner + light.edge_u, corner + light.edge_v, 2.0f * light.area,
+                                     std::fabs(dot(corner, light.normal)), u);
 }
 
 /// Density of sample_area_light, per steradian, at a point on the light.
-REALCAM_INLINE float place_pdf(const AreaLight& light, Vec3f position, float distance, float cosine) {
+REALCAM_INLINE float solid_angle_pdf(const AreaLight& light, Vec3f position, float distance, float cosine) {
     return is_near(light, position) ? 1.0f / sample_near(light, position, {0, 0}).solid_angle
                                     : area_light_pdf(light.area, distance * distance, cosine);
 }
 
 /// Light sample of a point on an area light. Black if the position is behind the light.
 template <SceneKind scene_kind>
-REALCAM_INLINE LightSample light_from(const SceneView& scene, const AreaLight& light, const WayToLight& way,
-                                      Vec2f place) {
-    if (!(way.cosine > 0.0f)) return {light.normal, way.distance, 1.0f, {0, 0, 0}, kDelta};
-    return {way.direction, way.distance, way.reach,
-            (1.0f / way.pdf) * emitted_radiance<scene_kind>(scene, light, place.x, place.y), way.pdf};
+REALCAM_INLINE LightSample light_from(const SceneView& scene, const AreaLight& light, const DirectionToLight& to_light,
+                                      Vec2f point) {
+    if (!(to_light.cosine > 0.0f)) return {light.normal, to_light.distance, 1.0f, {0, 0, 0}, kDelta};
+    return {to_light.direction, to_light.distance, to_light.reach,
+            (1.0f / to_light.pdf) * emitted_radiance<scene_kind>(scene, light, point.x, point.y), to_light.pdf};
 }
 
 template <SceneKind scene_kind>
@@ -146,19 +147,19 @@ REALCAM_INLINE bool shines_on_both_sides(const AreaLight& light) {
 /// Samples an area light uniformly by area.
 template <SceneKind scene_kind>
 REALCAM_INLINE LightSample sample_area(const SceneView& scene, const AreaLight& light, Vec3f position, Vec2f u) {
-    const Vec2f place = sample_triangle(u);
-    return light_from<scene_kind>(scene, light, way_to(light, shines_on_both_sides<scene_kind>(light), position, place),
-                                  place);
+    const Vec2f point = sample_triangle(u);
+    return light_from<scene_kind>(
+        scene, light, direction_to_light(light, shines_on_both_sides<scene_kind>(light), position, point), point);
 }
 
-/// Samples an area light with the density place_pdf.
+/// Samples an area light with the density solid_angle_pdf.
 template <SceneKind scene_kind>
 REALCAM_INLINE LightSample sample_area_light(const SceneView& scene, const AreaLight& light, Vec3f position, Vec2f u) {
     if (!is_near(light, position)) return sample_area<scene_kind>(scene, light, position, u);
-    const NearPlace place = sample_near(light, position, u);
-    WayToLight way = way_to(light, shines_on_both_sides<scene_kind>(light), position, place.at);
-    way.pdf = 1.0f / place.solid_angle;
-    return light_from<scene_kind>(scene, light, way, place.at);
+    const SolidAngleSample sample = sample_near(light, position, u);
+    DirectionToLight to_light = direction_to_light(light, shines_on_both_sides<scene_kind>(light), position, sample.at);
+    to_light.pdf = 1.0f / sample.solid_angle;
+    return light_from<scene_kind>(scene, light, to_light, sample.at);
 }
 
 REALCAM_INLINE LightSample sample_point_light(const PointLight& light, Vec3f position) {
@@ -292,7 +293,7 @@ REALCAM_INLINE float emitter_light_pdf(const SceneView& scene, SkySampling sampl
     const AreaLight light = area_light_at<scene_kind>(scene, area_light, receiver.time);
     return light_kinds(scene, sampling, receiver).local_probability *
            light_probability(scene, receiver, scene.point_count + area_light) *
-           place_pdf(light, receiver.position, distance, cosine);
+           solid_angle_pdf(light, receiver.position, distance, cosine);
 }
 
 /// Index of the area light of a hit on an emitting triangle.

@@ -47,14 +47,14 @@ struct NodeView {
     Vec3f to_middle;  ///< unit, from the receiver to the centre of the bounds
 
     REALCAM_INLINE NodeView(const LightNode& node, LightReceiver receiver) {
-        const Vec3f way = receiver.position - node.middle;
-        squared_distance = dot(way, way);
+        const Vec3f offset = receiver.position - node.middle;
+        squared_distance = dot(offset, offset);
         const bool is_outside = squared_distance > node.squared_radius;
         cos_bounds = select(is_outside, sqrt_or_zero(1.0f - node.squared_radius / squared_distance), -1.0f);
         const float inverse = 1.0f / std::sqrt(select(squared_distance > 1e-30f, squared_distance, 1e-30f));
-        cos_axis = inverse * dot(node.axis, way);
-        cos_normal = -inverse * dot(receiver.normal, way);
-        to_middle = -inverse * way;
+        cos_axis = inverse * dot(node.axis, offset);
+        cos_normal = -inverse * dot(receiver.normal, offset);
+        to_middle = -inverse * offset;
     }
 };
 

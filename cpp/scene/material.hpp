@@ -28,9 +28,10 @@ struct Material {
     float opacity = 1;  ///< coverage of the surface, 0 to 1; rays pass unaffected through the complement
     /// Above 0: alpha test; the surface is opaque if opacity reaches this value, and absent otherwise.
     float opacity_cutoff = 0;
-    /// Not 0: shadow catcher, invisible except for the shadows on it (MTL's illumination model 10).
+    /// If not 0, the material is a shadow catcher, invisible except for the shadows on it (MTL's illumination model
+    /// 10).
     std::int32_t only_shadows = 0;
-    std::int32_t vertex_opacity = 0;  ///< not 0: the vertex colours' alpha multiplies opacity
+    std::int32_t vertex_opacity = 0;  ///< if not 0, the vertex colours' alpha multiplies opacity
     /// If not 0, vertex colours multiply emission; they always multiply the diffuse colour.
     std::int32_t vertex_emission = 0;
     TextureReference opacity_texture;  ///< its alpha channel multiplies opacity

@@ -15,7 +15,7 @@ struct SceneCamera {
     double vertical_field_rad = 0;
     std::shared_ptr<const Motion> motion = nullptr;  ///< null: not animated
 
-    bool has_place() const { return vertical_field_rad > 0; }
+    bool has_pose() const { return vertical_field_rad > 0; }
     Affine<double> transform_at(double time_s) const { return motion ? motion->at(time_s) : scene_from_camera; }
 };
 

@@ -34,15 +34,15 @@ REALCAM_INLINE const MeshView& mesh_of(const SceneView& scene, std::uint32_t ins
     return scene.objects[scene.instances[instance].object];
 }
 
-/// Position on a surface; the normal faces the ray's origin.
-struct SurfacePlace {
+/// Point on a surface from which rays start; the normal faces the arriving ray's origin.
+struct RaySpawnPoint {
     Vec3f position;
     Vec3f geometric_normal;
     float self_offset;  ///< offset along the normal at which the next ray must start to avoid self-intersection
 };
 
 /// Surface point with its shading parameters.
-struct SurfacePoint : SurfacePlace {
+struct SurfacePoint : RaySpawnPoint {
     Vec3f normal;  ///< shading normal
     const Material* material;
     Color diffuse;  ///< the material's, times texture and vertex colour
@@ -64,9 +64,9 @@ REALCAM_INLINE Vec3f hit_position(const MeshView& mesh, const TrianglePlane& pla
     // Computed along the ray, because barycentric coordinates of a sliver have an error of its aspect ratio times the
     // rounding, which would shift the point along it; but not from afar, where the error of the distance exceeds that
     // of the corners.
-    const Vec3f way = hit.distance * ray_direction;
-    Vec3f p = ray_origin + way;
-    if ((largest_coordinate(ray_origin) + largest_coordinate(way)) * kMarginShare > 16.0f * plane.margin) {
+    const Vec3f offset = hit.distance * ray_direction;
+    Vec3f p = ray_origin + offset;
+    if ((largest_coordinate(ray_origin) + largest_coordinate(offset)) * kMarginShare > 16.0f * plane.margin) {
         const std::uint32_t* corner = mesh.triangles[hit.triangle].vertices;
         p = (1.0f - hit.u - hit.v) * mesh.positions[corner[0]] + hit.u * mesh.positions[corner[1]] +
             hit.v * mesh.positions[corner[2]];
@@ -96,8 +96,8 @@ REALCAM_INLINE SurfaceUv surface_uv(const MeshView& mesh, const Triangle& triang
 }
 
 REALCAM_INLINE Vec2f transformed(const TextureReference& reference, Vec2f uv) {
-    const Vec3f place = {uv.x, uv.y, 1.0f};
-    return {dot(reference.to_u, place), dot(reference.to_v, place)};
+    const Vec3f homogeneous = {uv.x, uv.y, 1.0f};
+    return {dot(reference.to_u, homogeneous), dot(reference.to_v, homogeneous)};
 }
 
 /// Area of a surface that a ray represents, for filtering colour textures. On the film it is a pixel divided by the

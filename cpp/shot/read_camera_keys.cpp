@@ -5,7 +5,7 @@
 namespace realcam::shot {
 namespace {
 
-std::optional<CameraKeyInterpolation> way_named(std::string_view name) {
+std::optional<CameraKeyInterpolation> interpolation_named(std::string_view name) {
     if (name == "linear") return CameraKeyInterpolation::linear;
     if (name == "smooth") return CameraKeyInterpolation::smooth;
     if (name == "step") return CameraKeyInterpolation::step;
@@ -59,7 +59,8 @@ void read_keys(const ShotTable& shot, ShotRequest& request) {
             key.film_right_mm = shift[0];
             key.film_up_mm = shift[1];
         }
-        key.way = table.named("interpolation", way_named, "linear, smooth or step").value_or(key.way);
+        key.interpolation =
+            table.named("interpolation", interpolation_named, "linear, smooth or step").value_or(key.interpolation);
         if (const std::string lens = lens_of(table); !lens.empty()) key.lens.emplace().name = lens;
         table.checked("time_s", [&] { validate(key); });
         const double* const last = request.keys.empty() ? nullptr : &request.keys.back().time_s;
@@ -72,7 +73,7 @@ void read_keys(const ShotTable& shot, ShotRequest& request) {
                 shot.fail('"' + std::string(still.still) + "\" and \"" + still.key + "\" of [[key]] exclude each other",
                           node);
         request.keys.push_back(key);
-        request.key_places.push_back(table.place());
+        request.key_locations.push_back(table.location());
     }
 }
 

@@ -37,7 +37,7 @@ class MaterialReader {
 public:
     MaterialReader(const ShotTable& table, const std::string& name) : table_(table) {
         request_.name = name;
-        request_.place = table.place();
+        request_.location = table.location();
     }
 
     MaterialRequest read() {
@@ -131,8 +131,8 @@ private:
         if (const auto v = table_.number(key)) value = static_cast<float>(*v);
     }
     void texture(const char* key, TextureReference Material::* member) {
-        const auto place = std::find(kMaterialTextures.begin(), kMaterialTextures.end(), member);
-        request_.textures[static_cast<std::size_t>(place - kMaterialTextures.begin())] = table_.path(key);
+        const auto texture = std::find(kMaterialTextures.begin(), kMaterialTextures.end(), member);
+        request_.textures[static_cast<std::size_t>(texture - kMaterialTextures.begin())] = table_.path(key);
     }
 
     ShotTable table_;
@@ -159,7 +159,7 @@ Affine<double> transform_of(const ShotTable& table) {
     return map;
 }
 
-Placement placement_of(const ShotTable& table) {
+AnimatedTransform placement_of(const ShotTable& table) {
     Motion motion;
     for (const ShotTable& key : table.tables("key")) {
         key.allow({"time_s", "position_m", "rotation_deg", "stretch", "matrix"});
@@ -181,7 +181,7 @@ Placement placement_of(const ShotTable& table) {
 ObjectRequest read_object(const ShotTable& table) {
     table.allow({"file", "name", "scale", "position_m", "rotation_deg", "stretch", "matrix", "material", "key"});
     ObjectRequest object;
-    object.place = table.place();
+    object.location = table.location();
     object.file = table.path("file");
     if (object.file.empty()) table.fail("file is missing: what to put into the scene");
     object.name = table.name("name");

@@ -7,10 +7,10 @@
 
 namespace realcam::shot {
 
-// Additions of a shot file to the scene that it photographs. `place`: position in the shot file, for messages.
+// Additions of a shot file to the scene that it photographs. `location`: position in the shot file, for messages.
 
 struct MaterialRequest {
-    std::string name, place;
+    std::string name, location;
     Material values;
     /// Files, in the order of kMaterialTextures; empty: no texture.
     std::array<std::string, kMaterialTextures.size()> textures;
@@ -18,9 +18,9 @@ struct MaterialRequest {
 
 /// Another scene file that is placed in the scene.
 struct ObjectRequest {
-    std::string file, name, place;
+    std::string file, name, location;
     double scale = 1;  ///< metres per unit of the file
-    Placement placement;
+    AnimatedTransform placement;
     std::string material;  ///< replaces all materials of the file; empty: keeps them
 };
 

@@ -50,14 +50,14 @@ std::string film_notice(const LensSystem& lens, const Film& film) {
 
 /// Runs work on a key of a file; errors begin with the key's position.
 template <class Work>
-void at_place(const std::string& place, Work&& work) {
+void with_location(const std::string& location, Work&& work) {
     try {
         work();
     } catch (const InputError& error) {
-        throw InputError(place + ": " + error.what());
+        throw InputError(location + ": " + error.what());
     } catch (const LensFileError& error) {
         if (!error.file.empty()) throw;
-        throw InputError(place + ": " + error.what());
+        throw InputError(location + ": " + error.what());
     }
 }
 
@@ -80,7 +80,7 @@ LensSystem with_shot_rings(const ShotRequest& request, const LensSystem& lens) {
 /// Throws InputError if the camera cannot take the state of a key.
 void check_keys(const ShotRequest& request, const Camera& camera) {
     for (std::size_t i = 0; i < request.keys.size(); ++i)
-        at_place(request.key_places[i], [&] {
+        with_location(request.key_locations[i], [&] {
             const std::string notice =
                 request.keys[i].lens && !request.film_mm ? film_notice(*request.keys[i].lens, camera.film) : "";
             if (!notice.empty()) throw InputError(notice);
@@ -119,8 +119,8 @@ void resolve_keys(ShotRequest& request) {
     options.glasses.clear();  // these belong to the first lens
     for (std::size_t i = 0; i < request.keys.size(); ++i)
         if (std::optional<LensSystem>& lens = request.keys[i].lens)
-            at_place(request.key_places[i],
-                     [&] { lens = with_rings(io::read_lens(lens->name, options), blades_of(request)); });
+            with_location(request.key_locations[i],
+                          [&] { lens = with_rings(io::read_lens(lens->name, options), blades_of(request)); });
     const auto cut = std::find_if(request.keys.begin(), request.keys.end(),
                                   [](const CameraKey& key) { return key.lens.has_value(); });
     const bool zooms =

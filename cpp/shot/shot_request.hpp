@@ -58,7 +58,7 @@ struct ShotRequest {
     /// Keys of rings and dials, which replace the values in this struct. Their lenses hold only names, as `lens` does,
     /// until resolve_keys has read them.
     std::vector<CameraKey> keys;
-    std::vector<std::string> key_places;  ///< position of each key in the file, for messages
+    std::vector<std::string> key_locations;  ///< position of each key in the file, for messages
     Shake shake;
     std::optional<double> iso_follows_s;  ///< for a film whose ISO number follows the meter: smoothing time
     CameraModel model = CameraModel::full_lens;

@@ -57,7 +57,7 @@ private:
             if (material.name == object.material) return material;
             names.push_back(material.name);
         }
-        throw InputError(object.place + ": there is no table [material." + object.material + "]" +
+        throw InputError(object.location + ": there is no table [material." + object.material + "]" +
                          io::did_you_mean(object.material, names));
     }
 
@@ -77,7 +77,7 @@ private:
                 return std::make_shared<const Scene>(std::move(changed));
             });
             if (!found && !used_.contains(&material))
-                throw InputError(material.place + ": the scene has no material " + io::in_quotes(material.name) +
+                throw InputError(material.location + ": the scene has no material " + io::in_quotes(material.name) +
                                  io::did_you_mean(material.name, {names.begin(), names.end()}));
         }
     }
@@ -110,7 +110,8 @@ private:
         for (std::size_t i = 0; i < kMaterialTextures.size(); ++i) {
             if (from.textures[i].empty()) continue;
             if (scene.uvs.empty())
-                throw InputError(from.place + ": the material's object has no texture coordinates to lay a texture by");
+                throw InputError(from.location +
+                                 ": the material's object has no texture coordinates to lay a texture by");
             (material.*kMaterialTextures[i]).texture = static_cast<std::int32_t>(scene.textures.size());
             scene.textures.push_back(texture(from.textures[i], io::use_of(kMaterialTextures[i])));
         }

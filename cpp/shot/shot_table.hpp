@@ -40,7 +40,7 @@ public:
     bool is_changed(std::string_view key) const { return changes_ && changes_->values.contains(key); }
 
     /// Position of the table, or of a key of it: "shot.toml:12".
-    std::string place(const char* key = nullptr) const {
+    std::string location(const char* key = nullptr) const {
         const toml::node* node = key ? find(key) : nullptr;
         return file() + ":" +
                std::to_string((node ? *node : static_cast<const toml::node&>(raw())).source().begin.line);

@@ -545,7 +545,7 @@ class Lens(_Value):
         iris_rotation_deg: float = 0.0,
         focus_group: tuple[int, int] | None = None,
         nearest_focus_m: float = 0.0,
-        allow_crossing: bool = False,
+        allow_overlap: bool = False,
         film_radius_of_curvature_mm: float = ...,
     ) -> None: ...
     @staticmethod
@@ -758,7 +758,7 @@ class Lens(_Value):
         film_mm: tuple[float, float] | None = None,
         wavelength_nm: float | None = None,
         film_distance_mm: float | None = None,
-        spokes: int = 64,
+        arms: int = 64,
         nodes: int = 6,
     ) -> RayBundle: ...
     def film_pupil(
@@ -787,8 +787,8 @@ class Lens(_Value):
     @property
     def wavelength_nm(self) -> float: ...
     @property
-    def allow_crossing(self) -> bool: ...
-    def crossings(self) -> list[tuple[int, int, float, float]]: ...
+    def allow_overlap(self) -> bool: ...
+    def overlaps(self) -> list[tuple[int, int, float, float]]: ...
     @property
     def film_distance_mm(self) -> float: ...
     @property

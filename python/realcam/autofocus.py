@@ -108,7 +108,7 @@ def _disparity_px(session: Session, region: tuple[int, int, int, int], spp: int)
     """
     sums = session.expose(region, 0, spp).pixels
     assert sums is not None
-    right = sums["besides"] @ LUMINANCE
+    right = sums["auxiliary"] @ LUMINANCE
     left = sums["irradiance"] @ LUMINANCE - right
     width = left.shape[1]
     most = width // 2

@@ -77,9 +77,9 @@ def fields_along(lens: Lens, shares: Sequence[float], axis: int) -> tuple[Field,
     for share in shares:
         height = share * 0.5 * lens.film_mm[axis]
         for _ in range(_STEPS_INWARDS):  # the light may end before the film's edge
-            place = (height, 0.0) if axis == 0 else (0.0, height)
+            film_point = (height, 0.0) if axis == 0 else (0.0, height)
             try:
-                rays = lens.aim(probes, film_mm=place)
+                rays = lens.aim(probes, film_mm=film_point)
             except InputError:
                 rays = None
             if rays is not None and (rays.status == RayStatus.OK).any():

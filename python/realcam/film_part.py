@@ -128,7 +128,7 @@ class FilmPart:
         for name in ("pixels", "layers"):
             sums = getattr(self, name)
             for key in () if sums is None else sums.dtype.names:
-                if key != "besides" or sums[key].any():
+                if key != "auxiliary" or sums[key].any():
                     arrays[f"{name}.{key}"] = sums[key]
         return arrays
 
@@ -138,7 +138,7 @@ def _joined(arrays: Mapping[str, np.ndarray], name: str, dtype: np.dtype[np.void
     found = {key.removeprefix(f"{name}."): array for key, array in arrays.items() if key.startswith(f"{name}.")}
     if not found:
         return None
-    if found.keys() | {"besides"} != set(dtype.names or ()) | {"besides"}:
+    if found.keys() | {"auxiliary"} != set(dtype.names or ()) | {"auxiliary"}:
         raise ValueError
     shape = next(iter(found.values())).shape[:2]
     sums = np.zeros(shape, dtype)

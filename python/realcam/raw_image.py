@@ -132,8 +132,8 @@ class RawImage:
         if not self.color_filter_array:
             return np.repeat((light / np.float32(per_lux_s[0]))[..., None], 3, axis=2)
         film_from_balanced = self._color[2].astype(np.float32)
-        for place, color in enumerate(self.color_filter_array):
-            light[place // 2 :: 2, place % 2 :: 2] /= np.float32(per_lux_s["RGB".index(color)])
+        for position, color in enumerate(self.color_filter_array):
+            light[position // 2 :: 2, position % 2 :: 2] /= np.float32(per_lux_s["RGB".index(color)])
         balanced = demosaicing.demosaiced(light, self.color_filter_array, demosaic)
         np.minimum(balanced, np.float32(full / per_lux_s.max()), out=balanced)
         result: np.ndarray = balanced @ film_from_balanced.T

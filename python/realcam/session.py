@@ -62,14 +62,14 @@ class Session:
         device: str = "auto",
         **changes: Unpack[_SettingWords],
     ) -> None:
-        self._asked_settings, self._asked_camera, self._device = settings_of(settings, changes), camera, device
+        self._requested_settings, self._requested_camera, self._device = settings_of(settings, changes), camera, device
         self._resolved = self._plan(scene, camera)  # raises if scene or camera have the wrong type
         self._core = _core._Session(scene, self._resolved.camera, self._resolved.settings, device)
         warn_of_no_light(scene)
         warn_of_effects(camera, self._resolved.settings)
 
     def _plan(self, scene: Scene, camera: Camera) -> Resolved:
-        return resolved(scene, camera, self._asked_settings, self._device, stacklevel=4)
+        return resolved(scene, camera, self._requested_settings, self._device, stacklevel=4)
 
     @property
     def scene(self) -> Scene:
@@ -103,11 +103,11 @@ class Session:
         develops the samples again. Raises KeyboardInterrupt on Ctrl-C.
         """
         new_scene = self.scene if scene is None else scene
-        asked = self._asked_camera if camera is None else camera
-        wanted = self._asked_settings if settings is None else settings_of(settings, {})
+        asked = self._requested_camera if camera is None else camera
+        wanted = self._requested_settings if settings is None else settings_of(settings, {})
         if ("auto" in wanted.effects or wanted.max_bounces == "auto") and isinstance(asked, Camera):
             if asked.model == self.camera.model:  # derived from self.camera, whose model was planned
-                asked = asked.replace(model=self._asked_camera.model)
+                asked = asked.replace(model=self._requested_camera.model)
             if scene is None and settings is None:
                 now = self._resolved_for(new_scene, asked)
             else:
@@ -117,7 +117,7 @@ class Session:
         else:
             now = Resolved(asked, wanted, "")
         self._core.set(new_scene, now.camera, now.settings)
-        self._asked_settings, self._asked_camera, self._resolved = wanted, asked, now
+        self._requested_settings, self._requested_camera, self._resolved = wanted, asked, now
         if scene is not None:
             warn_of_no_light(scene)
 
@@ -127,7 +127,7 @@ class Session:
         def exposed_alike(camera: Camera) -> Camera:
             return camera.replace(exposure_time_s=asked.exposure_time_s, iso=asked.iso)
 
-        if asked != exposed_alike(self._asked_camera):
+        if asked != exposed_alike(self._requested_camera):
             return self._plan(scene, asked)
         return self._resolved._replace(camera=exposed_alike(self._resolved.camera))
 
@@ -153,7 +153,7 @@ class Session:
         """
         words = {"noise": noise, "noise_codes": noise_codes, "seconds": seconds, "max_spp": max_spp}
         said: Any = {name: value for name, value in words.items() if value is not None}
-        return ReachedNoise(**self._core.add_until(self._asked_settings.with_(spp="auto", **said)))
+        return ReachedNoise(**self._core.add_until(self._requested_settings.with_(spp="auto", **said)))
 
     def image(self) -> Image:
         """The accumulated picture, as render returns it; spp is the mean over the pixels, rounded.

@@ -6,7 +6,7 @@ import os
 import signal
 import sys
 
-# What the extension does, with the C++ that the executable has, so that the two cannot differ.
+# Commands that the extension runs with the executable's C++, so that the two cannot differ.
 _IN_CPP = (["render"], ["plan"], ["devices"], ["lens", "info"])
 
 
@@ -42,7 +42,7 @@ def _run_in_cpp(arguments: list[str]) -> int:
     except _core.InputError as error:
         print(f"realcam: error: {_core.one_line(str(error))}", file=sys.stderr)
         return 2
-    # Also without --denoise: pictures whose noise goal is not reached are denoised where the library is installed.
+    # The library is also needed without --denoise, for pictures whose noise goal is not reached.
     if arguments[0] == "render" and "--no-denoise" not in arguments and (library := denoiser_library()):
         os.environ["REALCAM_OIDN"] = library
     return _core._run_command([os.fsencode(word) for word in words])

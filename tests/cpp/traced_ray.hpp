@@ -105,7 +105,7 @@ inline Surface stop_plane(double thickness, double semi_diameter) {
 inline LensSystem lens_of(std::vector<Surface> surfaces) {
     LensSystem lens;
     lens.name = "test";
-    lens.allow_crossing = true;
+    lens.allow_overlap = true;
     lens.surfaces = std::move(surfaces);
     if (lens.stop_index() >= 0) lens.stop_semi_diameter = lens.stop().clear_semi_diameter;
     return lens;

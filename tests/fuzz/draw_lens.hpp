@@ -141,7 +141,7 @@ inline LensSystem draw_lens(Bytes& in) {
     const int bending = limit <= 4 ? limit : 1 + in.below(limit);
 
     LensSystem lens;
-    lens.allow_crossing = true;  // rays through what nobody can make must end too
+    lens.allow_overlap = true;  // rays through what nobody can make must end too
     for (int i = 0; i < bending; ++i) lens.surfaces.push_back(draw_surface(in, style));
     if (bending > 1 && in.chance(48)) {
         const int first = in.below(bending - 1), second = first + 1 + in.below(bending - 1 - first);

@@ -251,5 +251,5 @@ def test_relative_illumination_is_what_pictures_are_exposed_by() -> None:
         ring = np.abs(radius - abs(height)) < 0.8
         # The ring is 1.6 mm wide, over which illumination changes by less than a twentieth, evenly.
         assert weights[ring].mean() == pytest.approx(area, rel=0.02)
-    sine = np.abs(lens.bundle(0.0, spokes=256, nodes=24).directions[:, :2]).max()
+    sine = np.abs(lens.bundle(0.0, arms=256, nodes=24).directions[:, :2]).max()
     assert found.solid_angle_sr[0] == pytest.approx(math.pi * sine**2, rel=0.01)

@@ -69,7 +69,7 @@ def test_thick_lens(r1: float, r2: float, d: float, n: float, trace: Trace) -> N
 def test_aplanatic_points_of_a_sphere(n: float, radius: float, trace: Trace) -> None:
     """Rays in air that aim at R n behind the centre meet at R / n behind it, in the glass: all of them."""
     sphere = rc.Surface(radius_of_curvature_mm=radius, material=n, clear_semi_diameter_mm=0.999 * radius)
-    lens = rc.Lens(surfaces=[stop(10 * radius), sphere], film_distance_mm=1.0, allow_crossing=True)
+    lens = rc.Lens(surfaces=[stop(10 * radius), sphere], film_distance_mm=1.0, allow_overlap=True)
     aim, image = radius * (1 + n), radius * (1 + 1 / n)
     heights = 0.98 * radius * np.linspace(0.05, 1, 40)
     on_sphere, _ = parallel(heights)
@@ -87,7 +87,7 @@ def test_aplanatic_points_of_a_sphere(n: float, radius: float, trace: Trace) -> 
 def test_ellipsoid_images_infinity_perfectly_into_glass(n: float, trace: Trace) -> None:
     """Conic -1 / n^2: the focus lies n R / (n - 1) behind the vertex."""
     surface = rc.Surface(radius_of_curvature_mm=40, material=n, conic=-1 / n**2, clear_semi_diameter_mm=30)
-    lens = rc.Lens(surfaces=[stop(30), surface], film_distance_mm=1.0, allow_crossing=True)
+    lens = rc.Lens(surfaces=[stop(30), surface], film_distance_mm=1.0, allow_overlap=True)
     out = trace(lens, *parallel(np.linspace(0.5, 29, 50)), start="scene")
     assert miss(out, n * 40 / (n - 1)).max() < 1e-9
     # Equal optical paths to the focus: Fermat's principle.
@@ -125,7 +125,7 @@ def thin_lens(shape: float, n: float = 1.5, focal_length: float = 100.0) -> rc.L
             rc.Surface(radius_of_curvature_mm=radii[1], **rim),
         ],
         film_distance_mm=focal_length,
-        allow_crossing=True,  # a thin lens has no thickness for its curved faces
+        allow_overlap=True,  # a thin lens has no thickness for its curved faces
     )
 
 

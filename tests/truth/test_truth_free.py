@@ -53,7 +53,7 @@ def lens_of(rows: list[dict]) -> rc.Lens:
     ]
     # In front of the rays' origins, and out of their way.
     stop = rc.Surface(type="stop", clear_semi_diameter_mm=1000)
-    return rc.Lens(surfaces=[stop, *surfaces], film_distance_mm=1, allow_crossing=True)
+    return rc.Lens(surfaces=[stop, *surfaces], film_distance_mm=1, allow_overlap=True)
 
 
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case["name"])

@@ -90,7 +90,7 @@ def thin_lens(bending: float, n: float, focal_length: float) -> rc.Lens:
             rc.Surface(radius_of_curvature_mm=radii[1], **rim),
         ],
         film_distance_mm=focal_length,
-        allow_crossing=True,  # a thin lens has no thickness for its curved faces
+        allow_overlap=True,  # a thin lens has no thickness for its curved faces
     )
 
 

@@ -33,7 +33,7 @@ def judged() -> tuple[rc.Lens, np.ndarray]:
         surfaces=surfaces,
         film_distance_mm=PEER["rows"][-1][1],
         wavelength_nm=PEER["wavelength_nm"],
-        allow_crossing=True,
+        allow_overlap=True,
     )
     lens = lens.stopped_down(lens.first_order().effective_focal_length_mm / PEER["aperture_mm"])
     fields = np.column_stack([np.zeros(3), np.deg2rad(PEER["fields_deg"])])

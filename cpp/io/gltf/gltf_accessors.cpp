@@ -117,18 +117,18 @@ void GltfAccessors::read_sparse(const Json& accessor, std::size_t components, co
                                 std::vector<Value>& values) {
     const Json &sparse = accessor["sparse"], &indices = sparse["indices"];
     const std::size_t count = sparse["count"].index(0), elements = values.size() / components;
-    const std::vector<std::uint32_t> places =
+    const std::vector<std::uint32_t> sparse_indices =
         read_view<std::uint32_t>(document_, buffers_, checkpoint_, indices, 1, count, indices["componentType"], false,
                                  where + ": its sparse indices");
     const std::vector<Value> replacements =
         read_view<Value>(document_, buffers_, checkpoint_, sparse["values"], components, count,
                          accessor["componentType"], accessor["normalized"].is_true(), where + ": its sparse values");
     for (std::size_t i = 0; i < count; ++i) {
-        if (places[i] >= elements)
-            document_.fail(where + ": its sparse index " + std::to_string(places[i]) +
+        if (sparse_indices[i] >= elements)
+            document_.fail(where + ": its sparse index " + std::to_string(sparse_indices[i]) +
                            " is not smaller than the number of elements, " + std::to_string(elements));
         std::copy_n(replacements.begin() + static_cast<std::ptrdiff_t>(i * components), components,
-                    values.begin() + static_cast<std::ptrdiff_t>(places[i] * components));
+                    values.begin() + static_cast<std::ptrdiff_t>(sparse_indices[i] * components));
     }
 }
 

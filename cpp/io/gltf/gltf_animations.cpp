@@ -23,7 +23,7 @@ public:
           animation_(document.root()["animations"][std::size_t{0}]),
           label_(gltf_label("animation", 0, animation_)),
           checkpoint_(checkpoint) {
-        for (std::size_t i = 0; i < numbers.size(); ++i) places_[numbers[i]] = i;
+        for (std::size_t i = 0; i < numbers.size(); ++i) node_index_[numbers[i]] = i;
     }
 
     void read() {
@@ -35,7 +35,7 @@ public:
             const std::string& path = target["path"].text();
             const std::string where = label_ + ": channel " + std::to_string(c);
             const std::optional<std::size_t> node = document_.find("nodes", target["node"], where + ": its node");
-            if (!node || !places_.contains(*node)) continue;
+            if (!node || !node_index_.contains(*node)) continue;
             if (path == "weights") {
                 ++weights;
             } else if (path != "translation" && path != "rotation" && path != "scale") {
@@ -58,7 +58,7 @@ private:
     }
 
     void move(std::size_t number, const std::string& path, std::shared_ptr<const FileKeys> keys) {
-        FileNode& node = scene_.nodes[places_[number]];
+        FileNode& node = scene_.nodes[node_index_[number]];
         if (node.motion < 0) {
             node.motion = static_cast<std::int32_t>(scene_.motions.size());
             scene_.motions.push_back(standing(document_.root()["nodes"][number]));
@@ -143,7 +143,7 @@ private:
     const Json& animation_;
     std::string label_;
     Checkpoint& checkpoint_;
-    std::map<std::size_t, std::size_t> places_;  ///< index in the scene of each node of the file
+    std::map<std::size_t, std::size_t> node_index_;  ///< index in the scene of each node of the file
     /// Keyed by sampler and components.
     std::map<std::pair<std::size_t, std::size_t>, std::shared_ptr<const FileKeys>> read_;
     std::map<const FileKeys*, bool> changes_;

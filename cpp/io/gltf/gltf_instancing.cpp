@@ -40,14 +40,14 @@ std::vector<Affine<double>> instances_of(const Json& node, GltfAccessors& access
     std::vector<Affine<double>> out;
     out.reserve(count);
     for (std::size_t i = 0; i < count; ++i) {
-        FileMotion place;
-        if (!translations.empty()) place.translation = vector(translations, 3 * i);
-        if (!scales.empty()) place.scale = vector(scales, 3 * i);
+        FileMotion transform;
+        if (!translations.empty()) transform.translation = vector(translations, 3 * i);
+        if (!scales.empty()) transform.scale = vector(scales, 3 * i);
         if (!rotations.empty()) {
             const Quaternion turn = {vector(rotations, 4 * i), static_cast<double>(rotations[4 * i + 3])};
-            if (dot(turn, turn) > 0) place.rotation = turn;
+            if (dot(turn, turn) > 0) transform.rotation = turn;
         }
-        out.push_back(place.parent_from_node(0));
+        out.push_back(transform.parent_from_node(0));
     }
     return out;
 }

@@ -103,9 +103,9 @@ private:
         scene_.nodes.push_back(std::move(node));
         numbers_.nodes.push_back(number);
         numbers_.meshes.push_back(number);
-        const auto place = static_cast<std::uint32_t>(scene_.nodes.size() - 1);
-        add_instances(number, place);
-        return place;
+        const auto index = static_cast<std::uint32_t>(scene_.nodes.size() - 1);
+        add_instances(number, index);
+        return index;
     }
 
     std::int32_t existing(const Json& reference, std::size_t count, std::size_t node, const std::string& what) const {
@@ -116,16 +116,17 @@ private:
     }
 
     void add_instances(std::size_t number, std::uint32_t node) {
-        const std::vector<Affine<double>> places = instances_of(nodes_[number], accessors_, document_, label(number));
-        if (places.empty()) return;
+        const std::vector<Affine<double>> transforms =
+            instances_of(nodes_[number], accessors_, document_, label(number));
+        if (transforms.empty()) return;
         constexpr std::size_t kAlwaysThere = std::size_t{1} << 28;
-        bytes_ += places.size() * sizeof(FileNode);
+        bytes_ += transforms.size() * sizeof(FileNode);
         if (const std::string why = bytes_ > kAlwaysThere ? too_much_memory(bytes_) : ""; !why.empty())
             document_.fail("its instances need " + why);
         numbers_.meshes[node] = kNoGltfNode;
-        for (const Affine<double>& place : places) {
+        for (const Affine<double>& transform : transforms) {
             checkpoint_.pass();
-            FileNode instance{{}, place, node};
+            FileNode instance{{}, transform, node};
             instance.end = static_cast<std::uint32_t>(scene_.nodes.size() + 1);
             scene_.nodes.push_back(std::move(instance));
             numbers_.nodes.push_back(kNoGltfNode);

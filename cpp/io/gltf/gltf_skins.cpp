@@ -33,11 +33,11 @@ GltfSkins::GltfSkins(const GltfDocument& document, GltfAccessors& accessors, con
     : document_(document),
       accessors_(accessors),
       checkpoint_(checkpoint),
-      place_of_(document.root()["nodes"].size(), kNoParent) {
+      node_index_(document.root()["nodes"].size(), kNoParent) {
     if (document.root()["skins"].size() == 0) return;
     globals_ = global_transforms(scene.nodes);
     for (std::uint32_t i = 0; i < numbers.size(); ++i)
-        if (numbers[i] < place_of_.size()) place_of_[numbers[i]] = i;
+        if (numbers[i] < node_index_.size()) node_index_[numbers[i]] = i;
 }
 
 std::optional<JointMaps> GltfSkins::joint_maps(std::size_t number, std::size_t node) const {
@@ -57,8 +57,8 @@ std::optional<JointMaps> GltfSkins::joint_maps(std::size_t number, std::size_t n
     for (std::size_t j = 0; j < count; ++j) {
         checkpoint_.pass();
         const std::optional<std::size_t> joint = document_.find("nodes", skin["joints"][j], label);
-        if (!joint || place_of_[*joint] == kNoParent) document_.fail(label + ": a joint is no node of the scene");
-        const Affine<double> joint_now = node_from_scene * globals_[place_of_[*joint]];
+        if (!joint || node_index_[*joint] == kNoParent) document_.fail(label + ": a joint is no node of the scene");
+        const Affine<double> joint_now = node_from_scene * globals_[node_index_[*joint]];
         maps.push_back(inverse_binds.empty() ? joint_now : joint_now * affine_of(&inverse_binds[16 * j]));
     }
     return maps;

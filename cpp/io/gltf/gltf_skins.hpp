@@ -27,7 +27,7 @@ private:
     GltfAccessors& accessors_;
     Checkpoint& checkpoint_;
     std::vector<Affine<double>> globals_;
-    std::vector<std::uint32_t> place_of_;  // index in scene.nodes of each node of the file
+    std::vector<std::uint32_t> node_index_;  // index in scene.nodes of each node of the file
 };
 
 /// Joints of each vertex and their weights, `per_vertex` of them for each.

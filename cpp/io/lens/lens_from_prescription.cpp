@@ -14,7 +14,7 @@
 #include "lens_asphere_terms.hpp"
 #include "lens_error.hpp"
 #include "lens_format.hpp"
-#include "lens_places.hpp"
+#include "lens_placements.hpp"
 #include "lens_rims.hpp"
 #include "lens_states.hpp"
 
@@ -263,7 +263,7 @@ private:
             if (lens_.surfaces[i].bends_light()) lens_.surfaces[i].form = forms_[i];
         }
         if (moves && !p_.zoom_names.empty()) fail("zooms with surfaces that are tilted or decentred; none is wanted");
-        if (moves) set_places(p_, kept_, lens_);
+        if (moves) set_placements(p_, kept_, lens_);
         if (p_.zoom_names.empty()) set_film(p_, lens_);
         if (!lens_.is_rotational())
             warn("is no centred lens of revolution: " + lens_.asymmetry() +
@@ -304,14 +304,14 @@ private:
                  ", which bends light, becomes a plane at its vertex");
         for (const int number : curved_planes_)
             warn("surface " + std::to_string(number) + " bends no light, and becomes a plane at its vertex");
-        lens_.allow_crossing = true;
+        lens_.allow_overlap = true;
         try {
             check_all();
         } catch (const LensFileError& error) {  // its surface numbers are those of the lens
             const auto index = static_cast<std::size_t>(error.surface) - 1;
             fail(error.detail, error.surface > 0 && index < kept_.size() ? &row_of(index) : nullptr);
         }
-        lens_.allow_crossing = crosses();
+        lens_.allow_overlap = crosses();
         if (options_.design_light) *options_.design_light = {field_angles_deg(), p_.wavelengths_nm};
     }
 
@@ -344,7 +344,7 @@ private:
             const LensSystem lens = lens_.zoom.positions.empty() ? lens_ : at_zoom_position(lens_, i);
             std::string what;
             const PrescriptionSurface* row = nullptr;
-            if (const auto found = find_crossing(lens)) {
+            if (const auto found = find_overlap(lens)) {
                 row = &row_of(static_cast<std::size_t>(found->first));
                 what = "crosses surface " + std::to_string(row_of(static_cast<std::size_t>(found->second)).number) +
                        ", by " + lens_checks_detail::short_mm(found->depth) + " at " +
@@ -377,7 +377,7 @@ private:
             if (reach.semi_diameters[i] > 0)
                 lens.surfaces[i].clear_semi_diameter =
                     std::min(lens.surfaces[i].clear_semi_diameter, reach.semi_diameters[i]);
-        return !find_crossing(lens);
+        return !find_overlap(lens);
     }
 
     const Prescription& p_;

@@ -77,7 +77,7 @@ std::optional<Glass> LensGlasses::in_catalogue(const std::string& name,
 }
 
 Glass LensGlasses::find(const std::string& name, const std::vector<std::string>& catalogues, const std::string& hint) {
-    asked_.insert(name);
+    requested_.insert(name);
     for (const auto& [given, glass] : options_.glasses)
         if (bare_glass_name(given) == bare_glass_name(name)) {
             used_.insert(given);
@@ -140,7 +140,7 @@ Glass LensGlasses::substance(const std::string& book, const std::string& page, s
         {"ZnSe", "Connolly", "ZNSE-CONNOLLY"},
     };
     if (is_given(book)) return find(book, {});
-    asked_.insert(book);
+    requested_.insert(book);
     const Page* found = nullptr;
     for (const Page& one : kPages)
         if (upper_case(one.book) == upper_case(book) && (!found || upper_case(one.page) == upper_case(page)))
@@ -162,8 +162,9 @@ Glass LensGlasses::substance(const std::string& book, const std::string& page, s
 void LensGlasses::check_all_used() const {
     for (const auto& [given, glass] : options_.glasses)
         if (!used_.contains(given))
-            throw InputError("the lens file has no glass " + in_quotes(given) + "; " +
-                             (asked_.empty() ? "it names none" : "it names " + listed({asked_.begin(), asked_.end()})));
+            throw InputError(
+                "the lens file has no glass " + in_quotes(given) + "; " +
+                (requested_.empty() ? "it names none" : "it names " + listed({requested_.begin(), requested_.end()})));
 }
 
 std::optional<CatalogueName> catalogue_name_of(const Glass& glass) {

@@ -62,7 +62,7 @@ public:
 private:
     const LensReadOptions& options_;
     std::map<std::string, Glass> own_;
-    std::set<std::string> asked_, used_;
+    std::set<std::string> requested_, used_;
 };
 
 /// n_d and V_d of a glass; V_d is 0 if it has the same index at all wavelengths.

@@ -63,13 +63,13 @@ public:
         if (passing) whole_.emplace(lens, LightDirection::to_film, lens.wavelength_nm, count());
     }
 
-    void add(double field, const std::vector<Vec2<double>>& places) {
+    void add(double field, const std::vector<Vec2<double>>& targets) {
         try {
             const RayAimer aim(open_, lens_.wavelength_nm,
                                {field_angle_of(lens_, object_distance_, kind_, field), object_distance_});
-            for (const Vec2<double> place : places) {
+            for (const Vec2<double> target : targets) {
                 checkpoint_.pass(1000 * lens_.surfaces.size());
-                const AimedRay ray = aim(place);
+                const AimedRay ray = aim(target);
                 if (ray.status == RayStatus::ok)
                     add(aim.object.at(ray.entry), aim.object.direction(ray.entry));
                 else
@@ -147,16 +147,16 @@ RayRims rims_of_rays(const LensSystem& lens, double object_distance, FieldKind k
 
 RayRims reach_of_rays(const LensSystem& lens, double object_distance, FieldKind kind,
                       const std::vector<PrescriptionField>& fields, Checkpoint& checkpoint) {
-    constexpr int kFields = 12, kPlaces = 24;  // rims vignette bundles between the axis and the edge of the stop
+    constexpr int kFields = 12, kTargets = 24;  // rims vignette bundles between the axis and the edge of the stop
     const double largest = largest_of(fields);
     FieldBundles bundles(lens, object_distance, kind, largest, true, checkpoint);
-    std::vector<Vec2<double>> places;
-    for (int i = -kPlaces; i <= kPlaces; ++i) {
-        const double at = lens.stop_semi_diameter * i / kPlaces;
-        places.push_back({0, at});
-        if (i > 0) places.push_back({at, 0});
+    std::vector<Vec2<double>> targets;
+    for (int i = -kTargets; i <= kTargets; ++i) {
+        const double at = lens.stop_semi_diameter * i / kTargets;
+        targets.push_back({0, at});
+        if (i > 0) targets.push_back({at, 0});
     }
-    for (int k = 0; k <= kFields; ++k) bundles.add(largest * k / kFields, places);
+    for (int k = 0; k <= kFields; ++k) bundles.add(largest * k / kFields, targets);
     return bundles.result();
 }
 

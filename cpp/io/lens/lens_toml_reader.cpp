@@ -255,7 +255,7 @@ LensSystem lens_from_table(const toml::table& root, const std::string& file, con
                "surface",
                "iris",
                "focus",
-               "allow_crossing",
+               "allow_overlap",
                "zoom",
                "zoom_position",
                "focus_distance_mm",
@@ -269,7 +269,7 @@ LensSystem lens_from_table(const toml::table& root, const std::string& file, con
     if (!top.find("name")) top.fail("\"name\" is missing");
     lens.title = top.line("title");
     lens.source = top.line("source");
-    lens.allow_crossing = top.flag("allow_crossing");
+    lens.allow_overlap = top.flag("allow_overlap");
     lens.wavelength_nm = top.number("wavelength_nm").value_or(kLineD_nm);
     if (!(lens.wavelength_nm >= 100 && lens.wavelength_nm <= 20000))
         top.fail("\"wavelength_nm\" must lie between 100 and 20000", top.find("wavelength_nm"));

@@ -35,7 +35,7 @@ public:
         const SurfacePlacement& film = lens_.film_placement;
         if (film.decentre != Vec3d{0, 0, 0}) head += key("film_decentre_mm", triple(film.decentre));
         if (film.tilt_deg != Vec3d{0, 0, 0}) head += key("film_tilt_deg", triple(film.tilt_deg));
-        if (lens_.allow_crossing) head += key("allow_crossing", "true");
+        if (lens_.allow_overlap) head += key("allow_overlap", "true");
         head += write_rings();
         return head + glasses_ + coatings_ + body_;
     }

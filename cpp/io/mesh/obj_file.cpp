@@ -202,8 +202,8 @@ private:
             out.positions = std::move(data_.positions);
             out.colours = std::move(data_.colours);
             if (data_.has_smoothing) {
-                out.places.resize(out.positions.size());
-                std::iota(out.places.begin(), out.places.end(), 0u);
+                out.position_ids.resize(out.positions.size());
+                std::iota(out.position_ids.begin(), out.position_ids.end(), 0u);
             }
             return;
         }
@@ -213,7 +213,7 @@ private:
             checkpoint_.pass();
             out.positions.push_back(data_.positions[c.position]);
             if (!data_.colours.empty()) out.colours.push_back(data_.colours[c.position]);
-            if (data_.has_smoothing) out.places.push_back(c.position);
+            if (data_.has_smoothing) out.position_ids.push_back(c.position);
             if (has_uvs) out.uvs.push_back(c.uv == ObjData::kNone ? Vec2f{0, 0} : data_.uvs[c.uv]);
             if (has_normals)
                 out.normals.push_back(c.normal == ObjData::kNone ? Vec3f{0, 0, 0} : data_.normals[c.normal]);

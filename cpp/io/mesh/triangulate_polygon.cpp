@@ -81,7 +81,7 @@ public:
     }
 
 private:
-    std::size_t place(double v, double low, double high) const {
+    std::size_t bucket(double v, double low, double high) const {
         const double share = high > low ? (v - low) / (high - low) : 0;
         return std::min(static_cast<std::size_t>(std::clamp(share, 0.0, 1.0) * static_cast<double>(side_)), side_ - 1);
     }
@@ -106,8 +106,8 @@ private:
         const std::size_t first = column(left), last = column(std::max(left, right));
         return {first > 0 ? first - 1 : 0, std::min(last + 1, side_ - 1)};
     }
-    std::size_t column(double x) const { return place(x, low_.x, high_.x); }
-    std::size_t row(double y) const { return place(y, low_.y, high_.y); }
+    std::size_t column(double x) const { return bucket(x, low_.x, high_.x); }
+    std::size_t row(double y) const { return bucket(y, low_.y, high_.y); }
     std::size_t cell(Point p) const { return row(p.y) * side_ + column(p.x); }
 
     Point low_{}, high_{};

@@ -10,12 +10,12 @@ using Components = std::array<double, 4>;
 
 /// Position of a time among keys: index of the key before it, fraction of the interval to the next key, and that
 /// interval's length in seconds.
-struct Place {
+struct KeyPosition {
     std::size_t first;
     double share, seconds;
 };
 
-Place place_of(double time, const std::vector<double>& times) {
+KeyPosition key_position(double time, const std::vector<double>& times) {
     const auto next = std::upper_bound(times.begin(), times.end(), time);
     if (next == times.begin()) return {0, 0, 0};
     const auto first = static_cast<std::size_t>(next - times.begin()) - 1;
@@ -32,7 +32,7 @@ Components read(const FileKeys& keys, std::size_t row) {
 }
 
 /// Interpolates by Hermite polynomials, from the values and tangents at both ends.
-Components on_spline(const FileKeys& keys, const Place& at) {
+Components on_spline(const FileKeys& keys, const KeyPosition& at) {
     const Components p0 = read(keys, 3 * at.first + 1);
     if (at.share == 0) return p0;
     const Components m0 = read(keys, 3 * at.first + 2), m1 = read(keys, 3 * at.first + 3),
@@ -46,7 +46,7 @@ Components on_spline(const FileKeys& keys, const Place& at) {
 }
 
 Vec3d vector_at(const FileKeys& keys, double time) {
-    const Place at = place_of(time, keys.times);
+    const KeyPosition at = key_position(time, keys.times);
     const auto vector = [](const Components& c) { return Vec3d{c[0], c[1], c[2]}; };
     if (keys.interpolation == KeyInterpolation::cubic_spline) return vector(on_spline(keys, at));
     const Vec3d first = vector(read(keys, at.first));
@@ -55,7 +55,7 @@ Vec3d vector_at(const FileKeys& keys, double time) {
 }
 
 Quaternion rotation_at(const FileKeys& keys, double time) {
-    const Place at = place_of(time, keys.times);
+    const KeyPosition at = key_position(time, keys.times);
     const auto unit = [](const Components& c) {
         const Quaternion q = {{c[0], c[1], c[2]}, c[3]};
         const double size = std::sqrt(dot(q, q));

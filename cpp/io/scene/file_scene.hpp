@@ -20,7 +20,7 @@ struct FileVertices {
     std::vector<Vec2f> uvs;      ///< empty, or one per position; as in the file, except that v is upwards
     std::vector<Vec2f> second_uvs;  ///< like uvs
     std::vector<VertexColor> colours;  ///< empty, or one per position; linear
-    std::vector<std::uint32_t> places;  ///< empty, or one per position: see Smoothing
+    std::vector<std::uint32_t> position_ids;  ///< empty, or one per position: see Smoothing
 };
 
 struct FileMesh {

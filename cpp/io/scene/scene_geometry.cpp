@@ -29,7 +29,7 @@ public:
             any_second_uvs_ |= !vertices_of(mesh).second_uvs.empty();
             any_uvs_ |= any_second_uvs_ || !vertices_of(mesh).uvs.empty();
             any_colours_ |= !vertices_of(mesh).colours.empty();
-            any_places_ |= !vertices_of(mesh).places.empty();
+            any_position_ids_ |= !vertices_of(mesh).position_ids.empty();
         }
     }
 
@@ -136,7 +136,8 @@ private:
         if (any_second_uvs_)
             scene_.second_uvs.push_back(from.second_uvs.empty() ? Vec2f{0, 0} : uv(from.second_uvs[number]));
         if (any_colours_) scene_.colors.push_back(from.colours.empty() ? VertexColor{} : from.colours[number]);
-        if (any_places_) smoothing_.places.push_back(from.places.empty() ? number : from.places[number]);
+        if (any_position_ids_)
+            smoothing_.position_ids.push_back(from.position_ids.empty() ? number : from.position_ids[number]);
         return known;
     }
 
@@ -161,7 +162,8 @@ private:
     const FileScene& file_;
     const LeavesOut& leaves_out_;
     bool left_out_ = false;
-    bool any_normals_ = false, any_uvs_ = false, any_second_uvs_ = false, any_colours_ = false, any_places_ = false;
+    bool any_normals_ = false, any_uvs_ = false, any_second_uvs_ = false, any_colours_ = false,
+         any_position_ids_ = false;
     Smoothing smoothing_;
     std::vector<std::uint32_t> new_numbers_;  // index in scene_ of each vertex of the current mesh
     std::size_t bad_normals_ = 0, bad_uvs_ = 0, uncovered_ = 0;

@@ -32,10 +32,10 @@ public:
         if (scene_.normals.empty()) scene_.normals.assign(scene_.positions_m.size(), Vec3f{0, 0, 0});
         sort_corners();
         find_vertices_to_keep();
-        for (std::size_t place = 0; place + 1 < begin_.size(); ++place) {
-            const std::size_t count = begin_[place + 1] - begin_[place];
+        for (std::size_t position = 0; position + 1 < begin_.size(); ++position) {
+            const std::size_t count = begin_[position + 1] - begin_[position];
             checkpoint_.pass(1 + 8 * count);
-            if (count > 0 && count <= most_faces) smooth_place(begin_[place], begin_[place + 1]);
+            if (count > 0 && count <= most_faces) smooth_position(begin_[position], begin_[position + 1]);
         }
     }
 
@@ -57,23 +57,23 @@ private:
     /// the first of the equal ones. The index of a corner is 3 times that of its triangle, plus 0 to 2.
     void sort_corners() {
         if (scene_.triangles.size() > 0xffffffffu / 3) throw InputError("more than 1431655765 triangles");
-        const std::vector<std::uint32_t> place = first_at_place();
+        const std::vector<std::uint32_t> first = first_at_position();
         begin_.assign(scene_.positions_m.size() + 1, 0);
-        for_each_corner([&](std::uint32_t, std::uint32_t vertex) { ++begin_[place[vertex] + 1]; });
+        for_each_corner([&](std::uint32_t, std::uint32_t vertex) { ++begin_[first[vertex] + 1]; });
         std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
         sorted_.resize(begin_.back());
         // Filling advances each beginning to its end, which is the beginning of the next.
-        for_each_corner([&](std::uint32_t corner, std::uint32_t vertex) { sorted_[begin_[place[vertex]]++] = corner; });
+        for_each_corner([&](std::uint32_t corner, std::uint32_t vertex) { sorted_[begin_[first[vertex]]++] = corner; });
         for (std::size_t p = begin_.size() - 1; p > 0; --p) begin_[p] = begin_[p - 1];
         begin_[0] = 0;
     }
 
-    std::vector<std::uint32_t> first_at_place() {
-        const std::vector<std::uint32_t>& places = smoothing_.places;
-        if (!places.empty())
+    std::vector<std::uint32_t> first_at_position() {
+        const std::vector<std::uint32_t>& position_ids = smoothing_.position_ids;
+        if (!position_ids.empty())
             return first_equal(
-                places.size(), [&](std::size_t i) { return places[i] * 0x9e3779b97f4a7c15ull >> 20; },
-                [&](std::size_t i, std::size_t j) { return places[i] == places[j]; }, checkpoint_);
+                position_ids.size(), [&](std::size_t i) { return position_ids[i] * 0x9e3779b97f4a7c15ull >> 20; },
+                [&](std::size_t i, std::size_t j) { return position_ids[i] == position_ids[j]; }, checkpoint_);
         return first_equal(
             scene_.positions_m.size(), [&](std::size_t i) { return hash_of(scene_.positions_m[i]); },
             [&](std::size_t i, std::size_t j) { return scene_.positions_m[i] == scene_.positions_m[j]; }, checkpoint_);
@@ -113,7 +113,7 @@ private:
         return own.group != kSmoothByAngle || dot(own.face_normal, other.face_normal) >= cos_crease;
     }
 
-    void smooth_place(std::uint32_t begin, std::uint32_t end) {
+    void smooth_position(std::uint32_t begin, std::uint32_t end) {
         corners_.clear();
         made_.clear();
         for (std::uint32_t k = begin; k < end; ++k) corners_.push_back(corner(sorted_[k]));

@@ -15,7 +15,7 @@ struct Smoothing {
     std::vector<std::uint32_t> groups;
     /// Index of each vertex's position in the file. Faces of a group are smooth across vertices with the same index. If
     /// this is empty, across vertices with equal positions.
-    std::vector<std::uint32_t> places;
+    std::vector<std::uint32_t> position_ids;
 };
 
 /// Computes normals for triangles that are not flat: at a corner, the mean of the faces that meet there, weighted by

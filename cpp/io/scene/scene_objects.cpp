@@ -93,14 +93,14 @@ void SceneObjects::add_scene(const std::shared_ptr<Scene>& scene, std::uint32_t 
                              std::ptrdiff_t part_of, Scene& static_geometry) {
     static_geometry.warnings.insert(static_geometry.warnings.end(), scene->warnings.begin(), scene->warnings.end());
     scene->warnings.clear();
-    const Placement place = placement(node, transform);
-    if (place.motion == nullptr && file_.nodes[node].motion >= 0 && !transform_error(place.scene_from_object).empty()) {
+    const AnimatedTransform moved = placement(node, transform);
+    if (moved.motion == nullptr && file_.nodes[node].motion >= 0 && !transform_error(moved.scene_from_object).empty()) {
         static_geometry.warnings.push_back(file_.path + ": node " + in_quotes(file_.nodes[node].name) +
                                            " is scaled to nothing while it moves, and left out");
         return;
     }
-    Instance instance{nullptr, place.scene_from_object, file_.nodes[node].name, part_of};
-    instance.motion = place.motion;
+    Instance instance{nullptr, moved.scene_from_object, file_.nodes[node].name, part_of};
+    instance.motion = moved.motion;
     instances_.push_back({scene, instance});
 }
 
@@ -121,7 +121,7 @@ Affine<double> SceneObjects::transform_at(std::uint32_t node, double time) {
     return map;
 }
 
-Placement SceneObjects::placement(std::uint32_t node, const Affine<double>& transform) {
+AnimatedTransform SceneObjects::placement(std::uint32_t node, const Affine<double>& transform) {
     std::vector<double> times;
     for (std::uint32_t i = node; i != kNoParent; i = file_.nodes[i].parent) {
         if (file_.nodes[i].motion < 0) continue;
@@ -129,9 +129,9 @@ Placement SceneObjects::placement(std::uint32_t node, const Affine<double>& tran
         times.insert(times.end(), more.begin(), more.end());
     }
     if (times.empty()) {
-        Affine<double> place = transform;
-        place.origin = scale_ * place.origin;
-        return place;
+        Affine<double> scaled = transform;
+        scaled.origin = scale_ * scaled.origin;
+        return scaled;
     }
     times = sorted_once(std::move(times));
     Motion keys;

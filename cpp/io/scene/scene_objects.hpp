@@ -26,7 +26,7 @@ public:
     void add(std::uint32_t node, const Affine<double>& transform, Scene& static_geometry);
 
     /// Returns the transform of a node, possibly animated, in metres. `transform`: its static transform to the scene.
-    Placement placement(std::uint32_t node, const Affine<double>& transform);
+    AnimatedTransform placement(std::uint32_t node, const Affine<double>& transform);
 
     /// Returns the instances, with the materials and textures of the file that they use.
     std::vector<Instance> finish(const Scene& materials);

@@ -32,8 +32,8 @@ public:
         : table_(table), file_(std::move(file)), surface_(surface), raise_(raise) {}
 
     [[noreturn]] void fail(const std::string& message, const toml::node* node = nullptr) const {
-        const toml::node& place = node ? *node : table_;
-        raise_(message, file_, static_cast<int>(place.source().begin.line), surface_);
+        const toml::node& location = node ? *node : table_;
+        raise_(message, file_, static_cast<int>(location.source().begin.line), surface_);
         std::abort();  // raise_ has thrown
     }
 

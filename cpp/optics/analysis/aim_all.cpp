@@ -48,19 +48,19 @@ std::vector<AimedRay> aim_all(const RayAimer& aim, const std::vector<PupilPoint>
     std::vector<AimedRay> rays;
     const std::optional<StopMap> map = pattern.size() < kMany ? std::nullopt : stop_map(aim, reach, loop);
     loop.append_all(rays, pattern.size(), [&](std::size_t first, std::size_t last) {
-        const auto place = [&](std::size_t i) { return Vec2<double>{reach * pattern[i].x, reach * pattern[i].y}; };
+        const auto target = [&](std::size_t i) { return Vec2<double>{reach * pattern[i].x, reach * pattern[i].y}; };
         if (map) {
-            std::vector<Vec2<double>> places;
-            places.reserve(last - first);
-            for (std::size_t i = first; i < last; ++i) places.push_back(aim.off_the_edge(place(i)));
+            std::vector<Vec2<double>> targets;
+            targets.reserve(last - first);
+            for (std::size_t i = first; i < last; ++i) targets.push_back(aim.off_the_edge(target(i)));
             AimRequest request = aim.request(*map);
-            request.count = static_cast<std::int64_t>(places.size());
-            request.places = places.data();
+            request.count = static_cast<std::int64_t>(targets.size());
+            request.targets = targets.data();
             request.rays = rays.data() + first;
             loop.aim_rays ? loop.aim_rays(request) : aim_rays<16>(request);
         }
         for (std::size_t i = first; i < last; ++i)
-            if (!map || !std::isfinite(rays[i].entry.x)) rays[i] = aim(place(i));
+            if (!map || !std::isfinite(rays[i].entry.x)) rays[i] = aim(target(i));
     });
     return rays;
 }

@@ -36,7 +36,7 @@ struct AimRequest {
     double miss;  ///< tolerance of a ray's point on the stop, mm
     const StopMap* map;
     std::int64_t count;
-    const Vec2<double>* places;  ///< target points on the stop, mm
+    const Vec2<double>* targets;  ///< target points on the stop, mm
     AimedRay* rays;
 };
 
@@ -63,12 +63,12 @@ REALCAM_INLINE double map_terms(const double* c, double x, double y) {
 }
 
 template <int N>
-REALCAM_HD inline void entries_at(const StopMap& map, const Vec2Lanes<double, N>& places,
+REALCAM_HD inline void entries_at(const StopMap& map, const Vec2Lanes<double, N>& targets,
                                   Vec2Lanes<double, N>& entries) {
     const double unit = 1 / map.reach;
     REALCAM_LANES
     for (int k = 0; k < N; ++k) {
-        const double x = unit * places.x[k], y = unit * places.y[k];
+        const double x = unit * targets.x[k], y = unit * targets.y[k];
         entries.x[k] = map_terms(map.x, x, y);
         entries.y[k] = map_terms(map.y, x, y);
     }
@@ -80,10 +80,11 @@ REALCAM_HD inline void start_rays(const AimRequest& request, const Vec2Lanes<dou
     REALCAM_LANES
     for (int k = 0; k < N; ++k) {
         const Vec3d offset = entries.x[k] * request.across + entries.y[k] * request.upwards;
-        const Vec3d way = request.towards + request.inverse_distance * offset;
-        const double scale = request.index / std::sqrt(way.x * way.x + way.y * way.y + way.z * way.z);
+        const Vec3d direction = request.towards + request.inverse_distance * offset;
+        const double scale = request.index / std::sqrt(direction.x * direction.x + direction.y * direction.y +
+                                                       direction.z * direction.z);
         rays.origin.set(k, request.centre + offset);
-        rays.direction.set(k, scale * way);
+        rays.direction.set(k, scale * direction);
         rays.status[k] = 0;
     }
 }
@@ -108,7 +109,7 @@ REALCAM_HD inline void aim_rays(const AimRequest& request) {
     Lanes<double, N> missed;
     for (std::int64_t first = 0; first < r.count; first += N) {
         const int used = static_cast<int>(r.count - first < N ? r.count - first : N);
-        for (int k = 0; k < N; ++k) wanted.set(k, r.places[first + (k < used ? k : 0)]);
+        for (int k = 0; k < N; ++k) wanted.set(k, r.targets[first + (k < used ? k : 0)]);
         asked = wanted;
         for (int step = 0; step < kMostSteps; ++step) {
             entries_at(*r.map, asked, entries);
@@ -134,8 +135,8 @@ REALCAM_HD inline void aim_rays(const AimRequest& request) {
         }
         trace_lens(r.lens, rays, record);
         for (int k = 0; k < used; ++k) {
-            const Vec2<double> place = wanted[k], entry = entries[k];
-            const bool inside = place.x * place.x + place.y * place.y <= r.map->reach * r.map->reach;
+            const Vec2<double> target = wanted[k], entry = entries[k];
+            const bool inside = target.x * target.x + target.y * target.y <= r.map->reach * r.map->reach;
             AimedRay& ray = r.rays[first + k];
             if (!inside || !(missed[k] <= r.miss * r.miss)) {
                 ray = {RayStatus::no_convergence, {nan, nan}, {nan, nan, nan}, {nan, nan, nan}, nan};

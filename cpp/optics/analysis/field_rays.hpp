@@ -27,7 +27,7 @@ struct FieldRays {
     /// Intersection of a ray, as a straight line, with the film, whose vertex is at z.
     Vec3d on_film(const AimedRay& ray, double z) const {
         const FilmSurface<double> film{z, film_curvature};
-        return film.place(film.landing(ray.origin, ray.direction));
+        return film.point(film.landing(ray.origin, ray.direction));
     }
 };
 

@@ -39,7 +39,7 @@ public:
     /// Traces rays through the lens to the scene.
     template <int N>
     void trace(const Entry (&entries)[N], LensRays<double, N>& rays) const {
-        const Vec3d from = film_.place(at_);
+        const Vec3d from = film_.point(at_);
         for (int i = 0; i < N; ++i) {
             const auto [l, m] = entries[i];
             const double rest = index_ * index_ - l * l - m * m;

@@ -33,7 +33,7 @@ namespace film_points_detail {
 
 /// Positions of N rays from index `first` on in the rectangle; each coordinate lies between -1 and 1.
 template <int N, class T>
-REALCAM_HD inline void places_of(const FilmPointsRequest<T>& request, std::int64_t first, T (&x)[N], T (&y)[N]) {
+REALCAM_HD inline void points_of(const FilmPointsRequest<T>& request, std::int64_t first, T (&x)[N], T (&y)[N]) {
     if (request.pattern == EntryPattern::grid) {
         const T step = T(2) / static_cast<T>(request.columns);
         for (int k = 0; k < N; ++k) {
@@ -64,15 +64,16 @@ inline void find_film_points(FilmPointsRequest<T>& request) {
     float* to = r.points;
     for (std::int64_t done = 0; done < r.count; done += N) {
         const int used = static_cast<int>(r.count - done < N ? r.count - done : N);
-        film_points_detail::places_of<N>(r, r.first + done, x, y);
+        film_points_detail::points_of<N>(r, r.first + done, x, y);
         REALCAM_LANES
         for (int k = 0; k < N; ++k) {
             const T across = r.middle.x + r.reach.x * x[k], along = r.middle.y + r.reach.y * y[k];
             const Vec3<T> offset = across * r.across + along * r.upwards;
-            const Vec3<T> way = r.towards + r.inverse_distance * offset;
-            const T scale = r.index / std::sqrt(way.x * way.x + way.y * way.y + way.z * way.z);
+            const Vec3<T> direction = r.towards + r.inverse_distance * offset;
+            const T scale =
+                r.index / std::sqrt(direction.x * direction.x + direction.y * direction.y + direction.z * direction.z);
             rays.origin.set(k, r.centre + offset);
-            rays.direction.set(k, scale * way);
+            rays.direction.set(k, scale * direction);
             rays.status[k] = 0;
         }
         trace_lens<lens_kind>(r.lens, rays);

@@ -25,24 +25,24 @@ EntryRectangle rectangle_about(const ChiefRay& chief, const ParabasalRays& rays,
 
 /// Returns segments between the edges on neighbouring radial scan lines. An interval of light on only one of the two
 /// lines is closed by a segment along that line.
-std::vector<std::array<Vec2<double>, 2>> outline_of(const FilmBundle& light, const std::vector<LitSpoke>& spokes) {
+std::vector<std::array<Vec2<double>, 2>> outline_of(const FilmBundle& light, const std::vector<QuadratureArm>& arms) {
     std::vector<std::array<Vec2<double>, 2>> pieces;
-    const auto towards_film = [&](const LitSpoke& spoke, double r) {
-        const Vec2<double> entry = spoke.at(light, r);
+    const auto towards_film = [&](const QuadratureArm& arm, double r) {
+        const Vec2<double> entry = arm.at(light, r);
         return Vec2<double>{-entry.x, -entry.y};
     };
-    for (std::size_t s = 0; s < spokes.size(); ++s) {
-        const LitSpoke &here = spokes[s], &next = spokes[(s + 1) % spokes.size()];
-        const std::size_t both = std::min(here.stretches.size(), next.stretches.size());
+    for (std::size_t s = 0; s < arms.size(); ++s) {
+        const QuadratureArm &here = arms[s], &next = arms[(s + 1) % arms.size()];
+        const std::size_t both = std::min(here.intervals.size(), next.intervals.size());
         for (std::size_t i = 0; i < both; ++i) {
-            const Stretch &a = here.stretches[i], &b = next.stretches[i];
+            const RadialInterval &a = here.intervals[i], &b = next.intervals[i];
             if (a.from != 0 || b.from != 0) pieces.push_back({towards_film(here, a.from), towards_film(next, b.from)});
             pieces.push_back({towards_film(here, a.to), towards_film(next, b.to)});
         }
-        for (const LitSpoke* longer : {&here, &next})
-            for (std::size_t i = both; i < longer->stretches.size(); ++i)
+        for (const QuadratureArm* longer : {&here, &next})
+            for (std::size_t i = both; i < longer->intervals.size(); ++i)
                 pieces.push_back(
-                    {towards_film(*longer, longer->stretches[i].from), towards_film(*longer, longer->stretches[i].to)});
+                    {towards_film(*longer, longer->intervals[i].from), towards_film(*longer, longer->intervals[i].to)});
     }
     return pieces;
 }
@@ -50,7 +50,7 @@ std::vector<std::array<Vec2<double>, 2>> outline_of(const FilmBundle& light, con
 }  // namespace
 
 FilmPupil film_pupil(const LensSystem& lens, double wavelength_nm, Vec2<double> film, const RayLoop& loop) {
-    constexpr int kSpokes = 128;
+    constexpr int kArms = 128;
     const RaysFromFilm rays(lens, wavelength_nm);
     const std::optional<ChiefRay> chief = chief_ray_of_film_point(rays, film);
     if (!chief) return {};
@@ -60,12 +60,13 @@ FilmPupil film_pupil(const LensSystem& lens, double wavelength_nm, Vec2<double> 
     const FilmBundle light(path, surface, film,
                            rectangle_about(*chief, parabasal_rays(lens, rays, *chief), path.entry_index,
                                            rays.stop_radius(), surface, film));
-    const std::vector<LitSpoke> spokes = lit_spokes(light, kSpokes, loop);
+    const std::vector<QuadratureArm> arms = quadrature_arms(light, kArms, loop);
     double squares = 0;
-    for (const LitSpoke& spoke : spokes)
-        for (const Stretch& stretch : spoke.stretches) squares += stretch.to * stretch.to - stretch.from * stretch.from;
-    const double each = std::numbers::pi / static_cast<double>(spokes.size());
-    return {each * light.reach.x * light.reach.y * squares, outline_of(light, spokes)};
+    for (const QuadratureArm& arm : arms)
+        for (const RadialInterval& interval : arm.intervals)
+            squares += interval.to * interval.to - interval.from * interval.from;
+    const double each = std::numbers::pi / static_cast<double>(arms.size());
+    return {each * light.reach.x * light.reach.y * squares, outline_of(light, arms)};
 }
 
 }  // namespace realcam

@@ -51,12 +51,12 @@ double peak_near(const std::vector<Part>& parts, const Psf& psf, const RayLoop& 
     FilmGrid grid{psf.size, 1e-3 * psf.pitch_um, {0, 0}};
     std::vector<double> values = psf.values;
     double peak = *std::max_element(values.begin(), values.end());
-    Vec2<double> place = largest(values, grid);
+    Vec2<double> brightest = largest(values, grid);
     for (int i = 0; i < 6; ++i) {
-        grid = {5, 1e-3 * psf.pitch_um * std::pow(0.5, i + 1), place};
+        grid = {5, 1e-3 * psf.pitch_um * std::pow(0.5, i + 1), brightest};
         add_waves(parts, grid, values, loop);
         peak = std::max(peak, *std::max_element(values.begin(), values.end()));
-        place = largest(values, grid);
+        brightest = largest(values, grid);
     }
     return peak;
 }
@@ -66,13 +66,13 @@ void add_rays(const Part& part, Psf& psf, std::int64_t rays, const RayLoop& loop
     const auto points_across = [&](double spot) { return 1 + 2e3 * spot / psf.pitch_um; };
     const double enough = 16 * points_across(part.bundle.spot.x) * points_across(part.bundle.spot.y);
     const double count = rays ? static_cast<double>(rays) : std::clamp(enough, 0x1p16, 0x1p22);
-    const double spokes = 2 * std::sqrt(count);
-    const std::vector<EntryPart> places =
-        entry_parts(part.bundle, {static_cast<int>(std::ceil(spokes)), static_cast<int>(std::ceil(spokes / 4))}, loop);
+    const double arms = 2 * std::sqrt(count);
+    const std::vector<EntryPart> parts =
+        entry_parts(part.bundle, {static_cast<int>(std::ceil(arms)), static_cast<int>(std::ceil(arms / 4))}, loop);
     std::vector<Vec2<double>> points;
-    loop.append_all(points, places.size(), [&](std::size_t first, std::size_t last) {
+    loop.append_all(points, parts.size(), [&](std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i) {
-            const PointBundle::Entry entries[1] = {places[i].entry};
+            const PointBundle::Entry entries[1] = {parts[i].entry};
             FilmRay found[1];
             part.bundle.trace(entries, found);
             points[i] = found[0].at;
@@ -87,21 +87,21 @@ void add_rays(const Part& part, Psf& psf, std::int64_t rays, const RayLoop& loop
         if (x >= 0 && y >= 0 && x < psf.size && y < psf.size)
             values[static_cast<std::size_t>(y * psf.size + x)] += share;
     };
-    for (std::size_t i = 0; i < places.size(); ++i) {
-        const double share = places[i].area * part.bundle.energy(places[i].entry);
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        const double share = parts[i].area * part.bundle.energy(parts[i].entry);
         add(points[i], part.bundle.mirrored ? 0.5 * share : share);
         if (part.bundle.mirrored) add({-points[i].x, points[i].y}, 0.5 * share);
     }
     for (std::size_t i = 0; i < values.size(); ++i)
         psf.values[i] += part.weight / (energy * psf.pitch_um * psf.pitch_um) * values[i];
-    psf.rays += static_cast<std::int64_t>(places.size());
+    psf.rays += static_cast<std::int64_t>(parts.size());
 }
 
 }  // namespace
 
 BundleSampling checked_sampling(const Part& part, const Psf& psf, std::int64_t rays) {
     const double half = 0.5e-3 * psf.size * psf.pitch_um, phase = largest_phase(part.bundle, part.centre, half);
-    const auto count = [](BundleSampling s) { return static_cast<double>(s.spokes) * s.nodes; };
+    const auto count = [](BundleSampling s) { return static_cast<double>(s.arms) * s.nodes; };
     if (!(phase < 1e5) || count(sampling_for(phase)) > (rays ? kMostWaves : kMostWavesUnasked))
         throw InputError("psf: the light's phase differs by " + std::to_string(std::lround(phase / std::numbers::pi)) +
                          " waves on the array, too many for a sum of rays; give a smaller array, another "
@@ -115,7 +115,7 @@ BundleSampling checked_sampling(const Part& part, const Psf& psf, std::int64_t r
                          std::to_string(static_cast<std::int64_t>(least) + 1) + " are wanted, " +
                          std::to_string(static_cast<std::int64_t>(count(sampling))) + " are good");
     const double more = std::sqrt(static_cast<double>(rays) / count(sampling));
-    return {static_cast<int>(std::ceil(more * sampling.spokes)), static_cast<int>(std::ceil(more * sampling.nodes))};
+    return {static_cast<int>(std::ceil(more * sampling.arms)), static_cast<int>(std::ceil(more * sampling.nodes))};
 }
 
 void add_waves(const std::vector<Part>& parts, FilmGrid grid, std::vector<double>& values, const RayLoop& loop) {

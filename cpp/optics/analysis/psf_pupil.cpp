@@ -117,9 +117,9 @@ PsfPupil psf_pupil(const psf_detail::Part& part, const Psf& psf, const RayLoop& 
         for (auto row = static_cast<int>(first); row < static_cast<int>(last); ++row) {
             // From the middle column outwards, each cell starts with the last one that passes: rays beyond the edge of
             // the light may be erratic.
-            for (const int way : {1, -1}) {
+            for (const int side : {1, -1}) {
                 std::optional<LocalWave> before;
-                for (int column = columns / 2 - (way < 0); column >= 0 && column < columns; column += way) {
+                for (int column = columns / 2 - (side < 0); column >= 0 && column < columns; column += side) {
                     const Vec2<double> slope = {(left + column) * step, (bottom + row) * step};
                     std::optional<Cell>& cell = at(column, row);
                     cell = cell_with(bundle, slope, before ? *before : *middle, kClose * step);

@@ -27,8 +27,8 @@ RayAimer::RayAimer(const LensSystem& lens, double wavelength_nm, const FieldPoin
         follow_chief_ray(lens, wavelength_nm, field);
 }
 
-AimedRay RayAimer::operator()(Vec2<double> place) const {
-    const std::optional<Entry> entry = aimed_from_chief(off_the_edge(place));
+AimedRay RayAimer::operator()(Vec2<double> target) const {
+    const std::optional<Entry> entry = aimed_from_chief(off_the_edge(target));
     if (!entry) {
         constexpr double nan = std::numeric_limits<double>::quiet_NaN();
         return {RayStatus::no_convergence, {nan, nan}, {nan, nan, nan}, {nan, nan, nan}, nan};
@@ -36,10 +36,10 @@ AimedRay RayAimer::operator()(Vec2<double> place) const {
     return through(real_.view(), *entry);
 }
 
-Vec2<double> RayAimer::off_the_edge(Vec2<double> place) const {
-    const double share = hypotenuse(place.x, place.y) / reach_;
+Vec2<double> RayAimer::off_the_edge(Vec2<double> target) const {
+    const double share = hypotenuse(target.x, target.y) / reach_;
     const double inwards = std::fabs(share - 1) < kEdge ? (1 - kEdge) / share : 1.0;
-    return {inwards * place.x, inwards * place.y};
+    return {inwards * target.x, inwards * target.y};
 }
 
 AimRequest RayAimer::request(const StopMap& map) const {
@@ -90,20 +90,20 @@ std::optional<RayAimer::Probe> RayAimer::probe(const ObjectPoint& from, Entry en
     return Probe{{rays.origin.x[0], rays.origin.y[0]}, slope(1), slope(2)};
 }
 
-std::optional<RayAimer::Entry> RayAimer::aimed(const ObjectPoint& from, Vec2<double> place, Entry entry) const {
+std::optional<RayAimer::Entry> RayAimer::aimed(const ObjectPoint& from, Vec2<double> target, Entry entry) const {
     std::optional<Probe> here = probe(from, entry);
     if (!here) return {};
     for (int i = 0; i < kMaxSteps; ++i) {
-        const double error = miss(*here, place);
+        const double error = miss(*here, target);
         if (error <= kMiss * stop_radius_) return entry;
-        const double dx = place.x - here->at.x, dy = place.y - here->at.y;
+        const double dx = target.x - here->at.x, dy = target.y - here->at.y;
         const double determinant = here->by_x.x * here->by_y.y - here->by_y.x * here->by_x.y;
         Entry change = {(dx * here->by_y.y - dy * here->by_y.x) / determinant,
                         (dy * here->by_x.x - dx * here->by_x.y) / determinant};
         std::optional<Probe> next;
         for (int halving = 0; halving <= kMaxHalvings; ++halving) {
             next = probe(from, {entry.x + change.x, entry.y + change.y});
-            if (next && miss(*next, place) < error) break;
+            if (next && miss(*next, target) < error) break;
             next.reset();
             change = {0.5 * change.x, 0.5 * change.y};
         }
@@ -114,12 +114,12 @@ std::optional<RayAimer::Entry> RayAimer::aimed(const ObjectPoint& from, Vec2<dou
     return {};
 }
 
-std::optional<RayAimer::Entry> RayAimer::aimed_from_chief(Vec2<double> place) const {
+std::optional<RayAimer::Entry> RayAimer::aimed_from_chief(Vec2<double> target) const {
     for (const int parts : {1, 4, 16}) {
         std::optional<Entry> entry = chief_;
         for (int k = 1; k <= parts && entry; ++k) {
             const double share = static_cast<double>(k) / parts;
-            entry = aimed(object, {share * place.x, share * place.y}, *entry);
+            entry = aimed(object, {share * target.x, share * target.y}, *entry);
         }
         if (entry) return entry;
     }

@@ -29,10 +29,10 @@ public:
     AimedRay chief_ray() const { return through(open_.view(), chief_); }
 
     /// Returns the ray through a point on the stop, mm, in the real lens: blocked rays have the status that ended them.
-    AimedRay operator()(Vec2<double> place) const;
+    AimedRay operator()(Vec2<double> target) const;
 
     /// Returns the actual target for a point on the stop, mm: moved inwards if it lies on the very edge of the opening.
-    Vec2<double> off_the_edge(Vec2<double> place) const;
+    Vec2<double> off_the_edge(Vec2<double> target) const;
 
     /// Returns a request, without rays, for aiming them together as accurately as one by one. Valid as long as this
     /// object and the map.
@@ -56,14 +56,14 @@ private:
     /// Returns std::nullopt if the ray, or one of its two neighbours, does not reach the stop.
     std::optional<Probe> probe(const ObjectPoint& from, Entry entry) const;
 
-    static double miss(const Probe& probe, Vec2<double> place) {
-        return hypotenuse(probe.at.x - place.x, probe.at.y - place.y);
+    static double miss(const Probe& probe, Vec2<double> target) {
+        return hypotenuse(probe.at.x - target.x, probe.at.y - target.y);
     }
 
-    std::optional<Entry> aimed(const ObjectPoint& from, Vec2<double> place, Entry entry) const;
+    std::optional<Entry> aimed(const ObjectPoint& from, Vec2<double> target, Entry entry) const;
 
     /// Starts from the chief ray at once. If that fails, goes outwards to the target in shorter and shorter steps.
-    std::optional<Entry> aimed_from_chief(Vec2<double> place) const;
+    std::optional<Entry> aimed_from_chief(Vec2<double> target) const;
 
     void find_chief_ray(const LensSystem& lens, const FieldPoint& field);
     void follow_chief_ray(const LensSystem& lens, double wavelength_nm, const FieldPoint& field);

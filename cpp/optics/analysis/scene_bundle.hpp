@@ -58,12 +58,12 @@ public:
 
     /// Film points of the entries' rays, mm; NaN if the lens blocks the ray.
     template <int N>
-    void land(const Entry (&entries)[N], Vec2<double> (&places)[N]) const {
+    void land(const Entry (&entries)[N], Vec2<double> (&points)[N]) const {
         constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
         LensRays<double, N> rays;
         trace(entries, rays);
         for (int i = 0; i < N; ++i)
-            places[i] = rays.status[i] == 0 ? film_.landing(rays.origin[i], rays.direction[i]) : Entry{kNone, kNone};
+            points[i] = rays.status[i] == 0 ? film_.landing(rays.origin[i], rays.direction[i]) : Entry{kNone, kNone};
     }
 
     /// Light per area of the entry plane, relative to its centre: uniform in solid angle.

@@ -14,70 +14,70 @@ namespace {
 constexpr int kEdgeParts = 8;
 
 /// A point on the edge of the light: its entry and its slope.
-struct EdgePlace {
+struct EdgePoint {
     PointBundle::Entry entry;
     Vec2<double> slope;
 };
 
-EdgePlace edge_place(const PointBundle& bundle, const LitSpoke& spoke, double r) {
-    const PointBundle::Entry entries[1] = {spoke.at(bundle, r)};
+EdgePoint edge_point(const PointBundle& bundle, const QuadratureArm& arm, double r) {
+    const PointBundle::Entry entries[1] = {arm.at(bundle, r)};
     FilmRay found[1];
     bundle.trace(entries, found);
     return {entries[0], bundle.as_wave(found[0]).slope};
 }
 
-EdgePlace mirrored(const EdgePlace& p) {
+EdgePoint mirrored(const EdgePoint& p) {
     return {{-p.entry.x, p.entry.y}, {-p.slope.x, p.slope.y}};
 }
 
 /// Interpolates between the middle two of four equally spaced points, by the cubic through them.
-EdgePlace between(const std::array<EdgePlace, 4>& p, double share) {
+EdgePoint between(const std::array<EdgePoint, 4>& p, double share) {
     const double t = share, weight[4] = {-t * (t - 1) * (t - 2) / 6, (t + 1) * (t - 1) * (t - 2) / 2,
                                          -(t + 1) * t * (t - 2) / 2, (t + 1) * t * (t - 1) / 6};
-    EdgePlace place{{0, 0}, {0, 0}};
+    EdgePoint point{{0, 0}, {0, 0}};
     for (int k = 0; k < 4; ++k) {
-        const EdgePlace& from = p[static_cast<std::size_t>(k)];
-        place.entry = {place.entry.x + weight[k] * from.entry.x, place.entry.y + weight[k] * from.entry.y};
-        place.slope = {place.slope.x + weight[k] * from.slope.x, place.slope.y + weight[k] * from.slope.y};
+        const EdgePoint& from = p[static_cast<std::size_t>(k)];
+        point.entry = {point.entry.x + weight[k] * from.entry.x, point.entry.y + weight[k] * from.entry.y};
+        point.slope = {point.slope.x + weight[k] * from.slope.x, point.slope.y + weight[k] * from.slope.y};
     }
-    return place;
+    return point;
 }
 
 /// Returns segments between the edges on neighbouring radial scan lines. They are subdivided if the edge continues to
 /// either side: the area of a polygon of 32 straight segments would be 0.6% too small. An interval of light on only one
 /// of the two lines is closed by a segment along that line.
-std::vector<EdgePiece> edge_of(const PointBundle& bundle, const std::vector<LitSpoke>& half) {
+std::vector<EdgePiece> edge_of(const PointBundle& bundle, const std::vector<QuadratureArm>& half) {
     // Inner and outer edge of each interval. If the light begins at the centre, the inner edges coincide there.
-    using Edges = std::vector<std::array<EdgePlace, 2>>;
-    std::vector<Edges> spokes;
-    for (const LitSpoke& spoke : half) {
+    using Edges = std::vector<std::array<EdgePoint, 2>>;
+    std::vector<Edges> arms;
+    for (const QuadratureArm& arm : half) {
         Edges edges;
-        for (const Stretch& stretch : spoke.stretches)
-            edges.push_back({edge_place(bundle, spoke, stretch.from), edge_place(bundle, spoke, stretch.to)});
-        spokes.push_back(std::move(edges));
+        for (const RadialInterval& interval : arm.intervals)
+            edges.push_back({edge_point(bundle, arm, interval.from), edge_point(bundle, arm, interval.to)});
+        arms.push_back(std::move(edges));
     }
     if (bundle.mirrored)
         for (std::size_t s = half.size(); s-- > 0;) {
-            Edges edges = spokes[s];
+            Edges edges = arms[s];
             for (auto& edge : edges) edge = {mirrored(edge[0]), mirrored(edge[1])};
-            spokes.push_back(std::move(edges));
+            arms.push_back(std::move(edges));
         }
     std::vector<EdgePiece> pieces;
-    const auto add = [&](const EdgePlace& a, const EdgePlace& b) {
+    const auto add = [&](const EdgePoint& a, const EdgePoint& b) {
         if (a.entry.x != b.entry.x || a.entry.y != b.entry.y)
             pieces.push_back({{a.entry, b.entry}, {a.slope, b.slope}});
     };
-    for (std::size_t s = 0; s < spokes.size(); ++s) {
-        const auto at = [&](std::size_t k) -> const Edges& { return spokes[(s + k) % spokes.size()]; };
-        const Edges &before = at(spokes.size() - 1), &here = at(0), &next = at(1), &beyond = at(2);
+    for (std::size_t s = 0; s < arms.size(); ++s) {
+        const auto at = [&](std::size_t k) -> const Edges& { return arms[(s + k) % arms.size()]; };
+        const Edges &before = at(arms.size() - 1), &here = at(0), &next = at(1), &beyond = at(2);
         const std::size_t both = std::min(here.size(), next.size());
         const std::size_t smooth = std::min({before.size(), both, beyond.size()});
         for (std::size_t i = 0; i < both; ++i)
             for (std::size_t side : {0, 1}) {
                 const int parts = i < smooth ? kEdgeParts : 1;
-                EdgePlace from = here[i][side];
+                EdgePoint from = here[i][side];
                 for (int k = 1; k <= parts; ++k) {
-                    const EdgePlace to = k == parts
+                    const EdgePoint to = k == parts
                                              ? next[i][side]
                                              : between({before[i][side], here[i][side], next[i][side], beyond[i][side]},
                                                        static_cast<double>(k) / parts);
@@ -102,19 +102,19 @@ double close_focus(const PointBundle& bundle, bool tangential) {
     FilmRay rays[2];
     bundle.trace(entries, rays);
     if (!rays[0].passes || !rays[1].passes) return std::numeric_limits<double>::quiet_NaN();
-    const auto place = [&](const FilmRay& ray) { return tangential ? ray.at.y : ray.at.x; };
+    const auto height = [&](const FilmRay& ray) { return tangential ? ray.at.y : ray.at.x; };
     const auto rise = [&](const FilmRay& ray) {
         return (tangential ? ray.direction.y : ray.direction.x) / ray.direction.z;
     };
-    return -(place(rays[0]) - place(rays[1])) / (rise(rays[0]) - rise(rays[1]));
+    return -(height(rays[0]) - height(rays[1])) / (rise(rays[0]) - rise(rays[1]));
 }
 
 }  // namespace
 
 TracedBundle traced_bundle(const PointBundle& bundle, BundleSampling sampling, const RayLoop& loop) {
-    const std::vector<LitSpoke> spokes = lit_spokes(bundle, sampling.spokes, loop);
-    const std::vector<EntryPart> parts = entry_parts(bundle, spokes, sampling.nodes);
-    TracedBundle result{{}, edge_of(bundle, spokes), close_focus(bundle, true), close_focus(bundle, false)};
+    const std::vector<QuadratureArm> arms = quadrature_arms(bundle, sampling.arms, loop);
+    const std::vector<EntryPart> parts = entry_parts(bundle, arms, sampling.nodes);
+    TracedBundle result{{}, edge_of(bundle, arms), close_focus(bundle, true), close_focus(bundle, false)};
     loop.append_all(result.rays, parts.size(), [&](std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i) {
             const PointBundle::Entry entries[1] = {parts[i].entry};

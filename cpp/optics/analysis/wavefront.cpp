@@ -102,7 +102,7 @@ Wavefront wavefront_of(const LensSystem& lens, double wavelength_nm, FieldRays r
     result.reference_curvature = reference_curvature(lens, wavelength_nm, rays, film_distance, exit_pupil);
     if (centre == SphereCentre::centroid) {
         const Vec2<double> middle = spot_of(rays, film_distance, loop).centroid;
-        result.centre = FilmSurface<double>{film_distance, rays.film_curvature}.place(middle);
+        result.centre = FilmSurface<double>{film_distance, rays.film_curvature}.point(middle);
     }
     const double index = lens.indices(wavelength_nm).back(), curvature = result.reference_curvature;
     const double waves_per_mm = 1e6 / wavelength_nm;

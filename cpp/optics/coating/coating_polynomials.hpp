@@ -101,9 +101,9 @@ struct CoatedMedia {
     };
 
     template <class Surface>
-    REALCAM_INLINE auto at(const Surface& surface, int place) const {
-        const auto uncoated = media.at(surface, place);
-        return Boundary<std::remove_const_t<decltype(uncoated)>>{uncoated, load_constant(surfaces + place), variable,
+    REALCAM_INLINE auto at(const Surface& surface, int index) const {
+        const auto uncoated = media.at(surface, index);
+        return Boundary<std::remove_const_t<decltype(uncoated)>>{uncoated, load_constant(surfaces + index), variable,
                                                                  passed};
     }
 };

@@ -28,29 +28,31 @@ PolarisedFit fit_of(const CoatedSurface& surface, bool is_reflected, double befo
 /// weights; a single one if kWavelengthTerms is 1. `variable`: the WavelengthVariable of the spectrum. Unknown coatings
 /// are treated as in CoatedSurface. Throws InputError if an index is unknown.
 template <int kWavelengthTerms>
-std::vector<CoatingPolynomials<kWavelengthTerms>> fit_coatings(const LensSystem& lens, const std::vector<Crossing>& way,
+std::vector<CoatingPolynomials<kWavelengthTerms>> fit_coatings(const LensSystem& lens,
+                                                               const std::vector<Crossing>& crossings,
                                                                const std::vector<double>& wavelengths_nm,
                                                                WavelengthVariable variable = {0, 0}) {
     using namespace fit_coatings_detail;
-    std::vector<CoatingPolynomials<kWavelengthTerms>> fitted(way.size());
+    std::vector<CoatingPolynomials<kWavelengthTerms>> fitted(crossings.size());
     const std::vector<double> design = lens.indices(lens.wavelength_nm);
-    for (std::size_t k = 0; k < way.size(); ++k) {
-        const double before = way[k].index_before(design), beyond = way[k].index_beyond(design);
+    for (std::size_t k = 0; k < crossings.size(); ++k) {
+        const double before = crossings[k].index_before(design), beyond = crossings[k].index_beyond(design);
         fitted[k].scale = static_cast<float>(2 / std::min(before, beyond));
         fitted[k].is_behind = beyond < before;
     }
     std::vector<double> x;
-    std::vector<std::vector<PolarisedFit>> fits(way.size());  // of each crossing and wavelength; empty for a stop
+    std::vector<std::vector<PolarisedFit>> fits(crossings.size());  // of each crossing and wavelength; empty for a stop
     for (const double wavelength : wavelengths_nm) {
         x.push_back(static_cast<double>(variable.at(static_cast<float>(wavelength))));
         const std::vector<double> indices = lens.indices(wavelength);
-        for (std::size_t k = 0; k < way.size(); ++k) {
-            const auto index = static_cast<std::size_t>(way[k].surface);
+        for (std::size_t k = 0; k < crossings.size(); ++k) {
+            const auto index = static_cast<std::size_t>(crossings[k].surface);
             if (!lens.surfaces[index].bends_light()) continue;
-            const double before = way[k].index_before(indices), beyond = way[k].index_beyond(indices);
-            const CoatedSurface surface = coated_surface(
-                lens, index, wavelength, way[k].in_order ? LightDirection::to_film : LightDirection::to_scene, indices);
-            fits[k].push_back(fit_of(surface, way[k].is_reflected, before, beyond,
+            const double before = crossings[k].index_before(indices), beyond = crossings[k].index_beyond(indices);
+            const CoatedSurface surface =
+                coated_surface(lens, index, wavelength,
+                               crossings[k].in_order ? LightDirection::to_film : LightDirection::to_scene, indices);
+            fits[k].push_back(fit_of(surface, crossings[k].is_reflected, before, beyond,
                                      fitted[k].is_behind ? beyond : before, static_cast<double>(fitted[k].scale)));
         }
     }
@@ -63,7 +65,7 @@ std::vector<CoatingPolynomials<kWavelengthTerms>> fit_coatings(const LensSystem&
             for (std::size_t j = 0; j < kWavelengthTerms; ++j) to[j][i] = static_cast<float>(terms[j]);
         }
     };
-    for (std::size_t k = 0; k < way.size(); ++k) {
+    for (std::size_t k = 0; k < crossings.size(); ++k) {
         if (fits[k].empty()) {
             fitted[k].s[0][0] = fitted[k].p[0][0] = 1;
             continue;

@@ -171,10 +171,10 @@ __attribute__((flatten)) REALCAM_CLONES void AdjointPath::add_block(const Adjoin
         const Vec3d of_o = adjoints.origin[i], of_p = adjoints.direction[i];
         const double size = length(given), of_path = request.of_paths[ray];
         const Vec3d unit = (1 / size) * given;
-        const double way = dot(steps[0].origin[i] - from[i], unit) / size;  // to the start of the trace
+        const double distance = dot(steps[0].origin[i] - from[i], unit) / size;  // to the start of the trace
         write(request.by_origins, ray, of_o);
         write(request.by_directions, ray,
-              (index / size) * (of_p - dot(of_p, unit) * unit) + way * of_o + index * way * of_path * unit);
+              (index / size) * (of_p - dot(of_p, unit) * unit) + distance * of_o + index * distance * of_path * unit);
         sums.entry_position -= of_o.z;
         sums.entry_index += (dot(of_p, p) + of_path * path_to_entry[i]) / index;
     }

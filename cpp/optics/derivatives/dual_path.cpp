@@ -51,11 +51,11 @@ REALCAM_INLINE SurfaceHit<Dual8> hit_of(const DualSurface& surface, const Vec3<D
         hit.parameter += approach;
         return hit;
     }
-    const Vec3d from = value(o), way = value(p);
-    const Dual8 known = dot(at - from, way) / dot(way, way);
+    const Vec3d from = value(o), direction = value(p);
+    const Dual8 known = dot(at - from, direction) / dot(direction, direction);
     const Vec3<Dual8> near = o + known * p;
     const SagWithSlopes there = sag_at(surface, near);
-    const double rise = way.z - there.slope_x.value * way.x - there.slope_y.value * way.y;
+    const double rise = direction.z - there.slope_x.value * direction.x - there.slope_y.value * direction.y;
     const Dual8 parameter = known - (near.z - there.height) / Dual8(rise);
     const SagWithSlopes sag = sag_at(surface, o + parameter * p);
     return freeform_hit(view.direction_sign_in, p, parameter, sag.slope_x, sag.slope_y, Dual8(1));
@@ -205,9 +205,9 @@ REALCAM_CLONES void DualPath::write(const DualSurface& surface, bool has_ray, Ve
     const SurfaceHit<Dual8> hit = hit_of(surface, o, p, at);
     const Refraction<Dual8> refracted =
         refract(p, hit.normal, hit.along_normal, surface.view.squared_index_change, surface.view.direction_sign_out);
-    const Vec3<Dual8> end = o + hit.parameter * p, way = refracted.direction;
+    const Vec3<Dual8> end = o + hit.parameter * p, direction = refracted.direction;
     by.of[0] = end.x.by, by.of[1] = end.y.by, by.of[2] = end.z.by;
-    by.of[3] = way.x.by, by.of[4] = way.y.by, by.of[5] = way.z.by;
+    by.of[3] = direction.x.by, by.of[4] = direction.y.by, by.of[5] = direction.z.by;
     by.of[6] = (surface.view.index_squared * hit.parameter).by;
 }
 

@@ -12,7 +12,7 @@ namespace REALCAM_NAMESPACE {
 /// InputError if a glass has no index at one of the wavelengths.
 template <int kWavelengthTerms>
 std::vector<GhostCoating<kWavelengthTerms>> ghost_coatings(
-    const LensSystem& lens, const std::vector<Crossing>& way,
+    const LensSystem& lens, const std::vector<Crossing>& crossings,
     const std::vector<CoatingPolynomials<kWavelengthTerms>>& coatings, const std::vector<double>& wavelengths_nm,
     WavelengthVariable variable = {0, 0}) {
     const auto difference = [](const Crossing& crossing, const std::vector<double>& indices) {
@@ -23,11 +23,11 @@ std::vector<GhostCoating<kWavelengthTerms>> ghost_coatings(
         const double n = crossing.index_before(indices);
         return difference(crossing, indices) / (n * n);
     };
-    const std::vector<IndexCubic> changes = cubics_over(lens, way, wavelengths_nm, variable, change);
-    const std::vector<IndexCubic> differences = cubics_over(lens, way, wavelengths_nm, variable, difference);
+    const std::vector<IndexCubic> changes = cubics_over(lens, crossings, wavelengths_nm, variable, change);
+    const std::vector<IndexCubic> differences = cubics_over(lens, crossings, wavelengths_nm, variable, difference);
     std::vector<GhostCoating<kWavelengthTerms>> all;
-    for (std::size_t k = 0; k < way.size(); ++k)
-        all.push_back({coatings[k], changes[k], differences[k], way[k].is_reflected, {}});
+    for (std::size_t k = 0; k < crossings.size(); ++k)
+        all.push_back({coatings[k], changes[k], differences[k], crossings[k].is_reflected, {}});
     return all;
 }
 

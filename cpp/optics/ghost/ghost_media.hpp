@@ -48,11 +48,11 @@ struct GhostMedia {
     };
 
     template <class Surface>
-    REALCAM_INLINE auto at(const Surface& surface, int place) const {
+    REALCAM_INLINE auto at(const Surface& surface, int index) const {
         if constexpr (disperses)
-            return Boundary{{indices[place], variable}, load_constant(coatings + place), variable, passed};
+            return Boundary{{indices[index], variable}, load_constant(coatings + index), variable, passed};
         else
-            return Boundary{{surface.squared_index_change}, load_constant(coatings + place), variable, passed};
+            return Boundary{{surface.squared_index_change}, load_constant(coatings + index), variable, passed};
     }
 };
 

@@ -20,9 +20,9 @@ AxialShares::AxialShares(const LensSystem& lens, double wavelength_nm) {
     }
 }
 
-double AxialShares::operator()(const std::vector<Crossing>& way) const {
+double AxialShares::operator()(const std::vector<Crossing>& crossings) const {
     double share = 1;
-    for (const Crossing& crossing : way) {
+    for (const Crossing& crossing : crossings) {
         const Face& face = surfaces_[static_cast<std::size_t>(crossing.surface)][crossing.in_order];
         share *= crossing.is_reflected ? face.reflects : face.sends_on;
     }

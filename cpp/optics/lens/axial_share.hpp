@@ -13,7 +13,7 @@ public:
     /// Throws InputError if an index is not known at this wavelength.
     AxialShares(const LensSystem& lens, double wavelength_nm);
 
-    double operator()(const std::vector<Crossing>& way) const;
+    double operator()(const std::vector<Crossing>& crossings) const;
 
 private:
     /// Stops and apertures, which bend no light, have no losses.

@@ -28,7 +28,7 @@ RaysFromFilm::RaysFromFilm(const LensSystem& lens, double wavelength_nm)
 }
 
 Vec3d RaysFromFilm::film_point(Vec2<double> film) const {
-    return FilmSurface<double>{film_distance_, film_curvature_}.place(film);
+    return FilmSurface<double>{film_distance_, film_curvature_}.point(film);
 }
 
 Vec3d RaysFromFilm::on_last_surface(Vec2<double> share) const {
@@ -114,9 +114,9 @@ private:
         for (int i = 0; i <= kAround; ++i) {
             const double angle = 2 * std::numbers::pi * i / kAround, share = i == kAround ? 0 : 1;
             const Vec3d to = rays_.on_last_surface({share * std::cos(angle), share * std::sin(angle)});
-            const Vec3d way = rays_.film_index() * normalized(to - film_);
-            low = {std::min(low.x, way.x), std::min(low.y, way.y)};
-            high = {std::max(high.x, way.x), std::max(high.y, way.y)};
+            const Vec3d direction = rays_.film_index() * normalized(to - film_);
+            low = {std::min(low.x, direction.x), std::min(low.y, direction.y)};
+            high = {std::max(high.x, direction.x), std::max(high.y, direction.y)};
         }
         return {low, high};
     }

@@ -143,7 +143,7 @@ LensSystem moved_by_group(const LensSystem& lens, double focus_distance) {
     const double forth = last + 1 < s.size() ? s[last].thickness : lens.film_distance;
     const double start = error(0), tolerance = kFocusTolerance * std::fabs(lens.film_position());
     if (start == 0) return lens;
-    std::optional<FaceOverlap> crossing;
+    std::optional<FaceOverlap> overlap;
     // The nearest root is the right one, as some groups also image a plane at a second, distant position, at which the
     // lens is quite another one. The search therefore proceeds outwards on both sides, by distance. A sign change at
     // which the image passes through infinity, or the last ray vanishes, is no root.
@@ -162,16 +162,16 @@ LensSystem moved_by_group(const LensSystem& lens, double focus_distance) {
             const Root shift = find_root(error, from, side.inner, to, outer, 1e-5 * tolerance);
             if (std::fabs(shift.value) <= tolerance) {
                 LensSystem moved = with_group_moved(lens, shift.at);
-                if (!lens.allow_crossing) crossing = find_crossing(moved);
-                if (!crossing) return moved;
+                if (!lens.allow_overlap) overlap = find_overlap(moved);
+                if (!overlap) return moved;
             }
         }
         side.inner = outer;
     }
-    if (crossing)
+    if (overlap)
         fail(lens, focus_distance,
-             "would have to move its focusing group so far that surfaces " + std::to_string(crossing->first + 1) +
-                 " and " + std::to_string(crossing->second + 1) + " cross");
+             "would have to move its focusing group so far that surfaces " + std::to_string(overlap->first + 1) +
+                 " and " + std::to_string(overlap->second + 1) + " cross");
     throw InputError("cannot focus at " + metres(focus_distance) + ": no position of the focusing group of lens \"" +
                      lens.name + "\" (surfaces " + std::to_string(first + 1) + " to " + std::to_string(last + 1) +
                      ") images it on the film");

@@ -31,7 +31,7 @@ public:
           upwards_(cross(chief_.scene_direction, across_)),
           inverse_distance_(inverse_distance) {
         const double n = path_.entry_index, radius = lens.open_stop_radius();
-        const Matrix2 entry = (rays.stop_by_place + n * inverse_distance * rays.stop_by_direction).inverse();
+        const Matrix2 entry = (rays.stop_by_position + n * inverse_distance * rays.stop_by_direction).inverse();
         reach = {radius * hypotenuse(entry.first.x, entry.first.y),
                  radius * hypotenuse(entry.second.x, entry.second.y)};
     }
@@ -68,7 +68,7 @@ double narrowest(const CentralBundle& bundle) {
     constexpr int kBlock = 16;
     const std::vector<EntryPart> parts = entry_parts(bundle, kSampling);
     struct Line {
-        double weight, place[2], slope[2];
+        double weight, position[2], slope[2];
     };
     std::vector<Line> lines;
     Line mean{};
@@ -85,7 +85,7 @@ double narrowest(const CentralBundle& bundle) {
             lines.push_back({part(i).area, {o.x - mx * o.z, o.y - my * o.z}, {mx, my}});
             mean.weight += part(i).area;
             for (int k = 0; k < 2; ++k) {
-                mean.place[k] += part(i).area * lines.back().place[k];
+                mean.position[k] += part(i).area * lines.back().position[k];
                 mean.slope[k] += part(i).area * lines.back().slope[k];
             }
         }
@@ -94,7 +94,7 @@ double narrowest(const CentralBundle& bundle) {
     for (const Line& line : lines)
         for (int k = 0; k < 2; ++k) {
             const double slope = line.slope[k] - mean.slope[k] / mean.weight;
-            mixed += line.weight * (line.place[k] - mean.place[k] / mean.weight) * slope;
+            mixed += line.weight * (line.position[k] - mean.position[k] / mean.weight) * slope;
             square += line.weight * slope * slope;
         }
     return square > 0 ? -mixed / square : kNone;

@@ -113,13 +113,13 @@ LensSystem inserted(const LensSystem& lens, int index, const std::vector<Surface
     if (index == n && !gap) throw InputError("behind the last surface the distance from it is wanted, too");
     if (index == 0 && gap) throw InputError("in front of the first surface there is nothing to have a distance from");
     return lens_edits_detail::edited_in_all_states(lens, [&](LensSystem l) {
-        const auto place = static_cast<std::size_t>(index);
-        if (gap) l.surfaces[place - 1].thickness = *gap;
+        const auto position = static_cast<std::size_t>(index);
+        if (gap) l.surfaces[position - 1].thickness = *gap;
         l.surfaces.insert(l.surfaces.begin() + index, surfaces.begin(), surfaces.end());
         l.surfaces.back().thickness = 0;
         if (index == n) {
             l.film_distance -= *gap;
-            for (std::size_t i = place; i + 1 < l.surfaces.size(); ++i) l.film_distance -= l.surfaces[i].thickness;
+            for (std::size_t i = position; i + 1 < l.surfaces.size(); ++i) l.film_distance -= l.surfaces[i].thickness;
         }
         if (l.focusing.moves_group()) {
             FocusingRule& focusing = l.focusing;

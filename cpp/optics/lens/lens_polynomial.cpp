@@ -58,8 +58,8 @@ std::vector<LensPolynomial::TracedRay> LensPolynomial::traced_rays(const LensSys
     to_stop.count -= lens.stop_index();
     std::vector<TracedRay> found;
     for (std::uint32_t i = 0; i < count; ++i) {
-        const Vec2f place = sample_2d(stream, i, 0), u = sample_2d(stream, i, 1);
-        const auto radius = static_cast<float>(film_radius_) * place.x;
+        const Vec2f film_sample = sample_2d(stream, i, 0), u = sample_2d(stream, i, 1);
+        const auto radius = static_cast<float>(film_radius_) * film_sample.x;
         const PupilSample sample = sample_pupil(pupil, radius, 0, u.x, u.y);
         if (!(sample.weight > 0)) continue;
         LensRays<double, 1> ray;
@@ -76,10 +76,10 @@ std::vector<LensPolynomial::TracedRay> LensPolynomial::traced_rays(const LensSys
         trace_lens(path.view(), ray);
         if (ray.status[0] != 0) continue;
         const Vec3d direction = normalized(ray.direction[0]), origin = ray.origin[0];
-        const double way = (plane_ - origin.z) / direction.z, down = lens.film_distance / inside.z;
+        const double distance = (plane_ - origin.z) / direction.z, down = lens.film_distance / inside.z;
         found.push_back({{static_cast<double>(radius), 0},
                          {static_cast<double>(radius) - down * inside.x, -down * inside.y},
-                         {{origin.x + way * direction.x, origin.y + way * direction.y},
+                         {{origin.x + distance * direction.x, origin.y + distance * direction.y},
                           {direction.x, direction.y},
                           {at_stop.x / lens.stop_semi_diameter, at_stop.y / lens.stop_semi_diameter}}});
     }

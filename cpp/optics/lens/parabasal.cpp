@@ -39,10 +39,10 @@ FilmFan fan_of(const RaysFromFilm& rays, const Across& film, const std::array<do
     for (int i = 0; i < kInputs; ++i)
         for (int k = 0; k < kOffsets; ++k) {
             const double by = kOffset[k] * steps[static_cast<std::size_t>(i)];
-            const Vec3d place = (i == 0 ? by : 0.0) * film.x + (i == 1 ? by : 0.0) * film.y;
+            const Vec3d position = (i == 0 ? by : 0.0) * film.x + (i == 1 ? by : 0.0) * film.y;
             const double px = i == 2 ? by : 0.0, py = i == 3 ? by : 0.0;
             const int lane = kOffsets * i + k;
-            fan.origin.set(lane, film.origin + place);
+            fan.origin.set(lane, film.origin + position);
             fan.direction.set(lane, -(px * film.x + py * film.y + std::sqrt(n * n - px * px - py * py) * film.z));
             fan.status[lane] = 0;
         }
@@ -51,7 +51,7 @@ FilmFan fan_of(const RaysFromFilm& rays, const Across& film, const std::array<do
 
 /// Derivatives of a function of the fan's lane by the position and by the direction at the film.
 struct ByFilm {
-    Matrix2 place, direction;
+    Matrix2 position, direction;
 
     template <class Value>
     ByFilm(const std::array<double, kInputs>& steps, Value&& value) {
@@ -64,7 +64,7 @@ struct ByFilm {
                 columns[i] = {columns[i].x + weight * v.x, columns[i].y + weight * v.y};
             }
         }
-        place = {{columns[0].x, columns[1].x}, {columns[0].y, columns[1].y}};
+        position = {{columns[0].x, columns[1].x}, {columns[0].y, columns[1].y}};
         direction = {{columns[2].x, columns[3].x}, {columns[2].y, columns[3].y}};
     }
 };
@@ -102,11 +102,11 @@ ParabasalRays parabasal_rays(const LensSystem& lens, const RaysFromFilm& rays, c
             if (status != 0) fail(lens);
         const ByFilm stop(steps,
                           [&](int lane) { return Vec2<double>{at_stop.origin.x[lane], at_stop.origin.y[lane]}; });
-        found.stop_by_film_place = stop.place;
+        found.stop_by_film_position = stop.position;
         found.stop_by_film_direction = stop.direction;
         const double reach = 1e-3 * lens.stop().clear_semi_diameter;
-        const double place = reach / largest(stop.place), direction = reach / largest(stop.direction);
-        if (pass == 0) steps = {std::min(place, 1.0), std::min(place, 1.0), direction, direction};
+        const double position = reach / largest(stop.position), direction = reach / largest(stop.direction);
+        if (pass == 0) steps = {std::min(position, 1.0), std::min(position, 1.0), direction, direction};
     }
     FilmFan in_scene = fan_of(rays, film, steps);
     rays.to_scene(in_scene);
@@ -123,27 +123,27 @@ ParabasalRays parabasal_rays(const LensSystem& lens, const RaysFromFilm& rays, c
     };
     // The map from scene to film is the inverse, which follows by transposition because ray transfer is symplectic: it
     // conserves etendue, the area in position and direction.
-    const ByFilm place = part(0), direction = part(2);
-    found.place_by_place = direction.direction.transposed();
-    found.place_by_direction = -1 * place.direction.transposed();
-    found.direction_by_place = -1 * direction.place.transposed();
-    found.direction_by_direction = place.place.transposed();
-    found.stop_by_place =
-        found.stop_by_film_place * found.place_by_place + found.stop_by_film_direction * found.direction_by_place;
-    found.stop_by_direction = found.stop_by_film_place * found.place_by_direction +
+    const ByFilm position = part(0), direction = part(2);
+    found.position_by_position = direction.direction.transposed();
+    found.position_by_direction = -1 * position.direction.transposed();
+    found.direction_by_position = -1 * direction.position.transposed();
+    found.direction_by_direction = position.position.transposed();
+    found.stop_by_position = found.stop_by_film_position * found.position_by_position +
+                             found.stop_by_film_direction * found.direction_by_position;
+    found.stop_by_direction = found.stop_by_film_position * found.position_by_direction +
                               found.stop_by_film_direction * found.direction_by_direction;
     return found;
 }
 
 Vec3d entrance_pupil_middle(const ParabasalRays& rays, double index) {
-    const double distance = index * 0.5 * (rays.stop_by_place.inverse() * rays.stop_by_direction).trace();
+    const double distance = index * 0.5 * (rays.stop_by_position.inverse() * rays.stop_by_direction).trace();
     return rays.chief.scene + distance * rays.chief.scene_direction;
 }
 
 double exit_pupil_distance(const LensSystem& lens, double wavelength_nm, Vec2<double> film) {
     const ParabasalRays rays = parabasal_rays(lens, wavelength_nm, film);
     return -0.5 * lens.indices(wavelength_nm).back() *
-           (rays.stop_by_film_place.inverse() * rays.stop_by_film_direction).trace();
+           (rays.stop_by_film_position.inverse() * rays.stop_by_film_direction).trace();
 }
 
 ParabasalData parabasal_data(const LensSystem& lens, double wavelength_nm) {
@@ -151,14 +151,14 @@ ParabasalData parabasal_data(const LensSystem& lens, double wavelength_nm) {
     const std::vector<double> index = lens.indices(wavelength_nm);
     const double before = index.front(), behind = index.back();
     const double radius = lens.open_stop_radius();
-    const SingularValues power = singular_values(rays.direction_by_place);
+    const SingularValues power = singular_values(rays.direction_by_position);
     // Rounding error of the difference quotients, 1/mm: a smaller power counts as 0.
     const double none = std::max(1e-10 * power.larger, 1e-12);
     const bool is_round = power.larger - std::fabs(power.smaller) < 1e-9 * power.larger;
     const bool is_turned_over = power.smaller < 0;
     const double sign = !is_turned_over && std::cos(power.left - power.right) > 0 ? -1 : 1;
     const auto focal_length_of = [&](double p) { return std::fabs(p) < none ? kInfinity : sign / std::fabs(p); };
-    const Matrix2 pupil = rays.stop_by_place.inverse();  // entry of parallel light, by its point on the stop
+    const Matrix2 pupil = rays.stop_by_position.inverse();  // entry of parallel light, by its point on the stop
 
     const auto meridian = [&](double angle, double image_angle, double p) {
         const Vec2<double> v{std::cos(angle), std::sin(angle)}, u{std::cos(image_angle), std::sin(image_angle)};
@@ -171,9 +171,10 @@ ParabasalData parabasal_data(const LensSystem& lens, double wavelength_nm) {
         m.f_number = std::fabs(m.focal_length) / m.entrance_pupil_diameter;
         // Focus of this meridian: rays that are parallel and offset along v in front of the lens meet in their
         // component along u.
-        const Vec2<double> at = rays.place_by_place * v, way = rays.direction_by_place * v;
-        const double along =
-            std::isinf(m.focal_length) ? kInfinity : -behind * (at.x * u.x + at.y * u.y) / (way.x * u.x + way.y * u.y);
+        const Vec2<double> at = rays.position_by_position * v, direction = rays.direction_by_position * v;
+        const double along = std::isinf(m.focal_length)
+                                 ? kInfinity
+                                 : -behind * (at.x * u.x + at.y * u.y) / (direction.x * u.x + direction.y * u.y);
         m.back_focal_distance = lens.film_distance + along;
         return m;
     };
@@ -184,7 +185,7 @@ ParabasalData parabasal_data(const LensSystem& lens, double wavelength_nm) {
     if (std::fabs(first.azimuth_deg) > 45) std::swap(first, second);
 
     FirstOrder mean{};
-    const double ratio = std::fabs(rays.stop_by_place.determinant());
+    const double ratio = std::fabs(rays.stop_by_position.determinant());
     mean.effective_focal_length = std::isinf(first.focal_length) || std::isinf(second.focal_length)
                                       ? kInfinity
                                       : sign * std::sqrt(std::fabs(first.focal_length * second.focal_length));
@@ -194,7 +195,7 @@ ParabasalData parabasal_data(const LensSystem& lens, double wavelength_nm) {
     // Chief rays cross where their offsets in the reference plane and their directions cancel.
     const double front = rays.chief.scene.z, at_film = lens.film_position();
     mean.entrance_pupil_position = entrance_pupil_middle(rays, before).z;
-    const Matrix2 exit = rays.stop_by_film_place.inverse();
+    const Matrix2 exit = rays.stop_by_film_position.inverse();
     mean.exit_pupil_position =
         at_film + rays.chief.film_direction.z * behind * 0.5 * (exit * rays.stop_by_film_direction).trace();
     mean.exit_pupil_diameter = 2 * radius * std::sqrt(std::fabs(exit.determinant()));
@@ -203,7 +204,7 @@ ParabasalData parabasal_data(const LensSystem& lens, double wavelength_nm) {
         std::isinf(mean.effective_focal_length)
             ? -kInfinity
             : front + rays.chief.scene_direction.z * before * 0.5 *
-                          (rays.direction_by_place.inverse() * rays.direction_by_direction).trace();
+                          (rays.direction_by_position.inverse() * rays.direction_by_direction).trace();
     mean.film_distance = lens.film_distance;
     mean.image_index = behind;
     return {{first, second}, second.focal_length / first.focal_length, mean};

@@ -11,10 +11,10 @@ namespace REALCAM_NAMESPACE {
 /// (mm, across the chief ray, along x and nearly y of the frame) and an optical direction across the chief ray.
 struct ParabasalRays {
     ChiefRay chief;
-    Matrix2 place_by_place, place_by_direction;  ///< film side by scene side
-    Matrix2 direction_by_place, direction_by_direction;
-    Matrix2 stop_by_place, stop_by_direction;  ///< stop by scene side
-    Matrix2 stop_by_film_place, stop_by_film_direction;  ///< stop by film side
+    Matrix2 position_by_position, position_by_direction;  ///< film side by scene side
+    Matrix2 direction_by_position, direction_by_direction;
+    Matrix2 stop_by_position, stop_by_direction;  ///< stop by scene side
+    Matrix2 stop_by_film_position, stop_by_film_direction;  ///< stop by film side
 };
 
 /// Parabasal rays about a known chief ray. Throws InputError if rays close to it do not leave the lens.

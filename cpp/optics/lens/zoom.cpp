@@ -49,15 +49,15 @@ public:
         });
     }
 
-    /// Returns the lens at rest at the coordinate `place`, which is near the logarithm of its focal length. The film is
-    /// not positioned yet.
-    LensSystem at(double place) const {
-        LensSystem lens = at_zoom_position(lens_, nearest(place));
+    /// Returns the lens at rest at the coordinate `position`, which is near the logarithm of its focal length. The film
+    /// is not positioned yet.
+    LensSystem at(double position) const {
+        LensSystem lens = at_zoom_position(lens_, nearest(position));
         for (std::size_t i = 0; i < thicknesses_.size(); ++i)
-            lens.surfaces[static_cast<std::size_t>(lens.zoom.surfaces[i])].thickness = thicknesses_[i].at(place);
+            lens.surfaces[static_cast<std::size_t>(lens.zoom.surfaces[i])].thickness = thicknesses_[i].at(position);
         if (stop_) {
             Surface& stop = lens.surfaces[static_cast<std::size_t>(lens.stop_index())];
-            lens.stop_semi_diameter = stop.clear_semi_diameter = stop_->at(place);
+            lens.stop_semi_diameter = stop.clear_semi_diameter = stop_->at(position);
         }
         return lens;
     }

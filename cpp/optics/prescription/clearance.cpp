@@ -54,10 +54,10 @@ bool is_sunk(const Surface& front, const Surface& back, double direction) {
     return direction * smaller.sag(smaller.clear_semi_diameter) * (is_back ? 1 : -1) > 0;
 }
 
-/// Appends the overlaps of a run of faces until `crossings` has `most` entries. `in_glass`: for each face, true if
+/// Appends the overlaps of a run of faces until `overlaps` has `most` entries. `in_glass`: for each face, true if
 /// glass lies between it and the next one.
-void append_crossings(const LensSystem& lens, const std::vector<Face>& run, const std::vector<bool>& in_glass,
-                      double direction, std::size_t most, std::vector<FaceOverlap>& crossings) {
+void append_overlaps(const LensSystem& lens, const std::vector<Face>& run, const std::vector<bool>& in_glass,
+                     double direction, std::size_t most, std::vector<FaceOverlap>& overlaps) {
     const auto surface = [&](std::size_t i) -> const Surface& {
         return lens.surfaces[static_cast<std::size_t>(run[i].index)];
     };
@@ -74,8 +74,8 @@ void append_crossings(const LensSystem& lens, const std::vector<Face>& run, cons
             const double touch = kPrintedDigits * std::min(a.clear_semi_diameter, b.clear_semi_diameter);
             if (from < to) {
                 const FaceOverlap found = deepest(lens, run[i], run[j], direction, from, to);
-                if (found.depth > touch) crossings.push_back(found);
-                if (crossings.size() >= most) return;
+                if (found.depth > touch) overlaps.push_back(found);
+                if (overlaps.size() >= most) return;
             }
             if (b.inner_semi_diameter == 0) between = std::max(between, b.clear_semi_diameter);
             if (between >= a.clear_semi_diameter) break;
@@ -87,17 +87,17 @@ void append_crossings(const LensSystem& lens, const std::vector<Face>& run, cons
 
 std::vector<FaceOverlap> find_overlaps(const LensSystem& lens, std::size_t most) {
     const std::vector<double> z = lens.vertices();
-    std::vector<FaceOverlap> crossings;
+    std::vector<FaceOverlap> overlaps;
     std::vector<Face> run;
     std::vector<bool> in_glass;
     double direction = 1;
     bool glass = false;
-    for (std::size_t i = 0; i < lens.surfaces.size() && crossings.size() < most; ++i) {
+    for (std::size_t i = 0; i < lens.surfaces.size() && overlaps.size() < most; ++i) {
         const Surface& surface = lens.surfaces[i];
         const bool is_moved = !surface.placement.is_in_place();
         const bool alone = (is_moved && surface.placement.returns) || !surface.form.asymmetry().empty();
         if (is_moved && !surface.placement.returns) {
-            append_crossings(lens, run, in_glass, direction, most, crossings);
+            append_overlaps(lens, run, in_glass, direction, most, overlaps);
             run.clear();
             in_glass.clear();
             // A coordinate break that reverses the z axis also reverses the light's direction along it.
@@ -113,16 +113,16 @@ std::vector<FaceOverlap> find_overlaps(const LensSystem& lens, std::size_t most)
         run.push_back({static_cast<int>(i), z[i]});
         in_glass.push_back(glass);
         if (surface.type != SurfaceType::mirror) continue;
-        append_crossings(lens, run, in_glass, direction, most, crossings);
+        append_overlaps(lens, run, in_glass, direction, most, overlaps);
         run = {run.back()};
         in_glass = {glass};
         direction = -direction;
     }
-    if (crossings.size() < most) append_crossings(lens, run, in_glass, direction, most, crossings);
-    return crossings;
+    if (overlaps.size() < most) append_overlaps(lens, run, in_glass, direction, most, overlaps);
+    return overlaps;
 }
 
-std::optional<FaceOverlap> find_crossing(const LensSystem& lens) {
+std::optional<FaceOverlap> find_overlap(const LensSystem& lens) {
     const std::vector<FaceOverlap> first = find_overlaps(lens, 1);
     return first.empty() ? std::nullopt : std::optional(first.front());
 }

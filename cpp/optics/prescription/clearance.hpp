@@ -26,7 +26,7 @@ std::vector<FaceOverlap> find_overlaps(const LensSystem& lens,
                                        std::size_t most = std::numeric_limits<std::size_t>::max());
 
 /// Returns the first overlap of find_overlaps; std::nullopt if no faces overlap.
-std::optional<FaceOverlap> find_crossing(const LensSystem& lens);
+std::optional<FaceOverlap> find_overlap(const LensSystem& lens);
 
 /// True if the film of a centred lens cuts through the last face, up to the smaller of the face's rim and the film's
 /// half diagonal. Always false for lenses without rotational symmetry.

@@ -21,11 +21,11 @@ std::vector<Crossing> crossings_of(const LensSystem& lens, GhostPair pair) {
     return crossings;
 }
 
-std::vector<Crossing> reversed(std::vector<Crossing> way) {
-    std::reverse(way.begin(), way.end());
-    for (Crossing& crossing : way)
+std::vector<Crossing> reversed(std::vector<Crossing> crossings) {
+    std::reverse(crossings.begin(), crossings.end());
+    for (Crossing& crossing : crossings)
         if (!crossing.is_reflected) crossing.in_order = !crossing.in_order;
-    return way;
+    return crossings;
 }
 
 std::vector<GhostPair> ghost_pairs(const LensSystem& lens, int first_begin, int first_end) {

@@ -48,7 +48,7 @@ std::vector<Crossing> crossings_of(const LensSystem& lens);
 std::vector<Crossing> crossings_of(const LensSystem& lens, GhostPair pair);
 
 /// Returns the path of light in the opposite direction.
-std::vector<Crossing> reversed(std::vector<Crossing> way);
+std::vector<Crossing> reversed(std::vector<Crossing> crossings);
 
 /// All pairs whose first surface has an index in [first_begin, first_end), and refracts or is the film.
 std::vector<GhostPair> ghost_pairs(const LensSystem& lens, int first_begin, int first_end);

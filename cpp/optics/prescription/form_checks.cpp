@@ -66,7 +66,7 @@ std::string aperture_error(const Surface& s) {
             return "its aperture has " + std::to_string(shape.corners.size()) + " corners; 3 to " +
                    std::to_string(kMaxApertureCorners) + " are wanted";
         for (const Vec2d& corner : shape.corners)
-            if (!is_short(corner)) return "a corner of its aperture is no place";
+            if (!is_short(corner)) return "a corner of its aperture is no point";
     } else if (shape.kind != ApertureOutline::circle || shape.half != Vec2d{0, 0}) {
         if (!is_length(shape.half.x) || !is_length(shape.half.y))
             return "the half widths of its aperture must be positive lengths";

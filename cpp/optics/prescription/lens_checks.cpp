@@ -135,12 +135,12 @@ void check_surfaces(const LensSystem& lens) {
         fail(last_mirror,
              "the lens has an odd number of mirrors, so its light never reaches a film behind it; a film before it, at "
              "a film_distance_mm below 0, is wanted");
-    if (lens.allow_crossing) return;
-    if (const auto crossing = find_crossing(lens))
-        fail(static_cast<std::size_t>(crossing->first),
-             "crosses surface " + std::to_string(crossing->second + 1) + ", by " + short_mm(crossing->depth) + " at " +
-                 short_mm(crossing->radius) +
-                 " from the axis; faces that keep apart up to their rims are wanted (allow_crossing admits it)");
+    if (lens.allow_overlap) return;
+    if (const auto overlap = find_overlap(lens))
+        fail(static_cast<std::size_t>(overlap->first),
+             "crosses surface " + std::to_string(overlap->second + 1) + ", by " + short_mm(overlap->depth) + " at " +
+                 short_mm(overlap->radius) +
+                 " from the axis; faces that keep apart up to their rims are wanted (allow_overlap admits it)");
 }
 
 void check_iris(const IrisShape& iris) {
@@ -221,10 +221,10 @@ std::string film_distance_error(const LensSystem& lens) {
     }
     if (!(lens.film_distance > 0) || !(lens.film_distance <= kLongest))
         return "the film must lie behind the last surface of the lens, at most 1e9 mm away";
-    if (!lens.allow_crossing && film_crosses_lens(lens))
+    if (!lens.allow_overlap && film_crosses_lens(lens))
         return "the film, " + lens_checks_detail::short_mm(lens.film_distance) +
                " behind the last vertex of the lens, cuts through its last face; a plane behind that face's rim is "
-               "wanted (allow_crossing admits it)";
+               "wanted (allow_overlap admits it)";
     return "";
 }
 

@@ -53,7 +53,7 @@ struct LensSystem {
     IrisShape iris;
     FocusingRule focusing;
     ZoomRange zoom;
-    bool allow_crossing =
+    bool allow_overlap =
         false;  ///< faces may overlap inside their rims: for experiments, as such a lens cannot be made
 
     bool operator==(const LensSystem&) const = default;

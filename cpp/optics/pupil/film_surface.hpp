@@ -11,7 +11,7 @@ struct FilmSurface {
     T distance;  ///< z of the vertex, mm
     T curvature;  ///< 1/mm; above 0: the centre lies behind the film
 
-    REALCAM_INLINE Vec3<T> place(Vec2<T> at) const {
+    REALCAM_INLINE Vec3<T> point(Vec2<T> at) const {
         const T squared = at.x * at.x + at.y * at.y;
         return {at.x, at.y, distance + curvature * squared / (T(1) + cosine(squared))};
     }

@@ -18,10 +18,10 @@ Pupil::Pupil(const LensSystem& lens, double film_radius, PupilTracer tracer, con
     if (!(film_radius > 0) || !(film_radius <= kLongest))
         throw InputError("the film's radius must be a positive length, of at most 1e9 mm");
     is_moved_ = similar && find_near(*similar);
-    if (!is_moved_) find_anew();
+    if (!is_moved_) find_from_scratch();
 }
 
-void Pupil::find_anew() {
+void Pupil::find_from_scratch() {
     image_radius_ = film_radius_;
     nodes_.clear();
     find_nodes();
@@ -74,13 +74,13 @@ PupilView Pupil::view() const {
 }
 
 bool Pupil::find_edge_near(const Pupil& similar) {
-    PupilRowSearch::Sight sight = rows().look_near_edge(similar.image_radius_, similar.last_box_);
-    if (sight.lit.empty() || sight.dark.empty() || sight.dark.back() > film_radius_) return false;
-    end_image(sight);
+    PupilRowSearch::RowSearch search = rows().look_near_edge(similar.image_radius_, similar.last_box_);
+    if (search.lit.empty() || search.dark.empty() || search.dark.back() > film_radius_) return false;
+    end_image(search);
     if (image_radius_ == similar.image_radius_) return true;
     // Rows without outlines use their whole boxes, which must therefore be accurate.
     constexpr int kFirst = kRows - kEdgeRows + 1;
-    const PupilRowBoxes boxes = rows().look_between(sight.lit, kFirst);
+    const PupilRowBoxes boxes = rows().look_between(search.lit, kFirst);
     for (std::size_t row = kFirst; row < boxes.size(); ++row)
         if (boxes[row]) nodes_[row] = node_of(*boxes[row]);
     widen_last_nodes();
@@ -88,16 +88,16 @@ bool Pupil::find_edge_near(const Pupil& similar) {
 }
 
 void Pupil::find_nodes() {
-    PupilRowSearch::Sight sight = rows().look_from_axis();
-    if (sight.lit.empty()) {
+    PupilRowSearch::RowSearch search = rows().look_from_axis();
+    if (search.lit.empty()) {
         image_radius_ = 0;
         nodes_.assign(kRows + 1, PupilNode{});
         return;
     }
-    rows().find_edge_of_image(sight);
-    ends_inside_film_ = !sight.dark.empty();
-    if (ends_inside_film_) end_image(sight);
-    const PupilRowBoxes boxes = rows().look_between(sight.lit);
+    rows().find_edge_of_image(search);
+    ends_inside_film_ = !search.dark.empty();
+    if (ends_inside_film_) end_image(search);
+    const PupilRowBoxes boxes = rows().look_between(search.lit);
     std::optional<DirectionBox> box =
         *std::find_if(boxes.begin(), boxes.end(), [](const auto& found) { return found.has_value(); });
     for (const auto& found : boxes) {
@@ -107,10 +107,10 @@ void Pupil::find_nodes() {
     if (ends_inside_film_) widen_last_nodes();
 }
 
-void Pupil::end_image(PupilRowSearch::Sight& sight) {
-    image_radius_ = sight.dark.back();
-    last_box_ = sight.lit.back().box;
-    sight.lit.push_back({image_radius_, last_box_});
+void Pupil::end_image(PupilRowSearch::RowSearch& search) {
+    image_radius_ = search.dark.back();
+    last_box_ = search.lit.back().box;
+    search.lit.push_back({image_radius_, last_box_});
 }
 
 PupilNode Pupil::node_of(const DirectionBox& box) {
@@ -218,7 +218,7 @@ std::vector<PupilOutline> Pupil::outlines_of(int row, const OutlinesByEighth& se
 
 void Pupil::add_row(int row, PupilRow sectors, double reach, int clean_rounds) {
     PupilHalves upper{std::move(sectors)};
-    const auto set_rays = [&](int round, std::uint32_t stream, const StraySearch::Places& places, PupilRays& rays) {
+    const auto set_rays = [&](int round, std::uint32_t stream, const StraySearch::Places& points, PupilRays& rays) {
         // Starts with both ends of the row.
         const double position = row + (round < 2   ? 0.9999
                                        : round < 4 ? 0.0
@@ -227,8 +227,8 @@ void Pupil::add_row(int row, PupilRow sectors, double reach, int clean_rounds) {
         const double radius = radius_at(position);
         for (int i = 0; i < StraySearch::kBlock; ++i)
             rays.set(i, {radius, 0},
-                     {static_cast<double>(node.centre + node.half_width * places.x[i]),
-                      static_cast<double>(node.half_height * places.y[i])});
+                     {static_cast<double>(node.centre + node.half_width * points.x[i]),
+                      static_cast<double>(node.half_height * points.y[i])});
     };
     const StraySearch search{256, static_cast<std::uint32_t>(row), 0, reach, clean_rounds};
     const StraySearch::Traced traced = search.widen(search_.lens(), set_rays, upper);

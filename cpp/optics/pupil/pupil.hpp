@@ -49,7 +49,7 @@ private:
     /// Number of outermost rows, 0.4% of the image's area, whose outline is just the box.
     static constexpr int kEdgeRows = 2;
 
-    void find_anew();
+    void find_from_scratch();
 
     /// Finds this pupil near a similar one, whose boxes it adopts; returns false if the two differ too much.
     bool find_near(const Pupil& similar);
@@ -61,7 +61,7 @@ private:
     void find_nodes();
 
     /// Ends the image at the innermost dark radius, with the box of the outermost lit one.
-    void end_image(PupilRowSearch::Sight& sight);
+    void end_image(PupilRowSearch::RowSearch& search);
 
     static PupilNode node_of(const DirectionBox& box);
 

@@ -11,15 +11,15 @@ namespace realcam {
 namespace {
 
 template <class T>
-std::vector<T> at(const std::vector<std::size_t>& places, const std::vector<T>& all) {
+std::vector<T> at(const std::vector<std::size_t>& indices, const std::vector<T>& all) {
     std::vector<T> some;
-    for (const std::size_t place : places) some.push_back(all[place]);
+    for (const std::size_t index : indices) some.push_back(all[index]);
     return some;
 }
 
 template <class T>
-void assign_at(const std::vector<std::size_t>& places, const std::vector<T>& some, std::vector<T>& all) {
-    for (std::size_t i = 0; i < places.size(); ++i) all[places[i]] = some[i];
+void assign_at(const std::vector<std::size_t>& indices, const std::vector<T>& some, std::vector<T>& all) {
+    for (std::size_t i = 0; i < indices.size(); ++i) all[indices[i]] = some[i];
 }
 
 }  // namespace
@@ -114,16 +114,17 @@ void PupilGrid::find_nodes() {
         return std::max(std::abs(column - first_column), std::abs(row - first_row));
     };
     for (int ring = 1; ring <= std::max(columns, rows); ++ring) {
-        std::vector<std::pair<int, int>> places;
+        std::vector<std::pair<int, int>> positions;
         for (int row = 0; row < rows; ++row)
             for (int column = 0; column < columns; ++column)
-                if (distance(column, row) == ring) places.emplace_back(column, row);
-        std::vector<std::optional<DirectionBox>> boxes(places.size());
-        search_.lens().for_each(static_cast<int>(places.size()), [&](int i) {
-            const auto [column, row] = places[static_cast<std::size_t>(i)];
+                if (distance(column, row) == ring) positions.emplace_back(column, row);
+        std::vector<std::optional<DirectionBox>> boxes(positions.size());
+        search_.lens().for_each(static_cast<int>(positions.size()), [&](int i) {
+            const auto [column, row] = positions[static_cast<std::size_t>(i)];
             boxes[static_cast<std::size_t>(i)] = look(column, row, found, first_column, first_row);
         });
-        for (std::size_t i = 0; i < places.size(); ++i) found[node_index(places[i].first, places[i].second)] = boxes[i];
+        for (std::size_t i = 0; i < positions.size(); ++i)
+            found[node_index(positions[i].first, positions[i].second)] = boxes[i];
     }
     // From the first node outwards, so that every inner neighbour has its box.
     for (int ring = 0; ring <= std::max(columns, rows); ++ring)
@@ -214,7 +215,7 @@ std::vector<PupilOutline> PupilGrid::outlines(const std::vector<PupilOutline>& o
 
 void PupilGrid::look_between(Lattice lattice, const std::vector<OutlineLook>& looks, double tolerance,
                              std::vector<PupilOutline>& outlines) const {
-    std::vector<std::size_t> places;
+    std::vector<std::size_t> indices;
     std::vector<PupilOutline> expected;
     for (int row = 0; row < lattice.rows; ++row)
         for (int column = 0; column < lattice.columns; ++column) {
@@ -225,11 +226,11 @@ void PupilGrid::look_between(Lattice lattice, const std::vector<OutlineLook>& lo
                 for (int y = row - dy; y <= row + dy; y += 2)
                     for (int x = column - dx; x <= column + dx; x += 2)
                         around.push_back(&outlines[lattice.look(x, y) + half]);
-                places.push_back(lattice.look(column, row) + half);
+                indices.push_back(lattice.look(column, row) + half);
                 expected.push_back(between(around));
             }
         }
-    assign_at(places, OutlineSearch::find_near(search_.lens(), at(places, looks), expected, tolerance), outlines);
+    assign_at(indices, OutlineSearch::find_near(search_.lens(), at(indices, looks), expected, tolerance), outlines);
 }
 
 void PupilGrid::find_cells(const std::vector<PupilOutline>& of_nodes) {
@@ -256,8 +257,8 @@ void PupilGrid::set_cell(int column, int row, const std::vector<PupilOutline>& o
     PupilHalves halves;
     for (const std::vector<PupilOutline>& half : seen)
         halves.emplace_back(is_partly_dark ? box_outline() : holding_all(half));
-    const auto start = [&](int, std::uint32_t stream, const StraySearch::Places& places, PupilRays& rays) {
-        set_rays(column, row, stream, places, rays);
+    const auto start = [&](int, std::uint32_t stream, const StraySearch::Places& positions, PupilRays& rays) {
+        set_rays(column, row, stream, positions, rays);
     };
     const StraySearch search{128, static_cast<std::uint32_t>(row * columns_ + column), 1, reach, changes ? 6 : 2};
     const StraySearch::Traced traced = search.widen(search_.lens(), start, halves);
@@ -277,7 +278,7 @@ void PupilGrid::set_cell(int column, int row, const std::vector<PupilOutline>& o
     cell.lower_weight = static_cast<float>(0.5 * PupilGridView::kSectors / (1 - share));
 }
 
-void PupilGrid::set_rays(int column, int row, std::uint32_t stream, const StraySearch::Places& places,
+void PupilGrid::set_rays(int column, int row, std::uint32_t stream, const StraySearch::Places& positions,
                          PupilRays& rays) const {
     Vec2Lanes<float, kBlock> in_cell;
     for (int i = 0; i < kBlock; ++i) in_cell.set(i, sample_2d(stream, static_cast<std::uint32_t>(i), 0));
@@ -297,11 +298,12 @@ void PupilGrid::set_rays(int column, int row, std::uint32_t stream, const StrayS
         };
         rays.x[i] = corner.x + static_cast<double>(in_cell.x[i]) * (opposite.x - corner.x);
         rays.y[i] = corner.y + static_cast<double>(in_cell.y[i]) * (opposite.y - corner.y);
-        rays.l[i] = static_cast<double>(between(a.centre_l, b.centre_l, c.centre_l, d.centre_l) +
-                                        places.x[i] * between(a.half_width, b.half_width, c.half_width, d.half_width));
+        rays.l[i] =
+            static_cast<double>(between(a.centre_l, b.centre_l, c.centre_l, d.centre_l) +
+                                positions.x[i] * between(a.half_width, b.half_width, c.half_width, d.half_width));
         rays.m[i] =
             static_cast<double>(between(a.centre_m, b.centre_m, c.centre_m, d.centre_m) +
-                                places.y[i] * between(a.half_height, b.half_height, c.half_height, d.half_height));
+                                positions.y[i] * between(a.half_height, b.half_height, c.half_height, d.half_height));
     }
 }
 

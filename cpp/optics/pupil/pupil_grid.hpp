@@ -106,7 +106,8 @@ private:
     void set_cell(int column, int row, const std::vector<PupilOutline>& outlines);
 
     /// Sets rays from random positions in a cell to points in units of the box interpolated there.
-    void set_rays(int column, int row, std::uint32_t stream, const StraySearch::Places& places, PupilRays& rays) const;
+    void set_rays(int column, int row, std::uint32_t stream, const StraySearch::Places& positions,
+                  PupilRays& rays) const;
 
     PupilSearch search_;
     FilmArea film_;  ///< the part that the grid covers

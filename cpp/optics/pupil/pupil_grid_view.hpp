@@ -55,8 +55,8 @@ struct PupilGridLookup {
     REALCAM_INLINE int half(const PupilGridView&, bool lower) const {
         return (2 * cell + select(lower, 1, 0)) * PupilGridView::kSectors;
     }
-    REALCAM_INLINE Vec2f from_box(Vec2f place) const {
-        return {box.centre_l + box.half_width * place.x, box.centre_m + box.half_height * place.y};
+    REALCAM_INLINE Vec2f from_box(Vec2f lookup) const {
+        return {box.centre_l + box.half_width * lookup.x, box.centre_m + box.half_height * lookup.y};
     }
     REALCAM_INLINE Vec2f to_film(Vec2f d) const { return {sign_l * d.x, sign_m * d.y}; }
     /// Point in the box, in units of its half-widths, of direction cosines at the film.
@@ -67,9 +67,9 @@ struct PupilGridLookup {
 
 REALCAM_INLINE PupilGridLookup pupil_lookup(const PupilGridView& pupil, float film_x, float film_y) {
     // Film points outside the grid use its edge.
-    const auto within = [](float place, int cells) {
+    const auto within = [](float position, int cells) {
         const float last = static_cast<float>(cells);
-        return select(place > 0.0f, select(place < last, place, last), 0.0f);
+        return select(position > 0.0f, select(position < last, position, last), 0.0f);
     };
     const bool left = pupil.mirrors_x & (film_x < 0.0f), below = pupil.mirrors_y & (film_y < 0.0f);
     const float x = within((select(left, -film_x, film_x) - pupil.corner.x) * pupil.cells_per_mm.x, pupil.columns);
@@ -96,16 +96,16 @@ REALCAM_INLINE PupilGridLookup pupil_lookup(const PupilGridView& pupil, float fi
 }
 
 /// Inverse density in a sector, steradians of projected solid angle; 0 in a dark cell.
-REALCAM_INLINE float pupil_weight(const PupilGridView& pupil, const PupilGridLookup& place, const PupilSector& sector,
+REALCAM_INLINE float pupil_weight(const PupilGridView& pupil, const PupilGridLookup& lookup, const PupilSector& sector,
                                   bool lower) {
-    const PupilGridCell& cell = pupil.cells[place.cell];
-    return select(lower, cell.lower_weight, cell.upper_weight) * twice_area(sector) * place.box.half_width *
-           place.box.half_height;
+    const PupilGridCell& cell = pupil.cells[lookup.cell];
+    return select(lower, cell.lower_weight, cell.upper_weight) * twice_area(sector) * lookup.box.half_width *
+           lookup.box.half_height;
 }
 
 /// False if no light can reach a film point.
-REALCAM_INLINE bool may_be_lit(const PupilGridView& pupil, const PupilGridLookup& place) {
-    return pupil.cells[place.cell].upper_weight > 0.0f;
+REALCAM_INLINE bool may_be_lit(const PupilGridView& pupil, const PupilGridLookup& lookup) {
+    return pupil.cells[lookup.cell].upper_weight > 0.0f;
 }
 
 }  // namespace REALCAM_NAMESPACE

@@ -58,12 +58,12 @@ void PupilLens::trace_to_stop(const PupilRays& from, PupilTracer::Rays& rays) co
 DirectionBox PupilLens::box_of_last_surface(Vec2<double> at, FilmMap film_map) const {
     const Surface& last = lens_.surfaces.back();
     const FilmSurface<double> film{lens_.film_distance, 1 / lens_.film_radius_of_curvature};
-    const Vec3d from = film.place(at), x = film.direction(at, {1, 0, 0}), y = film.direction(at, {0, 1, 0});
+    const Vec3d from = film.point(at), x = film.direction(at, {1, 0, 0}), y = film.direction(at, {0, 1, 0});
     DirectionBox box = DirectionBox::none();
     for (int ring = 0; ring <= 8; ++ring) {
         const double r = last.clear_semi_diameter * ring / 8, z = last.sag(r);
-        for (int spoke = 0; spoke < (film_map == FilmMap::radial ? 17 : 32); ++spoke) {
-            const double angle = std::numbers::pi * spoke / 16;
+        for (int azimuth = 0; azimuth < (film_map == FilmMap::radial ? 17 : 32); ++azimuth) {
+            const double angle = std::numbers::pi * azimuth / 16;
             const Vec3d d = path_.entry_index *
                             normalized(last_surface_.point({r * std::cos(angle), r * std::sin(angle), z}) - from);
             box = box.with({dot(d, x), dot(d, y)});
@@ -98,7 +98,7 @@ void PupilLens::trace(const LensView<float>& view, const PupilRays& from, PupilT
         for (int i = 0; i < kBlock; ++i) {
             const Vec2f at = {rays.origin.x[i], rays.origin.y[i]};
             rays.direction.set(i, film_.direction(at, rays.direction[i]));
-            rays.origin.z[i] = film_.place(at).z;
+            rays.origin.z[i] = film_.point(at).z;
         }
     }
     tracer_.trace(view, rays);

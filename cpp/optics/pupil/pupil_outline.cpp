@@ -126,11 +126,11 @@ double PupilRow::area() const {
     return 0.5 * twice;
 }
 
-bool PupilRow::take_in(Vec2f place) {
-    const std::optional<std::size_t> at = sector_of(place);
+bool PupilRow::take_in(Vec2f point) {
+    const std::optional<std::size_t> at = sector_of(point);
     if (!at) return false;
     PupilSector& s = sectors_[*at];
-    const float reach = reach_in(s, place);
+    const float reach = reach_in(s, point);
     if (holds(s, reach)) return false;
     const float scale = std::max(1.0f, 1.03f * reach);
     s = {scale * s.x, scale * s.y, scale * s.dx, scale * s.dy,
@@ -147,10 +147,10 @@ Vec2f PupilRow::beside(std::size_t sector, Vec2f u) const {
     return {reach * (s.x + u.x * s.dx), reach * (s.y + u.x * s.dy)};
 }
 
-std::optional<std::size_t> PupilRow::sector_of(Vec2f place) const {
-    const auto begins_before = [place](const PupilSector& s) { return s.x * place.y - s.y * place.x >= 0; };
-    const auto ends_before = [place](const PupilSector& s) {
-        return !(place.x * (s.y + s.dy) - place.y * (s.x + s.dx) >= 0);
+std::optional<std::size_t> PupilRow::sector_of(Vec2f point) const {
+    const auto begins_before = [point](const PupilSector& s) { return s.x * point.y - s.y * point.x >= 0; };
+    const auto ends_before = [point](const PupilSector& s) {
+        return !(point.x * (s.y + s.dy) - point.y * (s.x + s.dx) >= 0);
     };
     // Branch-free bisection: the branches would be unpredictable.
     static_assert((kSectors & (kSectors - 1)) == 0);

@@ -14,7 +14,7 @@ struct PupilOutline {
 
     double outer[kAzimuths + 1] = {}, inner[kAzimuths + 1] = {};
 
-    static PupilDirection direction(int spoke) { return fine_direction(spoke * kFine); }
+    static PupilDirection direction(int azimuth) { return fine_direction(azimuth * kFine); }
 
     static constexpr int kFine = 16;  ///< subdivisions of each interval
     /// Unit vector at an azimuth, in units of pi / (kAzimuths kFine).
@@ -51,7 +51,7 @@ public:
     explicit PupilRow(const PupilOutline& outline);
 
     /// Widens the sector at a point in the box to contain the point; returns false if no sector was widened.
-    bool take_in(Vec2f place);
+    bool take_in(Vec2f point);
 
     /// A point just outside a sector's edge, or just inside its hole. `u`: random numbers in [0, 1).
     Vec2f beside(std::size_t sector, Vec2f u) const;
@@ -67,10 +67,10 @@ private:
     };
 
     /// Returns std::nullopt for a point with m < 0, and for one that falls between two sectors by rounding.
-    std::optional<std::size_t> sector_of(Vec2f place) const;
+    std::optional<std::size_t> sector_of(Vec2f point) const;
     /// Distance of a point from the centre; 1 on the sector's outer edge.
-    static float reach_in(const PupilSector& s, Vec2f place) {
-        return (place.x * s.dy - place.y * s.dx) / (s.x * s.dy - s.y * s.dx);
+    static float reach_in(const PupilSector& s, Vec2f point) {
+        return (point.x * s.dy - point.y * s.dx) / (s.x * s.dy - s.y * s.dx);
     }
     static bool holds(const PupilSector& s, float reach) { return reach <= 1 && reach * reach >= s.hole_squared; }
 

@@ -23,14 +23,14 @@ PupilDirection OutlineLook::direction(int azimuth, double reach) const {
 std::vector<PupilOutline> OutlineSearch::find(const PupilLens& lens, const std::vector<OutlineLook>& looks,
                                               OutlineScan scan) {
     std::vector<PupilOutline> outlines(looks.size());
-    scan_all(lens, looks, spokes_of(looks), scan, outlines);
+    scan_all(lens, looks, scan_lines_of(looks), scan, outlines);
     return outlines;
 }
 
 std::vector<PupilOutline> OutlineSearch::find_near(const PupilLens& lens, const std::vector<OutlineLook>& looks,
                                                    const std::vector<PupilOutline>& expected, double tolerance) {
     std::vector<PupilOutline> outlines(looks.size());
-    Spokes left = spokes_of(looks);
+    ScanLines left = scan_lines_of(looks);
     constexpr double kWidest = 0.2;  // for larger tolerances a scan takes fewer rays
     for (const double reach : {tolerance, 8 * tolerance}) {
         if (reach > kWidest) break;
@@ -39,7 +39,7 @@ std::vector<PupilOutline> OutlineSearch::find_near(const PupilLens& lens, const 
             group.narrow(lens, expected, reach, found.get() + first);
             group.write(found.get() + first, outlines);
         });
-        Spokes lost;
+        ScanLines lost;
         for (std::size_t i = 0; i < left.size(); ++i)
             if (!found[i]) lost.push_back(left[i]);
         left = std::move(lost);
@@ -48,38 +48,40 @@ std::vector<PupilOutline> OutlineSearch::find_near(const PupilLens& lens, const 
     return outlines;
 }
 
-OutlineSearch::Spokes OutlineSearch::spokes_of(const std::vector<OutlineLook>& looks) {
-    Spokes spokes(looks.size() * kSpokes);
-    std::iota(spokes.begin(), spokes.end(), 0);
-    return spokes;
+OutlineSearch::ScanLines OutlineSearch::scan_lines_of(const std::vector<OutlineLook>& looks) {
+    ScanLines scan_lines(looks.size() * kScanLines);
+    std::iota(scan_lines.begin(), scan_lines.end(), 0);
+    return scan_lines;
 }
 
-void OutlineSearch::scan_all(const PupilLens& lens, const std::vector<OutlineLook>& looks, const Spokes& spokes,
+void OutlineSearch::scan_all(const PupilLens& lens, const std::vector<OutlineLook>& looks, const ScanLines& scan_lines,
                              OutlineScan scan, std::vector<PupilOutline>& outlines) {
-    for_each_group(lens, looks, spokes, [&](OutlineSearch& group, std::size_t) {
+    for_each_group(lens, looks, scan_lines, [&](OutlineSearch& group, std::size_t) {
         group.scan(lens, scan);
         group.write(nullptr, outlines);
     });
 }
 
 template <class Task>
-void OutlineSearch::for_each_group(const PupilLens& lens, const std::vector<OutlineLook>& looks, const Spokes& spokes,
-                                   Task&& task) {
-    const std::size_t size = spokes.size() > kBlock ? kBlock : kSmallGroup, count = (spokes.size() + size - 1) / size;
+void OutlineSearch::for_each_group(const PupilLens& lens, const std::vector<OutlineLook>& looks,
+                                   const ScanLines& scan_lines, Task&& task) {
+    const std::size_t size = scan_lines.size() > kBlock ? kBlock : kSmallGroup,
+                      count = (scan_lines.size() + size - 1) / size;
     lens.for_each(static_cast<int>(count), [&](int i) {
         const std::size_t first = static_cast<std::size_t>(i) * size;
-        OutlineSearch group(looks, spokes.data() + first, static_cast<int>(std::min(size, spokes.size() - first)));
+        OutlineSearch group(looks, scan_lines.data() + first,
+                            static_cast<int>(std::min(size, scan_lines.size() - first)));
         task(group, first);
     });
 }
 
-OutlineSearch::OutlineSearch(const std::vector<OutlineLook>& looks, const int* spokes, int count)
-    : spokes_(spokes), count_(count) {
+OutlineSearch::OutlineSearch(const std::vector<OutlineLook>& looks, const int* scan_lines, int count)
+    : scan_lines_(scan_lines), count_(count) {
     for (int i = 0; i < count; ++i) {
-        const OutlineLook& look = looks[static_cast<std::size_t>(spokes[i] / kSpokes)];
+        const OutlineLook& look = looks[static_cast<std::size_t>(scan_lines[i] / kScanLines)];
         film_[i] = look.film;
         centre_[i] = look.centre;
-        unit_[i] = look.unit(spokes[i] % kSpokes);
+        unit_[i] = look.unit(scan_lines[i] % kScanLines);
     }
 }
 
@@ -133,8 +135,8 @@ void OutlineSearch::narrow(const PupilLens& lens, const std::vector<PupilOutline
                            bool* found) {
     double open[kBlock], hole_open[kBlock], hole_shut[kBlock];
     for (int i = 0; i < count_; ++i) {
-        const PupilOutline& near = expected[static_cast<std::size_t>(spokes_[i] / kSpokes)];
-        const double outer = near.outer[spokes_[i] % kSpokes], inner = near.inner[spokes_[i] % kSpokes];
+        const PupilOutline& near = expected[static_cast<std::size_t>(scan_lines_[i] / kScanLines)];
+        const double outer = near.outer[scan_lines_[i] % kScanLines], inner = near.inner[scan_lines_[i] % kScanLines];
         open[i] = std::max(0.0, outer - tolerance);
         outer_[i] = outer + tolerance;
         hole_open[i] = inner > 0 ? inner + tolerance : 0;
@@ -157,7 +159,7 @@ void OutlineSearch::test(const PupilLens& lens, const double (&open)[kBlock], co
 }
 
 void OutlineSearch::halve(const PupilLens& lens, int halvings, double (&open)[kBlock], double (&shut)[kBlock]) {
-    // If a block has room for several rays of each spoke, it traces all points that the next bisections may need.
+    // If a block has room for several rays of each scan line, it traces all points that the next bisections may need.
     const int most_at_once = std::bit_width(static_cast<unsigned>(kBlock / count_ + 1)) - 1;
     while (halvings > 0) {
         const int at_once = std::min(halvings, most_at_once), parts = 1 << at_once;
@@ -178,9 +180,9 @@ void OutlineSearch::halve(const PupilLens& lens, int halvings, double (&open)[kB
 void OutlineSearch::write(const bool* found, std::vector<PupilOutline>& outlines) const {
     for (int i = 0; i < count_; ++i) {
         if (found && !found[i]) continue;
-        PupilOutline& outline = outlines[static_cast<std::size_t>(spokes_[i] / kSpokes)];
-        outline.outer[spokes_[i] % kSpokes] = outer_[i];
-        outline.inner[spokes_[i] % kSpokes] = inner_[i];
+        PupilOutline& outline = outlines[static_cast<std::size_t>(scan_lines_[i] / kScanLines)];
+        outline.outer[scan_lines_[i] % kScanLines] = outer_[i];
+        outline.inner[scan_lines_[i] % kScanLines] = inner_[i];
     }
 }
 

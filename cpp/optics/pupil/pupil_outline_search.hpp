@@ -20,13 +20,13 @@ struct OutlineLook {
     PupilDirection unit(int azimuth) const;
 };
 
-/// Resolution of a search along spokes: number of radii that are scanned, and of bisections of the interval between
+/// Resolution of a search along scan lines: number of radii that are scanned, and of bisections of the interval between
 /// two.
 struct OutlineScan {
     int steps = 20, halvings = 9;
 };
 
-/// Searches outlines at several film points by bisection along radial scan lines (spokes). A block of rays holds
+/// Searches outlines at several film points by bisection along radial scan lines. A block of rays holds
 /// azimuths of several requests, and several rays of each azimuth if there are few.
 class OutlineSearch {
 public:
@@ -38,7 +38,7 @@ public:
     static constexpr int most_blocks(int looks) {
         constexpr int kNarrowings = 2 * (2 + 4) + 2 * (2 + 7), kScan = OutlineScan{}.steps + 2 * OutlineScan{}.halvings;
         constexpr int kSmallGroups = (kBlock + kSmallGroup - 1) / kSmallGroup;
-        return ((looks * kSpokes + kBlock - 1) / kBlock + kSmallGroups) * (kNarrowings + kScan);
+        return ((looks * kScanLines + kBlock - 1) / kBlock + kSmallGroups) * (kNarrowings + kScan);
     }
 
     /// `scan`: of at most kMostSteps steps.
@@ -52,53 +52,53 @@ public:
                                                const std::vector<PupilOutline>& expected, double tolerance);
 
 private:
-    static constexpr int kBlock = PupilLens::kBlock, kSpokes = PupilOutline::kAzimuths + 1;
-    /// Spokes of a group if all spokes together do not fill a block. Seven rays of each are traced at once, which cover
-    /// three bisections.
+    static constexpr int kBlock = PupilLens::kBlock, kScanLines = PupilOutline::kAzimuths + 1;
+    /// Scan lines of a group if all scan lines together do not fill a block. Seven rays of each are traced at once,
+    /// which cover three bisections.
     static constexpr int kSmallGroup = kBlock / 7;
     static constexpr int kMostSteps = 48;
     static constexpr double kReach = 1.5;  ///< past the corner of the box
     static constexpr double kPrecision = 6e-4;  ///< approximate precision of edges near expected ones
 
-    /// Indices of spokes, numbered consecutively over all requests.
-    using Spokes = std::vector<int>;
+    /// Indices of scan lines, numbered consecutively over all requests.
+    using ScanLines = std::vector<int>;
 
-    OutlineSearch(const std::vector<OutlineLook>& looks, const int* spokes, int count);
+    OutlineSearch(const std::vector<OutlineLook>& looks, const int* scan_lines, int count);
 
-    static Spokes spokes_of(const std::vector<OutlineLook>& looks);
+    static ScanLines scan_lines_of(const std::vector<OutlineLook>& looks);
 
-    /// Calls task(group, position of its first spoke) for spokes that are searched together, on any threads.
+    /// Calls task(group, position of its first scan line) for scan lines that are searched together, on any threads.
     template <class Task>
-    static void for_each_group(const PupilLens& lens, const std::vector<OutlineLook>& looks, const Spokes& spokes,
-                               Task&& task);
+    static void for_each_group(const PupilLens& lens, const std::vector<OutlineLook>& looks,
+                               const ScanLines& scan_lines, Task&& task);
 
-    static void scan_all(const PupilLens& lens, const std::vector<OutlineLook>& looks, const Spokes& spokes,
+    static void scan_all(const PupilLens& lens, const std::vector<OutlineLook>& looks, const ScanLines& scan_lines,
                          OutlineScan scan, std::vector<PupilOutline>& outlines);
 
     /// Scans outwards along each azimuth, then bisects the first and the last interval in which the light changes.
     void scan(const PupilLens& lens, OutlineScan scan);
 
-    /// Bisects the intervals around the expected edges. Sets `found` to true for spokes whose intervals contain the
+    /// Bisects the intervals around the expected edges. Sets `found` to true for scan lines whose intervals contain the
     /// edges.
     void narrow(const PupilLens& lens, const std::vector<PupilOutline>& expected, double tolerance, bool* found);
 
-    /// Clears `found` for spokes on which light does not pass at `open`, or passes at `shut`.
+    /// Clears `found` for scan lines on which light does not pass at `open`, or passes at `shut`.
     void test(const PupilLens& lens, const double (&open)[kBlock], const double (&shut)[kBlock], bool* found);
 
     /// Bisects the interval between a radius at which light passes and one at which it does not.
     void halve(const PupilLens& lens, int halvings, double (&open)[kBlock], double (&shut)[kBlock]);
 
-    /// Traces `reaches` rays of each spoke; ray k of the i-th spoke is at radius reach(i, k).
+    /// Traces `reaches` rays of each scan line; ray k of the i-th scan line is at radius reach(i, k).
     template <class Reach>
     void trace(const PupilLens& lens, int reaches, Reach&& reach);
 
     /// True if this ray of the last trace passed.
-    bool passes(int spoke, int ray) const { return passes_[ray * count_ + spoke]; }
+    bool passes(int scan_line, int ray) const { return passes_[ray * count_ + scan_line]; }
 
-    /// Writes the edges of the spokes that are `found`, or of all spokes if it is null.
+    /// Writes the edges of the scan lines that are `found`, or of all scan lines if it is null.
     void write(const bool* found, std::vector<PupilOutline>& outlines) const;
 
-    const int* spokes_;
+    const int* scan_lines_;
     int count_;
     Vec2<double> film_[kBlock];
     PupilDirection centre_[kBlock], unit_[kBlock];

@@ -10,18 +10,18 @@ double PupilRowSearch::radius_at(double position) const {
     return image_radius_ * (1 - inward * inward);
 }
 
-PupilRowSearch::Sight PupilRowSearch::look_from_axis() const {
+PupilRowSearch::RowSearch PupilRowSearch::look_from_axis() const {
     static_assert(kRows % kStride == 0);
-    Sight sight;
+    RowSearch search;
     PupilTrack track;
     const auto is_lit = [&](int row) {
         if (!track.look(search_, radius_at(row))) return false;
-        sight.lit.push_back(*track.last);
+        search.lit.push_back(*track.last);
         return true;
     };
     int dark = 0;
     while (dark <= kRows && is_lit(dark)) dark += kStride;
-    if (dark > kRows) return sight;
+    if (dark > kRows) return search;
     // Towards the edge of the image the light moves and shrinks, so that every row is needed to follow it.
     const int dark_for_sure = dark;
     if (dark > 0) dark -= kStride - 1;
@@ -35,15 +35,15 @@ PupilRowSearch::Sight PupilRowSearch::look_from_axis() const {
     int last = kRows;
     while (last >= dark && !ahead[static_cast<std::size_t>(last)]) --last;
     for (int row = dark + 1; row <= last; ++row)
-        if (const auto& box = ahead[static_cast<std::size_t>(row)]) sight.lit.push_back({radius_at(row), *box});
-    for (int row = kRows; row > last; --row) sight.dark.push_back(radius_at(row));
-    return sight;
+        if (const auto& box = ahead[static_cast<std::size_t>(row)]) search.lit.push_back({radius_at(row), *box});
+    for (int row = kRows; row > last; --row) search.dark.push_back(radius_at(row));
+    return search;
 }
 
-void PupilRowSearch::find_edge_of_image(Sight& sight, double width, int far_rounds) const {
+void PupilRowSearch::find_edge_of_image(RowSearch& search, double width, int far_rounds) const {
     PupilTrack track;
-    for (const PupilTrack::Seen& seen : sight.lit) track.add(seen.radius, seen.box);
-    std::vector<double>& dark = sight.dark;
+    for (const PupilTrack::Seen& seen : search.lit) track.add(seen.radius, seen.box);
+    std::vector<double>& dark = search.dark;
     for (int round = 0; round < kMostEdgeRounds && !dark.empty(); ++round) {
         const double lit = track.last->radius, third = (dark.back() - lit) / 3;
         if (3 * third < width * dark.back()) break;
@@ -60,31 +60,31 @@ void PupilRowSearch::find_edge_of_image(Sight& sight, double width, int far_roun
         for (int i = 0; i < kCount; ++i)
             if (boxes[i]) track.add(radii[i], *boxes[i]);
     }
-    if (track.last->radius > sight.lit.back().radius) sight.lit.push_back(*track.last);
+    if (track.last->radius > search.lit.back().radius) search.lit.push_back(*track.last);
 }
 
-PupilRowSearch::Sight PupilRowSearch::look_near_edge(double radius, const DirectionBox& box) const {
-    Sight sight = look_around(radius, box, {0.99994, 1});
-    if (sight.lit.size() == 1 && sight.dark.size() == 1) return sight;
-    sight = look_around(radius, box, {0.999, 0.9999, 1, 1.0001, 1.001});
-    if (!sight.lit.empty()) find_edge_of_image(sight, 1.1e-4, 0);
-    return sight;
+PupilRowSearch::RowSearch PupilRowSearch::look_near_edge(double radius, const DirectionBox& box) const {
+    RowSearch search = look_around(radius, box, {0.99994, 1});
+    if (search.lit.size() == 1 && search.dark.size() == 1) return search;
+    search = look_around(radius, box, {0.999, 0.9999, 1, 1.0001, 1.001});
+    if (!search.lit.empty()) find_edge_of_image(search, 1.1e-4, 0);
+    return search;
 }
 
-PupilRowSearch::Sight PupilRowSearch::look_around(double radius, const DirectionBox& box,
-                                                  const std::vector<double>& shares) const {
+PupilRowSearch::RowSearch PupilRowSearch::look_around(double radius, const DirectionBox& box,
+                                                      const std::vector<double>& shares) const {
     PupilRowBoxes boxes(shares.size());
     search_.lens().for_each(static_cast<int>(shares.size()), [&](int i) {
         PupilTrack track;
         track.add(radius, box);
         boxes[static_cast<std::size_t>(i)] = track.look_near(search_, radius * shares[static_cast<std::size_t>(i)]);
     });
-    Sight sight;
+    RowSearch search;
     std::size_t lit = boxes.size();
-    for (; lit > 0 && !boxes[lit - 1]; --lit) sight.dark.push_back(radius * shares[lit - 1]);
+    for (; lit > 0 && !boxes[lit - 1]; --lit) search.dark.push_back(radius * shares[lit - 1]);
     for (std::size_t i = 0; i < lit; ++i)
-        if (boxes[i]) sight.lit.push_back({radius * shares[i], *boxes[i]});
-    return sight;
+        if (boxes[i]) search.lit.push_back({radius * shares[i], *boxes[i]});
+    return search;
 }
 
 PupilTrack PupilRowSearch::track_between(const std::vector<PupilTrack::Seen>& seen, double radius) {

@@ -21,24 +21,24 @@ public:
     double radius_at(double position) const;
 
     /// Lit film radii with their boxes, in ascending order, and the dark radii beyond them, in descending order.
-    struct Sight {
+    struct RowSearch {
         std::vector<PupilTrack::Seen> lit;
         std::vector<double> dark;
     };
 
     /// Searches every eighth row from the axis, and all rows before and beyond a dark one: the light may end there or
     /// begin again.
-    Sight look_from_axis() const;
+    RowSearch look_from_axis() const;
 
     /// Adds the outermost lit radius, and the innermost dark one at most `width` of it further out; leaves no dark
     /// radius if light reaches the outermost. In the first `far_rounds` rounds light is searched everywhere, not only
     /// where the lit boxes lead.
-    void find_edge_of_image(Sight& sight, double width = 1e-5, int far_rounds = 2) const;
+    void find_edge_of_image(RowSearch& search, double width = 1e-5, int far_rounds = 2) const;
 
     /// Finds the edge, to 1e-4, of an image that ends at about `radius`, where the light has this box. The edge is
     /// `radius` itself if it lies at most 6e-5 further in. `lit` or `dark` is empty if the image ends more than a
     /// thousandth elsewhere.
-    Sight look_near_edge(double radius, const DirectionBox& box) const;
+    RowSearch look_near_edge(double radius, const DirectionBox& box) const;
 
     /// Boxes of all rows from `first_row` on, each searched where its neighbours in `seen` lead.
     PupilRowBoxes look_between(const std::vector<PupilTrack::Seen>& seen, int first_row = 0) const;
@@ -48,7 +48,7 @@ private:
     static constexpr int kMostEdgeRounds = 32;
 
     /// Searches at these multiples of a radius, in ascending order, near the box of that radius.
-    Sight look_around(double radius, const DirectionBox& box, const std::vector<double>& shares) const;
+    RowSearch look_around(double radius, const DirectionBox& box, const std::vector<double>& shares) const;
 
     /// Track that leads to a radius from the nearest two known boxes, on both sides of it if possible.
     static PupilTrack track_between(const std::vector<PupilTrack::Seen>& seen, double radius);

@@ -128,32 +128,32 @@ DirectionBox PupilSearch::whole(Vec2<double> film, DirectionBox box, DirectionBo
 
 std::optional<PupilSearch::NearestRay> PupilSearch::nearest_to_stop(Vec2<double> film,
                                                                     const DirectionBox& search) const {
-    struct Place {
+    struct StopPoint {
         float squared_distance = std::numeric_limits<float>::max();
         int point = -1;
     };
-    const auto nearer = [](Place a, Place b) { return a.squared_distance < b.squared_distance; };
+    const auto nearer = [](StopPoint a, StopPoint b) { return a.squared_distance < b.squared_distance; };
     const double stop = lens_.stop_radius();
     const Grid grid = grid_over(search);
-    Place nearest[kMostGridBlocks];
+    StopPoint nearest[kMostGridBlocks];
     bool all_in_stop[kMostGridBlocks];
     std::fill(std::begin(all_in_stop), std::end(all_in_stop), true);
     trace_grid(film, grid, [&](const PupilRays& from, int first) {
         PupilTracer::Rays rays;
         lens_.trace_to_stop(from, rays);
-        Place best;
+        StopPoint best;
         bool all_in = true;
         for (int i = 0; i < std::min(kBlock, grid.points() - first); ++i) {
             const float x = rays.origin.x[i], y = rays.origin.y[i];
-            const Place place{x * x + y * y, first + i};
+            const StopPoint point{x * x + y * y, first + i};
             const bool reaches = rays.status[i] == 0;
-            if (reaches && nearer(place, best)) best = place;
-            all_in &= reaches && static_cast<double>(place.squared_distance) < stop * stop;
+            if (reaches && nearer(point, best)) best = point;
+            all_in &= reaches && static_cast<double>(point.squared_distance) < stop * stop;
         }
         nearest[first / kBlock] = best;
         all_in_stop[first / kBlock] = all_in;
     });
-    const Place best = *std::min_element(std::begin(nearest), std::end(nearest), nearer);
+    const StopPoint best = *std::min_element(std::begin(nearest), std::end(nearest), nearer);
     if (best.point < 0) return std::nullopt;
     return NearestRay{grid.direction(best.point), std::sqrt(static_cast<double>(best.squared_distance)) / stop,
                       std::all_of(std::begin(all_in_stop), std::end(all_in_stop), [](bool all_in) { return all_in; })};

@@ -43,18 +43,18 @@ REALCAM_INLINE float twice_area(const PupilSector& sector) {
 /// Samples a direction for a film point (x, y) in mm, from u and v in [0, 1). Uniform over each sector.
 template <class View>
 REALCAM_INLINE PupilSample sample_pupil(const View& pupil, float film_x, float film_y, float u, float v) {
-    const auto place = pupil_lookup(pupil, film_x, film_y);
-    const PupilSectorDraw drawn = place.draw(pupil, u);
+    const auto position = pupil_lookup(pupil, film_x, film_y);
+    const PupilSectorDraw drawn = position.draw(pupil, u);
     const PupilSector& sector = pupil.outline[drawn.index];
     const bool lower = drawn.lower != 0;
     const float reach = sqrt_or_zero(sector.hole_squared + v * (1.0f - sector.hole_squared));
     const float x = reach * (sector.x + drawn.along * sector.dx);
     const float y = reach * (sector.y + drawn.along * sector.dy);
-    const Vec2f d = place.from_box({x, select(lower, -y, y)}), film = place.to_film(d);
+    const Vec2f d = position.from_box({x, select(lower, -y, y)}), film = position.to_film(d);
     // There are no directions beyond the half-space, which the sectors of a film point far outside the lens may exceed.
     const float rest = pupil.index_squared - d.x * d.x - d.y * d.y;
     return {{film.x, film.y, -sqrt_or_zero(rest)},
-            select(rest > 0.0f, pupil_weight(pupil, place, sector, lower), 0.0f)};
+            select(rest > 0.0f, pupil_weight(pupil, position, sector, lower), 0.0f)};
 }
 
 /// Index of the sector of a point in the box, by its azimuth, which runs from 0 to pi.
@@ -79,15 +79,15 @@ REALCAM_INLINE bool holds(const PupilSector& s, float x, float y) {
 /// never sampled.
 template <class View>
 REALCAM_INLINE float pupil_pdf(const View& pupil, float film_x, float film_y, float l, float m) {
-    const auto place = pupil_lookup(pupil, film_x, film_y);
-    const Vec2f at = place.in_box({l, m});
+    const auto position = pupil_lookup(pupil, film_x, film_y);
+    const Vec2f at = position.in_box({l, m});
     const bool lower = at.y < 0.0f;
     const float y = std::fabs(at.y);
-    const PupilSector* const half = pupil.outline + place.half(pupil, lower);
+    const PupilSector* const half = pupil.outline + position.half(pupil, lower);
     const PupilSector& s = half[sector_at(half, View::kSectors, at.x, y)];
     const bool inside = holds(s, at.x, y);
     const bool exists = l * l + m * m < pupil.index_squared;
-    const float weight = pupil_weight(pupil, place, s, lower);
+    const float weight = pupil_weight(pupil, position, s, lower);
     return select(inside && exists && weight > 0.0f, 1.0f / weight, 0.0f);
 }
 
@@ -131,7 +131,9 @@ struct PupilRowPosition {
     }
     /// Index of the first sector of a half; both halves share them.
     REALCAM_INLINE int half(const PupilView&, bool) const { return row * PupilView::kSectors; }
-    REALCAM_INLINE Vec2f from_box(Vec2f place) const { return {centre + half_width * place.x, half_height * place.y}; }
+    REALCAM_INLINE Vec2f from_box(Vec2f position) const {
+        return {centre + half_width * position.x, half_height * position.y};
+    }
     REALCAM_INLINE Vec2f to_film(Vec2f d) const { return {d.x * cos - d.y * sin, d.x * sin + d.y * cos}; }
     /// Point in the box, in units of its half-widths, of direction cosines at the film.
     REALCAM_INLINE Vec2f in_box(Vec2f film) const {
@@ -162,14 +164,14 @@ REALCAM_INLINE PupilRowPosition pupil_lookup(const PupilView& pupil, float film_
 
 /// Inverse density in a sector, steradians of projected solid angle: sectors are chosen with equal probability, so that
 /// it is their number times the area of this one. 0 outside the image circle.
-REALCAM_INLINE float pupil_weight(const PupilView&, const PupilRowPosition& place, const PupilSector& sector, bool) {
-    return static_cast<float>(PupilView::kSectors) * twice_area(sector) * place.half_width * place.half_height *
-           place.lit;
+REALCAM_INLINE float pupil_weight(const PupilView&, const PupilRowPosition& position, const PupilSector& sector, bool) {
+    return static_cast<float>(PupilView::kSectors) * twice_area(sector) * position.half_width * position.half_height *
+           position.lit;
 }
 
 /// False if no light can reach a film point.
-REALCAM_INLINE bool may_be_lit(const PupilView&, const PupilRowPosition& place) {
-    return place.lit > 0.0f;
+REALCAM_INLINE bool may_be_lit(const PupilView&, const PupilRowPosition& position) {
+    return position.lit > 0.0f;
 }
 
 }  // namespace REALCAM_NAMESPACE

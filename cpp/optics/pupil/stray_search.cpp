@@ -13,7 +13,7 @@ StraySearch::Traced StraySearch::widen(const PupilLens& lens, const SetRays& set
     for (int round = 0, clean = 0; round < most_rounds && clean < clean_rounds; ++round) {
         const std::uint32_t stream = static_cast<std::uint32_t>(most_rounds) * cell + static_cast<std::uint32_t>(round);
         const bool is_beside = round % 2 != 0;
-        const Places places = is_beside ? places_beside(stream, halves) : places_around(stream, is_symmetric);
+        const Places places = is_beside ? points_beside(stream, halves) : points_around(stream, is_symmetric);
         PupilRays rays;
         set_rays(round, stream, places, rays);
         bool passes[kBlock], strayed = false;
@@ -32,7 +32,7 @@ StraySearch::Traced StraySearch::widen(const PupilLens& lens, const SetRays& set
     return traced;
 }
 
-StraySearch::Places StraySearch::places_around(std::uint32_t stream, bool is_symmetric) const {
+StraySearch::Places StraySearch::points_around(std::uint32_t stream, bool is_symmetric) const {
     const auto size = static_cast<float>(reach);
     Places places;
     for (int i = 0; i < kBlock; ++i) {
@@ -42,7 +42,7 @@ StraySearch::Places StraySearch::places_around(std::uint32_t stream, bool is_sym
     return places;
 }
 
-StraySearch::Places StraySearch::places_beside(std::uint32_t stream, const PupilHalves& halves) const {
+StraySearch::Places StraySearch::points_beside(std::uint32_t stream, const PupilHalves& halves) const {
     const std::size_t count = halves.size();
     Places places;
     for (std::size_t i = 0; i < kBlock; ++i) {

@@ -39,8 +39,8 @@ public:
     Traced widen(const PupilLens& lens, const SetRays& set_rays, PupilHalves& halves) const;
 
 private:
-    Places places_around(std::uint32_t stream, bool is_symmetric) const;
-    Places places_beside(std::uint32_t stream, const PupilHalves& halves) const;
+    Places points_around(std::uint32_t stream, bool is_symmetric) const;
+    Places points_beside(std::uint32_t stream, const PupilHalves& halves) const;
 };
 
 }  // namespace REALCAM_NAMESPACE

@@ -63,8 +63,8 @@ template <int N>
 void FieldFan::start(const CopyPath::At& copy, const Vec2<double>* entries, LensRays<double, N>& rays) const {
     for (int i = 0; i < N; ++i) {
         const Vec3d at = object_.at(entries[i]), direction = object_.direction(entries[i]);
-        const Vec2<double> place = turned({at.x, at.y}), across = turned({direction.x, direction.y});
-        rays.origin.set(i, {place.x, place.y, at.z - copy.entry_position});
+        const Vec2<double> position = turned({at.x, at.y}), across = turned({direction.x, direction.y});
+        rays.origin.set(i, {position.x, position.y, at.z - copy.entry_position});
         rays.direction.set(i, copy.entry_index * Vec3d{across.x, across.y, direction.z});
         rays.status[i] = 0;
     }

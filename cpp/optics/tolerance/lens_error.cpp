@@ -109,7 +109,7 @@ LensSystem with_errors(const LensSystem& lens, const std::vector<LensError>& err
                     along_axis(0.5 * length) * placement.frame() * along_axis(-0.5 * length));
     }
     // Faces that touch at their rims do so in every real lens; an overlap of a micrometre there is no error.
-    result.allow_crossing = true;
+    result.allow_overlap = true;
     return result;
 }
 

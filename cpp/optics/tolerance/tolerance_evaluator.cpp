@@ -216,16 +216,16 @@ CopyFigures ToleranceEvaluator::operator()(const LensSystem& copy) const {
                               ? p.focal_length * p.convergence_drawn / convergence(path, p.close)
                               : p.focal_length;
     // Image scale near the axis, and image centre.
-    Vec2<double> places[4], middle{0, 0};
+    Vec2<double> points[4], middle{0, 0};
     const double film = copy.film_distance + look.film.shift;
     for (std::size_t k = 0; k < 4; ++k) {
         const FieldFan::FilmRay chief = p.middle[k].through(path, p.stop, false).chief;
-        places[k] = {chief.at.x + film * chief.slope.x, chief.at.y + film * chief.slope.y};
-        middle = {middle.x + 0.25 * places[k].x, middle.y + 0.25 * places[k].y};
+        points[k] = {chief.at.x + film * chief.slope.x, chief.at.y + film * chief.slope.y};
+        middle = {middle.x + 0.25 * points[k].x, middle.y + 0.25 * points[k].y};
     }
     const double scale = 0.25 *
-                         (hypotenuse(places[0].x - places[1].x, places[0].y - places[1].y) +
-                          hypotenuse(places[2].x - places[3].x, places[2].y - places[3].y)) /
+                         (hypotenuse(points[0].x - points[1].x, points[0].y - points[1].y) +
+                          hypotenuse(points[2].x - points[3].x, points[2].y - points[3].y)) /
                          std::tan(kSmallField);
     for (std::size_t f = 0; f < look.spots.size(); ++f) {
         const FieldSpot& spot = look.spots[f];

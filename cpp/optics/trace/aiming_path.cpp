@@ -15,8 +15,8 @@ AimingPath::AimingPath(const LensPath<double>& path) {
     copy_of(freeforms_, view.free.freeforms);
     copy_of(apertures_, view.free.apertures);
     iris_ = view.iris;
-    frames_in_place_ = frames_;
-    for (FrameChanges<double>& frame : frames_in_place_) frame.out = {};
+    frames_without_exit_ = frames_;
+    for (FrameChanges<double>& frame : frames_without_exit_) frame.out = {};
 }
 
 namespace {
@@ -55,7 +55,7 @@ LensView<double> AimingPath::view() const {
 LensView<double> AimingPath::first(int count) const {
     LensView<double> view = this->view();
     view.count = count;
-    if (view.free.frames) view.free.frames = frames_in_place_.data();
+    if (view.free.frames) view.free.frames = frames_without_exit_.data();
     return view;
 }
 

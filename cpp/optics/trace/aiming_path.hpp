@@ -25,7 +25,7 @@ private:
 
     LensKind kind_;
     std::vector<SurfaceView<double>> steps_;
-    std::vector<FrameChanges<double>> frames_, frames_in_place_;  ///< in_place: without exit frames
+    std::vector<FrameChanges<double>> frames_, frames_without_exit_;  ///< the latter without the changes to exit frames
     std::vector<FreeformView<double>> freeforms_;
     std::vector<ApertureView<double>> apertures_;
     Iris<double> iris_;

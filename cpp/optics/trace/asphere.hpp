@@ -86,16 +86,16 @@ REALCAM_INLINE T begin_search(const SurfaceView<T>& surface, Vec3<T> o, Vec3<T> 
 /// A point on a ray: its parameter, the signed axial distance by which it lies beyond the surface, and the derivative
 /// of that distance.
 template <class T>
-struct WaySample {
+struct RaySample {
     T parameter, beyond, slope;
 };
 
 /// Finds the first sub-interval of a ray, between `middle` - `half` and `middle` + `half`, that begins on the near side
 /// of the surface and ends on its far side. If the ray approaches the surface and recedes again within a sub-interval,
-/// the turning point may lie on the other side and is searched for. `sample` returns the WaySample of a parameter.
+/// the turning point may lie on the other side and is searched for. `sample` returns the RaySample of a parameter.
 /// Returns false, with the bracket unchanged, if there is no crossing.
 template <class T, class Sample>
-REALCAM_HD inline bool find_bracket_on_way(T middle, T half, T direction_sign, Sample&& sample, T& t, T& below,
+REALCAM_HD inline bool find_bracket_on_ray(T middle, T half, T direction_sign, Sample&& sample, T& t, T& below,
                                            T& above) {
     constexpr int kPieces = 16, kTurnSteps = std::numeric_limits<T>::digits;
     const auto bracketed = [&](T near, T far) {
@@ -104,15 +104,15 @@ REALCAM_HD inline bool find_bracket_on_way(T middle, T half, T direction_sign, S
         t = T(0.5) * (below + above);
         return true;
     };
-    WaySample<T> near = sample(middle - half);
+    RaySample<T> near = sample(middle - half);
     for (int i = 1; i <= kPieces; ++i) {
-        const WaySample<T> far = sample(middle + (T(2) / kPieces * static_cast<T>(i) - T(1)) * half);
+        const RaySample<T> far = sample(middle + (T(2) / kPieces * static_cast<T>(i) - T(1)) * half);
         if (near.beyond < T(0) && far.beyond >= T(0)) return bracketed(near.parameter, far.parameter);
         const T side = near.beyond < T(0) ? T(-1) : T(1);
         if (side * far.beyond >= T(0) && side * near.slope < T(0) && side * far.slope > T(0)) {
             T low = near.parameter, high = far.parameter;
             for (int k = 0; k < kTurnSteps; ++k) {
-                const WaySample<T> turn = sample(T(0.5) * (low + high));
+                const RaySample<T> turn = sample(T(0.5) * (low + high));
                 if (side * turn.beyond < T(0))
                     return side > T(0) ? bracketed(turn.parameter, far.parameter)
                                        : bracketed(near.parameter, turn.parameter);
@@ -135,13 +135,13 @@ REALCAM_HD inline bool find_bracket(const SurfaceView<T>& surface, Vec3<T> o, Ve
     if (!(room > T(0))) return false;
     // Slightly shortened: at the very edge the sag's slope is already that of its continuation.
     const T half = (T(1) - T(16) * std::numeric_limits<T>::epsilon()) * std::sqrt(room / across);
-    const auto sample = [&](T parameter) -> WaySample<T> {
+    const auto sample = [&](T parameter) -> RaySample<T> {
         const Vec3<T> at = o + parameter * p;
         const Sag<T> sag = asphere_sag(surface, at.x * at.x + at.y * at.y);
         return {parameter, surface.direction_sign_in * (at.z - sag.height),
                 surface.direction_sign_in * (p.z - T(2) * sag.derivative * (at.x * p.x + at.y * p.y))};
     };
-    return find_bracket_on_way(middle, half, surface.direction_sign_in, sample, t, below, above);
+    return find_bracket_on_ray(middle, half, surface.direction_sign_in, sample, t, below, above);
 }
 
 /// One safeguarded Newton step. `halve`: bisects the bracket instead.

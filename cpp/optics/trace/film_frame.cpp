@@ -8,11 +8,11 @@ namespace {
 
 /// Returns -1 if light reaches the film against the direction of the last axis, else 1.
 double direction_behind(const LensSystem& lens) {
-    const std::vector<Crossing> way = crossings_of(lens);
+    const std::vector<Crossing> crossings = crossings_of(lens);
     double sign = 1;
-    for (std::size_t m = 0; m < way.size(); ++m) {
-        sign *= path_frames_detail::turn_before(lens, way, m);
-        if (lens.surfaces[static_cast<std::size_t>(way[m].surface)].type == SurfaceType::mirror) sign = -sign;
+    for (std::size_t m = 0; m < crossings.size(); ++m) {
+        sign *= path_frames_detail::turn_before(lens, crossings, m);
+        if (lens.surfaces[static_cast<std::size_t>(crossings[m].surface)].type == SurfaceType::mirror) sign = -sign;
     }
     return sign;
 }

@@ -105,7 +105,7 @@ REALCAM_HD inline bool find_bracket(const FreeformView<T>& form, T direction_sig
     if (!(first < last)) return false;
     // Slightly shortened: at the very edge the sag's slope is already that of its continuation.
     const T half = (T(1) - T(16) * std::numeric_limits<T>::epsilon()) * T(0.5) * (last - first);
-    const auto sample = [&](T parameter) -> WaySample<T> {
+    const auto sample = [&](T parameter) -> RaySample<T> {
         const Vec3<T> at = o + parameter * p;
         const Lanes<T, 1> x = {at.x}, y = {at.y};
         FreeformSags<T, 1> sag;
@@ -113,7 +113,7 @@ REALCAM_HD inline bool find_bracket(const FreeformView<T>& form, T direction_sig
         return {parameter, direction_sign * (at.z - sag.height[0]),
                 direction_sign * (p.z - sag.slope_x[0] * p.x - sag.slope_y[0] * p.y)};
     };
-    return find_bracket_on_way(T(0.5) * (first + last), half, direction_sign, sample, t, below, above);
+    return find_bracket_on_ray(T(0.5) * (first + last), half, direction_sign, sample, t, below, above);
 }
 
 /// Searches the surface itself along the whole ray, for rays that go sideways and for rays whose search failed or ended

@@ -48,8 +48,8 @@ struct ManyWavelengths {
         REALCAM_INLINE float squared_index_change(int lane) const { return cubic.at(variable[lane]); }
     };
     template <class Surface>
-    REALCAM_INLINE Boundary at(const Surface&, int place) const {
-        return {surfaces[place], variable};
+    REALCAM_INLINE Boundary at(const Surface&, int index) const {
+        return {surfaces[index], variable};
     }
 };
 

@@ -29,9 +29,9 @@ void check_dispersion(const LensSystem& lens, WavelengthRange range) {
                          " lies in glass; a lens with air behind its last surface is wanted");
 }
 
-std::vector<IndexCubic> index_cubics(const LensSystem& lens, const std::vector<Crossing>& way,
+std::vector<IndexCubic> index_cubics(const LensSystem& lens, const std::vector<Crossing>& crossings,
                                      const std::vector<double>& wavelengths_nm, WavelengthVariable variable) {
-    return cubics_over(lens, way, wavelengths_nm, variable,
+    return cubics_over(lens, crossings, wavelengths_nm, variable,
                        [](const Crossing& crossing, const std::vector<double>& indices) {
                            const double n = crossing.index_before(indices), behind = crossing.index_behind(indices);
                            return (behind - n) * (behind + n) / (n * n);

@@ -23,7 +23,7 @@ void check_dispersion(const LensSystem& lens, WavelengthRange range);
 /// the light, the cubics are accurate where most of it is: four times better than cubics that are as accurate at the
 /// ends of the spectrum as in its middle. Throws InputError if a glass has no index at a wavelength.
 template <class ValueOf>
-std::vector<IndexCubic> cubics_over(const LensSystem& lens, const std::vector<Crossing>& way,
+std::vector<IndexCubic> cubics_over(const LensSystem& lens, const std::vector<Crossing>& crossings,
                                     const std::vector<double>& wavelengths_nm, WavelengthVariable variable,
                                     ValueOf&& value_of) {
     std::vector<double> x;
@@ -33,7 +33,7 @@ std::vector<IndexCubic> cubics_over(const LensSystem& lens, const std::vector<Cr
         indices.push_back(lens.indices(wavelength));
     }
     std::vector<IndexCubic> cubics;
-    for (const Crossing& crossing : way) {
+    for (const Crossing& crossing : crossings) {
         std::vector<double> values;
         for (const std::vector<double>& at : indices) values.push_back(value_of(crossing, at));
         const std::array<double, 4> c = fit_polynomial<4>(x, values);
@@ -44,7 +44,7 @@ std::vector<IndexCubic> cubics_over(const LensSystem& lens, const std::vector<Cr
 }
 
 /// Fits n'^2 / n^2 - 1 at the crossings of an optical path.
-std::vector<IndexCubic> index_cubics(const LensSystem& lens, const std::vector<Crossing>& way,
+std::vector<IndexCubic> index_cubics(const LensSystem& lens, const std::vector<Crossing>& crossings,
                                      const std::vector<double>& wavelengths_nm, WavelengthVariable variable);
 
 /// Fits n'^2 / n^2 - 1 at the surfaces, for light that passes the whole lens.

@@ -29,29 +29,31 @@ public:
 
     /// Path of light along these crossings to the film, or in reverse to the scene. Rays are relative to
     /// `entry_position` and `exit_position` on the z axis of the lens frame, or to the origins of `ends`.
-    LensPath(const LensSystem& lens, const std::vector<Crossing>& way, LightDirection direction, double wavelength_nm,
-             const PathEnds& ends = {})
+    LensPath(const LensSystem& lens, const std::vector<Crossing>& crossings, LightDirection direction,
+             double wavelength_nm, const PathEnds& ends = {})
         : iris_(iris_of(lens)) {
         const std::vector<double> n = lens.indices(wavelength_nm);
         const std::vector<double> z = lens.vertices();
-        const auto vertex = [&](std::size_t crossing) { return z[static_cast<std::size_t>(way[crossing].surface)]; };
+        const auto vertex = [&](std::size_t crossing) {
+            return z[static_cast<std::size_t>(crossings[crossing].surface)];
+        };
         const bool to_film = direction == LightDirection::to_film;
         const bool is_centred = !path_frames_detail::has_placements(lens) && !ends.entry && !ends.exit;
         double direction_sign = 1;  // of light travelling to the film, along the z axis of the surface's frame
-        for (std::size_t m = 0; m < way.size(); ++m) {
-            const Surface& surface = lens.surfaces[static_cast<std::size_t>(way[m].surface)];
-            if (!is_centred) direction_sign *= path_frames_detail::turn_before(lens, way, m);
-            const bool turns = way[m].is_reflected || surface.type == SurfaceType::mirror;
+        for (std::size_t m = 0; m < crossings.size(); ++m) {
+            const Surface& surface = lens.surfaces[static_cast<std::size_t>(crossings[m].surface)];
+            if (!is_centred) direction_sign *= path_frames_detail::turn_before(lens, crossings, m);
+            const bool turns = crossings[m].is_reflected || surface.type == SurfaceType::mirror;
             const double sign_behind = turns ? -direction_sign : direction_sign;
-            const double before = way[m].index_before(n), behind = way[m].index_behind(n);
+            const double before = crossings[m].index_before(n), behind = crossings[m].index_behind(n);
             SurfaceView<T> view = traced_shape<T>(surface).view;
-            view.surface_index = way[m].surface;
+            view.surface_index = crossings[m].surface;
             if (to_film) {
                 set_media(view, before, behind, direction_sign, sign_behind);
                 view.shift = static_cast<T>(m == 0 ? 0.0 : vertex(m) - vertex(m - 1));
             } else {
                 set_media(view, behind, before, -sign_behind, -direction_sign);
-                view.shift = static_cast<T>(m + 1 == way.size() ? 0.0 : vertex(m) - vertex(m + 1));
+                view.shift = static_cast<T>(m + 1 == crossings.size() ? 0.0 : vertex(m) - vertex(m + 1));
             }
             if (surface.type == SurfaceType::stop) set_stop(view, lens);
             views_.push_back(view);

@@ -30,10 +30,10 @@ inline Affine<double> neighbour(const LensSystem& lens, int from, int to) {
 /// Returns -1 if the z axis of a crossing's surface points backwards in the frame of the surface crossed before, so
 /// that light that travels to +z there travels to -z here; else 1. A frame at a right angle counts as pointing
 /// forwards.
-inline double turn_before(const LensSystem& lens, const std::vector<Crossing>& way, std::size_t crossing) {
-    const int to = way[crossing].surface;
+inline double turn_before(const LensSystem& lens, const std::vector<Crossing>& crossings, std::size_t crossing) {
+    const int to = crossings[crossing].surface;
     const Affine<double> frame = crossing == 0 ? lens.surfaces[static_cast<std::size_t>(to)].placement.frame()
-                                               : neighbour(lens, way[crossing - 1].surface, to);
+                                               : neighbour(lens, crossings[crossing - 1].surface, to);
     constexpr double kRightAngle = 1e-9;
     return frame.z.z < -kRightAngle ? -1 : 1;
 }

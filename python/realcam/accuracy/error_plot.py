@@ -23,8 +23,8 @@ def draw_errors(figure: SubFigure, rungs: tuple[Rung, ...]) -> None:
     rows = 2 if len(groups) > 3 else 1
     grid = figure.subplots(rows, -(-len(groups) // rows), sharex=True, sharey=True, squeeze=False)
     end = CONTINUED * max(rung.pictures[-1].seconds for rung in rungs)
-    for place in grid.ravel()[len(groups) :]:
-        place.set_axis_off()
+    for cell in grid.ravel()[len(groups) :]:
+        cell.set_axis_off()
     plots = [
         (axes, group, [rung for rung in rungs if rung.group == group or rung.is_recommended])
         for axes, group in zip(grid.ravel(), groups, strict=False)
@@ -83,13 +83,13 @@ def _name_lines(axes: Axes, rungs: list[Rung], end: float) -> None:
     low, high = axes.get_ylim()
     heights = np.log([rung.error_after(end) / low for rung in rungs]) / np.log(high / low)
     order = np.argsort(heights)
-    places = _apart(heights[order], 0.13)
-    for place, number in zip(places, order, strict=True):
+    positions = _apart(heights[order], 0.13)
+    for position, number in zip(positions, order, strict=True):
         rung = rungs[number]
         axes.annotate(
             textwrap.fill(rung.name, 20),
             (1, heights[number]),
-            (1.03, place),
+            (1.03, position),
             xycoords="axes fraction",
             textcoords="axes fraction",
             va="center",
@@ -101,12 +101,12 @@ def _name_lines(axes: Axes, rungs: list[Rung], end: float) -> None:
         )
 
 
-def _apart(places: Doubles, least: float) -> Doubles:
+def _apart(positions: Doubles, least: float) -> Doubles:
     """Spreads sorted positions to a distance of at least `least`, in one upward and one downward pass."""
-    moved: Doubles = places.copy()
+    moved: Doubles = positions.copy()
     for k in range(1, len(moved)):
         moved[k] = max(moved[k], moved[k - 1] + least)
-    moved[-1] = min(moved[-1], max(1.0, places[-1]))
+    moved[-1] = min(moved[-1], max(1.0, positions[-1]))
     for k in range(len(moved) - 2, -1, -1):
         moved[k] = min(moved[k], moved[k + 1] - least)
     return moved

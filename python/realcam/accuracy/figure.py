@@ -54,16 +54,16 @@ def _drawing(cost: Measurements) -> Figure:
     with style.themed("light", 8.0):
         figure = Figure(figsize=(11, sum(heights)), layout="constrained")
         *above, below = np.asarray(figure.subfigures(len(heights), 1, height_ratios=heights)).ravel()
-        for place, (title, reason, rungs, _) in zip(above, plots, strict=True):
-            draw_errors(place, rungs)
-            place.suptitle("\n".join(filter(None, (title, recommendation(rungs, reason)))), fontsize=9)
+        for cell, (title, reason, rungs, _) in zip(above, plots, strict=True):
+            draw_errors(cell, rungs)
+            cell.suptitle("\n".join(filter(None, (title, recommendation(rungs, reason)))), fontsize=9)
         columns = (len(cost.rungs) + 1) // 2
         thumbnails = np.atleast_1d(below.subplots(2, columns)).ravel()
-        for place in thumbnails:
-            place.set_axis_off()
-        for place, rung in zip(thumbnails, cost.rungs, strict=False):
-            place.imshow(rung.difference, cmap="inferno", vmin=0, vmax=MOST_CODES, interpolation="nearest")
-            place.set_title(textwrap.fill(rung.name, 24), fontsize=6)
+        for cell in thumbnails:
+            cell.set_axis_off()
+        for cell, rung in zip(thumbnails, cost.rungs, strict=False):
+            cell.imshow(rung.difference, cmap="inferno", vmin=0, vmax=MOST_CODES, interpolation="nearest")
+            cell.set_title(textwrap.fill(rung.name, 24), fontsize=6)
         below.suptitle(
             f"Difference of the best picture of each level to the reference; white: {MOST_CODES:g} codes", fontsize=9
         )

@@ -18,7 +18,7 @@ from ..render import ProgressCallback, render
 from .errors import Codes, codes, flip, mean_square
 from .measurements import Measured, Measurements, Rung
 from .report import text_of
-from .rungs import Level, known_effects, levels_of, ways_to_sample
+from .rungs import Level, known_effects, levels_of, sampling_strategies
 
 
 class AccuracyCost(Measurements):
@@ -91,7 +91,7 @@ def accuracy_cost(
     rung_count = len(climbs)
     if samplings:
         without_effects = Reference(scene, camera, (), reference_spp, seed, settings)
-        climbs += [(level, without_effects) for level in ways_to_sample()]
+        climbs += [(level, without_effects) for level in sampling_strategies()]
     done: list[tuple[bool, Rung]] = []
     missing = [level.name for level, _ in climbs]
     impossible: list[str] = []

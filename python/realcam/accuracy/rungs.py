@@ -88,7 +88,7 @@ def known_effects(camera: Camera) -> tuple[str, ...]:
     return tuple(effect.name for effect in wanted if not (effect.needs_coatings and camera.lens.unknown_coatings))
 
 
-def ways_to_sample() -> list[Level]:
+def sampling_strategies() -> list[Level]:
     """Sampling strategies of the full lens, which all converge to the same picture."""
     random, others, outline = "random samples", "other pupils", "fitted outline"
     by_pixels = [

@@ -129,11 +129,11 @@ def _label(data: DepthOverFocus, n: int) -> str:
     return "\n".join(lines)
 
 
-def _ranges(places_m: Doubles, is_in: NDArray[np.bool_]) -> str:
+def _ranges(positions_m: Doubles, is_in: NDArray[np.bool_]) -> str:
     """Text of the intervals of consecutive distances for which is_in is True."""
-    order = np.argsort(places_m)
+    order = np.argsort(positions_m)
     found = np.flatnonzero(is_in[order])
-    stretches = np.split(places_m[order][found], np.flatnonzero(np.diff(found) > 1) + 1)
+    stretches = np.split(positions_m[order][found], np.flatnonzero(np.diff(found) > 1) + 1)
     ends = (dict.fromkeys(f"{stretch[end]:.3g}" for end in (0, -1)) for stretch in stretches)
     return " and ".join(f"{' to '.join(texts)} m" for texts in ends)
 

@@ -85,7 +85,7 @@ def _height_at(source: Bundles, field_deg: float, wavelength_nm: float, film_dis
         wavelength_nm=wavelength_nm,
         object_distance_m=source.object_distance_m,
         film_distance_mm=film_distance_mm,
-        spokes=4,
+        arms=4,
         nodes=1,
     )
     return bundle.chief_ray_mm[1]

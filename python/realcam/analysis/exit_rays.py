@@ -47,8 +47,8 @@ def exit_rays(
 
 def hexapolar(rings: int) -> Doubles:
     """(N, 2): hexapolar stop points, each for an equal area: the centre, and rings of 6, 12, 18, ... to the edge."""
-    places = [np.zeros((1, 2))]
+    pupil_points = [np.zeros((1, 2))]
     for ring in range(1, rings + 1):
         angle = 2 * np.pi * np.arange(6 * ring) / (6 * ring)
-        places.append(ring / rings * np.column_stack([np.cos(angle), np.sin(angle)]))
-    return np.concatenate(places)
+        pupil_points.append(ring / rings * np.column_stack([np.cos(angle), np.sin(angle)]))
+    return np.concatenate(pupil_points)

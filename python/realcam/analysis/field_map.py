@@ -150,9 +150,9 @@ def _distortion(lens: Lens, x: Doubles, y: Doubles) -> Doubles:
     )
     picture = np.linalg.inv(np.column_stack([by_x, by_y]))  # mm on the film per change of the tangents
     middle = _tangents(lens, (0.0, 0.0))
-    places = np.stack(np.meshgrid(x, y), axis=-1)
+    points = np.stack(np.meshgrid(x, y), axis=-1)
     tangents = np.array([[_tangents(lens, (float(a), float(b))) for a in x] for b in y])
-    vectors: Doubles = places - (tangents - middle) @ picture.T
+    vectors: Doubles = points - (tangents - middle) @ picture.T
     return vectors
 
 

@@ -27,15 +27,15 @@ class Bundles:
         self.object_distance_m = object_distance_m
         self._kept: dict[tuple[FieldPosition, float, int, int], RayBundle] = {}
 
-    def at(self, field: FieldPosition, wavelength_nm: float, spokes: int = 32, nodes: int = 6) -> RayBundle:
+    def at(self, field: FieldPosition, wavelength_nm: float, arms: int = 32, nodes: int = 6) -> RayBundle:
         """Ray bundle of a field point. Raises InputError if no light passes."""
-        key = (field, float(wavelength_nm), spokes, nodes)
+        key = (field, float(wavelength_nm), arms, nodes)
         if key not in self._kept:
             self._kept[key] = self.lens.bundle(
                 **field_arguments(field),
                 wavelength_nm=key[1],
                 object_distance_m=self.object_distance_m,
-                spokes=spokes,
+                arms=arms,
                 nodes=nodes,
             )
         return self._kept[key]

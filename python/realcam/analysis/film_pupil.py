@@ -49,11 +49,11 @@ def film_pupils(
     source = bundles_of(lens, object_distance_m, bundles)
     nm = lens.wavelength_nm if wavelength_nm is None else wavelength_nm
     fields = fields_of(lens, fields_deg, samples, source)
-    places = np.array([source.at(float(field), nm).chief_ray_mm for field in fields])
-    pupils = [lens.film_pupil((x, y), nm) for x, y in places]
+    points = np.array([source.at(float(field), nm).chief_ray_mm for field in fields])
+    pupils = [lens.film_pupil((x, y), nm) for x, y in points]
     light = np.array([pupil.irradiance for pupil in pupils])
     on_axis = lens.film_pupil((0.0, 0.0), nm).irradiance
-    return FilmPupils(fields, places[:, 1], tuple(pupil.outline for pupil in pupils), light, light / on_axis)
+    return FilmPupils(fields, points[:, 1], tuple(pupil.outline for pupil in pupils), light, light / on_axis)
 
 
 def plot_relative_illumination(data: FilmPupils, axes: Axes) -> None:

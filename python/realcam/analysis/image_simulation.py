@@ -306,7 +306,7 @@ class _FieldLight:
                 film_mm=point, wavelength_nm=nm, object_distance_m=self.distance_m, pupil=[[0.0, 0.0]]
             ).chief_ray_mm
         except InputError:  # the centre of the stop is obstructed or vignetted
-            return self.bundle(point, nm, spokes=8, nodes=2).chief_ray_mm
+            return self.bundle(point, nm, arms=8, nodes=2).chief_ray_mm
 
     def bundle(self, point: tuple[float, float], nm: float, **size: int) -> RayBundle:
         return self.lens.bundle(film_mm=point, wavelength_nm=nm, object_distance_m=self.distance_m, **size)
@@ -447,7 +447,7 @@ class _Kernels:
         if np.isnan(shifts).any():
             return None
         try:
-            bundles = [light.bundle(point, float(nm), spokes=32, nodes=6) for nm in light.wavelengths]
+            bundles = [light.bundle(point, float(nm), arms=32, nodes=6) for nm in light.wavelengths]
         except InputError:
             return None
         # Largest displacement of a wavelength from its channel's mean: lateral colour within a channel.

@@ -124,7 +124,7 @@ def by_waves(source: Bundles, field: FieldPosition, colour: float, frequencies: 
     )
 
 
-_SPOKES, _NODES, _MOST_DOUBLINGS = 32, 6, 5
+_ARMS, _NODES, _MOST_DOUBLINGS = 32, 6, 5
 # Errors of the contrast: the goal, and the largest accepted one at the maximum number of rays.
 _WANTED_ERROR, _TOLD_ERROR = 1e-4, 1e-2
 
@@ -138,11 +138,11 @@ def _by_rays(source: Bundles, field: float, colour: float, frequencies: Doubles,
     """
 
     def bundle(doublings: int) -> RayBundle:
-        return source.at(field, colour, _SPOKES << doublings, _NODES << doublings)
+        return source.at(field, colour, _ARMS << doublings, _NODES << doublings)
 
-    radius = np.linalg.norm(_places(bundle(0), planes, slice(None)), axis=2).max()
+    radius = np.linalg.norm(_points(bundle(0), planes, slice(None)), axis=2).max()
     periods = float(frequencies.max() * radius)
-    enough = math.ceil(math.log2(max(1.0, 2 * math.pi * periods / _SPOKES, periods / _NODES)))
+    enough = math.ceil(math.log2(max(1.0, 2 * math.pi * periods / _ARMS, periods / _NODES)))
     doublings = min(1 + enough, _MOST_DOUBLINGS)
     before = _sum_of_rays(bundle(doublings - 1), frequencies, planes)
     while True:
@@ -155,11 +155,11 @@ def _by_rays(source: Bundles, field: float, colour: float, frequencies: Doubles,
     return Transfer(otf, np.ones((2, len(frequencies))), np.array(bundle(0).chief_ray_mm))
 
 
-def _places(bundle: RayBundle, planes: Doubles, rays: slice) -> Doubles:
+def _points(bundle: RayBundle, planes: Doubles, rays: slice) -> Doubles:
     """(D, N, 2): points on the planes, mm from the chief ray's film point."""
     slopes = bundle.directions[rays, :2] / bundle.directions[rays, 2:]
-    places: Doubles = bundle.points_mm[rays] - bundle.chief_ray_mm + planes[:, None, None] * slopes
-    return places
+    points: Doubles = bundle.points_mm[rays] - bundle.chief_ray_mm + planes[:, None, None] * slopes
+    return points
 
 
 def _sum_of_rays(bundle: RayBundle, frequencies: Doubles, planes: Doubles) -> np.ndarray:
@@ -168,7 +168,7 @@ def _sum_of_rays(bundle: RayBundle, frequencies: Doubles, planes: Doubles) -> np
     step = max(1, (1 << 21) // (len(planes) * len(frequencies)))  # rays per batch: about 100 MB
     for first in range(0, len(bundle.energy), step):
         rays = slice(first, first + step)
-        turns = 2 * np.pi * frequencies[:, None] * _places(bundle, planes, rays).transpose(2, 0, 1)[::-1, :, None, :]
+        turns = 2 * np.pi * frequencies[:, None] * _points(bundle, planes, rays).transpose(2, 0, 1)[::-1, :, None, :]
         otf += np.cos(turns) @ bundle.energy[rays] - 1j * (np.sin(turns) @ bundle.energy[rays])  # faster than exp
     return otf
 

@@ -33,8 +33,8 @@ def as_csv(data: Any) -> str:
     table = csv.writer(text, lineterminator="\n")
     table.writerow(["name", *(f"index_{k}" for k in range(depth)), "value"])
     for name, array in numbers.items():
-        for place, value in np.ndenumerate(array):
-            table.writerow([name, *place, *[""] * (depth - array.ndim), repr(value.item())])
+        for index, value in np.ndenumerate(array):
+            table.writerow([name, *index, *[""] * (depth - array.ndim), repr(value.item())])
     return text.getvalue()
 
 

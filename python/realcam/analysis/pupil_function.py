@@ -53,8 +53,8 @@ class PupilFunction(ShortText):
 
 def pupil_function(bundles: Bundles, field: FieldPosition, wavelength_nm: float) -> PupilFunction:
     """Fits polynomials of the least sufficient degree. Raises UnevenWavefrontError if the largest does not suffice."""
-    for degree, spokes, nodes in FITS:
-        fitted = fit_pupil(bundles.at(field, wavelength_nm, spokes, nodes), degree)
+    for degree, arms, nodes in FITS:
+        fitted = fit_pupil(bundles.at(field, wavelength_nm, arms, nodes), degree)
         if fitted.fit_error_waves < GOOD_FIT_WAVES:
             return fitted
     # With aberrations that strong little contrast is left, and an error of 0.1 waves changes it invisibly.
@@ -106,14 +106,14 @@ def fit_pupil(bundle: RayBundle, degree: int) -> PupilFunction:
 class Lines(ShortText):
     """Parallel chords of a pupil at Chebyshev nodes, at which the chord lengths of a round edge are smooth.
 
-    along: the axis that the lines are parallel to, 0 (x) or 1 (y). places: (L,), coordinates on the other axis; weight:
-      (L,), quadrature weights across the lines.
+    along: the axis that the lines are parallel to, 0 (x) or 1 (y).
+    positions: (L,), coordinates on the other axis; weight: (L,), quadrature weights across the lines.
     ends: (L, interval, 2), ends of each line's intervals inside the pupil; nan if there are fewer.
     even: True if each line is mirror-symmetric and has a single interval.
     """
 
     along: int
-    places: Doubles
+    positions: Doubles
     weight: Doubles
     ends: Doubles
     even: bool
@@ -173,7 +173,7 @@ def transfer(
         tables = tables[:2]  # without defocus the tilt is not needed
     if lines.along == 0:
         tables = tables.swapaxes(1, 2)
-    on_line = np.einsum("tij,li->tjl", tables, _chebyshev_table(lines.places, tables.shape[1] - 1))
+    on_line = np.einsum("tij,li->tjl", tables, _chebyshev_table(lines.positions, tables.shape[1] - 1))
     whole = _energy(on_line, lines)
     otf: np.ndarray = _overlap(on_line, lines, shifts, planes, _nodes(on_line, shifts, planes)) / whole
     return otf
@@ -194,17 +194,17 @@ def _nodes(on_line: Doubles, shifts: Doubles, planes: Doubles) -> int:
 @cache
 def _slope_table(degree: int) -> Doubles:
     """(32, degree + 1): mean slopes of the Chebyshev polynomials between 33 points from -1 to 1."""
-    places = np.linspace(-1, 1, 33)
-    slopes: Doubles = np.diff(_chebyshev_table(places, degree), axis=0) / (places[1] - places[0])
+    positions = np.linspace(-1, 1, 33)
+    slopes: Doubles = np.diff(_chebyshev_table(positions, degree), axis=0) / (positions[1] - positions[0])
     return slopes
 
 
-def _chebyshev_table(places: Doubles, degree: int) -> Doubles:
+def _chebyshev_table(positions: Doubles, degree: int) -> Doubles:
     """(N, degree + 1): as numpy's chebvander, which takes several times as long for a few hundred points."""
-    table = np.empty((degree + 1, len(places)))
+    table = np.empty((degree + 1, len(positions)))
     table[0] = 1
-    table[1] = places
-    double = 2 * places
+    table[1] = positions
+    double = 2 * positions
     for k in range(2, degree + 1):
         table[k] = double * table[k - 1] - table[k - 2]
     turned: Doubles = table.T
@@ -234,9 +234,9 @@ def _overlap(on_line: Doubles, lines: Lines, shifts: Doubles, planes: Doubles, n
     total = np.zeros((len(planes), len(shifts)), dtype=complex)
     half_shift = 0.5 * shifts[:, None, None]
     for middle, length in lines.overlaps(shifts):
-        place = middle[..., None] + 0.5 * length[..., None] * node  # (F, line, node)
-        front = _values(on_line, place - half_shift)
-        back = _values(on_line, place + half_shift)
+        position = middle[..., None] + 0.5 * length[..., None] * node  # (F, line, node)
+        front = _values(on_line, position - half_shift)
+        back = _values(on_line, position + half_shift)
         amplitude = front[1] * back[1] * weight * (0.5 * length * lines.weight)[..., None]
         phase = back[0] - front[0]
         for d, plane in enumerate(planes):
@@ -248,17 +248,17 @@ def _overlap(on_line: Doubles, lines: Lines, shifts: Doubles, planes: Doubles, n
     return total
 
 
-def _values(on_line: Doubles, place: Doubles) -> Doubles:
+def _values(on_line: Doubles, position: Doubles) -> Doubles:
     """(table, F, line, node): polynomials of each line at points on it, by Clenshaw's recurrence."""
     coefficient = on_line[:, :, None, :, None]
-    ahead, here, free = np.zeros((3, len(on_line), *place.shape))
-    double = 2 * place
+    ahead, here, free = np.zeros((3, len(on_line), *position.shape))
+    double = 2 * position
     for k in range(on_line.shape[1] - 1, 0, -1):
         np.multiply(double, here, out=free)  # in place: allocating arrays would take as long as the sums
         free -= ahead
         free += coefficient[:, k]
         ahead, here, free = here, free, ahead
-    np.multiply(place, here, out=free)
+    np.multiply(position, here, out=free)
     free -= ahead
     free += coefficient[:, 0]
     values: Doubles = free
@@ -272,12 +272,12 @@ def _ends(edge: Doubles, lines: Doubles, along: int) -> Doubles:
     line, piece = np.nonzero((start[:, across] <= lines[:, None]) != (end[:, across] <= lines[:, None]))
     start, end = start[piece], end[piece]
     share = (lines[line] - start[:, across]) / (end[:, across] - start[:, across])
-    place = start[:, along] + share * (end[:, along] - start[:, along])
+    position = start[:, along] + share * (end[:, along] - start[:, along])
     count = np.bincount(line, minlength=len(lines))
     most = int(count.max(initial=0))
     most += most % 2
     crossings = np.full((len(lines), most), np.nan)
-    crossings[line, np.arange(len(line)) - (np.cumsum(count) - count)[line]] = place
+    crossings[line, np.arange(len(line)) - (np.cumsum(count) - count)[line]] = position
     crossings.sort(axis=1)  # nan comes last
     ends: Doubles = crossings.reshape(len(lines), most // 2, 2)
     return ends

@@ -45,12 +45,12 @@ def ray_fan(
     source, fields, colours = light_of(lens, fields_deg, wavelengths_nm, object_distance_m, bundles)
     pupil = np.linspace(-1, 1, samples)
     zero = np.zeros(samples)
-    places = np.concatenate([np.column_stack([zero, pupil]), np.column_stack([pupil, zero])])
+    pupil_points = np.concatenate([np.column_stack([zero, pupil]), np.column_stack([pupil, zero])])
     fans = np.empty((len(fields), len(colours), 2, samples))
     for f, field in enumerate(fields):
         middle = source.chief(field, lens.wavelength_nm).chief_ray_mm
         for w, colour in enumerate(colours):
-            points = exit_rays(lens, places, float(field), float(colour), source.object_distance_m).points_mm
+            points = exit_rays(lens, pupil_points, float(field), float(colour), source.object_distance_m).points_mm
             fans[f, w] = points[:samples, 1] - middle[1], points[samples:, 0] - middle[0]
     return RayFan(fields, colours, pupil, fans[:, :, 0], fans[:, :, 1])
 

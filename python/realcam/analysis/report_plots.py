@@ -108,14 +108,14 @@ class ReportPlots:
         figure = matplotlib.figure.Figure(figsize=PAGE_IN)
         grid = figure.add_gridspec(3, 2, top=0.91, bottom=0.095, hspace=0.3, wspace=0.5, left=0.085, right=0.86)
         over = {**self.over_field, "wavelengths_nm": self.colours}
-        for place, compute, plot in (
+        for cell, compute, plot in (
             (grid[0, 0], lambda: self._mtf(mtf_over_frequency, **self.three), plot_mtf_over_frequency),
             (grid[0, 1], lambda: self._mtf(mtf_through_focus, **self.three), plot_mtf_through_focus),
             (grid[1, 0], lambda: self._mtf(mtf_over_field, **over), plot_mtf_over_field),
             (grid[1, 1], lambda: lateral_colour(self.lens, **{**over, **self.chief_rays}), plot_lateral_colour),
             (grid[2, :], self._seidel, plot_seidel_bars),
         ):
-            _try(figure, place, compute, plot)
+            _try(figure, cell, compute, plot)
         return figure
 
     def light(self) -> matplotlib.figure.Figure:
@@ -229,10 +229,10 @@ class FilmPlots(ReportPlots):
 
 
 def _try(
-    figure: matplotlib.figure.Figure, place: Any, compute: Callable[[], Any], plot: Callable[[Any, Axes], None]
+    figure: matplotlib.figure.Figure, cell: Any, compute: Callable[[], Any], plot: Callable[[Any, Axes], None]
 ) -> None:
     """Adds a plot; if its computation raises InputError, writes the reason in its place."""
-    axes = figure.add_subplot(place)
+    axes = figure.add_subplot(cell)
     try:
         plot(compute(), axes)
     except InputError as error:

@@ -61,14 +61,14 @@ def seidel_table(data: SeidelBars) -> list[tuple[str, ...]]:
 def plot_seidel_bars(data: SeidelBars, axes: Axes) -> None:
     """Plots bars grouped by surface, numbered from 1 as in lens tables and files, and their sum."""
     width = 0.8 / len(data.names)
-    places = np.arange(len(data.surfaces) + 1)
+    positions = np.arange(len(data.surfaces) + 1)
     values = np.concatenate([data.waves, data.waves.sum(axis=0)[None]])
     for k, name in enumerate(data.names):
         offset = (k - 0.5 * (len(data.names) - 1)) * width
-        axes.bar(places + offset, values[:, k], width, color=style.field_colour(k), label=name, linewidth=0)
+        axes.bar(positions + offset, values[:, k], width, color=style.field_colour(k), label=name, linewidth=0)
     style.zero_lines(axes, x=False)
     axes.axvline(len(data.surfaces) - 0.5, color=style.GREY, linewidth=0.6)
-    axes.set_xticks(places, [*map(str, data.surfaces + 1), "sum"])
+    axes.set_xticks(positions, [*map(str, data.surfaces + 1), "sum"])
     axes.set_xlabel("surface")
     axes.set_ylabel("wavefront / waves")
     axes.set_title(f"Third order at {data.field_deg:.3g}°")

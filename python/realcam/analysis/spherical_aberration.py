@@ -39,10 +39,10 @@ def longitudinal_aberration(
     pupil = np.linspace(0, 1, samples)
     # At 1e-3 of the radius rays are paraxial within 1e-6 of the aberration; the axial ray itself has no intersection.
     heights = np.maximum(pupil, 1e-3)
-    places = np.column_stack([np.zeros(samples), heights])
+    pupil_points = np.column_stack([np.zeros(samples), heights])
     focus = np.empty((len(colours), samples))
     for w, colour in enumerate(colours):
-        rays = exit_rays(lens, places, 0.0, float(colour), object_distance_m)
+        rays = exit_rays(lens, pupil_points, 0.0, float(colour), object_distance_m)
         focus[w] = -rays.points_mm[:, 1] / rays.slopes[:, 1]
     return LongitudinalAberration(colours, pupil, focus)
 

@@ -67,15 +67,15 @@ def spot_diagram(
         fields = film_points_of(film_mm)
         angles = np.full(len(fields), np.nan)
     planes = numbers_of(defocus_mm, "defocus_mm")
-    places = hexapolar(rings)
-    points = np.empty((len(planes), len(fields), len(colours), len(places), 2))
+    pupil_points = hexapolar(rings)
+    points = np.empty((len(planes), len(fields), len(colours), len(pupil_points), 2))
     airy = np.empty((len(fields), 2))
     for f, field in enumerate(fields):
         middle = _chief_line(source, field)
         for w, colour in enumerate(colours):
-            rays = exit_rays(lens, places, field, float(colour), source.object_distance_m)
+            rays = exit_rays(lens, pupil_points, field, float(colour), source.object_distance_m)
             if np.isnan(rays.points_mm).all():
-                raise InputError(f'none of {len(places)} rays at {field_text(field)} passes lens "{lens.name}"')
+                raise InputError(f'none of {len(pupil_points)} rays at {field_text(field)} passes lens "{lens.name}"')
             for d, plane in enumerate(planes):
                 points[d, f, w] = rays.at(float(plane)) - (middle[0] + plane * middle[1])
         bundle = source.at(field, lens.wavelength_nm)
@@ -100,7 +100,7 @@ def _chief_line(source: Bundles, field: FieldPosition) -> tuple[Doubles, Doubles
         wavelength_nm=lens.wavelength_nm,
         object_distance_m=source.object_distance_m,
         film_distance_mm=lens.film_distance_mm + step,
-        spokes=4,
+        arms=4,
         nodes=1,
     ).chief_ray_mm
     return here, (np.array(there) - here) / step
@@ -139,9 +139,9 @@ def plot_spot_diagram(spots: SpotDiagram, axes: Axes, field: int = 0, plane: int
     axes.set_xlabel("x / µm")
     axes.set_ylabel("y / µm")
     beside = f", {1e3 * spots.defocus_mm[plane]:+.3g} µm" if len(spots.defocus_mm) > 1 else ""
-    place = None if spots.film_mm is None else spots.film_mm[field]
+    film_point = None if spots.film_mm is None else spots.film_mm[field]
     radius_um = 1e3 * spots.rms_radius_mm[plane, field]
-    title = f"{style.field_title(spots.fields_deg[field], place)}{beside}, RMS {radius_um:.3g} µm"
+    title = f"{style.field_title(spots.fields_deg[field], film_point)}{beside}, RMS {radius_um:.3g} µm"
     axes.set_title(title.replace("-", "−"))  # the same minus sign as on the axes
 
 

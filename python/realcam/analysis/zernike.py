@@ -40,17 +40,17 @@ def name_of(n: int, m: int) -> str:
 def noll(j: int) -> tuple[int, int]:
     """(n, m) of the Noll index j >= 1; m < 0: sine (R. J. Noll, J. Opt. Soc. Am. 66, 207, 1976)."""
     n = (math.isqrt(8 * j - 7) - 1) // 2
-    place = j - n * (n + 1) // 2 - 1  # position among the n + 1 terms of this n
-    m = 1 + 2 * (place // 2) if n % 2 else 2 * ((place + 1) // 2)
+    position = j - n * (n + 1) // 2 - 1  # position among the n + 1 terms of this n
+    m = 1 + 2 * (position // 2) if n % 2 else 2 * ((position + 1) // 2)
     return n, m if j % 2 == 0 else -m
 
 
 def fringe(j: int) -> tuple[int, int]:
     """(n, m) of the fringe index j >= 1: ordered by (n + |m|) / 2, then by falling |m|, cosine before sine."""
     group = math.isqrt(j - 1)
-    place = j - 1 - group**2
-    m = group - place // 2
-    return 2 * group - m, -m if place % 2 else m
+    position = j - 1 - group**2
+    m = group - position // 2
+    return 2 * group - m, -m if position % 2 else m
 
 
 def term(n: int, m: int, x: Doubles, y: Doubles) -> Doubles:
@@ -90,8 +90,8 @@ class ZernikeFit(ShortText):
 
     def at(self, pupil: ArrayLike) -> Doubles:
         """(N,): the fitted sum at points (N, 2)."""
-        places = np.asarray(pupil, dtype=float)
-        basis = [term(n, m, places[:, 0], places[:, 1]) for n, m in self.nm]
+        points = np.asarray(pupil, dtype=float)
+        basis = [term(n, m, points[:, 0], points[:, 1]) for n, m in self.nm]
         value: Doubles = np.column_stack(basis) @ self.coefficients_waves
         return value
 
@@ -108,15 +108,15 @@ def fit_zernike(
         raise InputError(f'unknown order "{order}"; noll or fringe is wanted')
     if not 1 <= terms <= 231:
         raise InputError("terms must lie between 1 and 231")
-    places, values = np.asarray(pupil, dtype=float), np.asarray(opd_waves, dtype=float)
+    points, values = np.asarray(pupil, dtype=float), np.asarray(opd_waves, dtype=float)
     share = np.ones(len(values)) if weights is None else np.asarray(weights, dtype=float)
-    if places.shape != (len(values), 2) or share.shape != values.shape:
+    if points.shape != (len(values), 2) or share.shape != values.shape:
         raise InputError("pupil must be of shape (N, 2), opd_waves and weights of shape (N,)")
     nm = tuple((noll if order == "noll" else fringe)(j) for j in range(1, terms + 1))
     there = np.isfinite(values)
     if there.sum() < terms:
         raise InputError(f"{terms} terms are to be fitted to {there.sum()} rays; more rays, or fewer terms, are wanted")
-    x, y = places[there].T
+    x, y = points[there].T
     basis = np.column_stack([term(n, m, x, y) for n, m in nm])
     root = np.sqrt(share[there])
     coefficients, _, rank, _ = np.linalg.lstsq(root[:, None] * basis, root * values[there], rcond=None)
@@ -126,7 +126,7 @@ def fit_zernike(
     residuals[there] = values[there] - basis @ coefficients
     left = float(np.sqrt(np.sum(share[there] * residuals[there] ** 2) / np.sum(share[there])))
     names = tuple(name_of(*pair) for pair in nm)
-    return ZernikeFit(order, np.arange(1, terms + 1), nm, names, coefficients, left, places, residuals)
+    return ZernikeFit(order, np.arange(1, terms + 1), nm, names, coefficients, left, points, residuals)
 
 
 def zernike_fit(
@@ -151,10 +151,10 @@ def plot_zernike_fit(fit: ZernikeFit, axes: Axes) -> None:
     room = max(int(height_pt / (1.15 * style.tick_size_pt())), 1)
     size = np.abs(fit.coefficients_waves[1:])
     chosen = np.sort(1 + np.argsort(-size)[:room])
-    places = np.arange(len(chosen))
-    axes.barh(places, fit.coefficients_waves[chosen], color=style.BLUE, linewidth=0)
+    positions = np.arange(len(chosen))
+    axes.barh(positions, fit.coefficients_waves[chosen], color=style.BLUE, linewidth=0)
     style.zero_lines(axes, y=False)
-    axes.set_yticks(places, [f"{fit.names[k]}  {fit.indices[k]}" for k in chosen])
+    axes.set_yticks(positions, [f"{fit.names[k]}  {fit.indices[k]}" for k in chosen])
     axes.set_ylim(len(chosen) - 0.4, -0.6)
     axes.tick_params(axis="y", length=0)
     axes.set_ylabel(f"{'Noll' if fit.order == 'noll' else 'fringe'} index")

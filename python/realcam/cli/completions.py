@@ -1,4 +1,4 @@
-"""What a shell completes. Where nothing is said here it completes names of files."""
+"""Shell completion of arguments and options. All others are completed as names of files."""
 
 from __future__ import annotations
 

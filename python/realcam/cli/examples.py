@@ -1,4 +1,4 @@
-"""What `--help` shows at its end: a line or some to start from, for each command that is Python."""
+"""Example command lines at the end of `--help`, for each command in Python."""
 
 from __future__ import annotations
 

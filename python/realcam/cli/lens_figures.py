@@ -14,7 +14,7 @@ Rows = list[tuple[str, str]]
 
 
 def photo_rows(figures: PhotographicFigures) -> Rows:
-    """What `lens photo` prints."""
+    """Rows of the table that `lens photo` prints."""
     f, dof, breath = figures, figures.depth_of_field, figures.breathing
     formula, real = "  by formula", "  by real rays"
     rows: Rows = [
@@ -61,7 +61,7 @@ def photo_rows(figures: PhotographicFigures) -> Rows:
 
 
 def summary_rows(summary: LensSummary) -> Rows:
-    """What `lens compare` prints of one lens; the same rows of every lens."""
+    """Column of the table that `lens compare` prints, with the same rows for every lens."""
     f, dof = summary.figures, summary.figures.depth_of_field
     rows: Rows = [
         ("focus", _metres(f.focus_distance_m)),
@@ -78,19 +78,19 @@ def summary_rows(summary: LensSummary) -> Rows:
         ("hyperfocal, rays", _metres(dof.real_hyperfocal_m)),
         ("hyperfocal, formula", _metres(dof.formula_hyperfocal_m)),
     ]
-    for place in summary.fields:
-        share, angle_deg = place.field.share, place.field.angle_deg
+    for figures in summary.fields:
+        share, angle_deg = figures.field.share, figures.field.angle_deg
         where = f"{number_text(angle_deg, 3)}°" if share is None else f"{share:g}"
         rows.append(
             (
                 f"RMS spot at {where}",
-                f"{number_text(place.rms_spot_radius_um, 3)} um ({number_text(place.field.film_height_mm, 3)} mm)",
+                f"{number_text(figures.rms_spot_radius_um, 3)} um ({number_text(figures.field.film_height_mm, 3)} mm)",
             )
         )
-        if place.mtf_tangential is None or place.mtf_sagittal is None:
+        if figures.mtf_tangential is None or figures.mtf_sagittal is None:
             continue
         for k, frequency in enumerate(summary.mtf_frequencies_per_mm):
-            both = f"{place.mtf_tangential[k]:.2f} tangential, {place.mtf_sagittal[k]:.2f} sagittal"
+            both = f"{figures.mtf_tangential[k]:.2f} tangential, {figures.mtf_sagittal[k]:.2f} sagittal"
             rows.append((f"  MTF at {frequency:g}/mm", both))
     return rows
 

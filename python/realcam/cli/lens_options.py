@@ -148,7 +148,7 @@ class Look:
     ] = 1600
 
     def arguments(self) -> dict[str, Any]:
-        """As the functions of realcam.drawing have them."""
+        """Keyword arguments for the functions of realcam.drawing."""
         return {
             "wavelengths_nm": numbers(self.wavelengths, "--wavelengths"),
             "radius_colours": self.radius_colours,

@@ -30,7 +30,7 @@ COLOURS_NM = (486.1327, 587.5618, 656.2725)
 
 @dataclass(frozen=True)
 class Bounds:
-    """Of what is varied, mm."""
+    """Bounds of the variables, mm."""
 
     least_radius: Annotated[float, typer.Option(metavar="MM", help="No radius becomes smaller", min=0)] = 0.0
     least_thickness: Annotated[float, typer.Option(metavar="MM", help="No thickness of air becomes smaller")] = 0.1
@@ -45,7 +45,7 @@ class Bounds:
     ] = None
 
     def least_thickness_of(self, lens: Lens, surface: int) -> float:
-        """Of what lies behind a surface."""
+        """Lower bound of the thickness behind a surface."""
         behind = lens.surfaces[surface]
         is_glass = behind.type == "refracting" and behind.material.index(lens.wavelength_nm) > 1.1
         return (

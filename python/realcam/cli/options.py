@@ -1,4 +1,4 @@
-"""What several commands read from the command line in the same way."""
+"""Options and arguments that several commands share."""
 
 from __future__ import annotations
 
@@ -58,7 +58,10 @@ def frame_numbers(text: str) -> range:
 
 
 def known_word(word: str, known: Iterable[str], what: str) -> str:
-    """The word as it is listed; American spellings are known. Raises InputError, with similar words, for any other."""
+    """Returns the listed spelling of a word; American spellings are known.
+
+    Raises InputError, with similar words, if the word is not listed.
+    """
     names = list(known)
     if (listed := spelled(word, names)) in names:
         return listed
@@ -83,7 +86,7 @@ def glasses(texts: Sequence[str]) -> dict[str, tuple[float, float] | float | str
 
 
 def advice_on(error: LensFileError) -> str:
-    """What option settles it, as the end of its message; empty where none does."""
+    """Names the option that avoids the error, as the end of the error's message; empty if there is no such option."""
     if error.can_be_forced:
         return "; --force reads it all the same"
     if not error.glass:

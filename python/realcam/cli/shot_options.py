@@ -40,5 +40,5 @@ def load_shot(path: Path, options: Any, device: str) -> Shot:
 
 
 def words_of(options: Any) -> dict[str, str]:
-    """By their keys, those that are given."""
+    """Returns the options that were given, by their keys."""
     return {key: word for key, word in asdict(options).items() if word is not None}

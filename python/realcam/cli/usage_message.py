@@ -1,4 +1,4 @@
-"""What is wrong with a command line, in the words that the commands in C++ have for it."""
+"""Messages about mistakes in a command line, in the words of the commands in C++."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def _grammar_of(command: Any, context: Any) -> Grammar:
 
 
 def usage_message(error: Any) -> str:
-    """What is wrong, what was meant, and where the options stand. `error`: a UsageError of click."""
+    """Returns the message of click's UsageError: the mistake, what was meant, and where the options are listed."""
     context = error.ctx
     commands = getattr(context.command, "commands", None) if context else None
     where = f"{context.command_path if context else 'realcam'} --help lists the {'commands' if commands else 'options'}"

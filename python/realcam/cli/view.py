@@ -13,7 +13,7 @@ from . import options
 from .grouped_options import grouped
 from .shot_options import shot_options, words_of
 
-# Only the camera's options, all of which a shot saved by the bench contains.
+# Only the camera's options: a shot saved by the bench contains them all.
 ShotOptions = shot_options("ShotOptions", panels=("Camera",))
 
 

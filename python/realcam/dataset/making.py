@@ -83,7 +83,7 @@ def _work_with(
         if progress is not None and progress(1 - len(target.not_done(left)) / count) is False:
             raise InputError(f"{target.path}: stopped; start again to go on")
 
-    do_all(wanted, submit, window=_WINDOW, report=report, place=str(target.path), noun="picture")
+    do_all(wanted, submit, window=_WINDOW, report=report, location=str(target.path), noun="picture")
 
 
 def _make_one(recipe: Recipe, folder: str, number: int, device: str, threads: int) -> Outcome:

@@ -70,10 +70,10 @@ def random_scene(recipe: Recipe, rng: np.random.Generator) -> RandomScene:
     middles: list[Array] = []
     sizes = rng.uniform(0.15, 0.5, rng.integers(recipe.objects[0], recipe.objects[1] + 1))
     for i, size in enumerate(sizes):
-        place = np.zeros(3)
+        position = np.zeros(3)
         for _ in range(100):  # attempts to find free space; if all fail, objects overlap
-            place[[0, 2]] = rng.uniform(-0.9, 0.9, 2)
-            apart = np.array([np.hypot(*(place - middle)[[0, 2]]) for middle in middles])
+            position[[0, 2]] = rng.uniform(-0.9, 0.9, 2)
+            apart = np.array([np.hypot(*(position - middle)[[0, 2]]) for middle in middles])
             if (apart > 0.75 * (size + sizes[: len(apart)])).all():
                 break
         category = recipe.categories[rng.integers(len(recipe.categories))]
@@ -84,7 +84,7 @@ def random_scene(recipe: Recipe, rng: np.random.Generator) -> RandomScene:
             color = Material(diffuse=tuple(rng.uniform(0.1, 0.9, 3)), name=f"{category} {i}")
             body, own = Scene.from_arrays(vertices, triangles, materials=[color]), np.eye(4)
         name = f"{category} {i}"
-        matrix = _standing(place, float(size), rng.uniform(0, 2 * np.pi)) @ own
+        matrix = _standing(position, float(size), rng.uniform(0, 2 * np.pi)) @ own
         scene = scene.with_instance(body, matrix, name=name)
         speed, heading = rng.uniform(*recipe.speed_m_s), rng.uniform(0, 2 * np.pi)
         if speed > 0:
@@ -92,7 +92,7 @@ def random_scene(recipe: Recipe, rng: np.random.Generator) -> RandomScene:
             there[[0, 2], 3] += MOVES_FOR_S * speed * np.array([np.cos(heading), np.sin(heading)])
             scene = scene.moved(name, np.stack([matrix, there]), (0.0, MOVES_FOR_S))
         categories.append(category)
-        middles.append(place + np.array([0, size / 2, 0]))
+        middles.append(position + np.array([0, size / 2, 0]))
     corners = None
     if recipe.board:
         board, inner = _board(recipe.board[0], recipe.board[1], recipe.square_m)
@@ -108,9 +108,9 @@ def random_scene(recipe: Recipe, rng: np.random.Generator) -> RandomScene:
     return RandomScene(scene, categories, np.array(middles), corners)
 
 
-def _standing(place: Array, size: float, turn: float) -> Array:
+def _standing(position: Array, size: float, turn: float) -> Array:
     c, s = size * np.cos(turn), size * np.sin(turn)
-    return np.array([[c, 0, s, place[0]], [0, size, 0, place[1]], [-s, 0, c, place[2]], [0, 0, 0, 1]])
+    return np.array([[c, 0, s, position[0]], [0, size, 0, position[1]], [-s, 0, c, position[2]], [0, 0, 0, 1]])
 
 
 def _board(columns: int, rows: int, square_m: float) -> tuple[Scene, Array]:
@@ -155,10 +155,10 @@ def _view_from(distance: float, rng: np.random.Generator) -> tuple[Array, Array]
     return target + distance * away, target
 
 
-def _is_in_a_body(seen: RandomScene, place: Array) -> bool:
+def _is_in_a_body(seen: RandomScene, position: Array) -> bool:
     """True if a point lies within 0.05 m of an object's bounding sphere (that of a cube of the object's size)."""
     sizes = 2 * seen.middles_m[:, 1]  # the objects stand on the floor
-    return bool((np.linalg.norm(seen.middles_m - place, axis=1) < 0.87 * sizes + 0.05).any())
+    return bool((np.linalg.norm(seen.middles_m - position, axis=1) < 0.87 * sizes + 0.05).any())
 
 
 def random_camera(recipe: Recipe, seen: RandomScene, rng: np.random.Generator) -> Camera:

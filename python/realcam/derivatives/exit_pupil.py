@@ -46,7 +46,7 @@ class ChiefRayNeighbours:
         self._steps = reach / np.linalg.norm(on_stop, axis=0)
         self.stop = self._derivatives(2, **to_stop)
         film = self._derivatives(6, frame="film", rims=False)
-        self.place, self.direction = film[:3], film[3:]
+        self.position, self.direction = film[:3], film[3:]
 
     def _traced(self, rays: Doubles, **options: Any) -> tuple[Doubles, Doubles]:
         """Derivatives of rays by the variables, and by the rays' starts."""
@@ -91,10 +91,10 @@ def at_film(rays: ChiefRayNeighbours, origin: DualArray, direction: DualArray) -
     x = [z[2] / width, none, -z[0] / width]
     y = [-(z[0] * z[1]) / width, width, -(z[1] * z[2]) / width]
     way = -origin[2] / direction[2]
-    places = [rays.place[i] + way * rays.direction[i] for i in range(3)]
+    positions = [rays.position[i] + way * rays.direction[i] for i in range(3)]
     rows = [
         axis[0] * part[0] + axis[1] * part[1] + axis[2] * part[2]
-        for part in (places, [rays.direction[i] for i in range(3)])
+        for part in (positions, [rays.direction[i] for i in range(3)])
         for axis in (x, y)
     ]
     return DualArray(np.array([row.value for row in rows]), np.array([row.by for row in rows])), index

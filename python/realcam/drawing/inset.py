@@ -43,8 +43,8 @@ def draw_inset(axes: Axes, section: CrossSection, field: Field, style: Style, in
     half_z, half_y = (0.5 * inches / (inches_per_mm * magnification) for inches in (width, height))
     for bundle in bundles:
         z_part, y_part = section.drawn(bundle.directions_at_film).T
-        places = section.drawn(bundle.paths_mm)[:, -1, 1]
-        for y, slope in zip(places - middle, y_part / z_part, strict=True):
+        film_heights = section.drawn(bundle.paths_mm)[:, -1, 1]
+        for y, slope in zip(film_heights - middle, y_part / z_part, strict=True):
             # Clipped to the frame here, because not every SVG viewer clips.
             z = np.clip((np.array([-half_y, half_y]) - y) / slope, -half_z, half_z) if slope else [-half_z, half_z]
             axes.plot(z, y + slope * np.asarray(z), color=ray_colour(section, bundle, theme), linewidth=0.7)

@@ -18,36 +18,38 @@ def draw_marks(section: CrossSection, axes: Axes, style: Style, shift: float) ->
     shown = [mark for mark in section.marks if low <= mark.z_mm + shift <= high]
     outside = [mark for mark in section.marks if mark not in shown]
     tall = 1.06 * max(face.parts[-1][-1, 1] for face in section.faces)
-    places = []
+    positions = []
     for mark in shown:
         z = mark.z_mm + shift
         if mark.kind == "pupil":
             axes.plot([z] * 2, [-mark.semi_diameter_mm, mark.semi_diameter_mm], color=theme.text, linewidth=1,
                       linestyle=(0, (4, 2)), zorder=6, marker="_", markersize=7)  # fmt: skip
-            places.append((z, mark.semi_diameter_mm, 4))
+            positions.append((z, mark.semi_diameter_mm, 4))
         elif mark.kind == "principal plane":
             axes.plot([z] * 2, [-tall, tall], color=theme.text, linewidth=0.9, linestyle=(0, (6, 2, 1, 2)), zorder=6)
-            places.append((z, -tall, -3))
+            positions.append((z, -tall, -3))
         else:
             axes.plot([z], [0], "o", color=theme.text, markersize=4, zorder=6)
-            places.append((z, 0, -5))
-    for mark, place, side in zip(shown, places, _sides(axes, style, places), strict=True):
-        _label(axes, mark, *place, side, style)
+            positions.append((z, 0, -5))
+    for mark, position, side in zip(shown, positions, _sides(axes, style, positions), strict=True):
+        _label(axes, mark, *position, side, style)
     if outside:
         text = "outside: " + ", ".join(f"{mark.label} at {mark.z_mm:.4g} mm" for mark in outside)
         axes.text(0.01, 0.01, text, transform=axes.transAxes, fontsize=0.85 * style.font_pt, color=theme.text, zorder=7)
 
 
-def _sides(axes: Axes, style: Style, places: list[tuple[float, float, int]]) -> list[str]:
+def _sides(axes: Axes, style: Style, positions: list[tuple[float, float, int]]) -> list[str]:
     """Horizontal alignment of labels: of two that would overlap, one goes to the left and the other to the right."""
     axes.apply_aspect()  # changes the axes' limits, on which the positions depend
     figure = axes.get_figure()
     assert figure is not None
-    points = 72 / figure.dpi * axes.transData.transform(np.array([place[:2] for place in places]).reshape(-1, 2))
-    sides = ["center"] * len(places)
-    for i, j in combinations(range(len(places)), 2):
+    points = (
+        72 / figure.dpi * axes.transData.transform(np.array([position[:2] for position in positions]).reshape(-1, 2))
+    )
+    sides = ["center"] * len(positions)
+    for i, j in combinations(range(len(positions)), 2):
         z, y = points[j] - points[i]
-        if places[i][2] == places[j][2] and abs(z) < 2.2 * style.font_pt and abs(y) < 1.4 * style.font_pt:
+        if positions[i][2] == positions[j][2] and abs(z) < 2.2 * style.font_pt and abs(y) < 1.4 * style.font_pt:
             sides[i], sides[j] = ("right", "left") if z >= 0 else ("left", "right")
     return sides
 
@@ -89,14 +91,14 @@ def draw_focus_group(section: CrossSection, axes: Axes, style: Style, shift: flo
 def draw_crossings(section: CrossSection, axes: Axes, style: Style, shift: float) -> None:
     colour = style.theme.error
     lines = []
-    for crossing in section.crossings:
-        for zone in crossing.zones:
+    for overlap in section.overlaps:
+        for zone in overlap.zones:
             axes.fill(
                 zone[:, 0] + shift, zone[:, 1], facecolor=colour, edgecolor=colour, linewidth=1.2, alpha=0.75, zorder=8
             )
         lines.append(
-            f"error: surfaces {crossing.first + 1} and {crossing.second + 1} cross, by {crossing.depth_mm:.3g} mm at "
-            f"{crossing.radius_mm:.3g} mm from the axis"
+            f"error: surfaces {overlap.first + 1} and {overlap.second + 1} cross, by {overlap.depth_mm:.3g} mm at "
+            f"{overlap.radius_mm:.3g} mm from the axis"
         )
     if lines:
         axes.text(0.01, 0.99, "\n".join(lines), transform=axes.transAxes, ha="left", va="top", color=colour,

@@ -24,22 +24,23 @@ def do_all(
     *,
     window: int,
     report: Callable[[], None],
-    place: str,
+    location: str,
     noun: str,
 ) -> None:
     """Submits tasks to an executor until all are done, by this executor or by others.
 
     wanted: returns the tasks that can be done now, or None when all are done. submit: submits one task. window: the
-    largest number of tasks in flight. report: called about once a second; an exception from it ends the work. place,
-    noun: the folder and the word for a task, for messages. Raises InputError with the error of a task, or if a process
-    is lost.
+    largest number of tasks in flight. report: called about once a second; an exception from it ends the work.
+    location, noun: the folder and the word for a task, for messages.
+
+    Raises InputError with the error of a task, or if a process is lost.
     """
     given: dict[concurrent.futures.Future[Outcome], Task] = {}
     losses: dict[Task, int] = {}
 
     def lost(error: BaseException) -> str:
         words = str(error).strip().partition("\n")[0] or type(error).__name__
-        return f"{place}: a process of the executor was lost ({words:.200}); what is done stays, start again"
+        return f"{location}: a process of the executor was lost ({words:.200}); what is done stays, start again"
 
     next_report_s = 0.0
 

@@ -149,7 +149,7 @@ class Job:
         def submit(unit: Unit) -> concurrent.futures.Future[str]:
             return executor.submit(run_unit, folder, self._folder.id, unit, threads)
 
-        do_all(wanted, submit, window=_WINDOW, report=report, place=str(self.path), noun="unit")
+        do_all(wanted, submit, window=_WINDOW, report=report, location=str(self.path), noun="unit")
 
 
 class _Report:

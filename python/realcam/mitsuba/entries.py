@@ -33,7 +33,7 @@ class Entries:
         d = rays.directions[passed].astype(float)
         self.nearest_mm = NEAREST * float(np.linalg.norm(o, axis=1).max())
         closenesses = np.linspace(0, 1, 2 * CLOSENESSES + 1) / self.nearest_mm
-        seen = [places(o, d, closeness) for closeness in closenesses]
+        seen = [entry_coordinates(o, d, closeness) for closeness in closenesses]
         self.largest_half_tangent = 1.001 * float(max(half_tangent.max() for half_tangent, _, _ in seen))
         rows = [rectangles(seen[2 * k : 2 * k + 3], self.largest_half_tangent) for k in range(CLOSENESSES)]
         self.table = Table(np.concatenate(rows))
@@ -66,7 +66,9 @@ class Entries:
         return point, dr.select(is_seen, solid_angle, 0.0)
 
 
-def places(o: np.ndarray, d: np.ndarray, closeness_per_mm: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def entry_coordinates(
+    o: np.ndarray, d: np.ndarray, closeness_per_mm: float
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Coordinates of rays for the table at one inverse distance from the front vertex: tangents of half the angle to
     the axis of the scene points on the rays, and their intersections with the planes of Entries, along and across the
     meridional plane, mm."""

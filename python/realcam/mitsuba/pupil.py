@@ -35,9 +35,9 @@ class Pupil:
         is_off_axis = radius > 0
         cos = dr.select(is_off_axis, x / radius, 1.0)
         sin = dr.select(is_off_axis, y / radius, 0.0)
-        place = self.rows * (1 - dr.sqrt(dr.maximum(1 - radius / self.image_radius_mm, 0)))
-        row = mi.UInt32(dr.minimum(place, self.rows - 1))
-        share = place - row
+        position = self.rows * (1 - dr.sqrt(dr.maximum(1 - radius / self.image_radius_mm, 0)))
+        row = mi.UInt32(dr.minimum(position, self.rows - 1))
+        share = position - row
         near, far = self.nodes(row), self.nodes(row + 1)
         centre, half_width, half_height = (dr.lerp(a, b, share) for a, b in zip(near, far, strict=True))
 

@@ -96,7 +96,7 @@ class RealcamSensor(mi.Sensor):  # type: ignore[misc]
         for step in (mi.Vector2f(1 / columns, 0), mi.Vector2f(0, 1 / rows)):
             o_beside, d_beside, _, _, exists = self.leave_lens(position_sample + step, aperture_sample, variable)
             beside.append(dr.select(passed & exists, self.point_in_scene(o_beside), ray.o))
-            beside.append(dr.select(passed & exists, self.way_in_scene(d_beside), ray.d))
+            beside.append(dr.select(passed & exists, self.direction_in_scene(d_beside), ray.d))
         ray.o_x, ray.d_x, ray.o_y, ray.d_y = beside
         ray.has_differentials = True
         return ray, weight
@@ -124,7 +124,7 @@ class RealcamSensor(mi.Sensor):  # type: ignore[misc]
         way = sample_of.p - it.p
         sample_of.dist = dr.norm(way)
         sample_of.d = way / sample_of.dist
-        sample_of.n = self.way_in_scene(mi.Vector3f(0, 0, -1))
+        sample_of.n = self.direction_in_scene(mi.Vector3f(0, 0, -1))
         sample_of.uv = uv
         sample_of.time = it.time
         sample_of.pdf = dr.select(active, 1.0, 0.0)
@@ -150,7 +150,7 @@ class RealcamSensor(mi.Sensor):  # type: ignore[misc]
         ray.wavelengths, share, variable = self.drawn_wavelengths(wavelength_sample, active)
         o, d, weight, passed, _ = self.leave_lens(position_sample, aperture_sample, variable)
         ray.o = self.point_in_scene(dr.select(passed, o, mi.Point3f(0)))
-        ray.d = self.way_in_scene(dr.select(passed, d, mi.Vector3f(0, 0, -1)))
+        ray.d = self.direction_in_scene(dr.select(passed, d, mi.Vector3f(0, 0, -1)))
         ray.maxt = dr.select(passed, FARTHEST, 0.0)
         ray.time = time
         return share * dr.select(passed & active, weight * self.exposure_time_s, 0.0), passed, variable
@@ -181,12 +181,12 @@ class RealcamSensor(mi.Sensor):  # type: ignore[misc]
         y = (offset[1] + sample.y * crop[1]) / size[1] - 0.5
         return x * self.film_width_mm, y * self.film_height_mm
 
-    def pixel_of(self, place: Any) -> tuple[Any, Any]:
+    def pixel_of(self, film_point: Any) -> tuple[Any, Any]:
         """Returns the pixel coordinates of a film point from the corner of the crop window, and whether it lies
         inside."""
         size, crop, offset = self.film().size(), self.film().crop_size(), self.film().crop_offset()
-        u = (0.5 - place.x / self.film_width_mm) * size[0] - offset[0]
-        v = (0.5 + place.y / self.film_height_mm) * size[1] - offset[1]
+        u = (0.5 - film_point.x / self.film_width_mm) * size[0] - offset[0]
+        v = (0.5 + film_point.y / self.film_height_mm) * size[1] - offset[1]
         return mi.Point2f(u, v), (u >= 0) & (u < crop[0]) & (v >= 0) & (v < crop[1])
 
     def crop_area_mm2(self) -> Any:
@@ -197,7 +197,7 @@ class RealcamSensor(mi.Sensor):  # type: ignore[misc]
         local = mi.Point3f(-p.x, p.y, self.film_position_mm - p.z) / self.mm_per_unit
         return self.to_world @ local
 
-    def way_in_scene(self, d: Any) -> Any:
+    def direction_in_scene(self, d: Any) -> Any:
         return self.to_world @ mi.Vector3f(-d.x, d.y, -d.z)
 
     def point_in_lens(self, p: Any) -> Any:

@@ -151,14 +151,14 @@ def _asphere(lens: Lens, index: int, at: Doubles, way: Doubles) -> Asphere:
     steepness = _SLOPE_TOLERANCE * min(1, diagonal_mm / focal_mm)
     # Rows: sags, and their derivatives in t. dz/dr = dz/dt 4 r / rim^2, at most dz/dt 4 / rim.
     tolerance = np.array([[_HEIGHT_TOLERANCE * diagonal_mm], [steepness * rim_mm / 4]])
-    places = np.linspace(-1, 1, 401)
+    positions = np.linspace(-1, 1, 401)
 
     def fitted(degree: int) -> Chebyshev:
         fit: Chebyshev = Chebyshev.fit(_NODES, heights, degree, domain=[-1, 1])
         return fit
 
     def shape(height: Chebyshev) -> Doubles:
-        return np.array([height(places), height.deriv()(places)])
+        return np.array([height(positions), height.deriv()(positions)])
 
     finest = fitted(_MOST_TERMS)
     heights_fit = (fitted(degree) for degree in range(2, _MOST_TERMS))

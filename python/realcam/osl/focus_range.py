@@ -50,11 +50,11 @@ def focus_range(lens: Lens) -> FocusRange:
     if math.isfinite(lens.focus_distance_m):
         nearest_m = min(nearest_m, lens.focus_distance_m)
     unfitted = FocusRange(wide, nearest_m, start_m, {})
-    places = 0.5 + 0.5 * chebyshev.chebpts1(_SAMPLES)
-    gaps = np.array([gaps_of(unfitted.lens_at(place)) for place in places])
+    positions = 0.5 + 0.5 * chebyshev.chebpts1(_SAMPLES)
+    gaps = np.array([gaps_of(unfitted.lens_at(position)) for position in positions])
     moving = np.flatnonzero(np.ptp(gaps, axis=0) > 1e-9)
     tolerance_mm = _TOLERANCE * math.hypot(*lens.film_mm)
-    fits = {int(i): _fitted(places, gaps[:, i], tolerance_mm) for i in moving}
+    fits = {int(i): _fitted(positions, gaps[:, i], tolerance_mm) for i in moving}
     return FocusRange(wide, nearest_m, start_m, fits)
 
 
@@ -77,10 +77,10 @@ def _nearest_m(lens: Lens, start_m: float) -> float:
     raise InputError(f'lens "{lens.name}" cannot be focused on anything near')
 
 
-def _fitted(places: np.ndarray, values: np.ndarray, tolerance: float) -> Polynomial:
+def _fitted(positions: np.ndarray, values: np.ndarray, tolerance: float) -> Polynomial:
     """Polynomial of the lowest degree that is within the tolerance."""
     for degree in range(1, _MOST_TERMS):
-        fit: Polynomial = Polynomial.fit(places, values, degree, domain=[0, 1], window=[0, 1])
-        if np.abs(fit(places) - values).max() < tolerance:
+        fit: Polynomial = Polynomial.fit(positions, values, degree, domain=[0, 1], window=[0, 1])
+        if np.abs(fit(positions) - values).max() < tolerance:
             break
     return fit

@@ -46,9 +46,9 @@ def squared_indices(lens: Lens, wavelengths_nm: Sequence[float]) -> list[list[fl
         return np.array(media_indices(lens, wavelength_nm), dtype=np.float64) ** 2
 
     own = at(lens.wavelength_nm)
-    places = colour_variable(lens, np.array(wavelengths_nm))
+    variables = colour_variable(lens, np.array(wavelengths_nm))
     values = np.array([at(wavelength_nm) for wavelength_nm in wavelengths_nm]) - own
-    powers = places[:, None] ** np.arange(1, 1 + _TERMS)
+    powers = variables[:, None] ** np.arange(1, 1 + _TERMS)
     rest = np.linalg.lstsq(powers, values, rcond=None)[0].T
     return [
         [float(constant), *map(float, terms)] if np.ptp(column) > 1e-7 else [float(constant)]

@@ -58,9 +58,9 @@ def pupil_table(focusing: FocusRange, colours: Mapping[float, float]) -> PupilTa
     cells = range(len(STOPS) - 1)
     for step in range(2 * FOCI - 1):
         parts = (*_QUARTERS, 1.0) if step % 2 == 0 else (1.0,)
-        places = [0.0, *(cell + part for cell in cells for part in parts)]
+        positions = [0.0, *(cell + part for cell in cells for part in parts)]
         light = [(wavelength_nm, colour * drifts[step]) for wavelength_nm, colour in colours.items()]
-        looks = _looks(focusing, step / (2 * FOCI - 2), places, radii_mm, light)
+        looks = _looks(focusing, step / (2 * FOCI - 2), positions, radii_mm, light)
         at_stops.append([looks[stop] for stop in range(len(STOPS))])
         if step % 2 == 0:
             between.append([[looks[cell + part] for part in _QUARTERS] for cell in cells])
@@ -119,18 +119,18 @@ def _reach_mm(focusing: FocusRange, wavelengths_nm: Iterable[float]) -> float:
 
 
 def _looks(
-    focusing: FocusRange, focus: float, places: Sequence[float], radii_mm: Doubles, light: Light
+    focusing: FocusRange, focus: float, positions: Sequence[float], radii_mm: Doubles, light: Light
 ) -> dict[float, Outlines]:
     """Outlines by position in the list of stops (fractional between them), widest first: each lies within the
     previous."""
     lens = focusing.lens_at(focus)
     boxes, rounds = rear_boxes(lens, radii_mm), 3
     looks = {}
-    for place in places:
-        stop = float(np.interp(place, range(len(STOPS)), STOPS))
+    for position in positions:
+        stop = float(np.interp(position, range(len(STOPS)), STOPS))
         closed = lens.with_surface(lens.stop_index, clear_semi_diameter_mm=stop * lens.stop_semi_diameter_mm)
-        looks[place] = outlines(closed, radii_mm, boxes, light, rounds)
-        boxes, rounds = looks[place].boxes, 1
+        looks[position] = outlines(closed, radii_mm, boxes, light, rounds)
+        boxes, rounds = looks[position].boxes, 1
     return looks
 
 

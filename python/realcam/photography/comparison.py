@@ -51,18 +51,18 @@ def lens_summary(
     mtf_frequencies_per_mm: if empty, omits the MTF, which takes a second for large aberrations. Raises InputError.
     """
     frequencies = tuple(mtf_frequencies_per_mm)
-    places = []
+    field_figures = []
     for field in fields_at(lens, shares):
         spot = lens.spot(field.angle_deg, pattern="rings", samples=12)
         tangential = sagittal = None
         if frequencies:
             _, tangential, sagittal = lens.psf(field.angle_deg, centre="centroid").mtf(np.array(frequencies))
-        places.append(FieldFigures(field, 1000 * spot.rms_radius_mm, tangential, sagittal))
+        field_figures.append(FieldFigures(field, 1000 * spot.rms_radius_mm, tangential, sagittal))
     return LensSummary(
         lens,
         photographic_figures(lens, circle_of_confusion_mm=circle_of_confusion_mm),
         lens.film_position_mm - min(lens.vertices_mm),
         len(elements_of(Cut(lens))),
-        tuple(places),
+        tuple(field_figures),
         frequencies,
     )

@@ -118,10 +118,10 @@ def _sharpest(excess: Callable[[float], float], centre: float, step: float) -> f
 
     Focus is set with the stop open, so a stopped-down lens may be sharpest elsewhere (focus shift).
     """
-    places = [max(centre + k * step, 0.0) for k in (0, 1, -1, 2, -2, 3, -3, 4, -4, 6, -6, 8, -8)]
-    blur = {place: excess(place) for place in places}
-    found = {place: value for place, value in blur.items() if value <= 0}
-    return min(found, key=lambda place: found[place]) if found else None
+    positions = [max(centre + k * step, 0.0) for k in (0, 1, -1, 2, -2, 3, -3, 4, -4, 6, -6, 8, -8)]
+    blur = {position: excess(position) for position in positions}
+    found = {position: value for position, value in blur.items() if value <= 0}
+    return min(found, key=lambda position: found[position]) if found else None
 
 
 def _edge(excess: Callable[[float], float], sharp: float, step: float) -> float:

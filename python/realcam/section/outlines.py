@@ -50,7 +50,7 @@ class Blocker(ShortText):
 
 
 @dataclass(frozen=True, repr=False)
-class Crossing(ShortText):
+class Overlap(ShortText):
     """Overlap of two faces, which makes the lens impossible to manufacture."""
 
     first: int
@@ -124,11 +124,11 @@ def blockers_of(cut: Cut) -> tuple[Blocker, ...]:
     return tuple(found)
 
 
-def crossings_of(lens: Lens) -> tuple[Crossing, ...]:
-    """Faces that overlap inside their rims, which is possible only with allow_crossing."""
+def overlaps_of(lens: Lens) -> tuple[Overlap, ...]:
+    """Faces that overlap inside their rims, which is possible only with allow_overlap."""
     return tuple(
-        Crossing(first, second, depth, radius, _zones(lens, first, second, radius))
-        for first, second, depth, radius in lens.crossings()
+        Overlap(first, second, depth, radius, _zones(lens, first, second, radius))
+        for first, second, depth, radius in lens.overlaps()
     )
 
 

@@ -86,10 +86,10 @@ def _aimed(
 ) -> tuple[Array, Array]:
     pupil = np.zeros((len(_FAN), 2))
     pupil[:, cut.axis] = _FAN
-    place: FieldPosition = field.angle_deg
+    position: FieldPosition = field.angle_deg
     if not cut.lens.is_rotational or cut.axis == 0:
-        place = (field.film_height_mm, 0.0) if cut.axis == 0 else (0.0, field.film_height_mm)
-    named = field_arguments(place)
+        position = (field.film_height_mm, 0.0) if cut.axis == 0 else (0.0, field.film_height_mm)
+    named = field_arguments(position)
     rays = cut.lens.aim(pupil, object_distance_m=object_distance_m, wavelength_nm=wavelength_nm, **named)
     passing = np.flatnonzero(rays.status == RayStatus.OK)
     chosen = passing[_spread(len(passing), count)]

@@ -11,7 +11,7 @@ from ..fields import Field, fields_along, fields_at, fields_of_angles
 from ..short_text import ShortText
 from .cut import PLANES, Cut, Points
 from .marks import FocusGroup, Mark, focus_group_of, marks_of
-from .outlines import Blocker, Crossing, Element, Face, blockers_of, crossings_of, elements_of, faces_of
+from .outlines import Blocker, Element, Face, Overlap, blockers_of, elements_of, faces_of, overlaps_of
 from .ray_paths import RayBundle, bundles_from_film, bundles_from_object
 
 
@@ -24,7 +24,7 @@ class CrossSection(ShortText):
     elements: tuple[Element, ...]
     faces: tuple[Face, ...]
     blockers: tuple[Blocker, ...]
-    crossings: tuple[Crossing, ...]
+    overlaps: tuple[Overlap, ...]
     marks: tuple[Mark, ...]
     focus_group: FocusGroup | None
     film_z_mm: float
@@ -85,7 +85,7 @@ def cross_section(
     if rays_from == "film" and fields_deg is not None:
         raise InputError("field angles are of rays from the object; rays from the film take shares of its corner")
     wavelengths = [lens.wavelength_nm] if wavelengths_nm is None else list(dict.fromkeys(wavelengths_nm))
-    places: tuple[Field, ...] = ()
+    field_points: tuple[Field, ...] = ()
     bundles: tuple[RayBundle, ...] = ()
     if rays > 0:
         span = lens.film_position_mm - min(lens.vertices_mm)
@@ -95,27 +95,27 @@ def cross_section(
                     "rays from the film and field angles are drawn of a centred lens of revolution, in the plane yz; "
                     "rays from the object to shares of the film's corner are wanted"
                 )
-            places = fields_along(lens, fields, cut.axis)
+            field_points = fields_along(lens, fields, cut.axis)
         elif fields_deg is not None:
-            places = fields_of_angles(lens, fields_deg, object_distance_m)
+            field_points = fields_of_angles(lens, fields_deg, object_distance_m)
         else:
-            places = fields_at(lens, fields, object_distance_m)
+            field_points = fields_at(lens, fields, object_distance_m)
         if rays_from == "object":
-            bundles = bundles_from_object(cut, places, wavelengths, rays, 0.25 * span, object_distance_m)
+            bundles = bundles_from_object(cut, field_points, wavelengths, rays, 0.25 * span, object_distance_m)
         else:
-            bundles = bundles_from_film(lens, places, wavelengths, rays, 0.25 * span)
+            bundles = bundles_from_film(lens, field_points, wavelengths, rays, 0.25 * span)
     return CrossSection(
         lens,
         elements_of(cut),
         faces_of(cut),
         blockers_of(cut),
-        crossings_of(lens) if cut.is_in_place else (),
+        overlaps_of(lens) if cut.is_in_place else (),
         marks_of(lens) if cut.is_in_place else (),
         focus_group_of(lens),
         lens.film_position_mm,
         0.5 * math.hypot(*lens.film_mm),
         cut.film,
         plane,
-        places,
+        field_points,
         bundles,
     )

@@ -48,16 +48,16 @@ def plot_distribution(study: ToleranceStudy, name: str, axes: Axes) -> None:
 def plot_fields(study: ToleranceStudy, axes: Axes) -> None:
     """Plots for each field the interquartile and the 5 to 95 % range of the MTF over the copies."""
     values = np.nan_to_num(study.figures.mtf[..., study.main]).mean(2)
-    places = np.arange(values.shape[1])
+    positions = np.arange(values.shape[1])
     low, quarter, middle, three, high = np.quantile(values, [0.05, 0.25, 0.5, 0.75, 0.95], axis=0)
-    axes.vlines(places, low, high, color=style.BLUE, linewidth=1)
-    axes.vlines(places, quarter, three, color=style.BLUE, linewidth=5)
-    axes.plot(places, middle, "_", color=style.text_colour(), markersize=9, label="median")
+    axes.vlines(positions, low, high, color=style.BLUE, linewidth=1)
+    axes.vlines(positions, quarter, three, color=style.BLUE, linewidth=5)
+    axes.plot(positions, middle, "_", color=style.text_colour(), markersize=9, label="median")
     axes.plot(
-        places, np.nan_to_num(study.nominal.mtf[0, ..., study.main]).mean(1), "x", color=style.RED, label="as drawn"
+        positions, np.nan_to_num(study.nominal.mtf[0, ..., study.main]).mean(1), "x", color=style.RED, label="as drawn"
     )
-    axes.set_xticks(places, [f"{x:.3g}°, {y:.3g}°" for x, y in study.fields_deg])
-    axes.set_xlim(-0.5, len(places) - 0.5)
+    axes.set_xticks(positions, [f"{x:.3g}°, {y:.3g}°" for x, y in study.fields_deg])
+    axes.set_xlim(-0.5, len(positions) - 0.5)
     axes.set_ylim(0, None)
     axes.set_ylabel(f"MTF at {study.frequencies_per_mm[study.main]:.4g}/mm")
     axes.set_title("Fields (x, y)")
@@ -66,9 +66,9 @@ def plot_fields(study: ToleranceStudy, axes: Axes) -> None:
 
 def plot_offenders(offenders: list[Sensitivity], axes: Axes) -> None:
     """Plots the loss of mean MTF of each tolerance at its worse limit, the worst offender at the top."""
-    places = np.arange(len(offenders))[::-1]
-    axes.barh(places, [offender.loss for offender in offenders], color=style.RED, height=0.65)
-    axes.set_yticks(places, [with_limit(offender) for offender in offenders])
+    positions = np.arange(len(offenders))[::-1]
+    axes.barh(positions, [offender.loss for offender in offenders], color=style.RED, height=0.65)
+    axes.set_yticks(positions, [with_limit(offender) for offender in offenders])
     axes.axvline(0, color=style.GREY, linewidth=0.6)
     axes.set_xlabel("mean MTF lost")
     axes.set_title("Worst offenders")
@@ -87,6 +87,6 @@ def study_figure(study: ToleranceStudy, offenders: list[Sensitivity]) -> Figure:
     plot_yield(study, figure.add_subplot(rows[0, 0]))
     plot_fields(study, figure.add_subplot(rows[0, 1]))
     plot_offenders(offenders, figure.add_subplot(rows[1, :]))
-    for place, name in enumerate(("spot_mm", "focal_length_mm")):
-        plot_distribution(study, name, figure.add_subplot(rows[2, place]))
+    for column, name in enumerate(("spot_mm", "focal_length_mm")):
+        plot_distribution(study, name, figure.add_subplot(rows[2, column]))
     return figure

@@ -132,13 +132,13 @@ class Tolerances:
                     _check_limit(field.name, limit, f" of surface {first + 1}")
             else:
                 _check_limit(field.name, limits, "")
-                given = dict.fromkeys(self._places(lens, field.name), limits)
-            found += [Tolerance(field.name, *place, float(limit)) for place, limit in given.items() if limit > 0]
+                given = dict.fromkeys(self._surfaces(lens, field.name), limits)
+            found += [Tolerance(field.name, *surfaces, float(limit)) for surfaces, limit in given.items() if limit > 0]
         if not found:
             raise InputError("there is no tolerance: at least one above 0 is wanted")
         return found
 
-    def _places(self, lens: Lens, kind: str) -> Iterator[tuple[int, int]]:
+    def _surfaces(self, lens: Lens, kind: str) -> Iterator[tuple[int, int]]:
         """(first, last) surfaces to which a number for all surfaces applies."""
         if kind.startswith("element"):
             yield from elements_of(lens)

@@ -55,7 +55,7 @@ def with_plate(lens: Lens, index: int) -> Lens:
     """
     surfaces = lens.surfaces
     if not 0 <= index <= len(surfaces):
-        raise InputError(f"there is no place {index + 1} in a lens of {len(surfaces)} surfaces")
+        raise InputError(f"there is no position {index + 1} in a lens of {len(surfaces)} surfaces")
     if index == 0:
         rim = surfaces[0].clear_semi_diameter_mm
         back = Surface(thickness_mm=0.1 * rim, clear_semi_diameter_mm=rim)
@@ -65,11 +65,11 @@ def with_plate(lens: Lens, index: int) -> Lens:
         raise InputError(f"there is no room before surface {index + 1}, which the one before it touches")
     medium = next((s.material for s in surfaces[index - 1 :: -1] if s.type == "refracting"), None)
     if medium is not None and medium.index(lens.wavelength_nm) != 1:
-        place = 0.5 * gap.narrowest
-        return lens.inserted(index, [gap.bent(place, 1, medium)], gap_mm=place * gap.length_mm)
-    place, end, face = gap.flat_plate() or (gap.narrowest / 3, 2 * gap.narrowest / 3, gap.bent)
+        start = 0.5 * gap.narrowest
+        return lens.inserted(index, [gap.bent(start, 1, medium)], gap_mm=start * gap.length_mm)
+    start, end, face = gap.flat_plate() or (gap.narrowest / 3, 2 * gap.narrowest / 3, gap.bent)
     glass = Glass.named(_PLATE_GLASS)
-    return lens.inserted(index, [face(place, end, glass), face(end, 1, None)], gap_mm=place * gap.length_mm)
+    return lens.inserted(index, [face(start, end, glass), face(end, 1, None)], gap_mm=start * gap.length_mm)
 
 
 @dataclass(frozen=True)
@@ -104,17 +104,17 @@ class _Gap:
     def narrowest(self) -> float:
         return min(end - start for start, end in self._ends)
 
-    def bent(self, place: float, end: float, material: Glass | None) -> Surface:
+    def bent(self, start: float, end: float, material: Glass | None) -> Surface:
         """Returns a face with the shape of the front surface, which fits anywhere within `narrowest` behind it."""
-        return self.flat(place, end, material).replace(
+        return self.flat(start, end, material).replace(
             radius_of_curvature_mm=self.front.radius_of_curvature_mm,
             conic=self.front.conic,
             aspheric_coefficients=self.front.aspheric_coefficients,
         )
 
-    def flat(self, place: float, end: float, material: Glass | None) -> Surface:
+    def flat(self, start: float, end: float, material: Glass | None) -> Surface:
         return Surface(
-            thickness_mm=(end - place) * self.length_mm, material=material, clear_semi_diameter_mm=self.rim_mm
+            thickness_mm=(end - start) * self.length_mm, material=material, clear_semi_diameter_mm=self.rim_mm
         )
 
     def flat_plate(self) -> tuple[float, float, Callable[[float, float, Glass | None], Surface]] | None:

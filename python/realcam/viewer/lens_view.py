@@ -35,7 +35,7 @@ def lens_view(lens: Lens, plane: str = "yz") -> dict[str, Any]:
     }
 
 
-def place_of(u: float, v: float, film: Film) -> tuple[float, float]:
+def film_point(u: float, v: float, film: Film) -> tuple[float, float]:
     """Film point (x, y) in mm from the lens's axis of a point u, v of the picture; the image is upside down."""
     right, up = film.shift_mm
     return (0.5 - u) * film.width_mm - right, (v - 0.5) * film.height_mm - up
@@ -43,15 +43,15 @@ def place_of(u: float, v: float, film: Film) -> tuple[float, float]:
 
 def height_of(u: float, v: float, film: Film) -> float:
     """Distance of the film point from the lens's axis, mm."""
-    return math.hypot(*place_of(u, v, film))
+    return math.hypot(*film_point(u, v, film))
 
 
-def drawn_heights_mm(film: Film, place: tuple[float, float] | None, axis: int | None = None) -> tuple[float, ...]:
+def drawn_heights_mm(film: Film, point: tuple[float, float] | None, axis: int | None = None) -> tuple[float, ...]:
     """Film heights for which rays are drawn, mm: 0, and that of a point of the picture (u and v, 0 to 1).
 
     axis: None: distance from the axis; 0 or 1: the x or y coordinate.
     """
-    at = place_of(*(place or (0.5 - 0.35, 0.5 + 0.35)), film)
+    at = film_point(*(point or (0.5 - 0.35, 0.5 + 0.35)), film)
     height = math.hypot(*at) if axis is None else at[axis]
     return (0.0, height) if abs(height) > 5e-4 * math.hypot(film.width_mm, film.height_mm) else (0.0,)
 
@@ -112,7 +112,7 @@ def _shapes(section: CrossSection) -> dict[str, Any]:
             }
             for b in section.blockers
         ],
-        "crossings": [_points(zone) for crossing in section.crossings for zone in crossing.zones],
+        "overlaps": [_points(zone) for crossing in section.overlaps for zone in crossing.zones],
         "marks": [{"kind": m.kind, "label": m.label, "z": m.z_mm, "half": m.semi_diameter_mm} for m in section.marks],
     }
 

@@ -279,8 +279,8 @@ def calibration_points(
         raise InputError("a camera model is fitted to a camera that stands still; replace(motion=[]) gives one")
     columns, rows = camera.film.resolution
     width, height = camera.film.width_mm, camera.film.height_mm
-    places = [max(3, round(GRID * side / max(width, height))) for side in (width, height)]
-    steps = [np.linspace(0, size, count) for size, count in zip((columns, rows), places, strict=True)]
+    counts = [max(3, round(GRID * side / max(width, height))) for side in (width, height)]
+    steps = [np.linspace(0, size, count) for size, count in zip((columns, rows), counts, strict=True)]
     if between:
         steps = [0.5 * (step[1:] + step[:-1]) for step in steps]
     grid = np.meshgrid(*steps)

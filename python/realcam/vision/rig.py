@@ -252,14 +252,14 @@ class Rig:
         write_whole(path, (json.dumps(self.calibration(fits), indent=1) + "\n").encode())
 
     def save_colmap(
-        self, folder: str | os.PathLike[str], places: Mapping[str, ArrayLike], model: str = "opencv5"
+        self, folder: str | os.PathLike[str], poses: Mapping[str, ArrayLike], model: str = "opencv5"
     ) -> None:
         """Writes a COLMAP text model with rig and frames, for pictures that the rig takes at several poses.
 
-        places: scene_from_rig by image name; each camera's images lie in a folder with the camera's name.
+        poses: scene_from_rig by image name; each camera's images lie in a folder with the camera's name.
         model: the camera model to fit to each camera. Raises InputError, ImageFileError.
         """
-        save_colmap_of_rig(folder, {name: self.moved(place).cameras for name, place in places.items()}, model)
+        save_colmap_of_rig(folder, {name: self.moved(pose).cameras for name, pose in poses.items()}, model)
 
     def save_colmap_rig(self, path: str | os.PathLike[str]) -> None:
         """Writes COLMAP's rig_config.json, for pictures in one folder per camera, named after the camera.

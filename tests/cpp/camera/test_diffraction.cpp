@@ -20,12 +20,12 @@ using namespace realcam::test;
 
 constexpr double kPi = std::numbers::pi;
 
-/// A regular polygon or, with no corners, a circle, of radius 0.1, as the search for edges finds it: by spokes, of
-/// which few meet a corner.
+/// A regular polygon or, with no corners, a circle, of radius 0.1, as the search for edges finds it: along scan lines,
+/// of which few meet a corner.
 std::vector<Vec2<double>> outline(int corners, double radius = 0.1) {
     std::vector<Vec2<double>> points;
-    for (int spoke = 0; spoke < kPupilEdgeCorners; ++spoke) {
-        const double angle = 2 * kPi * spoke / kPupilEdgeCorners, side = 2 * kPi / std::max(corners, 1);
+    for (int scan_line = 0; scan_line < kPupilEdgeCorners; ++scan_line) {
+        const double angle = 2 * kPi * scan_line / kPupilEdgeCorners, side = 2 * kPi / std::max(corners, 1);
         const double r =
             corners == 0 ? radius : radius * std::cos(kPi / corners) / std::cos(std::remainder(angle, side));
         points.push_back({r * std::cos(angle), r * std::sin(angle)});

@@ -147,9 +147,9 @@ TEST_CASE("wavelengths rise with their places, and shared ones are the same from
         const float nm = wavelength_at(view, place);
         CHECK(nm > last);
         last = nm;
-        const float next = shared_place(view, place, 1), after = shared_place(view, place, 2);
-        CHECK(std::fabs(shared_place(view, next, 1) - after) < 1e-4f);
-        CHECK(std::fabs(shared_place(view, after, 1) - place) < 1e-4f);
+        const float next = shared_cell_position(view, place, 1), after = shared_cell_position(view, place, 2);
+        CHECK(std::fabs(shared_cell_position(view, next, 1) - after) < 1e-4f);
+        CHECK(std::fabs(shared_cell_position(view, after, 1) - place) < 1e-4f);
     }
     CHECK(last < 780);
 }
@@ -163,7 +163,7 @@ TEST_CASE("three wavelengths that share a sample differ from white by what the d
         const Color one = film_color(view, place, {1, 1, 1});
         Color three = {0, 0, 0};
         for (int step = 0; step < kSharedWavelengths; ++step)
-            three += (1.0f / kSharedWavelengths) * film_color(view, shared_place(view, place, step), {1, 1, 1});
+            three += (1.0f / kSharedWavelengths) * film_color(view, shared_cell_position(view, place, step), {1, 1, 1});
         const double of_three[] = {static_cast<double>(three.r), static_cast<double>(three.g),
                                    static_cast<double>(three.b)};
         const double of_one[] = {static_cast<double>(one.r), static_cast<double>(one.g), static_cast<double>(one.b)};
@@ -184,7 +184,7 @@ TEST_CASE("a sample's light is divided in equal parts among the pixels where its
     constexpr Effects kDispersion = {.dispersion = true};
     const Color light = {0.3f, 2.0f, 0.7f};
     SampleWavelengths<1> of;
-    of.place[0] = 2.25f;
+    of.cell_position[0] = 2.25f;
     // Which steps count, and where further ones do: in the own pixel, to the left, and below the latter.
     for (const auto& [shares, away] :
          {std::pair(1, std::array{0, 0}), std::pair(7, std::array{0, 0}), std::pair(5, std::array{0, -1}),
@@ -198,7 +198,7 @@ TEST_CASE("a sample's light is divided in equal parts among the pixels where its
         for (int step = 0; step < kSharedWavelengths; ++step) {
             const bool counts = (shares >> step & 1) != 0;
             const Color part = 1.0f / static_cast<float>(std::popcount(static_cast<unsigned>(shares))) *
-                               film_color(view, shared_place(view, of.place[0], step), light);
+                               film_color(view, shared_cell_position(view, of.cell_position[0], step), light);
             const int pixel = step > 0 ? of.away[step - 1][0] : 0;
             if (counts && pixel == 0) own += part;
             if (step == 0) continue;

@@ -16,7 +16,7 @@ TEST_CASE("the bit with so many others below it") {
         std::uint32_t below = 0;
         for (int place = 0; place < 32; ++place) {
             if (!(bits >> place & 1u)) continue;
-            CHECK(pixel_pupil::place_of_bit(bits, below) == place);
+            CHECK(pixel_pupil::position_of_bit(bits, below) == place);
             ++below;
         }
     }
@@ -30,9 +30,9 @@ TEST_CASE("weights make up for where samples go") {
         std::vector<double> areas(32);
         double in_known = 0;
         for (std::uint32_t i = 0; i < kSamples; ++i) {
-            const GuidedPlace at = guided(known, sample_2d(3, i, 0));
-            REQUIRE((at.place.x >= 0 && at.place.x < 1 && at.place.y >= 0 && at.place.y < 1));
-            const int cell = pixel_pupil::cell_of(at.place);
+            const GuidedSample at = guided(known, sample_2d(3, i, 0));
+            REQUIRE((at.point.x >= 0 && at.point.x < 1 && at.point.y >= 0 && at.point.y < 1));
+            const int cell = pixel_pupil::cell_of(at.point);
             areas[static_cast<std::size_t>(cell)] += static_cast<double>(at.weight) / kSamples;
             in_known += (known >> cell & 1u) / static_cast<double>(kSamples);
         }

@@ -180,11 +180,11 @@ TEST_CASE("only where it may is a camera's pupil found near the last one's") {
         camera.lens = focused(camera.lens, distance);
         return last.make(camera, fast_pupil_tracer(), {}, start);
     };
-    CHECK(at(4000, PupilStart::near_last)->has_pupil_anew());
-    CHECK(at(4010, PupilStart::anew)->has_pupil_anew());
-    for (const double distance : {4020.0, 4030.0}) CHECK(!at(distance, PupilStart::near_last)->has_pupil_anew());
+    CHECK(at(4000, PupilStart::near_last)->has_new_pupil());
+    CHECK(at(4010, PupilStart::from_scratch)->has_new_pupil());
+    for (const double distance : {4020.0, 4030.0}) CHECK(!at(distance, PupilStart::near_last)->has_new_pupil());
     const auto still = at(4030, PupilStart::near_last);
-    CHECK(still->has_pupil_anew());
+    CHECK(still->has_new_pupil());
     CHECK(same_pupil(still->view({0, 0, 0}).pupil, CameraSetup(camera, fast_pupil_tracer()).view({0, 0, 0}).pupil));
 }
 

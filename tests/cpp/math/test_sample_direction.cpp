@@ -25,7 +25,7 @@ double turn_of(double x, double y) {
     return std::atan2(y, x) / (2 * M_PI) + 0.5;
 }
 
-// Rings and spokes of the disc; the density takes the ring's area element.
+// Rings and sectors of the disc; the density takes the ring's area element.
 template <class Sampler>
 Bins on_disc(Sampler&& sampler, unsigned seed) {
     Bins bins(Bins::even(0, 1, 16), Bins::even(0, 1, 16));

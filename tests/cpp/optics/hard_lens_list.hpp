@@ -43,7 +43,7 @@ inline LensSystem with_thin_plates(LensSystem lens) {
         thin.push_back(aperture);
     }
     lens.surfaces.insert(gap, thin.begin(), thin.end());
-    lens.allow_crossing = true;  // the faces beside the stop reach through the plates
+    lens.allow_overlap = true;  // the faces beside the stop reach through the plates
     return lens;
 }
 

@@ -47,7 +47,7 @@ inline LensSystem with_film(LensSystem lens, double film_distance, double width)
 inline LensSystem in_front(std::vector<Surface> surfaces, LensSystem lens) {
     lens.surfaces.insert(lens.surfaces.begin(), surfaces.begin(), surfaces.end());
     lens.focusing = {};
-    lens.allow_crossing = true;  // elements without thickness
+    lens.allow_overlap = true;  // elements without thickness
     return lens;
 }
 

@@ -35,7 +35,7 @@ TEST_CASE("what a pixel has too much of one colour by chance is taken out, and w
     PixelSum& pixel = film[40];
     const double chance[3] = {kChance, -kChance, 0.5 * kChance};
     for (std::size_t c = 0; c < 3; ++c) {
-        pixel.besides[c] += 1000 * chance[c];
+        pixel.auxiliary[c] += 1000 * chance[c];
         pixel.irradiance[c] += 6000 * chance[c];
     }
     const FilmView balanced{film.data(), 9, 9, {.wavelengths = true}}, plain{film.data(), 9, 9};

@@ -58,10 +58,10 @@ private:
                  OwnStop&) override {
         notes.push_back("prepare");
         if (fails) throw DeviceError("lost");
-        has_pupil_anew_ = start == PupilStart::anew || lens_ == camera.lens || lens_.surfaces.empty();
+        has_new_pupil_ = start == PupilStart::from_scratch || lens_ == camera.lens || lens_.surfaces.empty();
         lens_ = camera.lens;
     }
-    bool has_pupil_anew() const override { return has_pupil_anew_; }
+    bool has_new_pupil() const override { return has_new_pupil_; }
     void clear() override { notes.push_back("clear"); }
     void take(const SampleRange& range, const PixelCounts&, bool, std::atomic<std::int64_t>& done, OwnStop&) override {
         notes.push_back("take");
@@ -77,7 +77,7 @@ private:
     }
     Image develop() override { return {}; }
     std::vector<float> develop_traced() override { return {}; }
-    std::vector<LayerImage> develop_besides() override { return {{Layer::variance, {0, 0, 0}, {}}}; }
+    std::vector<LayerImage> develop_auxiliary_layers() override { return {{Layer::variance, {0, 0, 0}, {}}}; }
     RegionSums take_region(const FilmRegion& region, const SampleRange& range, const PixelCounts&,
                            std::atomic<std::int64_t>&, OwnStop&) override {
         notes.push_back("take region");
@@ -114,7 +114,7 @@ private:
 
     std::atomic<int> raised_{0};
     LensSystem lens_{};
-    bool has_pupil_anew_ = true;
+    bool has_new_pupil_ = true;
 };
 
 Camera small_camera() {

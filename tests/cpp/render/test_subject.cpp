@@ -262,7 +262,7 @@ TEST_CASE("many instances are framed by the boxes of their objects") {
     const auto ball = std::make_shared<Scene>(grey_scene());
     add_sphere(*ball, {0, 0, 0}, 1, 40);
     Assembly scene{Scene{}};
-    const std::size_t count = kMostTrianglesAsked / ball->triangles.size() + 10;
+    const std::size_t count = kMostTrianglesTested / ball->triangles.size() + 10;
     for (std::size_t i = 0; i < count; ++i)
         scene.instances.push_back(
             {ball, Affine<double>{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {3.0 * static_cast<double>(i), 0, 0}}, ""});

@@ -63,11 +63,11 @@ bool has_narrow_lobe(const Surface& surface) {
     return m.model == MaterialModel::phong ? m.shininess > 100 : m.roughness < 0.4f;
 }
 
-/// Equal areas of the sphere: rings about the normal and spokes; what ends is counted in a bin of its own.
+/// Equal areas of the sphere: rings about the normal and sectors; what ends is counted in a bin of its own.
 template <class BsdfT>
 void add_test(ChiSquareTests& tests, const BsdfT& bsdf, bool is_narrow, unsigned seed) {
-    constexpr int kRings = 24, kSpokes = 24;
-    Bins bins(Bins::even(-1, 1, kRings), Bins::even(-M_PI, M_PI, kSpokes));
+    constexpr int kRings = 24, kSectors = 24;
+    Bins bins(Bins::even(-1, 1, kRings), Bins::even(-M_PI, M_PI, kSectors));
     bins.expect(
         [&](double z, double turn) {
             const double r = std::sqrt(std::max(0.0, 1 - z * z));

@@ -113,7 +113,7 @@ TEST_CASE("sample_area_light follows its density over every triangle") {
                 return area_light_pdf(light.area, distance * distance, cosine);
             });
             OnLights seen(light, from,
-                          [&](float distance, float cosine) { return place_pdf(light, from, distance, cosine); });
+                          [&](float distance, float cosine) { return solid_angle_pdf(light, from, distance, cosine); });
             for (int i = 0; i < kSamples; ++i) {
                 const Vec2f u = uniform.pair();
                 const auto add = [&](const LightSample& sample, OnLights& bins) {
@@ -159,7 +159,8 @@ TEST_CASE("sample_area_light follows its density over every triangle") {
                 // is not near.
                 const float cosine = -dot(sample.direction, light.normal);
                 if (sample.pdf < kDelta)
-                    CHECK(place_pdf(light, from, sample.distance, cosine) == doctest::Approx(sample.pdf).epsilon(1e-5));
+                    CHECK(solid_angle_pdf(light, from, sample.distance, cosine) ==
+                          doctest::Approx(sample.pdf).epsilon(1e-5));
             }
 }
 

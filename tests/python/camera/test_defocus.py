@@ -24,7 +24,7 @@ def thin_singlet(f_number: float) -> rc.Lens:
     front = rc.Surface(radius_of_curvature_mm=radius, material=INDEX, clear_semi_diameter_mm=1.1 * opening)
     back = rc.Surface(radius_of_curvature_mm=-radius, clear_semi_diameter_mm=1.1 * opening)
     surfaces = [rc.Stop(clear_semi_diameter_mm=opening), front, back]
-    return rc.Lens(surfaces=surfaces, name="thin singlet", allow_crossing=True)
+    return rc.Lens(surfaces=surfaces, name="thin singlet", allow_overlap=True)
 
 
 def picture(lens: rc.Lens, *marks: scenes.Quad, model: str, size_mm: float = PICTURE_MM, spp: int = SPP) -> np.ndarray:
@@ -167,7 +167,7 @@ def test_three_blades_make_a_triangle_of_the_same_area() -> None:
     surfaces = thin_singlet(4.0).surfaces
 
     def blurred(blades: int) -> np.ndarray:
-        lens = rc.Lens(surfaces=surfaces, iris_blades=blades, allow_crossing=True)
+        lens = rc.Lens(surfaces=surfaces, iris_blades=blades, allow_overlap=True)
         lens = lens.focused((FOCUS_MM + IMAGE_MM) / 1000).stopped_down(16)
         return picture(lens, mark_at(700 + IMAGE_MM, IMAGE_MM / 700, (0, 0)), model="full", spp=4 * SPP)
 

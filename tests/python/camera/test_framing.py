@@ -142,7 +142,7 @@ def test_a_telecentric_lens_has_no_entrance_pupil_in_reach() -> None:
         rc.Surface(thickness_mm=100, clear_semi_diameter_mm=10),
         rc.Stop(clear_semi_diameter_mm=2),
     ]
-    lens = rc.Lens(surfaces=surfaces, film_distance_mm=10, allow_crossing=True)
+    lens = rc.Lens(surfaces=surfaces, film_distance_mm=10, allow_overlap=True)
     data = lens.first_order()
     exact = data.back_focal_distance_mm + 100
     telecentric = lens.with_surface(1, thickness_mm=exact)

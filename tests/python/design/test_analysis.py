@@ -170,7 +170,7 @@ def test_spots_are_those_of_the_lens() -> None:
 
 def test_film_points_are_the_spot_of_very_many_rays() -> None:
     for lens, field in ((LENS, 15.0), (rc.Lens.load("phone-4mm"), 25.0), (LENS.with_iris(5), 0.0)):
-        bundle = lens.bundle(field, spokes=128, nodes=12)
+        bundle = lens.bundle(field, arms=128, nodes=12)
         middle = bundle.energy @ bundle.points_mm
         size = np.sqrt(bundle.energy @ ((bundle.points_mm - middle) ** 2).sum(axis=1))
         for pattern in ("even", "grid"):
@@ -194,7 +194,7 @@ def test_film_points_miss_nothing_that_passes(name: str, field: float) -> None:
     """Against rays between the edges of the light, which real rays find one by one. Contrast tells what is missing at
     the edge, where rays land farthest from the middle."""
     lens = rc.Lens.load(name)
-    bundle = lens.bundle(field, spokes=512, nodes=32)
+    bundle = lens.bundle(field, arms=512, nodes=32)
     points = lens.film_points(field, 400_000, dtype="float64").astype(float)
     for axis in (0, 1):
         for frequency in (10.0, 20.0):
@@ -244,7 +244,7 @@ def test_bundles_carry_all_the_light() -> None:
     np.testing.assert_array_equal(bundle.points_mm[:half] * (-1, 1), bundle.points_mm[half:])
     start, end = bundle.edge_entry_mm[:, 0], bundle.edge_entry_mm[:, 1]
     area = 0.5 * abs(np.sum(start[:, 0] * end[:, 1] - start[:, 1] * end[:, 0]))
-    edges = [LENS.bundle(20.0, spokes=s).edge_entry_mm for s in (256,)]
+    edges = [LENS.bundle(20.0, arms=s).edge_entry_mm for s in (256,)]
     fine = 0.5 * abs(np.sum(edges[0][:, 0, 0] * edges[0][:, 1, 1] - edges[0][:, 0, 1] * edges[0][:, 1, 0]))
     assert area == pytest.approx(fine, rel=2e-3)
 

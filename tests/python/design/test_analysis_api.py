@@ -175,7 +175,7 @@ TELECENTRIC = rc.Lens(
         rc.Stop(clear_semi_diameter_mm=5),
     ],
     film_distance_mm=10,
-    allow_crossing=True,
+    allow_overlap=True,
 )
 
 

@@ -197,7 +197,7 @@ def test_the_distortion_of_a_lens_whose_middle_is_obstructed() -> None:
     lens = rc.Lens.load("mirror-telephoto-500mm")
 
     def height_mm(angle_deg: float) -> float:
-        return abs(lens.bundle(angle_deg, object_distance_m=math.inf, spokes=8, nodes=2).chief_ray_mm[1])
+        return abs(lens.bundle(angle_deg, object_distance_m=math.inf, arms=8, nodes=2).chief_ray_mm[1])
 
     edge = height_mm(1.2)
     straight = height_mm(0.01) / math.tan(math.radians(0.01)) * math.tan(math.radians(1.2))

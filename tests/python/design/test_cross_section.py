@@ -272,17 +272,17 @@ def test_faces_that_cross_are_told_with_their_zone() -> None:
             rc.Stop(clear_semi_diameter_mm=2),
         ],
         film_distance_mm=50.0,
-        allow_crossing=True,
+        allow_overlap=True,
     )
     sag = 50 - math.sqrt(50**2 - 9**2)
-    assert lens.crossings() == [(0, 1, pytest.approx(2 * sag - 1), 9.0)]
-    (crossing,) = cross_section(lens, rays=0).crossings
+    assert lens.overlaps() == [(0, 1, pytest.approx(2 * sag - 1), 9.0)]
+    (crossing,) = cross_section(lens, rays=0).overlaps
     upper, lower = crossing.zones
     assert np.array_equal(lower, upper[::-1] * (1, -1))
     inner = math.sqrt(50**2 - 49.5**2)  # there both sags are half a millimetre
     assert upper[:, 1].max() == 9.0
     assert upper[:, 1].min() == pytest.approx(inner, abs=9 / 400)
-    assert two_faces().crossings() == []
+    assert two_faces().overlaps() == []
 
 
 def test_two_crossings_are_both_told() -> None:
@@ -293,9 +293,9 @@ def test_two_crossings_are_both_told() -> None:
     lens = rc.Lens(
         surfaces=[*surfaces, *surfaces, rc.Stop(clear_semi_diameter_mm=2)],
         film_distance_mm=50.0,
-        allow_crossing=True,
+        allow_overlap=True,
     )
-    assert [crossing[:2] for crossing in lens.crossings()] == [(0, 1), (2, 3)]
+    assert [crossing[:2] for crossing in lens.overlaps()] == [(0, 1), (2, 3)]
 
 
 def test_what_makes_no_sense_is_refused() -> None:

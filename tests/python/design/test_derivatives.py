@@ -175,7 +175,7 @@ def test_a_tilted_surface_of_a_centred_lens_throws_light_aside_as_a_prism_does()
             rc.Surface(clear_semi_diameter_mm=8),
         ],
         film_distance_mm=10,
-        allow_crossing=True,
+        allow_overlap=True,
     )
     found = rc.ray_derivatives(
         plate, [[0, 0, -1.0]], [[0, 0, 1.0]], [rc.Variable.tilt(1, "x"), rc.Variable.tilt(2, "y")], start="scene"

@@ -287,13 +287,13 @@ def test_faces_that_cross_are_drawn_as_an_error() -> None:
             rc.Stop(clear_semi_diameter_mm=2),
         ],
         film_distance_mm=50.0,
-        allow_crossing=True,
+        allow_overlap=True,
     )
     axes = matplotlib.figure.Figure().add_subplot()
     section = draw_cross_section(crossed, axes)
     red = [patch for patch in axes.patches if patch.get_facecolor()[:3] == (224 / 255, 0, 0)]
     assert len(red) == 2
-    assert np.array_equal(red[0].get_xy()[:-1], section.crossings[0].zones[0])
+    assert np.array_equal(red[0].get_xy()[:-1], section.overlaps[0].zones[0])
     assert any("error: surfaces 1 and 2 cross, by 0.633 mm" in text.get_text() for text in axes.texts)
 
 

@@ -16,7 +16,7 @@ def thin_lens(n: float, c1: float, c2: float) -> rc.Lens:
             rc.Surface(radius_of_curvature_mm=1 / c2, clear_semi_diameter_mm=6),
         ],
         film_distance_mm=100,
-        allow_crossing=True,
+        allow_overlap=True,
     )
 
 
@@ -71,7 +71,7 @@ def test_bounds_hold_and_no_impossible_lens_is_stepped_to() -> None:
     assert abs(found.lens.surfaces[0].radius_of_curvature_mm) >= 15 - 1e-9
     assert found.rms_spot_mm <= found.rms_spot_before_mm
     assert len(seen) == found.evaluations or len(seen) > 3
-    assert found.lens.crossings() == []
+    assert found.lens.overlaps() == []
 
 
 def test_it_stops_where_the_progress_function_says_so() -> None:

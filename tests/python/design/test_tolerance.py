@@ -30,7 +30,7 @@ def singlet(radius=100.0, thickness=0.01, semi_diameter=2.5, **options):
     return Lens(
         surfaces=surfaces,
         film_distance_mm=radius / (2 * (N - 1)),
-        allow_crossing=True,
+        allow_overlap=True,
         wavelength_nm=587.5618,
         **options,
     )

@@ -71,7 +71,7 @@ class Drawn:
         size = self.size * scale
         surfaces = [row.surface(size) for row in self.rows]
         # Nobody asked whether it can be made.
-        return rc.Lens(surfaces=surfaces, film_distance_mm=3 * size, allow_crossing=True)
+        return rc.Lens(surfaces=surfaces, film_distance_mm=3 * size, allow_overlap=True)
 
 
 @st.composite

@@ -32,7 +32,7 @@ def galilean(film_distance_mm: float | None = 40.0) -> rc.Lens:
             rc.Stop(clear_semi_diameter_mm=4),
         ],
         name="galilean",
-        allow_crossing=True,  # elements without thickness, whose focal lengths are powers of two
+        allow_overlap=True,  # elements without thickness, whose focal lengths are powers of two
         film_distance_mm=film_distance_mm,
     )
 

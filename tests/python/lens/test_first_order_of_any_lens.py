@@ -117,7 +117,7 @@ def test_an_anamorphic_lens() -> None:
 @pytest.mark.parametrize("focus_m", [math.inf, 1.0])
 def test_focus_goes_over_into_that_of_a_lens_of_revolution(focus_m: float) -> None:
     """Tilted by so little that the spot does not change, it is focused where the centred lens is. Both ways add up the
-    same light by other rays: Gauss's nodes on spokes, and in the meridional plane."""
+    same light by other rays: Gauss's nodes on arms, and in the meridional plane."""
     lens = rc.Lens.load("double-gauss-50mm")
     centred = lens.focused(focus_m)
     nearly = lens.with_element_tilted(2, 3, x_deg=1e-7).focused(focus_m)

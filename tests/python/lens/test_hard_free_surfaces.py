@@ -14,7 +14,7 @@ STOP = rc.Surface(type="stop", clear_semi_diameter_mm=100)
 
 
 def lens_of(*surfaces: rc.Surface) -> rc.Lens:
-    return rc.Lens(surfaces=[STOP, *surfaces], film_distance_mm=1, allow_crossing=True)
+    return rc.Lens(surfaces=[STOP, *surfaces], film_distance_mm=1, allow_overlap=True)
 
 
 def bundle(half_width: float, half_slope: float, count: int = 500) -> tuple[np.ndarray, np.ndarray]:

@@ -80,10 +80,10 @@ def test_an_asphere_that_dips_into_its_neighbour_between_axis_and_rim() -> None:
 
 
 def test_crossing_may_be_allowed_and_stays_so() -> None:
-    lens = lens_of(front(thickness_mm=1.1), PLANE, film_distance_mm=None, allow_crossing=True)
-    assert lens.allow_crossing
-    assert lens.focused(1.0).stopped_down(8).allow_crossing
-    assert not lens_of(front(thickness_mm=2), PLANE).allow_crossing
+    lens = lens_of(front(thickness_mm=1.1), PLANE, film_distance_mm=None, allow_overlap=True)
+    assert lens.allow_overlap
+    assert lens.focused(1.0).stopped_down(8).allow_overlap
+    assert not lens_of(front(thickness_mm=2), PLANE).allow_overlap
 
 
 def test_the_film_lies_behind_the_rim_of_the_last_face() -> None:
@@ -97,7 +97,7 @@ def test_the_film_lies_behind_the_rim_of_the_last_face() -> None:
     lens_of(*cup, film_distance_mm=1.3, film_mm=(4.0, 4.0))
     for absurd in (1e10, 1e308, math.inf):
         with pytest.raises(rc.LensFileError, match="at most 1e9 mm"):
-            lens_of(*cup, film_distance_mm=absurd, allow_crossing=True)
+            lens_of(*cup, film_distance_mm=absurd, allow_overlap=True)
 
 
 def test_focusing_stops_where_faces_would_cross() -> None:
@@ -117,14 +117,14 @@ def test_focusing_stops_where_faces_would_cross() -> None:
             gaps.append(lens.focused(distance).surfaces[2].thickness_mm)
     assert least - 0.002 < gaps[-1] < least + 0.3
     assert gaps == sorted(gaps, reverse=True)
-    free = lens_of(*rows, film_distance_mm=None, focus_group=(3, 4), allow_crossing=True)
+    free = lens_of(*rows, film_distance_mm=None, focus_group=(3, 4), allow_overlap=True)
     assert free.focused(0.5 - 0.3 * len(gaps) / 60).surfaces[2].thickness_mm < least
 
 
 def test_bundled_lenses_focus_without_crossing() -> None:
     for name in rc.lens_names():
         lens = rc.Lens.load(name)
-        assert not lens.allow_crossing
+        assert not lens.allow_overlap
         states = 0
         for distance in (0.2, 0.5, 1.0, 2.0, 4.0, 10.0, 100.0):
             try:

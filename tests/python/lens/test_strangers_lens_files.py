@@ -214,8 +214,8 @@ def crossing(rim: float) -> str:
 def test_rims_that_cross_beyond_the_light(tmp_path: Path) -> None:
     # Sags of r^2 / 40 on both sides use up 1.5 mm at 5.4 mm.
     lens, told = load(tmp_path, "far.zmx", crossing(6.0))
-    assert lens.allow_crossing and "reaches that far" in told
-    assert not load(tmp_path, "apart.zmx", crossing(5.0))[0].allow_crossing
+    assert lens.allow_overlap and "reaches that far" in told
+    assert not load(tmp_path, "apart.zmx", crossing(5.0))[0].allow_overlap
     with pytest.raises(rc.LensFileError, match="nobody can make such a lens"):
         load(tmp_path, "reached.zmx", crossing(6.0).replace("ENPD 2", "ENPD 11.5").replace("DIAM 2 ", "DIAM 6 "))
 

@@ -107,8 +107,8 @@ MAKERS: dict[str, list[Callable[[], Any]]] = {
         lambda: rc.Sensor.load().replace(adc_bits=14),
     ],
     "RayBundle": [
-        lambda: lens().bundle(10, spokes=8, nodes=2),
-        lambda: lens().bundle(11, spokes=8, nodes=2),
+        lambda: lens().bundle(10, arms=8, nodes=2),
+        lambda: lens().bundle(11, arms=8, nodes=2),
     ],
     "RigCamera": [
         lambda: rc.RigCamera(camera()),

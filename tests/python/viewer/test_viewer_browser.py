@@ -577,7 +577,7 @@ def test_a_closer_look(bench: BenchPage) -> None:
         until(lambda: bench.test_id("plot-svg").inner_html(), lambda now, b=before: now != b, title)
         assert "rc-problem" not in bench.test_id("plot-svg").inner_html()
     bench.click_picture(0.1, 0.1)
-    bench.until_text("plot-place", lambda text: "17.3 mm" in text)  # 0.4 of 36 and of 24 mm
+    bench.until_text("plot-point", lambda text: "17.3 mm" in text)  # 0.4 of 36 and of 24 mm
 
 
 # Files.

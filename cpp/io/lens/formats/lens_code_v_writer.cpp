@@ -47,19 +47,19 @@ private:
         if (s.type == SurfaceType::stop) line("STO");
         const double constant = s.bends_light() ? write_form(i) : 0;
         write_aperture(i);
-        SurfacePlacement place = s.placement;
+        SurfacePlacement placement = s.placement;
         if (constant != 0) {
             // CODE V's polynomials have no constant term: only this surface is moved.
-            place = SurfacePlacement::of(place.frame() * along_axis(constant));
-            place.returns = s.placement.returns || s.placement.is_in_place();
+            placement = SurfacePlacement::of(placement.frame() * along_axis(constant));
+            placement.returns = s.placement.returns || s.placement.is_in_place();
         }
         std::string text = "S " + exact_number(s.bends_light() ? s.curvature : 0.0) + ' ' +
-                           exact_number(place.returns ? thickness(i) : thickness(i) - constant);
+                           exact_number(placement.returns ? thickness(i) : thickness(i) - constant);
         if (s.type == SurfaceType::mirror)
             text += " REFL";
         else if (const Glass& medium = medium_behind(i); !medium.is_air())
             text += ' ' + glass(medium);
-        return text + '\n' + commands_ + placement(place);
+        return text + '\n' + commands_ + placement(placement);
     }
 
     /// Returns XDE to CDE, and DAR if the placement returns; empty if the surface is neither decentred nor tilted.

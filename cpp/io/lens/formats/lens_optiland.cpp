@@ -29,7 +29,7 @@ public:
         ++surface_;
         frames_.push_back(frame_of(image));
         p_.image_curvature = curvature_of_geometry(image["geometry"]);
-        set_places();
+        set_placements();
         surface_ = 0;
         read_aperture(root_["aperture"]);
         read_fields(root_["fields"]);
@@ -60,12 +60,12 @@ private:
                rotation(0, 0, degrees("rz")) * rotation(0, degrees("ry"), 0) * rotation(degrees("rx"), 0, 0);
     }
 
-    void set_places() {
+    void set_placements() {
         // If all surfaces face along the z axis, each is decentred from its position on that axis. Otherwise the axis
         // goes from each surface to the next.
         constexpr double kSteepest = 0.5;  // cosine of 60 degrees
         if (!std::ranges::all_of(frames_, [](const Affine<double>& frame) { return frame.z.z > kSteepest; }))
-            return set_places_one_by_one();
+            return set_placements_one_by_one();
         const auto without_z = [](Affine<double> frame) {
             frame.origin.z = 0;
             return frame;
@@ -78,13 +78,13 @@ private:
         p_.image_placement = SurfacePlacement::of(without_z(frames_.back()));
     }
 
-    void set_places_one_by_one() {
+    void set_placements_one_by_one() {
         Affine<double> here = along_axis(frames_.front().origin.z);
         for (std::size_t i = 0; i < p_.surfaces.size(); ++i) {
             p_.surfaces[i].before = inverse_motion(here) * frames_[i];
-            const Vec3d way = frames_[i + 1].origin - frames_[i].origin;
-            const double side = dot(way, frames_[i].z) < 0 ? -1 : 1;
-            p_.surfaces[i].thickness = side * std::sqrt(dot(way, way));
+            const Vec3d offset = frames_[i + 1].origin - frames_[i].origin;
+            const double side = dot(offset, frames_[i].z) < 0 ? -1 : 1;
+            p_.surfaces[i].thickness = side * std::sqrt(dot(offset, offset));
             here = frames_[i] * along_axis(p_.surfaces[i].thickness);
         }
         // An auxiliary plane before the film, which blocks nothing, directs the axis so that the film is perpendicular

@@ -52,7 +52,7 @@ public:
         PrescriptionSurface image;
         const Json& last = interfaces[interfaces.size() - 1];
         read_profile(attributes(last), image);
-        read_place(attributes(last)["decenter"], image);
+        read_placement(attributes(last)["decenter"], image);
         p_.image_curvature = image.curvature;
         p_.image_placement = SurfacePlacement::of(image.before);
         surface_ = 0;
@@ -74,7 +74,7 @@ private:
         row.is_stop = is_stop;
         if (class_of(interface) != "Surface") foreign("a surface of the class " + short_name(class_of(interface)));
         if (!a["phase_element"].is_null()) foreign("a diffractive surface");
-        read_place(a["decenter"], row);
+        read_placement(a["decenter"], row);
         row.is_mirror = a["interact_mode"].text() == "reflect";
         row.thickness = unit_ * number(attributes(gap)["thi"], "the thickness");
         read_apertures(a, row);
@@ -84,7 +84,7 @@ private:
     }
 
     /// Reads a decentre. As in CODE V, the first two angles are positive clockwise.
-    void read_place(const Json& decentre, PrescriptionSurface& row) {
+    void read_placement(const Json& decentre, PrescriptionSurface& row) {
         if (decentre.is_null()) return;
         const Json& a = attributes(decentre);
         // Files of earlier versions have numbers instead of names.

@@ -80,18 +80,18 @@ private:
 
     /// `surface`: the one that has apertures; their number, if there is none.
     void write_interface(const std::string& profile, const char* label, const char* mode, double rim,
-                         const SurfacePlacement& place, std::size_t surface) {
+                         const SurfacePlacement& placement, std::size_t surface) {
         begin("rayoptics.elem.surface", "Surface").text("label", label).number("delta_n", 0);
         json_.text("interact_mode", mode).text("profile_id", profile).number("max_aperture", rim).key("decenter");
-        write_decentre(place);
+        write_decentre(placement);
         json_.begin_array("clear_apertures");
         if (surface < lens_.surfaces.size()) write_apertures(surface);
         json_.end().numbers("edge_apertures", {});
         end();
     }
 
-    void write_decentre(const SurfacePlacement& place) {
-        if (place.is_in_place()) {
+    void write_decentre(const SurfacePlacement& placement) {
+        if (placement.is_in_place()) {
             json_.null();
             return;
         }

@@ -537,7 +537,7 @@ private:
         } catch (const UnknownGlass& error) {
             if (!glasses_are_stated_ || !s.states_a_glass() || !error.candidate.empty()) throw;
             Glass stated = glass_of_pair(s.n_d, s.v_d);
-            if (told_.insert(s.glass).second)
+            if (reported_.insert(s.glass).second)
                 remark("the glass " + in_quotes(s.glass) + " is in no catalogue that the file lists: " + s.hint +
                        " are taken from its line");
             return stated;
@@ -688,7 +688,7 @@ private:
     int primary_ = 1, positions_ = 1, current_ = 1;
     /// Values of the configurations by surface, NaN if not stated; apertures are those of surface 0.
     std::map<int, std::vector<double>> zoom_, zoom_sizes_, zoom_apertures_;
-    std::set<std::string> coatings_, told_;
+    std::set<std::string> coatings_, reported_;
     Glass medium_ = Glass::air();  ///< medium behind the last surface converted
     std::vector<const ZemaxSurface*> glass_behind_;  ///< the surfaces converted so far
     bool glasses_are_stated_ = true;

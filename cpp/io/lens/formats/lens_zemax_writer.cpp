@@ -103,8 +103,8 @@ private:
     }
 
     /// Writes a coordinate break. The shift along the axis comes first: after a break it would be along the new axis.
-    void write_break(const SurfacePlacement& place) {
-        const auto& [decentre, tilt, returns] = place;
+    void write_break(const SurfacePlacement& placement) {
+        const auto& [decentre, tilt, returns] = placement;
         if (decentre.z != 0) write_break({0, 0, 0, 0, 0, 0}, decentre.z);
         write_break({decentre.x, decentre.y, tilt.x, tilt.y, tilt.z, 0}, 0);
     }
@@ -214,7 +214,7 @@ private:
             makers_.insert(upper_case(known->maker));
             return numbers(known->name, {0, 0, glass.index(kLineD_nm), pair.v_d}) + " 0 0 0 0 0 0";
         }
-        if (told_.insert(glass.label).second) {
+        if (reported_.insert(glass.label).second) {
             if (known)
                 result_.warnings.push_back("that the glass " + in_quotes(glass.label) +
                                            " is that maker's, as another maker in the file has the name too: it is "
@@ -256,7 +256,7 @@ private:
 
     int count_ = 0;  ///< number of surfaces written, including coordinate breaks
     std::string text_;
-    std::set<std::string> makers_, told_;
+    std::set<std::string> makers_, reported_;
 };
 
 }  // namespace

@@ -42,7 +42,7 @@ PrescriptionWriter::PrescriptionWriter(const LensSystem& lens, const std::string
     if (!lens.source.empty()) list.push_back("the source of the lens" + none);
     if (std::fabs(lens.film_width * 2 - lens.film_height * 3) > 1e-9 * lens.film_width)
         list.push_back("the film's shape: it is written as the height of its corner");
-    if (lens.allow_crossing) list.push_back("that faces may cross" + none);
+    if (lens.allow_overlap) list.push_back("that faces may cross" + none);
 }
 
 std::string PrescriptionWriter::title() const {

@@ -53,16 +53,16 @@ def shot_text(scene: bpy.types.Scene, scene_file: str) -> str:
     columns, rows = scene.render.resolution_x, scene.render.resolution_y
     longer_mm = max(width_mm, height_mm)
     film = [longer_mm * columns / max(columns, rows), longer_mm * rows / max(columns, rows)]
-    place = scene.camera.matrix_world
+    world_from_camera = scene.camera.matrix_world
     focus_m = max(_focus_m(scene), figures["nearest_m"])
     lines = [
         "format = 1",
         f"scene = {_toml_text(scene_file)}",
         # Written as a pose, not as glTF's camera: realcam puts the entrance pupil at a glTF camera, but this is the
         # film.
-        f"position_m = {_triple(place.translation)}",
-        f"look_at_m = {_triple(place.translation - place.col[2].xyz)}",
-        f"up = {_triple(place.col[1].xyz)}",
+        f"position_m = {_triple(world_from_camera.translation)}",
+        f"look_at_m = {_triple(world_from_camera.translation - world_from_camera.col[2].xyz)}",
+        f"up = {_triple(world_from_camera.col[1].xyz)}",
         f"lens = {_toml_text(figures['name'])}",
         *([f"zoom = {_toml_text(figures['zoom'])}"] if figures["zoom"] else []),
         f"film_mm = [{film[0]:.6g}, {film[1]:.6g}]",

@@ -34,7 +34,7 @@ class PlotsPanel:
             self._kind = ui.select({kind: title for kind, (title, _) in PLOTS.items()}, value="spot", label="Plot")
             self._kind.classes("w-full").props('data-testid="plot"').on("update:model-value", self.update)
             self._help = ui.label().classes("rc-note")
-            self._place = ui.label().classes("rc-note").props('data-testid="plot-place"')
+            self._point = ui.label().classes("rc-note").props('data-testid="plot-point"')
             with ui.element("div").classes("rc-plot-box"):
                 self._plot = ui.html("", sanitize=False).classes("w-full rc-plot").props('data-testid="plot-svg"')
                 self._busy = ui.row().classes("rc-busy").props('data-testid="plot-busy" role="status"')
@@ -67,10 +67,10 @@ class PlotsPanel:
         kind = self._kind.value
         self._help.set_text(plots[kind][1])
         height = height_of(*self._at, controls.film)
-        place = (
+        text = (
             f"The point is {height:.3g} mm from the lens's axis on the film" if lens.is_rotational else "Over the film"
         )
-        self._place.set_text(f"{place}, in the plane in focus. Click the picture to choose a point.")
+        self._point.set_text(f"{text}, in the plane in focus. Click the picture to choose a point.")
         look = Look(kind, lens, height)
         if look != self._look:
             self._look = look

@@ -89,10 +89,10 @@ def _index(message: Message, key: str = "surface") -> int:
     return value
 
 
-def _place(message: Message) -> tuple[float, float]:
+def _picture_point(message: Message) -> tuple[float, float]:
     u, v = _real(message, "u"), _real(message, "v")
     if not (0 <= u <= 1 and 0 <= v <= 1):
-        raise BadMessage("places in the picture lie between 0 and 1")
+        raise BadMessage("points of the picture lie between 0 and 1")
     return u, v
 
 
@@ -174,9 +174,9 @@ _ACTIONS: dict[str, Callable[[Message, LensBench], Any]] = {
     "orbit": lambda m, bench: bench.orbit(_real(m, "x"), _real(m, "y")),
     "pan": lambda m, bench: bench.pan(_real(m, "x"), _real(m, "y")),
     "dolly": lambda m, bench: bench.dolly(max(-20.0, min(20.0, _real(m, "steps")))),
-    "focus": lambda m, bench: bench.focus_at(*_place(m)),
-    "meter": lambda m, bench: bench.meter_at(*_place(m)),
-    "hover": lambda m, bench: bench.hover(*_place(m)),
+    "focus": lambda m, bench: bench.focus_at(*_picture_point(m)),
+    "meter": lambda m, bench: bench.meter_at(*_picture_point(m)),
+    "hover": lambda m, bench: bench.hover(*_picture_point(m)),
     "edit": _edit,
     "insert": _insert,
     "remove": _remove,

@@ -117,7 +117,7 @@ TEST_CASE("glTF: cameras stand where their nodes do, and the first is the view w
     check_point(scene.cameras[0].scene_from_camera.origin, 16, 2, 0);
     check_point(scene.cameras[0].scene_from_camera.z, 1, 0, 0);
     CHECK(scene.cameras[0].vertical_field_rad == 0.5);
-    CHECK_FALSE(scene.cameras[1].has_place());
+    CHECK_FALSE(scene.cameras[1].has_pose());
 
     Camera camera = camera_with("double-gauss-50mm");
     CHECK(set_view(camera, scene, {})->name == "side");

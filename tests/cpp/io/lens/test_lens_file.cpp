@@ -212,11 +212,11 @@ TEST_CASE("faces that cross are named with file, line and surface, and allowed w
     const std::string thin = with_line(7, "thickness_mm = 0.1");
     check_complaint(thin, "probe.toml:5: surface 1", "crosses surface 3, by 0.0799 mm at 8 mm from the axis");
     CHECK(complaint(with_line(7, "thickness_mm = 0.2")) == "(no error)");
-    const std::string allowed = "allow_crossing = true\n" + thin;
+    const std::string allowed = "allow_overlap = true\n" + thin;
     CHECK(complaint(allowed) == "(no error)");
-    CHECK(io::parse_lens(allowed, "probe.toml").allow_crossing);
-    CHECK(!io::parse_lens(joined(kGoodLines), "probe.toml").allow_crossing);
-    check_complaint("allow_crossing = 1\n" + thin, "probe.toml:1", "must be true or false");
+    CHECK(io::parse_lens(allowed, "probe.toml").allow_overlap);
+    CHECK(!io::parse_lens(joined(kGoodLines), "probe.toml").allow_overlap);
+    check_complaint("allow_overlap = 1\n" + thin, "probe.toml:1", "must be true or false");
     // The film, half of whose diagonal is 21.6 mm, cuts through a last face whose rim is 0.536 mm behind its vertex.
     const std::string hollow = "radius_of_curvature_mm = 60.0";
     std::vector<std::string> lines = kGoodLines;
@@ -232,8 +232,8 @@ TEST_CASE("text that is not TOML is named with file and line") {
     check_complaint(with_line(11, "[[surface]"), "probe.toml:11", "not valid TOML");
     check_complaint(with_line(8, "material = 1.5\nmaterial = 1.6"), "probe.toml:9", "not valid TOML");
     check_complaint(with_line(7, "thickness_mm\u00e9 = 4.0"), "probe.toml:7", "not valid TOML");
-    check_complaint(with_line(9, "allow_crossing = f"), "probe.toml:9", "not valid TOML");
-    CHECK(!contains(complaint(with_line(9, "allow_crossing = f")), "\n"));
+    check_complaint(with_line(9, "allow_overlap = f"), "probe.toml:9", "not valid TOML");
+    CHECK(!contains(complaint(with_line(9, "allow_overlap = f")), "\n"));
     CHECK(complaint(with_line(9, std::string(100000, 'x') + " = 1")).size() < 300);
     check_complaint(std::string("\x7f\x45LF\x02\x01\0\0\xff\xfe", 10), "probe.toml:1", "not valid TOML");
 }

@@ -181,7 +181,7 @@ TEST_CASE("light is the same by halves and by more rays") {
         psf_detail::Part& part = whole.parts[0];
         const BundleSampling sampling = psf_detail::checked_sampling(part, whole.psf, 0);
         part.bundle.mirrored = false;
-        part.light = plane_waves(part.bundle, {sampling.spokes + sampling.spokes % 2, sampling.nodes});
+        part.light = plane_waves(part.bundle, {sampling.arms + sampling.arms % 2, sampling.nodes});
         psf_detail::add_waves(whole.parts, {whole.psf.size, 1e-3 * whole.psf.pitch_um, {0, 0}}, whole.psf.values, {});
         const Psf psf = psf_of(lens, request);
         worst_half = std::max(worst_half, largest_difference(whole.psf, psf));
@@ -190,7 +190,7 @@ TEST_CASE("light is the same by halves and by more rays") {
         worst_more = std::max(worst_more, largest_difference(psf_of(lens, more), psf));
     }
     CHECK(worst_half < 1e-8);
-    // Where two rims cut the light there are corners, at which the sum over the spokes has an error of second order.
+    // Where two rims cut the light there are corners, at which the sum over the arms has an error of second order.
     hold({"Truth", "PSF with the number of rays that is chosen against four times as many", "4 lenses", "core",
           "float64", worst_more, 1e-4, "of the peak"});
 }

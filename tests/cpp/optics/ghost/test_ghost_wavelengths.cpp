@@ -68,7 +68,7 @@ struct Crossings {
 
     /// Of one way, in the order in which it meets them.
     template <class Value>
-    static std::vector<Value> along(const std::vector<Crossing>& way, const std::vector<Value>& of_all) {
+    static std::vector<Value> along(const std::vector<Crossing>& crossings, const std::vector<Value>& of_all) {
         std::vector<Value> met;
         for (const Crossing& crossing : way) met.push_back(of_all[ghost_tables_detail::number_of(crossing)]);
         return met;

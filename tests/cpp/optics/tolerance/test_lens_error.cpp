@@ -52,8 +52,8 @@ TEST_CASE("errors of no size leave the lens as it was drawn") {
     for (int kind = 0; kind <= static_cast<int>(ErrorKind::irregularity_45); ++kind)
         errors.push_back({static_cast<ErrorKind>(kind), 0, 1});
     LensSystem copy = with_errors(lens, errors, std::vector<double>(errors.size(), 0).data());
-    CHECK(copy.allow_crossing);
-    copy.allow_crossing = lens.allow_crossing;
+    CHECK(copy.allow_overlap);
+    copy.allow_overlap = lens.allow_overlap;
     CHECK(copy == lens);
 }
 

@@ -336,7 +336,7 @@ TEST_CASE("apertures and obscurations block what lies under them") {
 TEST_CASE("a form that cannot be is refused with the surface's number") {
     const auto refused = [](const Surface& surface) {
         LensSystem lens = lens_of({stop_plane(5, 5), surface, refracting(0, 0, Glass::air(), 10)});
-        lens.allow_crossing = true;
+        lens.allow_overlap = true;
         return message_of<LensFileError>([&] { validate(lens); });
     };
     const Surface plain = refracting(30, 3, Glass::constant(1.5), 10);

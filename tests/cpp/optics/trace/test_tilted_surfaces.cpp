@@ -83,7 +83,7 @@ TEST_CASE("a prism at minimum deviation deviates by 2 asin(n sin(a/2)) - a") {
     LensSystem lens =
         lens_of({placed(refracting(0, 10, Glass::constant(n), 40), {0, 0, 0}, {apex / 2, 0, 0}, true),
                  placed(refracting(0, 0, Glass::air(), 40), {0, 0, 0}, {-apex / 2, 0, 0}, true), stop_plane(0, 100)});
-    lens.allow_crossing = true;
+    lens.allow_overlap = true;
     const double incidence = std::asin(n * std::sin(apex / 2 * kDegree));
     // The normal of the first face is (0, -sin 30, cos 30); inside, the light goes along z.
     const double lean = incidence - apex / 2 * kDegree;

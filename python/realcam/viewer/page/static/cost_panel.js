@@ -13,13 +13,13 @@ export default {
   <p class="rc-note">An effect on "auto" is simulated if this picture shows it.</p>
   <ul class="rc-effects">
     <li v-for="e in effects" :key="e.name" :title="e.help">
-      <label :for="'rc-effect-' + e.name">{{ spoken(e.name) }}</label>
+      <label :for="'rc-effect-' + e.name">{{ label_of(e.name) }}</label>
       <select :id="'rc-effect-' + e.name" :data-effect="e.name" :value="states[e.name]" @change="choose(e.name, $event.target.value)">
         <option value="auto">auto{{ planned(rows[e.name]) }}</option>
         <option value="on">on</option><option value="off">off</option></select>
       <span class="rc-size" :title="rows[e.name]?.reason">{{ size(e.name) }}</span>
     </li>
-    <li v-for="row in others" :key="row.effect" :title="row.reason"><b>{{ spoken(row.effect) }}</b><span>by the camera model</span>
+    <li v-for="row in others" :key="row.effect" :title="row.reason"><b>{{ label_of(row.effect) }}</b><span>by the camera model</span>
       <span class="rc-size">{{ size(row.effect) }}</span></li>
   </ul>
   <p v-if="note" class="rc-note">{{ note }}</p>
@@ -109,7 +109,7 @@ export default {
     },
     colour: (k) => COLOURS[k % COLOURS.length],
     planned: (row) => (!row ? "" : row.is_kept ? " (on)" : " (off)"),
-    spoken: (name) => name[0].toUpperCase() + name.slice(1).replaceAll("_", " "),
+    label_of: (name) => name[0].toUpperCase() + name.slice(1).replaceAll("_", " "),
     /// Sentence about the size of an effect in this picture.
     size(name) {
       const row = this.rows[name], short = (x) => (x === null ? "∞" : String(Number(x.toPrecision(2)))); // JSON has no infinity

@@ -41,7 +41,7 @@ export default {
       <g v-for="(bundle, b) in paths" :key="'b' + b" :class="'rc-rays rc-rays-' + b">
         <polyline v-for="(path, k) in bundle" :key="k" :points="path" />
       </g>
-      <polygon v-for="(c, k) in shapes.crossings" :key="'c' + k" class="rc-crossing" :points="c" />
+      <polygon v-for="(c, k) in shapes.overlaps" :key="'c' + k" class="rc-overlap" :points="c" />
       <g v-for="(face, f) in view.faces" :key="'f' + face.surface" :class="faceClass(face)">
         <polyline v-for="(part, k) in shapes.faces[f]" :key="k" :points="part" />
         <polyline v-for="(part, k) in shapes.faces[f]" :key="'hit' + k" class="rc-hit" :points="part"
@@ -119,9 +119,9 @@ export default {
   computed: {
     // SVG paths, computed once for each lens and not at each step of a drag.
     shapes() {
-      const { elements, crossings, faces, blockers, film } = this.view;
+      const { elements, overlaps, faces, blockers, film } = this.view;
       return {
-        elements: elements.map(text), crossings: crossings.map(text), faces: faces.map((f) => f.parts.map(text)),
+        elements: elements.map(text), overlaps: overlaps.map(text), faces: faces.map((f) => f.parts.map(text)),
         blockers: blockers.map((b) => b.lines.map(text)), film: text(film),
       };
     },

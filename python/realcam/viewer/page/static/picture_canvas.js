@@ -147,7 +147,7 @@ export default {
         marks.getContext("2d").putImageData(marksOf(image, { clipping: this.clipping, peaking: this.peaking, noise: this.header.noise_tiles }), 0, 0);
       }
     },
-    place(event) {
+    point(event) {
       const box = this.$refs.canvas.getBoundingClientRect();
       const within = (x) => Math.min(1, Math.max(0, x));
       return [within((event.clientX - box.left) / box.width), within((event.clientY - box.top) / box.height)];
@@ -165,7 +165,7 @@ export default {
         if (this.pressed.moved >= CLICK_PX) this.stream.send({ type: this.pressed.pans ? "pan" : "orbit", x, y: -y });
         return;
       }
-      const [u, v] = this.place(event);
+      const [u, v] = this.point(event);
       this.sendHover(u, v);
       this.showsMagnifier = true;
       this.mouse = { x: event.clientX, y: event.clientY, u, v };
@@ -173,7 +173,7 @@ export default {
     },
     release(event) {
       if (this.pressed && this.pressed.moved < CLICK_PX && event.type === "pointerup") {
-        const [u, v] = this.place(event);
+        const [u, v] = this.point(event);
         this.act(this.mode, u, v);
       }
       this.pressed = null;

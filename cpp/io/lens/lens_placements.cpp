@@ -1,4 +1,4 @@
-#include "lens_places.hpp"
+#include "lens_placements.hpp"
 
 #include <cmath>
 
@@ -41,8 +41,8 @@ bool is_moved(const PrescriptionSurface& row) {
     return !(row.before == Affine<double>{}) || !(row.behind == Affine<double>{});
 }
 
-void set_places(const Prescription& p, const std::vector<KeptRow>& kept, LensSystem& lens) {
-    Affine<double> way;      // from the axis of the last kept surface to here
+void set_placements(const Prescription& p, const std::vector<KeptRow>& kept, LensSystem& lens) {
+    Affine<double> from_last;      // from the axis of the last kept surface to here
     double thickness = 0;    // along that path, as if it were straight
     bool is_straight = true;  // true while there are only thicknesses
     std::size_t next = 0;
@@ -51,29 +51,29 @@ void set_places(const Prescription& p, const std::vector<KeptRow>& kept, LensSys
         const bool returns = here.behind == inverse_motion(here.before) && !(here.before == Affine<double>{});
         const bool moves_alone =
             returns && is_straight && next < kept.size() && kept[next].row == row && is_alone(kept, next);
-        way = way * here.before;
+        from_last = from_last * here.before;
         is_straight &= here.before == Affine<double>{};
         for (; next < kept.size() && kept[next].row == row; ++next) {
-            if (!is_straight) lens.surfaces[next].placement = placement_of(along_axis(-thickness) * way);
-            way = {};
+            if (!is_straight) lens.surfaces[next].placement = placement_of(along_axis(-thickness) * from_last);
+            from_last = {};
             thickness = 0;
             is_straight = true;
         }
         if (moves_alone) {
             lens.surfaces[next - 1].placement.returns = true;
         } else {
-            way = way * here.behind;
+            from_last = from_last * here.behind;
             is_straight &= here.behind == Affine<double>{};
         }
-        way = way * along_axis(here.thickness);
+        from_last = from_last * along_axis(here.thickness);
         thickness += here.thickness;
     }
-    way = way * p.image_placement.frame();
+    from_last = from_last * p.image_placement.frame();
     constexpr double kSteepest = 0.5;  // cosine of 60 degrees
-    if (way.z.z > kSteepest)
-        lens.film_placement = placement_of(along_axis(-thickness) * way);
+    if (from_last.z.z > kSteepest)
+        lens.film_placement = placement_of(along_axis(-thickness) * from_last);
     else
-        put_before_film(lens, placement_of(way * along_axis(-thickness)), 0);
+        put_before_film(lens, placement_of(from_last * along_axis(-thickness)), 0);
 }
 
 void set_film(const Prescription& p, LensSystem& lens) {

@@ -10,7 +10,7 @@ bool is_moved(const PrescriptionSurface& row);
 /// Sets the placements of the surfaces of a lens, which was made from the kept rows as if it were centred, and of the
 /// film. Coordinate breaks of rows that were not kept are added to the next surface. If the film's axis is at 60
 /// degrees or more to the last axis, an auxiliary plane that blocks nothing is inserted before it.
-void set_places(const Prescription& prescription, const std::vector<KeptRow>& kept, LensSystem& lens);
+void set_placements(const Prescription& prescription, const std::vector<KeptRow>& kept, LensSystem& lens);
 
 /// Sets the film's curvature to that of the image surface.
 void set_film(const Prescription& prescription, LensSystem& lens);
