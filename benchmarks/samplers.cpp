@@ -18,8 +18,8 @@
 #include <vector>
 
 #include "../cpp/optics/lens/paraxial.hpp"
-#include "io/lens/bundled_lenses.hpp"
 #include "io/lens/lens_file.hpp"
+#include "io/lens/lens_text.hpp"
 #include "math/random.hpp"
 #include "optics/lens/focus.hpp"
 #include "optics/pupil/pupil.hpp"

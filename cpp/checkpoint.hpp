@@ -1,12 +1,16 @@
 #pragma once
 #include <chrono>
 #include <cstddef>
+#include <functional>
 #include <utility>
 
 #include "error.hpp"
-#include "keep_going.hpp"
 
 namespace realcam {
+
+/// Called by long tasks at least every tenth of a second, on the thread that started them; if it returns false, the
+/// task ends by throwing Cancelled. Empty: the task is never stopped.
+using KeepGoing = std::function<bool()>;
 
 /// Asks the caller of a long task, about fifty times a second, whether to go on.
 class Checkpoint {

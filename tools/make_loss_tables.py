@@ -220,7 +220,7 @@ def main() -> None:
     Path("cpp/scene/loss_tables.hpp").write_text(
         "#pragma once\n"
         "// Written by tools/make_loss_tables.py, which says what the numbers are. Macros, because host and\n"
-        "// device each need an array of their own (border_loss.hpp, coat_loss.hpp).\n"
+        "// device each need an array of their own (dielectric_border.hpp, bsdf.hpp).\n"
         "// clang-format off\n\n"
         + "".join(f"#define REALCAM_{name} {size}\n" for name, size in sizes.items())
         + f"#define REALCAM_BORDER_LEAST_CRITICAL {LEAST_CRITICAL}f\n"

@@ -9,9 +9,9 @@
 namespace realcam::app {
 namespace {
 
-using Row = std::pair<std::string, std::string>;
+using HelpRow = std::pair<std::string, std::string>;
 
-Row row_of(const CLI::Option& option) {
+HelpRow row_of(const CLI::Option& option) {
     const std::string names = CLI::detail::join(names_of(option), ", "), type = type_of(option);
     return {names + (names.empty() || type.empty() ? "" : " ") + type,
             option.get_description() + (option.get_required() ? " [required]" : "")};
@@ -24,7 +24,7 @@ io::HelpPage page_of(const CLI::App& command) {
         page.usage += ' ' + option->get_type_name();
         page.sections.front().rows.push_back(row_of(*option));
     }
-    const Row help = row_of(*command.get_help_ptr());
+    const HelpRow help = row_of(*command.get_help_ptr());
     for (const std::string& group : command.get_groups()) {
         io::HelpPage::Section section{group, {}};
         for (const CLI::Option* option : command.get_options())

@@ -7,11 +7,11 @@
 #include <numbers>
 #include <optional>
 
-#include "../camera/field_of_view.hpp"
+#include "../camera/pinhole_camera.hpp"
 #include "../io/text/json_writer.hpp"
 #include "../math/hypotenuse.hpp"
 #include "../optics/analysis/transmission.hpp"
-#include "../optics/coating/coated_faces.hpp"
+#include "../optics/coating/coated_surface.hpp"
 #include "../optics/lens/focus.hpp"
 #include "../optics/lens/parabasal.hpp"
 #include "../optics/lens/paraxial.hpp"

@@ -5,7 +5,7 @@
 #include <filesystem>
 
 #include "../io/lens/lens_format.hpp"
-#include "../io/text/one_line.hpp"
+#include "../io/text/printable.hpp"
 
 namespace realcam::app {
 

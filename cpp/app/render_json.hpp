@@ -2,10 +2,14 @@
 #include <string>
 #include <vector>
 
+#include "../plan/plan.hpp"
 #include "../render/image.hpp"
 #include "../shot/shot.hpp"
 
 namespace realcam::app {
+
+/// Plan as JSON; null if a number is infinite or does not exist.
+std::string json_of(const Plan& plan);
 
 /// Figures of a picture as JSON; null if a number is infinite or does not exist. `plan`: one-line summary of what the
 /// effect "auto" decided, empty without it. `denoiser`: its name, empty if the picture was not denoised. `warnings`:

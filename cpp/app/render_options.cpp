@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "../io/files/file_suffix.hpp"
+#include "../io/files/uri.hpp"
 
 namespace realcam::app {
 bool is_exr(const std::string& path) {

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "../error.hpp"
-#include "../io/text/number_words.hpp"
+#include "../io/text/text_number.hpp"
 
 namespace realcam::app {
 double parse_number(const std::string& option, const std::string& text) {

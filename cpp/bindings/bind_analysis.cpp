@@ -1,4 +1,4 @@
-#include "../optics/analysis/aim_all.hpp"
+#include "../optics/analysis/ray_aiming.hpp"
 #include "../optics/analysis/wavefront.hpp"
 
 #include <pybind11/stl.h>
@@ -8,7 +8,7 @@
 #include "analysis_arguments.hpp"
 #include "arrays.hpp"
 #include "bindings.hpp"
-#include "restored_arrays.hpp"
+#include "restored.hpp"
 #include "short_text.hpp"
 #include "value_methods.hpp"
 

@@ -7,8 +7,8 @@
 
 #include "../cuda/bench_kernels.hpp"
 #include "../devices/devices.hpp"
-#include "../embree/fast_pupil_tracer.hpp"
 #include "../embree/kernels.hpp"
+#include "../embree/lens_rays.hpp"
 #include "../math/hypotenuse.hpp"
 #include "../math/random.hpp"
 #include "../optics/pupil/pupil.hpp"

@@ -1,12 +1,12 @@
 #include <pybind11/stl.h>
 
 #include "../embree/lens_rays.hpp"
-#include "../optics/analysis/film_pupil.hpp"
-#include "../optics/analysis/traced_bundle.hpp"
+#include "../optics/analysis/film_bundle.hpp"
+#include "../optics/analysis/point_bundle.hpp"
 #include "analysis_arguments.hpp"
 #include "arrays.hpp"
 #include "bindings.hpp"
-#include "restored_arrays.hpp"
+#include "restored.hpp"
 #include "short_text.hpp"
 #include "value_methods.hpp"
 

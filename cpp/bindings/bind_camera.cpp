@@ -6,15 +6,15 @@
 #include <variant>
 #include <vector>
 
-#include "../camera/default_film.hpp"
-#include "../camera/picture_angle.hpp"
-#include "../embree/fast_pupil_tracer.hpp"
+#include "../camera/camera.hpp"
+#include "../camera/pinhole_camera.hpp"
+#include "../embree/lens_rays.hpp"
 #include "../io/files/image_metadata.hpp"
 #include "../optics/pupil/pupil.hpp"
-#include "../shot/names.hpp"
+#include "../shot/shot_keys.hpp"
+#include "arrays.hpp"
 #include "bindings.hpp"
 #include "short_text.hpp"
-#include "triples.hpp"
 #include "value_methods.hpp"
 
 namespace realcam::bindings {

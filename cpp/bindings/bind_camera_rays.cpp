@@ -5,14 +5,13 @@
 #include <optional>
 #include <utility>
 
+#include "../camera/camera_setup.hpp"
 #include "../camera/film_spectrum.hpp"
-#include "../camera/last_setup.hpp"
 #include "../cuda/ray_arrays.hpp"
 #include "../devices/devices.hpp"
-#include "../embree/fast_pupil_tracer.hpp"
 #include "../embree/lens_rays.hpp"
 #include "bindings.hpp"
-#include "restored_arrays.hpp"
+#include "restored.hpp"
 #include "short_text.hpp"
 #include "value_methods.hpp"
 

@@ -4,13 +4,13 @@
 #include <map>
 
 #include "../optics/coating/coated_surface.hpp"
+#include "../optics/prescription/coating.hpp"
 #include "../optics/prescription/coating_checks.hpp"
-#include "../optics/prescription/named_coatings.hpp"
 #include "arrays.hpp"
 #include "bindings.hpp"
-#include "coating_from.hpp"
-#include "restored_arrays.hpp"
+#include "restored.hpp"
 #include "short_text.hpp"
+#include "surface_changes.hpp"
 #include "value_methods.hpp"
 
 namespace realcam::bindings {

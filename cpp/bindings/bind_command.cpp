@@ -2,7 +2,7 @@
 #include <pybind11/stl.h>
 
 #include "../app/command_line.hpp"
-#include "../app/film_writer.hpp"
+#include "../app/outputs.hpp"
 #include "../error.hpp"
 #include "bindings.hpp"
 

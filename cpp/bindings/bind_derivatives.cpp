@@ -11,7 +11,7 @@
 #include "../embree/lens_rays.hpp"
 #include "../optics/derivatives/adjoint_path.hpp"
 #include "../optics/derivatives/dual_path.hpp"
-#include "../optics/trace/lens_entry.hpp"
+#include "../optics/trace/trace_request.hpp"
 #include "arrays.hpp"
 #include "bindings.hpp"
 

@@ -4,7 +4,6 @@
 #include "../error.hpp"
 #include "bindings.hpp"
 #include "device_array.hpp"
-#include "dlpack.hpp"
 
 namespace realcam::bindings {
 

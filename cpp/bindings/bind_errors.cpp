@@ -4,7 +4,7 @@
 
 #include "../image_io/unfinished_file.hpp"
 #include "../io/files/readable_file.hpp"
-#include "../io/text/one_line.hpp"
+#include "../io/text/printable.hpp"
 #include "../plan/plan.hpp"
 
 #include <new>

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "../camera/ghost_tables.hpp"
-#include "../embree/fast_pupil_tracer.hpp"
+#include "../embree/lens_rays.hpp"
 #include "../math/hypotenuse.hpp"
 #include "../optics/ghost/ghost.hpp"
 #include "arrays.hpp"

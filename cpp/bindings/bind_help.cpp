@@ -3,7 +3,6 @@
 #include <pybind11/stl.h>
 
 #include "../io/text/help_page.hpp"
-#include "../io/text/nearest_names.hpp"
 #include "bindings.hpp"
 
 namespace realcam::bindings {

@@ -4,7 +4,7 @@
 #include <variant>
 #include <vector>
 
-#include "../scene/instance_names.hpp"
+#include "../scene/assembly.hpp"
 #include "arrays.hpp"
 #include "bindings.hpp"
 

@@ -9,7 +9,7 @@
 #include "../optics/lens/rings.hpp"
 #include "../optics/lens/zoom.hpp"
 #include "../optics/prescription/clearance.hpp"
-#include "../optics/prescription/surface_frames.hpp"
+#include "../optics/prescription/lens_system.hpp"
 #include "../optics/trace/film_frame.hpp"
 #include "bindings.hpp"
 #include "short_text.hpp"

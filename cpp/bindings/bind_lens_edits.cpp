@@ -2,8 +2,6 @@
 
 #include "../optics/lens/lens_changes.hpp"
 #include "../optics/lens/lens_edits.hpp"
-#include "../optics/lens/lens_tilts.hpp"
-#include "../optics/lens/tilt_shift.hpp"
 #include "bindings.hpp"
 #include "surface_changes.hpp"
 

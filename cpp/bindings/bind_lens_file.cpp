@@ -3,7 +3,7 @@
 #include <map>
 #include <tuple>
 
-#include "../io/files/file_suffix.hpp"
+#include "../io/files/uri.hpp"
 #include "../io/lens/lens_format.hpp"
 #include "bindings.hpp"
 

@@ -5,9 +5,9 @@
 #include <variant>
 
 #include "../scene/scene_checks.hpp"
+#include "arrays.hpp"
 #include "material.hpp"
 #include "short_text.hpp"
-#include "triples.hpp"
 #include "value_methods.hpp"
 
 namespace realcam::bindings {

@@ -2,9 +2,9 @@
 
 #include <cmath>
 
-#include "../embree/fast_pupil_tracer.hpp"
+#include "../embree/lens_rays.hpp"
 #include "../io/files/image_metadata.hpp"
-#include "../plan/resolve_film.hpp"
+#include "../plan/make_plan.hpp"
 #include "bindings.hpp"
 #include "owned_session.hpp"
 #include "short_text.hpp"

@@ -3,12 +3,11 @@
 
 #include <mutex>
 
-#include "../camera/last_setup.hpp"
+#include "../camera/camera_setup.hpp"
 #include "../camera/pinhole_camera.hpp"
 #include "../camera/projection.hpp"
 #include "../camera/projection_grid.hpp"
 #include "../camera/radial_projection.hpp"
-#include "../embree/fast_pupil_tracer.hpp"
 #include "../embree/lens_rays.hpp"
 #include "arrays.hpp"
 #include "bindings.hpp"

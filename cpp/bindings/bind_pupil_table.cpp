@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "../embree/fast_pupil_tracer.hpp"
+#include "../embree/lens_rays.hpp"
 #include "../optics/prescription/known_wavelengths.hpp"
 #include "../optics/pupil/pupil.hpp"
 #include "../optics/pupil/pupil_grid.hpp"

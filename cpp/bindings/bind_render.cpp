@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "../camera/code_table.hpp"
+#include "../camera/develop.hpp"
 #include "../devices/cuda_plugin.hpp"
 #include "../devices/devices.hpp"
 #include "../render/effect_names.hpp"
 #include "../render/metering.hpp"
 #include "../render/take_picture.hpp"
-#include "../shot/names.hpp"
+#include "../shot/shot_keys.hpp"
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "owned_session.hpp"

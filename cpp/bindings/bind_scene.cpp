@@ -6,13 +6,13 @@
 
 #include "../io/scene_file.hpp"
 #include "../scene/bounding_box.hpp"
-#include "../scene/environment_change.hpp"
+#include "../scene/scene.hpp"
 #include "../scene/scene_checks.hpp"
+#include "arrays.hpp"
 #include "bindings.hpp"
 #include "picture_readers.hpp"
 #include "scene_from_arrays.hpp"
 #include "short_text.hpp"
-#include "triples.hpp"
 #include "value_methods.hpp"
 
 namespace realcam::bindings {

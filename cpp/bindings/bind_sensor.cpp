@@ -2,7 +2,6 @@
 
 #include <numbers>
 
-#include "../camera/sensor_color.hpp"
 #include "../camera/sensor_response.hpp"
 #include "../embree/sensor_exposure.hpp"
 #include "../io/sensor/sensor_file.hpp"

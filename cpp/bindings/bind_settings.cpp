@@ -1,9 +1,9 @@
 #include <pybind11/stl.h>
 
 #include "../io/files/image_metadata.hpp"
-#include "../io/text/one_line.hpp"
+#include "../io/text/printable.hpp"
 #include "../render/effect_names.hpp"
-#include "../shot/names.hpp"
+#include "../shot/shot_keys.hpp"
 #include "bindings.hpp"
 #include "value_methods.hpp"
 

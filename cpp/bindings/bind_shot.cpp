@@ -9,14 +9,14 @@
 #include "../camera/shake.hpp"
 #include "../io/files/image_metadata.hpp"
 #include "../render/session.hpp"
-#include "../shot/frames.hpp"
 #include "../shot/shake_curve.hpp"
+#include "../shot/shot.hpp"
 #include "../shot/shot_file.hpp"
+#include "arrays.hpp"
 #include "bindings.hpp"
 #include "owned_session.hpp"
 #include "picture_readers.hpp"
 #include "short_text.hpp"
-#include "triples.hpp"
 #include "value_methods.hpp"
 
 namespace realcam::bindings {

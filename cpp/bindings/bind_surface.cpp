@@ -1,6 +1,6 @@
+#include "arrays.hpp"
 #include "short_text.hpp"
 #include "surface_changes.hpp"
-#include "triples.hpp"
 #include "value_methods.hpp"
 
 namespace realcam::bindings {

@@ -11,7 +11,7 @@
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "device_array.hpp"
-#include "restored_arrays.hpp"
+#include "restored.hpp"
 #include "short_text.hpp"
 #include "value_methods.hpp"
 

@@ -4,13 +4,12 @@
 #include <memory>
 #include <optional>
 
-#include "../camera/default_film.hpp"
-#include "../render/daylight.hpp"
+#include "../camera/camera.hpp"
 #include "../render/default_view.hpp"
 #include "../render/metering.hpp"
+#include "arrays.hpp"
 #include "bindings.hpp"
 #include "owned_session.hpp"
-#include "triples.hpp"
 
 namespace realcam::bindings {
 

@@ -7,6 +7,60 @@
 #include "../cuda/ray_arrays.hpp"
 #include "../cuda/shared_device_array.hpp"
 
+// Binary interface of DLPack 1.0 (https://dmlc.github.io/dlpack/latest/c_api.html), by which Python's array libraries
+// share memory. Names and order of the fields are those of the standard.
+
+namespace realcam::dlpack {
+
+enum DeviceType : std::int32_t { kCpu = 1, kCuda = 2, kCudaManaged = 13 };
+
+struct Device {
+    std::int32_t device_type, device_id;
+};
+
+enum TypeCode : std::uint8_t { kInt = 0, kUInt = 1, kFloat = 2 };
+
+struct DataType {
+    std::uint8_t code, bits;
+    std::uint16_t lanes;
+};
+
+struct Tensor {
+    void* data;
+    Device device;
+    std::int32_t ndim;
+    DataType dtype;
+    std::int64_t* shape;
+    std::int64_t* strides;  ///< in elements, not bytes; may be null for C order
+    std::uint64_t byte_offset;
+};
+
+/// Content of capsules named "dltensor".
+struct ManagedTensor {
+    Tensor tensor;
+    void* manager_context;
+    void (*deleter)(ManagedTensor* self);
+};
+inline constexpr const char* kName = "dltensor";
+
+struct Version {
+    std::uint32_t major, minor;
+};
+
+inline constexpr std::uint64_t kReadOnly = 1, kIsCopied = 2;
+
+/// Content of capsules named "dltensor_versioned", for consumers of version 1.
+struct ManagedTensorVersioned {
+    Version version;
+    void* manager_context;
+    void (*deleter)(ManagedTensorVersioned* self);
+    std::uint64_t flags;
+    Tensor tensor;
+};
+inline constexpr const char* kVersionedName = "dltensor_versioned";
+
+}  // namespace realcam::dlpack
+
 namespace realcam::bindings {
 
 /// Returns a DLPack capsule of the array: `__dlpack__` of the Python array API standard, except for its `stream`

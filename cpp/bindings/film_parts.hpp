@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "../camera/film_region.hpp"
-#include "../render/accumulated_film.hpp"
+#include "../camera/dispersion_view.hpp"
+#include "../render/film_sums.hpp"
 #include "arrays.hpp"
 #include "bindings.hpp"
 

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "../io/scene/decoded_image.hpp"
-#include "../scene/material_names.hpp"
 #include "../scene/scene.hpp"
 #include "bindings.hpp"
 

@@ -3,7 +3,7 @@
 #include <cstdio>
 #include <string>
 
-#include "../io/text/utf8.hpp"
+#include "../io/text/printable.hpp"
 #include "../math/color.hpp"
 
 namespace realcam::bindings {

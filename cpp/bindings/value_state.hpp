@@ -4,7 +4,7 @@
 #include <map>
 #include <typeindex>
 
-#include "../io/text/utf8.hpp"
+#include "../io/text/printable.hpp"
 #include "arrays.hpp"
 #include "restored_values.hpp"
 

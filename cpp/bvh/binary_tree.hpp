@@ -2,7 +2,7 @@
 #include <cstddef>
 #include <functional>
 
-#include "../keep_going.hpp"
+#include "../checkpoint.hpp"
 #include "quantised_boxes.hpp"
 
 namespace REALCAM_NAMESPACE {

@@ -2,7 +2,7 @@
 #include <span>
 #include <vector>
 
-#include "../keep_going.hpp"
+#include "../checkpoint.hpp"
 #include "../scene/scene_view.hpp"
 #include "binary_tree.hpp"
 #include "wide_bvh.hpp"

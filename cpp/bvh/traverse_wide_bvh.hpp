@@ -1,7 +1,6 @@
 #pragma once
-#include "../scene/scene_ray.hpp"
-#include "slab_ray.hpp"
-#include "watertight_triangle.hpp"
+#include "../scene/opacity.hpp"
+#include "ray_intersection.hpp"
 
 namespace REALCAM_NAMESPACE {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-#include "../math/monotone_curve.hpp"
+#include "../math/curves.hpp"
 #include "../optics/lens/focus.hpp"
 #include "../optics/lens/rings.hpp"
 #include "../optics/prescription/lens_checks.hpp"

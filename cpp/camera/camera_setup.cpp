@@ -7,11 +7,11 @@
 #include <tuple>
 #include <utility>
 
-#include "../math/uniform_keys.hpp"
+#include "../math/motion.hpp"
 #include "../optics/lens/exposure.hpp"
 #include "direct_lens_path.hpp"
 #include "exposed_rays.hpp"
-#include "field_of_view.hpp"
+#include "pinhole_camera.hpp"
 
 namespace realcam {
 
@@ -225,6 +225,20 @@ bool CameraSetup::has_lens_and_film_of(const Camera& camera) const {
 
 bool CameraSetup::has_pupil_for(const std::vector<double>& wavelengths, PupilSampling sampling) const {
     return (pupil_ || pupil_grid_) && tables_.pupil_wavelengths() == wavelengths && effects_.pupil_sampling == sampling;
+}
+
+std::shared_ptr<const CameraSetup> LastSetup::make(const Camera& camera, const PupilTracer& tracer,
+                                                   const LensEffects& effects, PupilStart start) {
+    // The lock is not held during the search of the pupil, so that no thread waits for another thread's camera.
+    const std::shared_ptr<const CameraSetup> last = get();
+    auto setup = std::make_shared<const CameraSetup>(camera, tracer, last.get(), effects, start);
+    const std::lock_guard lock(mutex_);
+    return setup_ = std::move(setup);
+}
+
+std::shared_ptr<const CameraSetup> LastSetup::get() const {
+    const std::lock_guard lock(mutex_);
+    return setup_;
 }
 
 }  // namespace realcam

@@ -1,18 +1,25 @@
 #pragma once
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <vector>
 
 #include "../optics/lens/lens_polynomial.hpp"
 #include "../optics/pupil/pupil.hpp"
 #include "../optics/pupil/pupil_grid.hpp"
+#include "../platform.hpp"
 #include "camera.hpp"
 #include "effect_tables.hpp"
+#include "entrance_pupil_search.hpp"
 #include "lens_map.hpp"
-#include "pupil_entries.hpp"
-#include "pupil_start.hpp"
 
 namespace REALCAM_NAMESPACE {
+
+/// Start of the pupil search for a lens that differs from the last one.
+enum class PupilStart {
+    from_scratch,  ///< the result does not depend on the last lens
+    near_last,  ///< faster, near the edges of the last pupil (see Pupil); from scratch if the lens is unchanged
+};
 
 /// A camera prepared for rendering. Owns the tables that its view points to.
 class CameraSetup {
@@ -80,6 +87,21 @@ private:
     std::shared_ptr<const PupilEntries> pupil_entries_;
     float axis_irradiance_ = 0;  ///< ideal models only
     std::shared_ptr<const LensMap> map_;  ///< model mapped_lens only
+};
+
+/// Cache of the last camera set-up, whose pupil serves the next one if lens and film are equal. Thread-safe.
+class LastSetup {
+public:
+    /// Throws InputError; the last set-up is kept then.
+    std::shared_ptr<const CameraSetup> make(const Camera& camera, const PupilTracer& tracer,
+                                            const LensEffects& effects = {},
+                                            PupilStart start = PupilStart::from_scratch);
+
+private:
+    std::shared_ptr<const CameraSetup> get() const;
+
+    mutable std::mutex mutex_;
+    std::shared_ptr<const CameraSetup> setup_;
 };
 
 }  // namespace REALCAM_NAMESPACE

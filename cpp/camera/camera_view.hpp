@@ -2,17 +2,35 @@
 #include <cstddef>
 
 #include "../math/key_interval.hpp"
+#include "../math/lanes.hpp"
 #include "../optics/pupil/film_surface.hpp"
 #include "../optics/pupil/pupil_grid_view.hpp"
 #include "../optics/trace/lens_polynomial_view.hpp"
 #include "../optics/trace/lens_view.hpp"
-#include "circle_of_confusion.hpp"
 #include "effect_views.hpp"
 #include "lens_map_view.hpp"
 #include "pixel_pupil.hpp"
 #include "traced_lights_view.hpp"
 
 namespace REALCAM_NAMESPACE {
+
+/// Circle of confusion of a paraxial lens, from two rays whose heights are linear in the distance t in front of the
+/// front vertex, mm. The marginal ray from the axial film point through the pupil's rim has the height rim + t *
+/// rim_slope. The chief ray from a film height of 1 mm has the height middle + t * middle_slope, the inverse of the
+/// magnification at t. So the diameter of the disc on the film is 2 |rim| / |middle|.
+struct CircleOfConfusion {
+    float rim, rim_slope;
+    float middle, middle_slope;
+    float least_middle;  ///< least height of the chief ray: that at one pupil radius from the pupil
+};
+
+/// Diameter on the film, mm. `distance_mm`: from the front vertex along the axis towards the scene; may be infinite.
+REALCAM_INLINE float circle_diameter(const CircleOfConfusion& circle, float distance_mm) {
+    if (!(distance_mm < 1e30f)) return 2.0f * std::fabs(circle.rim_slope / circle.middle_slope);
+    const float rim = circle.rim + distance_mm * circle.rim_slope;
+    const float height = std::fabs(circle.middle + distance_mm * circle.middle_slope);
+    return 2.0f * std::fabs(rim) / (height > circle.least_middle ? height : circle.least_middle);
+}
 
 /// Camera models in order of increasing accuracy. All have the same film, focus and exposure on the axis.
 enum class CameraModel : int {

@@ -2,8 +2,9 @@
 
 #include <cmath>
 #include <optional>
+#include <utility>
 
-#include "../math/append_alias_table.hpp"
+#include "../math/sampling_tables.hpp"
 #include "../optics/pupil/pupil_track.hpp"
 
 namespace realcam {
@@ -70,6 +71,22 @@ void DiffractionTables::add(const ApertureDiffraction& diffraction) {
     }
     append_alias_table(lengths, entries_);
     append_alias_table(diffraction.cells, entries_);
+}
+
+StarburstTables::StarburstTables(const LensSystem& lens, double film_radius,
+                                 std::shared_ptr<const DirectLensPath> direct_path, const PupilTracer& tracer)
+    : direct_path_(std::move(direct_path)) {
+    const EntrancePupilSearch<FilmRings> search(lens, film_radius, tracer);
+    const std::vector<FoundRay> found = search.along(lens, crossings_of(lens));
+    directions_ = FilmRings::directions_of({found});
+    entries_ = entries_of<FilmRings>(found, directions_);
+}
+
+GhostView StarburstTables::view() const {
+    GhostView view = direct_path_->view(GhostLight::starbursts, kSamplesPerSplat);
+    view.entries = entries_.data();
+    view.largest_half_tangent = directions_.largest;
+    return view;
 }
 
 }  // namespace realcam

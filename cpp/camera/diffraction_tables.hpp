@@ -1,11 +1,29 @@
 #pragma once
+#include <memory>
 #include <vector>
 
 #include "../error.hpp"
 #include "../optics/analysis/aperture_diffraction.hpp"
 #include "diffraction_view.hpp"
+#include "direct_lens_path.hpp"
+#include "entrance_pupil_search.hpp"
 
 namespace REALCAM_NAMESPACE {
+
+/// Entrance-pupil bounds of the light that makes starbursts. Owns the memory of its view.
+class StarburstTables {
+public:
+    /// `film_radius`: radius of a circle that contains the film, mm. `direct_path`: of the same lens.
+    StarburstTables(const LensSystem& lens, double film_radius, std::shared_ptr<const DirectLensPath> direct_path,
+                    const PupilTracer& tracer);
+
+    GhostView view() const;
+
+private:
+    std::shared_ptr<const DirectLensPath> direct_path_;
+    HalfTangentBins directions_;
+    std::vector<GhostEntry> entries_;
+};
 
 /// Diffraction of a lens, prepared for rendering. Owns the memory of its view.
 class DiffractionTables {

@@ -1,7 +1,7 @@
 #pragma once
 #include <cstdint>
 
-#include "../math/alias_table.hpp"
+#include "../math/cdf.hpp"
 #include "../math/sincos.hpp"
 #include "../optics/pupil/diffraction_cells.hpp"
 

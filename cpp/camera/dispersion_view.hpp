@@ -1,13 +1,44 @@
 #pragma once
+#include <cstddef>
 #include <cstdint>
 
 #include "../math/color.hpp"
 #include "../math/lanes.hpp"
 #include "../optics/trace/index_cubic.hpp"
 #include "../optics/trace/lens_view.hpp"
-#include "sample_sharing.hpp"
+#include "../platform.hpp"
 
 namespace REALCAM_NAMESPACE {
+
+/// A rectangle of the film, in pixels from the upper left corner of the picture.
+struct FilmRegion {
+    int column = 0, row = 0, width = 0, height = 0;
+
+    std::size_t pixels() const { return static_cast<std::size_t>(width) * static_cast<std::size_t>(height); }
+
+    /// Row-major index in the region of a pixel of the film.
+    std::size_t index(int film_column, int film_row) const {
+        return static_cast<std::size_t>(film_row - row) * static_cast<std::size_t>(width) +
+               static_cast<std::size_t>(film_column - column);
+    }
+};
+
+/// Pixels other than its own in which a sample may count (dispersed_rays.hpp): those of its tile in a part of the film.
+/// Threads render whole tiles, so all these pixels have the same number of samples.
+struct SampleSharing {
+    static constexpr int kTileSide = 32;
+
+    FilmRegion part;  ///< empty: samples count in their own pixel only
+    int stride = 0;  ///< from a pixel to the one below, in the accumulated film
+
+    /// True if two pixels of the film lie in the same tile. The first one must lie in `part`.
+    REALCAM_INLINE bool has_both(int column, int row, int other_column, int other_row) const {
+        const int right = other_column - part.column, down = other_row - part.row;
+        const bool is_inside = (right >= 0) & (right < part.width) & (down >= 0) & (down < part.height);
+        return is_inside & (right / kTileSide == (column - part.column) / kTileSide) &
+               (down / kTileSide == (row - part.row) / kTileSide);
+    }
+};
 
 /// Wavelengths per path (hero wavelength sampling): the sampled one, and others at uniform steps through the cells.
 inline constexpr int kSharedWavelengths = 3;

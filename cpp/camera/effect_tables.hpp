@@ -11,7 +11,6 @@
 #include "film_spectrum.hpp"
 #include "ghost_tables.hpp"
 #include "pupil_sampling.hpp"
-#include "starburst_tables.hpp"
 
 namespace REALCAM_NAMESPACE {
 

@@ -1,10 +1,18 @@
 #pragma once
-#include "coating_view.hpp"
+#include "../optics/coating/coating_polynomials.hpp"
 #include "diffraction_view.hpp"
 #include "dispersion_view.hpp"
 #include "effects.hpp"
 
 namespace REALCAM_NAMESPACE {
+
+/// Transmittance of the lens's surfaces, in the order in which light meets them. A picture with coatings has
+/// polynomials either for its one wavelength, towards the scene, or for a spectrum, in both directions. The other
+/// pointers are null.
+struct CoatingView {
+    const CoatingPolynomials<kOneWavelengthTerms>* one_wavelength;
+    const CoatingPolynomials<kSpectrumTerms>*to_scene, *to_film;
+};
 
 /// Views of the tables for a camera's effects. The view of an effect that is off is empty.
 struct EffectViews {

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
-#include "../math/append_cdf.hpp"
-#include "../optics/ghost/film_mirror.hpp"
+#include "../math/sampling_tables.hpp"
+#include "../optics/ghost/ghost.hpp"
 #include "../optics/ghost/ghost_coatings.hpp"
-#include "../optics/lens/axial_share.hpp"
+#include "../optics/lens/exposure.hpp"
 #include "direct_lens_path.hpp"
 
 namespace realcam {

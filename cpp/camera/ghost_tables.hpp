@@ -3,7 +3,7 @@
 
 #include "entrance_pupil_search.hpp"
 #include "film_spectrum.hpp"
-#include "ghost_choice.hpp"
+#include "ghost_view.hpp"
 
 namespace REALCAM_NAMESPACE {
 

@@ -5,7 +5,7 @@
 #include "../optics/analysis/scene_bundle.hpp"
 #include "../optics/pupil/pupil_grid.hpp"
 #include "../optics/trace/ray_loop.hpp"
-#include "projection_rays.hpp"
+#include "projection.hpp"
 
 namespace REALCAM_NAMESPACE {
 

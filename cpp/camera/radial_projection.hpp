@@ -3,10 +3,10 @@
 #include <optional>
 #include <vector>
 
-#include "../math/odd_curve.hpp"
+#include "../math/curves.hpp"
 #include "../optics/analysis/scene_bundle.hpp"
 #include "../optics/trace/ray_loop.hpp"
-#include "projection_rays.hpp"
+#include "projection.hpp"
 
 namespace REALCAM_NAMESPACE {
 

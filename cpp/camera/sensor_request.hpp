@@ -3,8 +3,7 @@
 #include <cstdint>
 
 #include "../math/lanes.hpp"
-#include "../math/normal.hpp"
-#include "../math/poisson.hpp"
+#include "../math/random_variates.hpp"
 
 namespace REALCAM_NAMESPACE {
 

@@ -6,9 +6,9 @@
 #include <numbers>
 #include <string>
 
+#include "../math/affine.hpp"
 #include "../math/random.hpp"
 #include "../math/root.hpp"
-#include "../math/turn.hpp"
 
 namespace realcam {
 namespace {

@@ -4,7 +4,7 @@
 #include "../bvh/traverse_scene.hpp"
 #include "../camera/camera_setup.hpp"
 #include "../camera/generate_rays.hpp"
-#include "../render/seconds_since.hpp"
+#include "../render/progress.hpp"
 #include "../scene/light_sample.hpp"
 #include "../scene/scene_checks.hpp"
 #include "../scene/surface_point.hpp"

@@ -4,8 +4,8 @@
 #include "cuda_devices.hpp"
 #include "cuda_rays.hpp"
 #include "cuda_session.hpp"
-#include "foreign_memory.hpp"
 #include "ray_arrays.hpp"
+#include "shared_device_array.hpp"
 
 namespace realcam {
 

@@ -3,7 +3,7 @@
 #include "../camera/camera_setup.hpp"
 #include "cuda_stream.hpp"
 #include "current_device.hpp"
-#include "device_arrays.hpp"
+#include "device_array.hpp"
 #include "ray_kernels.hpp"
 
 namespace realcam {

@@ -7,17 +7,16 @@
 #include <string>
 #include <utility>
 
-#include "../camera/last_setup.hpp"
+#include "../camera/camera_setup.hpp"
+#include "../render/adaptive_sampling.hpp"
 #include "../render/film_sums.hpp"
-#include "../render/learning_passes.hpp"
-#include "../render/run_with_progress.hpp"
-#include "../render/seconds_since.hpp"
+#include "../render/progress.hpp"
 #include "../render/traced_lights.hpp"
 #include "cuda_devices.hpp"
+#include "current_device.hpp"
 #include "device_frame.hpp"
 #include "device_renderer.hpp"
 #include "host_scene.hpp"
-#include "on_device.hpp"
 #include "picture_pool.hpp"
 #include "share_array.hpp"
 

@@ -1,8 +1,10 @@
 #pragma once
 #include <cuda_runtime.h>
 
+#include <memory>
 #include <new>
 #include <string>
+#include <utility>
 
 #include "cuda_error.hpp"
 
@@ -30,5 +32,26 @@ private:
     int ordinal_, before_;
     cudaError_t code_;
 };
+
+struct DestroyOnDevice {
+    int ordinal = 0;
+
+    template <class T>
+    void operator()(T* object) const noexcept {
+        const CurrentDevice current(ordinal, std::nothrow);
+        delete object;
+    }
+};
+
+/// Owner of an object that holds memory, streams or events of one GPU: the object is created and destroyed with that
+/// GPU current, on any thread.
+template <class T>
+using OnDevice = std::unique_ptr<T, DestroyOnDevice>;
+
+template <class T, class... Arguments>
+OnDevice<T> make_on_device(int ordinal, Arguments&&... arguments) {
+    const CurrentDevice current(ordinal);
+    return OnDevice<T>(new T(std::forward<Arguments>(arguments)...), {ordinal});
+}
 
 }  // namespace realcam

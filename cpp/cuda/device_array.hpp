@@ -1,10 +1,31 @@
 #pragma once
 #include <cstddef>
 #include <utility>
+#include <vector>
 
 #include "cuda_error.hpp"
 
 namespace realcam {
+
+/// Pinned host memory, which the GPU reads and writes asynchronously at full speed.
+template <class T>
+class PinnedArray {
+public:
+    explicit PinnedArray(std::size_t count) : size_(count) {
+        check_cuda(cudaHostAlloc(reinterpret_cast<void**>(&data_), count * sizeof(T), cudaHostAllocMapped),
+                   "allocating memory of the host");
+    }
+    ~PinnedArray() { cudaFreeHost(data_); }
+    PinnedArray(const PinnedArray&) = delete;
+    PinnedArray& operator=(const PinnedArray&) = delete;
+
+    T* data() const { return data_; }
+    std::size_t size() const { return size_; }
+
+private:
+    T* data_ = nullptr;
+    std::size_t size_;
+};
 
 /// Array in the current device's memory. Grows on demand and never shrinks, so that data that changes every frame is
 /// not reallocated every frame.
@@ -63,6 +84,25 @@ private:
 
     T* data_ = nullptr;
     std::size_t capacity_ = 0, size_ = 0;
+};
+
+/// Arrays of any type on one device. Allocations are reused after restart().
+class DeviceArrays {
+public:
+    /// Makes subsequent copies overwrite the previous ones.
+    void restart() { next_ = 0; }
+
+    template <class T>
+    const T* copy(const T* from, std::size_t count, cudaStream_t stream) {
+        if (next_ == arrays_.size()) arrays_.emplace_back();
+        DeviceArray<unsigned char>& array = arrays_[next_++];
+        array.upload(reinterpret_cast<const unsigned char*>(from), count * sizeof(T), stream);
+        return reinterpret_cast<const T*>(array.data());
+    }
+
+private:
+    std::vector<DeviceArray<unsigned char>> arrays_;
+    std::size_t next_ = 0;
 };
 
 }  // namespace realcam

@@ -7,8 +7,8 @@
 
 #include "../camera/camera.hpp"
 #include "../render/live_frame.hpp"
+#include "device_array.hpp"
 #include "device_renderer.hpp"
-#include "pinned_array.hpp"
 
 namespace realcam {
 

@@ -2,11 +2,10 @@
 #include <algorithm>
 #include <vector>
 
-#include "../render/accumulated_film.hpp"
+#include "../render/film_sums.hpp"
 #include "../render/sample_range.hpp"
 #include "cuda_stream.hpp"
 #include "device_array.hpp"
-#include "device_arrays.hpp"
 #include "device_scene.hpp"
 #include "ghost_kernels.hpp"
 #include "stop_flag.hpp"

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "../render/film_control_variates.hpp"
-#include "../render/shares_samples.hpp"
 
 namespace realcam {
 namespace {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "../camera/film_region.hpp"
-#include "../render/accumulated_film.hpp"
+#include "../camera/dispersion_view.hpp"
+#include "../render/film_sums.hpp"
 #include "../render/render_settings.hpp"
 #include "../render/sample_range.hpp"
 #include "device_ghosts.hpp"

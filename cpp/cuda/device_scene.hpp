@@ -4,7 +4,7 @@
 #include "../bvh/scene_bvh.hpp"
 #include "../scene/scene_arrays.hpp"
 #include "cuda_stream.hpp"
-#include "device_arrays.hpp"
+#include "device_array.hpp"
 
 namespace realcam {
 

@@ -2,7 +2,7 @@
 #include <memory>
 #include <vector>
 
-#include "../render/scene_change.hpp"
+#include "../render/live_frame.hpp"
 #include "device_renderer.hpp"
 
 namespace realcam {

@@ -1,7 +1,6 @@
 #include "../render/see_layers.hpp"
 #include "bvh_scene.hpp"
 #include "cuda_error.hpp"
-#include "lanes_per_pixel.hpp"
 #include "launch_grid.hpp"
 #include "layer_kernels.hpp"
 #include "warp_tiles.hpp"

@@ -1,4 +1,4 @@
-#include "../render/kind_of.hpp"
+#include "../render/path_settings.hpp"
 #include "../render/trace_lights.hpp"
 #include "bvh_scene.hpp"
 #include "cuda_error.hpp"

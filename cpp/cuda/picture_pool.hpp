@@ -3,8 +3,8 @@
 #include <memory>
 #include <vector>
 
-#include "../render/picture_floats.hpp"
-#include "pinned_array.hpp"
+#include "../render/image.hpp"
+#include "device_array.hpp"
 
 namespace realcam {
 

@@ -1,10 +1,8 @@
 #include "render_kernel.hpp"
 
-#include "../render/kind_of.hpp"
+#include "../render/path_settings.hpp"
 #include "cuda_error.hpp"
-#include "lanes_per_pixel.hpp"
 #include "launch_grid.hpp"
-#include "render_kernel_of.hpp"
 #include "warp_tiles.hpp"
 
 namespace realcam {

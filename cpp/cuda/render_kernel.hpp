@@ -5,8 +5,8 @@
 
 #include "../bvh/wide_bvh.hpp"
 #include "../camera/camera_view.hpp"
-#include "../render/film_view.hpp"
-#include "../render/kind_of.hpp"
+#include "../camera/effects.hpp"
+#include "../render/film_sums.hpp"
 #include "../render/path_settings.hpp"
 #include "../render/pixel_sum.hpp"
 #include "../scene/scene_view.hpp"
@@ -70,5 +70,12 @@ void launch_count(const PixelSum* sums, std::int64_t pixels, std::int64_t* count
 
 /// sums += other, for each of `pixels`.
 void launch_merge(PixelSum* sums, const PixelSum* other, std::int64_t pixels, cudaStream_t stream);
+
+using RenderKernel = void (*)(RenderJob, int);
+
+/// Returns the kernel for a lens kind, a scene kind and the index of a set of effects. `instanced`: true if the scene
+/// has instances. `halves`: true if it sums the halves of dual pixels.
+template <LensKind lens_kind, SceneKind scene_kind, int effects, bool halves>
+RenderKernel render_kernel_of(bool instanced);
 
 }  // namespace realcam

@@ -1,8 +1,8 @@
 #pragma once
-#include "../camera/pupil_half.hpp"
+#include "../camera/ray_request.hpp"
 #include "bvh_scene.hpp"
 #include "launch_grid.hpp"
-#include "render_kernel_of.hpp"
+#include "render_kernel.hpp"
 #include "warp_tiles.hpp"
 
 // The render kernel, for nvcc only. cmake/RealcamRenderKernels.cmake lists its instantiations.

@@ -1,6 +1,6 @@
 #pragma once
+#include "current_device.hpp"
 #include "device_array.hpp"
-#include "on_device.hpp"
 #include "shared_device_array.hpp"
 
 namespace realcam {

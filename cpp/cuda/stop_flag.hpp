@@ -5,7 +5,6 @@
 #include "cuda_stream.hpp"
 #include "current_device.hpp"
 #include "device_array.hpp"
-#include "pinned_array.hpp"
 
 namespace realcam {
 

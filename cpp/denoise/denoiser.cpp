@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "../error.hpp"
-#include "../render/run_with_progress.hpp"
+#include "../render/progress.hpp"
 #include "oidn_library.hpp"
 
 namespace realcam {

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "../keep_going.hpp"
+#include "../checkpoint.hpp"
 #include "../render/image.hpp"
 
 namespace realcam {

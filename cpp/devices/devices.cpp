@@ -6,7 +6,7 @@
 #include "../cuda/cuda_devices.hpp"
 #include "../cuda/cuda_session.hpp"
 #include "../embree/embree_session.hpp"
-#include "../embree/fast_pupil_tracer.hpp"
+#include "../embree/lens_rays.hpp"
 #include "../error.hpp"
 #include "cuda_plugin.hpp"
 

@@ -11,17 +11,15 @@
 #include <system_error>
 #include <utility>
 
-#include "../camera/last_setup.hpp"
+#include "../camera/camera_setup.hpp"
+#include "../render/adaptive_sampling.hpp"
+#include "../render/film_control_variates.hpp"
 #include "../render/film_sums.hpp"
-#include "../render/learning_passes.hpp"
-#include "../render/run_with_progress.hpp"
-#include "../render/scene_change.hpp"
-#include "../render/shares_samples.hpp"
+#include "../render/live_frame.hpp"
+#include "../render/progress.hpp"
 #include "../render/traced_lights.hpp"
 #include "embree_scene.hpp"
-#include "fast_pupil_tracer.hpp"
 #include "host_frame.hpp"
-#include "host_stop.hpp"
 #include "kernels.hpp"
 #include "lens_rays.hpp"
 

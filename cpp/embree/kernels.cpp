@@ -5,7 +5,6 @@
 #include <iterator>
 #include <utility>
 
-#include "../camera/pupil_half.hpp"
 #include "../camera/ray_request.hpp"
 #include "../camera/sensor_request.hpp"
 #include "../optics/analysis/aim_request.hpp"
@@ -13,7 +12,7 @@
 #include "../optics/trace/trace_request.hpp"
 #include "../render/gather_ghosts.hpp"
 #include "../render/ghost_film.hpp"
-#include "../render/kind_of.hpp"
+#include "../render/path_settings.hpp"
 #include "../render/pixel_sum.hpp"
 #include "../render/render_samples.hpp"
 #include "../render/see_layers.hpp"

@@ -12,6 +12,7 @@
 #include "../camera/ray_request.hpp"
 #include "../optics/analysis/aim_request.hpp"
 #include "../optics/pupil/bundle_quadrature.hpp"
+#include "kernels.hpp"
 
 namespace realcam {
 namespace {
@@ -148,6 +149,19 @@ RayLoop parallel_ray_loop(KeepGoing keep_going, std::size_t grain) {
         std::move(keep_going),
         [grain](std::size_t first, std::size_t last, const RayTask& task) { in_parallel(first, last, grain, task); },
         [](const AimRequest& request) { kernels().aim_rays(&request); }};
+}
+
+PupilTracer fast_pupil_tracer() {
+    const auto trace = kernels().trace_block;
+    return {[trace](const LensView<float>& view, PupilTracer::Rays& rays) { trace(&view, &rays); },
+            [](int count, const PupilTracer::Task& task) {
+                tbb::parallel_for(
+                    tbb::blocked_range<int>(0, count, 1),
+                    [&](const tbb::blocked_range<int>& range) {
+                        for (int i = range.begin(); i < range.end(); ++i) task(i);
+                    },
+                    tbb::simple_partitioner());
+            }};
 }
 
 }  // namespace realcam

@@ -6,10 +6,15 @@
 #include "../optics/analysis/film_points_request.hpp"
 #include "../optics/analysis/point_bundle.hpp"
 #include "../optics/analysis/trace_path.hpp"
+#include "../optics/pupil/pupil_tracer.hpp"
 #include "../optics/trace/ray_loop.hpp"
 #include "kernels.hpp"
 
 namespace realcam {
+
+/// Returns a lens tracer for Pupil that uses the machine's vector instructions and its cores (those of the calling
+/// thread's TBB arena).
+PupilTracer fast_pupil_tracer();
 
 class CameraSetup;
 

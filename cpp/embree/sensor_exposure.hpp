@@ -1,6 +1,6 @@
 #pragma once
 #include "../camera/sensor_request.hpp"
-#include "../keep_going.hpp"
+#include "../checkpoint.hpp"
 
 namespace realcam {
 

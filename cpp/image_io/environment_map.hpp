@@ -1,5 +1,5 @@
 #pragma once
-#include "../keep_going.hpp"
+#include "../checkpoint.hpp"
 #include "../scene/scene.hpp"
 #include "open_picture.hpp"
 

@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "../camera/develop.hpp"
+#include "../checkpoint.hpp"
 #include "../io/files/image_metadata.hpp"
 #include "../io/scene_file.hpp"
-#include "../keep_going.hpp"
 #include "../render/image.hpp"
 
 namespace realcam::image_io {

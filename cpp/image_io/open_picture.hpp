@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -8,17 +9,31 @@
 #include <utility>
 #include <vector>
 
+#include "../checkpoint.hpp"
 #include "../error.hpp"
-#include "../keep_going.hpp"
-#include "color_primaries.hpp"
 
 namespace realcam::image_io {
 
+/// CIE x and y of red, green, blue and white, in this order: OpenEXR's attribute `chromaticities`, and Radiance's line
+/// PRIMARIES.
+using Chromaticities = std::array<double, 8>;
+
+/// Chromaticities of files whose channels are the tristimulus values X, Y and Z.
+inline constexpr Chromaticities kXyzChromaticities = {1, 0, 0, 1, 0, 0, 1.0 / 3, 1.0 / 3};
+
+/// Returns the matrix, by rows, from colours with these chromaticities to linear Rec. 709. White is adapted to that of
+/// Rec. 709 by Bradford's method, except for X, Y and Z, which are absolute. Returns std::nullopt if the chromaticities
+/// are those of Rec. 709. Throws Error if they span no colours.
+std::optional<std::array<double, 9>> rec709_from(const Chromaticities& chromaticities);
+
+/// Applies a 3 x 3 matrix to the first three numbers of each pixel. `stride`: distance between pixels, in numbers.
+void apply_matrix(const std::array<double, 9>& matrix, float* pixels, std::size_t count, std::size_t stride);
+
 /// Mapping from pixels to directions that a picture's file declares.
 enum class EnvironmentMap {
-    none,      ///< default: a latitude-longitude picture with realcam's directions
+    none,  ///< default: a latitude-longitude picture with realcam's directions
     lat_long,  ///< OpenEXR's latitude-longitude map, whose middle column lies towards +z
-    cube,      ///< OpenEXR's cube map: six squares below each other, +x, -x, +y, -y, +z and -z
+    cube,  ///< OpenEXR's cube map: six squares below each other, +x, -x, +y, -y, +z and -z
 };
 
 /// Picture file that is opened and not yet decoded.
@@ -29,9 +44,9 @@ public:
     int width = 0, height = 0;
     int channels = 0;  ///< number of channels read: grey, grey and alpha, RGB, or RGB and alpha
     bool is_linear = false;  ///< linear floating-point numbers instead of display values
-    bool is_wide = false;    ///< more than 8 bits a value
+    bool is_wide = false;  ///< more than 8 bits a value
     bool has_associated_alpha = false;  ///< colours are multiplied by alpha
-    std::size_t encoded_size = 0;       ///< bytes of the file
+    std::size_t encoded_size = 0;  ///< bytes of the file
     /// Pixels in the file, if they differ from those that are read; 0: no difference.
     std::size_t encoded_pixels = 0;
     std::optional<std::array<double, 9>> rec709;  ///< matrix, by rows, to linear Rec. 709, if the primaries differ

@@ -7,11 +7,10 @@
 #include <vector>
 
 #include "../error.hpp"
-#include "../io/files/file_suffix.hpp"
-#include "../io/files/free_memory.hpp"
+#include "../io/files/regular_file.hpp"
+#include "../io/files/uri.hpp"
 #include "../io/scene/decoded_image.hpp"
 #include "../io/text/printable.hpp"
-#include "../io/text/utf8.hpp"
 #include "environment_map.hpp"
 #include "image_file.hpp"
 #include "open_picture.hpp"

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "../error.hpp"
-#include "../io/files/file_suffix.hpp"
+#include "../io/files/uri.hpp"
 #include "../io/text/json_writer.hpp"
 #include "../io/text/printable.hpp"
 #include "image_file.hpp"

@@ -7,20 +7,18 @@
 #include <utility>
 
 #include "../error.hpp"
-#include "../scene/instance_names.hpp"
+#include "../scene/assembly.hpp"
 #include "../scene/scene_checks.hpp"
-#include "files/file_suffix.hpp"
 #include "files/regular_file.hpp"
+#include "files/uri.hpp"
 #include "gltf/gltf_file.hpp"
 #include "gltf/gltf_nodes.hpp"
 #include "mesh/obj_file.hpp"
 #include "mesh/ply_file.hpp"
+#include "scene/decoded_image.hpp"
 #include "scene/scene_geometry.hpp"
-#include "scene/scene_lights.hpp"
-#include "scene/scene_materials.hpp"
 #include "scene/scene_objects.hpp"
 #include "scene/scene_textures.hpp"
-#include "scene/vertex_colours.hpp"
 #include "text/printable.hpp"
 
 namespace realcam::io {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "../keep_going.hpp"
+#include "../checkpoint.hpp"
 #include "../scene/assembly.hpp"
 #include "scene/decoded_image.hpp"
 

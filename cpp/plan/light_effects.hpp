@@ -8,11 +8,11 @@
 #include <vector>
 
 #include "../camera/camera.hpp"
-#include "../camera/picture_codes.hpp"
+#include "../camera/develop.hpp"
 #include "../math/hypotenuse.hpp"
 #include "../optics/analysis/transmission.hpp"
 #include "../optics/ghost/ghost.hpp"
-#include "../optics/lens/axial_share.hpp"
+#include "../optics/lens/exposure.hpp"
 #include "scene_facts.hpp"
 
 namespace REALCAM_NAMESPACE {

@@ -1,7 +1,12 @@
 #pragma once
+#include <string>
+#include <utility>
+#include <vector>
+
 #include "../camera/camera_setup.hpp"
-#include "measure_times.hpp"
-#include "plan_bounces.hpp"
+#include "../optics/pupil/pupil_grid.hpp"
+#include "plan.hpp"
+#include "plan_costs.hpp"
 #include "plan_shot.hpp"
 #include "probe_scene.hpp"
 
@@ -31,6 +36,58 @@ inline Plan make_plan(Session& session, const Assembly& scene, const Camera& cam
     plan_bounces(session, scene, full, settings, plan, progress);
     if (measures_times) measure_times(session, scene, camera, settings, plan, progress);
     return plan;
+}
+
+/// Settings of a picture, or of all frames of a film, after planning.
+struct ResolvedFilm {
+    CameraModel model = CameraModel::full_lens;
+    RenderSettings settings;
+    std::vector<Plan> plans;  ///< one for each frame that was planned
+    std::string summary;      ///< the plans in one line
+    std::string warning;      ///< why there was nothing to plan; otherwise empty
+};
+
+/// Plans some frames, given by their cameras, together. An effect is used if any frame calls for it, because one that
+/// comes and goes would be visible, unless the lens of another frame cannot show it. The camera model is the planned
+/// one, or that of the cameras if the plans differ. Frames that see nothing are ignored. Throws what make_plan throws,
+/// except NothingToPlan.
+inline ResolvedFilm resolve_film(Session& session, const Assembly& scene, const std::vector<Camera>& cameras,
+                                 const RenderSettings& asked, const PupilTracer& tracer,
+                                 const Progress& progress = {}) {
+    ResolvedFilm film{cameras.front().model, asked, {}, "", ""};
+    if (!asked.needs_plan()) return film;
+    for (const Camera& camera : cameras) {
+        try {
+            film.plans.push_back(make_plan(session, scene, camera, asked, false, tracer, progress));
+        } catch (const NothingToPlan& nothing) {
+            film.warning = std::string(nothing.what()) + "; the picture has the effects that are named";
+        }
+    }
+    EffectChoice& effects = film.settings.effects;
+    if (film.plans.empty()) {
+        effects = without_plan(effects);
+        return film;
+    }
+    film.warning.clear();
+    film.model = film.plans.front().model;
+    effects = film.plans.front().effects;
+    film.settings.max_bounces = 0;
+    for (const Plan& plan : film.plans) {
+        for (const EffectInfo& effect : kEffects)
+            effects.*effect.member = effects.*effect.member || plan.effects.*effect.member;
+        film.settings.max_bounces = std::max(*film.settings.max_bounces, plan.max_bounces);
+        if (plan.model != film.model) film.model = cameras.front().model;
+        const std::string summary = summary_of(plan);
+        if (film.summary.find(summary) == std::string::npos)
+            film.summary += (film.summary.empty() ? "" : "; ") + summary;
+    }
+    for (const Camera& camera : cameras)
+        for (const EffectInfo& effect : kEffects)
+            if (asked.effects.is_automatic && effect.needs_round_lens && !has_radial_pupil(camera.lens) &&
+                !(asked.effects.*effect.member))
+                effects.*effect.member = false;
+    if (!effects.have_wavelengths()) film.settings.illuminant.reset();
+    return film;
 }
 
 }  // namespace REALCAM_NAMESPACE

@@ -1,4 +1,6 @@
 #pragma once
+#include <algorithm>
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -6,7 +8,8 @@
 #include "../camera/camera_view.hpp"
 #include "../camera/effects.hpp"
 #include "../error.hpp"
-#include "../render/plan_thresholds.hpp"
+#include "../number_text.hpp"
+#include "../render/render_settings.hpp"
 
 namespace REALCAM_NAMESPACE {
 
@@ -42,5 +45,46 @@ struct Plan {
     int max_bounces = 1;  ///< largest number of bounces of light in the scene
     std::vector<PlanDecision> decisions;
 };
+
+inline const char* name_of(SizeUnit unit) {
+    return unit == SizeUnit::pixels ? "px" : "codes";
+}
+
+/// A size with its unit: "31 px", "1 code".
+inline std::string size_text(double size, SizeUnit unit) {
+    return unit == SizeUnit::pixels ? number_text(size, 3) + " px" : counted(size, "code", 3);
+}
+
+/// One-line summary for a picture's metadata: "ghosts 0.3 codes left out, defocus 31 px kept".
+inline std::string summary_of(const Plan& plan) {
+    std::string text;
+    for (const PlanDecision& decision : plan.decisions)
+        text += (text.empty() ? "" : ", ") + decision.name + ' ' + size_text(decision.size, decision.unit) +
+                (decision.is_kept ? " kept" : " left out") + (decision.by == DecidedBy::user ? " as asked" : "");
+    return text;
+}
+
+/// Plan as a table of text. `model_name`: name of the plan's camera model.
+inline std::string text_of(const Plan& plan, const std::string& model_name) {
+    using Row = std::array<std::string, 6>;
+    std::vector<Row> rows = {{"effect", "size", "threshold", "", "time", "because"}};
+    for (const PlanDecision& decision : plan.decisions) {
+        rows.push_back(
+            {decision.name, size_text(decision.size, decision.unit), size_text(decision.threshold, decision.unit),
+             std::string(decision.is_kept ? "kept" : "left out") + (decision.by == DecidedBy::user ? " as asked" : ""),
+             decision.time ? "+" + number_text(100 * *decision.time, 2) + "%" : "", decision.reason});
+    }
+    std::array<std::size_t, 6> width{};
+    for (const Row& row : rows)
+        for (std::size_t c = 0; c < row.size(); ++c) width[c] = std::max(width[c], row[c].size());
+    std::string text = "camera model " + model_name + ", max_bounces " + std::to_string(plan.max_bounces) + "\n\n";
+    for (const Row& row : rows) {
+        std::string line;
+        for (std::size_t c = 0; c < row.size(); ++c)
+            line += row[c] + std::string(c + 1 < row.size() ? width[c] - row[c].size() + 2 : 0, ' ');
+        text += line + '\n';
+    }
+    return text;
+}
 
 }  // namespace REALCAM_NAMESPACE

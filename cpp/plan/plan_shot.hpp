@@ -4,7 +4,7 @@
 #include <string>
 
 #include "../camera/direct_lens_path.hpp"
-#include "../optics/coating/coated_faces.hpp"
+#include "../optics/coating/coated_surface.hpp"
 #include "../render/effect_names.hpp"
 #include "../render/render_settings.hpp"
 #include "lens_errors.hpp"

@@ -8,7 +8,6 @@
 #include "../render/take_picture.hpp"
 #include "plan.hpp"
 #include "scene_facts.hpp"
-#include "small_film.hpp"
 
 namespace REALCAM_NAMESPACE {
 

@@ -1,10 +1,11 @@
 #include "adaptive_sampling.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
-#include "../camera/picture_codes.hpp"
+#include "../camera/develop.hpp"
 
 namespace realcam {
 
@@ -179,6 +180,21 @@ double AdaptiveSampling::next_of(const Half& half, double end) const {
     if (half.is_finished || half.pixels == 0 || most < 1) return 0;
     const double step = std::max(1.0, half.samples / 4);
     return std::clamp(std::ceil((end - half.samples) / step) * step, 0.0, most);
+}
+
+std::vector<SampleRange> learning_passes(const SampleRange& range) {
+    std::vector<SampleRange> passes;
+    const std::uint64_t last = std::uint64_t{range.first} + range.count;
+    std::uint64_t first = range.first, end = pixel_pupil::kFirstPass;
+    std::uint32_t number = 0;
+    while (first < last) {
+        for (; end <= first; end *= 2) ++number;
+        const std::uint64_t count = std::min(end, last) - first;
+        passes.push_back(
+            {hash32(range.seed, number), static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(count)});
+        first += count;
+    }
+    return passes;
 }
 
 }  // namespace realcam

@@ -1,5 +1,5 @@
 #include "axis_crossings.hpp"
-#include "../scene/instance_names.hpp"
+#include "../scene/assembly.hpp"
 
 #include <algorithm>
 

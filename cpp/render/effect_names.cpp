@@ -1,5 +1,5 @@
 #include "effect_names.hpp"
-#include "../optics/coating/coated_faces.hpp"
+#include "../optics/coating/coated_surface.hpp"
 #include "../optics/trace/lens_dispersion.hpp"
 
 #include <algorithm>

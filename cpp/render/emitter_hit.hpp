@@ -1,10 +1,68 @@
 #pragma once
+#include "../camera/camera_view.hpp"
+#include "../math/sampling.hpp"
 #include "../scene/light.hpp"
 #include "../scene/surface_point.hpp"
 #include "path_settings.hpp"
-#include "traced_light_weight.hpp"
+#include "path_state.hpp"
 
 namespace REALCAM_NAMESPACE {
+
+// The image of a light is found by samples of pixels that hit the light, and by samples that start at the light
+// (trace_lights.hpp). Both identify a light path by its point on the light and its entry point into the lens, and each
+// contribution is weighted by the densities of both methods there (Veach and Guibas 1995). For samples of pixels a mean
+// density suffices: any weights are unbiased if both methods compute the same ones.
+
+/// Plane of a light's entry rectangle. Axes in the scene, all unit.
+struct EntryPlane {
+    Vec3f from, along, across;
+    Vec3f middle;  ///< the lens's front vertex
+};
+
+REALCAM_INLINE EntryPlane entry_plane(const CameraPlacement& camera, float front_vertex_m, const TracedLight& light) {
+    const auto in_scene = [&](Vec3f lens) {
+        return lens.x * camera.right + lens.y * camera.up + lens.z * camera.backward;
+    };
+    return {in_scene(light.from), in_scene(light.along), in_scene(cross(light.from, light.along)),
+            front_vertex(camera, front_vertex_m)};
+}
+
+/// Number of samples from the light per sample of each pixel, for this light path. `cosine`, `distance`: at the light's
+/// surface, of the path to the entry, m; `entry_cosine`: to the normal of the entry plane; `pdf`: density of the point
+/// in samples from the light, per square metre.
+REALCAM_INLINE float traced_samples(const TracedLightsView& lights, const TracedLight& light, float pdf, float cosine,
+                                    float distance, float entry_cosine) {
+    return lights.scale * light.probability * pdf * distance * distance /
+           (light.entries.area() * cosine * entry_cosine);
+}
+
+/// MIS weight of an emitter's light that a ray hits straight from the film.
+template <SceneKind scene_kind, int N>
+REALCAM_INLINE float seen_light_weight(const SceneView& scene, const CameraView& camera, const PathState<N>& path,
+                                       int slot, Hit hit, const SurfacePoint& point) {
+    const TracedLightsView& lights = camera.traced_lights;
+    if (lights.light_count == 0) return 1.0f;
+    const std::int32_t area = area_light_of(scene, hit), number = lights.light_of_area[area];
+    if (number < 0) return 1.0f;
+    const TracedLight light = lights.lights[number];
+    const float time = time_of<scene_kind>(path, slot);
+    CameraPlacement placement = camera;
+    if constexpr (scene_kind == SceneKind::any) placement = camera_at(camera, time);
+    const float area_m2 = area_light_at<scene_kind>(scene, area, time).area;
+    const EntryPlane plane = entry_plane(placement, camera.front_vertex_m, light);
+    const Vec3f direction = path.rays.direction[slot];
+    const float entry_cosine = dot(direction, plane.from);
+    if (!(entry_cosine > 0.0f)) return 1.0f;
+    // Measured from the light, because the ray may begin anywhere on the path.
+    const float distance = dot(point.position - plane.middle, plane.from) / entry_cosine;
+    const Vec3f entry = point.position - distance * direction - plane.middle;
+    if (!(distance > 0.0f) ||
+        !light.entries.holds(1000.0f * dot(entry, plane.along), 1000.0f * dot(entry, plane.across)))
+        return 1.0f;
+    const float cosine = std::fabs(dot(direction, point.geometric_normal));
+    return mis_weight(
+        1.0f, traced_samples(lights, light, lights.share_of_area[area] / area_m2, cosine, distance, entry_cosine));
+}
 
 // Light is sampled in two ways: by the lights and by the BSDF. Each contribution is weighted by the densities of both
 // (multiple importance sampling, Veach and Guibas 1995).

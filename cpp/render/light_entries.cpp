@@ -5,8 +5,8 @@
 
 #include "../math/hypotenuse.hpp"
 #include "../math/random.hpp"
+#include "emitter_hit.hpp"
 #include "splat_ghosts.hpp"
-#include "traced_light_weight.hpp"
 
 namespace realcam {
 namespace {

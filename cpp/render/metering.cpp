@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "../optics/coating/coated_faces.hpp"
+#include "../optics/coating/coated_surface.hpp"
 #include "effect_names.hpp"
 #include "take_picture.hpp"
 

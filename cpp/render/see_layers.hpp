@@ -2,7 +2,7 @@
 #include <limits>
 
 #include "../camera/pixel_centre_rays.hpp"
-#include "../scene/albedo.hpp"
+#include "../scene/make_bsdf.hpp"
 #include "layer_sum.hpp"
 #include "path_state.hpp"
 

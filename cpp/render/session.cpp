@@ -8,10 +8,8 @@
 
 #include "../optics/analysis/psf.hpp"
 #include "adaptive_sampling.hpp"
-#include "left_out_motion.hpp"
-#include "motion_vectors.hpp"
-#include "run_with_progress.hpp"
-#include "seconds_since.hpp"
+#include "motion.hpp"
+#include "progress.hpp"
 #include "see_layers.hpp"
 
 namespace realcam {

@@ -9,11 +9,11 @@
 #include <vector>
 
 #include "../camera/camera.hpp"
+#include "../camera/camera_setup.hpp"
 #include "../camera/develop.hpp"
-#include "../camera/film_region.hpp"
-#include "../camera/pupil_start.hpp"
+#include "../camera/dispersion_view.hpp"
 #include "../scene/scene_checks.hpp"
-#include "accumulated_film.hpp"
+#include "film_sums.hpp"
 #include "image.hpp"
 #include "layer_film.hpp"
 #include "live_frame.hpp"

@@ -1,5 +1,5 @@
 #pragma once
-#include "../camera/camera_pupil.hpp"
+#include "../camera/generate_rays.hpp"
 #include "../scene/light.hpp"
 #include "emitter_hit.hpp"
 #include "ghost_lens_paths.hpp"

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "../number_text.hpp"
-#include "seconds_since.hpp"
+#include "progress.hpp"
 
 namespace realcam {
 namespace {

@@ -1,6 +1,6 @@
 #pragma once
+#include "emitter_hit.hpp"
 #include "splat_ghosts.hpp"
-#include "traced_light_weight.hpp"
 
 namespace REALCAM_NAMESPACE {
 

@@ -7,9 +7,9 @@
 #include <numeric>
 #include <optional>
 
-#include "../math/append_cdf.hpp"
 #include "../math/color.hpp"
 #include "../math/random.hpp"
+#include "../math/sampling_tables.hpp"
 #include "light_entries.hpp"
 
 namespace realcam {

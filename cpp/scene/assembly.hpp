@@ -4,15 +4,29 @@
 #include <initializer_list>
 #include <memory>
 #include <string>
+#include <unordered_map>
+#include <unordered_set>
 #include <utility>
 #include <vector>
 
 #include "../error.hpp"
 #include "../math/motion.hpp"
 #include "scene.hpp"
-#include "scene_camera.hpp"
 
 namespace REALCAM_NAMESPACE {
+
+/// Camera of a scene file: pose and field of view. The lens comes from realcam, not from the file.
+struct SceneCamera {
+    std::string name;
+    /// The camera is at the origin of its frame and looks along -z, with y up; metres. For a moving camera: at time 0.
+    Affine<double> scene_from_camera;
+    /// Vertical field of view in radians. 0 for an orthographic camera, which no lens can reproduce.
+    double vertical_field_rad = 0;
+    std::shared_ptr<const Motion> motion = nullptr;  ///< null: not animated
+
+    bool has_pose() const { return vertical_field_rad > 0; }
+    Affine<double> transform_at(double time_s) const { return motion ? motion->at(time_s) : scene_from_camera; }
+};
 
 /// Animated transform of an object: a fixed transform or keyframes. Metres in both frames.
 struct AnimatedTransform {
@@ -111,5 +125,30 @@ AnimatedTransform animated_transform(const std::vector<double>& times, At&& at) 
 
 /// Sets the transform or motion of an instance and moves its parts, recursively, along with it.
 void move(Assembly& assembly, std::size_t instance, const AnimatedTransform& placement);
+
+/// Makes instance names unique, so that a name identifies one instance: of several called "car" the first keeps that
+/// name, and the others become "car.2", "car.3" and so on. Empty names stay empty.
+class DistinctNames {
+public:
+    DistinctNames() = default;
+    explicit DistinctNames(const Assembly& assembly) {
+        for (const Instance& instance : assembly.instances) taken_.insert(instance.name);
+    }
+
+    /// Returns the name, or the first free numbered variant of it, and reserves it.
+    std::string take(const std::string& name);
+
+private:
+    std::unordered_set<std::string> taken_;
+    std::unordered_map<std::string, int> numbers_;
+};
+
+/// Makes the instance names of a scene unique.
+void make_names_distinct(Assembly& assembly);
+
+/// Instances an object in a scene. The object's own instances become parts of the new one, named name/part. `names`:
+/// the names that the scene already uses.
+void add(Assembly& assembly, const Assembly& object, const AnimatedTransform& placement, const std::string& name,
+         DistinctNames& names);
 
 }  // namespace REALCAM_NAMESPACE

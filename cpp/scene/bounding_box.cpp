@@ -1,6 +1,6 @@
 #include "bounding_box.hpp"
 
-#include "instance_names.hpp"
+#include "assembly.hpp"
 
 namespace realcam {
 

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "../math/append_cdf.hpp"
+#include "../math/sampling_tables.hpp"
 
 namespace realcam {
 

@@ -10,7 +10,7 @@ inline constexpr float kFarAway = 3.0e38f;
 /// Rough microfacet lobe, by which lights are chosen.
 struct LightLobe {
     Vec3f to_eye = {0, 0, 0};  ///< unit
-    float alpha = 1;  ///< GGX alpha (ggx.hpp)
+    float alpha = 1;  ///< GGX alpha (ggx_albedo.hpp)
     float share = 0;  ///< approximate share of the scattered light; the Lambertian lobe has the complement
 };
 

@@ -1,6 +1,6 @@
 #pragma once
 // Written by tools/make_loss_tables.py, which says what the numbers are. Macros, because host and
-// device each need an array of their own (border_loss.hpp, coat_loss.hpp).
+// device each need an array of their own (dielectric_border.hpp, bsdf.hpp).
 // clang-format off
 
 #define REALCAM_BORDER_LAYERS 16

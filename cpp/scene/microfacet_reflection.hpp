@@ -1,5 +1,4 @@
 #pragma once
-#include "fresnel.hpp"
 #include "ggx_albedo.hpp"
 #include "scattering.hpp"
 

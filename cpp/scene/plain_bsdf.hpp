@@ -1,9 +1,20 @@
 #pragma once
 #include "../math/random.hpp"
-#include "phong_lobe.hpp"
+#include "../math/sampling.hpp"
 #include "scattering.hpp"
 
 namespace REALCAM_NAMESPACE {
+
+REALCAM_INLINE Vec3f mirrored_at(Vec3f normal, Vec3f direction) {
+    return (2.0f * dot(direction, normal)) * normal - direction;
+}
+
+/// Normalised, energy-conserving Phong lobe (Lafortune and Willems 1994): BSDF times cosine for a reflectance of 1, in
+/// local coordinates.
+REALCAM_INLINE float phong_value(Vec3f eye, float shininess, Vec3f light) {
+    const float density = phong_pdf({-eye.x, -eye.y, eye.z}, shininess, light);
+    return (shininess + 2.0f) / (shininess + 1.0f) * density * light.z;
+}
 
 /// BSDF of a plain material (Material::is_plain): Lambertian and Phong lobes, for kernels that need no others.
 class PlainBsdf {

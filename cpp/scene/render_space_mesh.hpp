@@ -1,7 +1,7 @@
 #pragma once
 #include <vector>
 
-#include "emission_mean.hpp"
+#include "light_tables.hpp"
 #include "scene.hpp"
 #include "split_triangles.hpp"
 #include "texture_levels.hpp"

@@ -5,7 +5,7 @@
 #include <map>
 #include <utility>
 
-#include "../math/uniform_keys.hpp"
+#include "../math/motion.hpp"
 #include "light.hpp"
 
 namespace realcam {

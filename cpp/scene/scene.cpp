@@ -1,5 +1,11 @@
 #include "scene.hpp"
 
+#include <cmath>
+#include <cstddef>
+#include <set>
+
+#include "../error.hpp"
+
 namespace realcam {
 
 bool Scene::has_local_light() const {
@@ -7,6 +13,46 @@ bool Scene::has_local_light() const {
     for (const Triangle& t : triangles)
         if (materials[t.material].emits()) return true;
     return false;
+}
+
+std::vector<std::string> material_names(const Scene& scene) {
+    std::vector<std::string> names;
+    std::set<std::string> taken;
+    for (std::size_t i = 0; i < scene.materials.size(); ++i) {
+        const bool named = i < scene.material_names.size() && !scene.material_names[i].empty();
+        const std::string wanted = named ? scene.material_names[i] : "material " + std::to_string(i);
+        std::string name = wanted;
+        for (int k = 2; !taken.insert(name).second; ++k) name = wanted + '.' + std::to_string(k);
+        names.push_back(name);
+    }
+    return names;
+}
+
+void check_environment_change(const EnvironmentChange& change) {
+    if (!(change.scale > 0) || !std::isfinite(change.scale))
+        throw InputError("the environment's scale must be a positive number");
+    if (!std::isfinite(change.rotation_deg)) throw InputError("the environment's rotation must be a number of degrees");
+}
+
+Environment changed(Environment environment, const EnvironmentChange& change) {
+    check_environment_change(change);
+    const auto scale = static_cast<float>(change.scale);
+    environment.constant = scale * environment.constant;
+    for (Color& pixel : environment.pixels) pixel = scale * pixel;
+    if (environment.pixels.empty() || change.rotation_deg == 0) return environment;
+    const auto width = static_cast<std::size_t>(environment.width);
+    const double turns = change.rotation_deg / 360;
+    const double columns = (turns - std::floor(turns)) * static_cast<double>(width);
+    const auto whole = static_cast<std::size_t>(columns);
+    const auto part = static_cast<float>(columns - static_cast<double>(whole));
+    std::vector<Color> row(width);
+    for (std::size_t begin = 0; begin < environment.pixels.size(); begin += width) {
+        Color* const pixels = environment.pixels.data() + begin;
+        for (std::size_t c = 0; c < width; ++c)
+            row[c] = mix(pixels[(c + whole) % width], pixels[(c + whole + 1) % width], part);
+        for (std::size_t c = 0; c < width; ++c) pixels[c] = row[c];
+    }
+    return environment;
 }
 
 }  // namespace realcam

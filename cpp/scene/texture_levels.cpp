@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstddef>
 
-#include "code_light.hpp"
 #include "texture.hpp"
 
 namespace realcam {
@@ -111,6 +110,14 @@ TextureLevels coarser_levels(TextureView& texture, Checkpoint& checkpoint) {
             averaging.append(levels.linear_rgba, finer.linear_rgba, finer.width, finer.height);
     }
     return levels;
+}
+
+std::array<float, 256> light_of_codes(TextureEncoding encoding) {
+    std::array<float, 256> light{};
+    for (std::size_t code = 0; code < light.size(); ++code)
+        light[code] = encoding == TextureEncoding::srgb ? srgb_to_linear(static_cast<std::uint8_t>(code))
+                                                        : static_cast<float>(code) * (1.0f / 255.0f);
+    return light;
 }
 
 }  // namespace realcam

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -7,6 +8,9 @@
 #include "scene_view.hpp"
 
 namespace REALCAM_NAMESPACE {
+
+/// Returns the linear value, 0 to 1, of each 8-bit code. Host only.
+std::array<float, 256> light_of_codes(TextureEncoding encoding);
 
 // Mipmap levels of a texture; they take a third of its memory in addition. Host only.
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "../math/turn.hpp"
+#include "../math/affine.hpp"
 #include "../scene/assembly.hpp"
 #include "../scene/scene_checks.hpp"
 

@@ -1,11 +1,22 @@
 #pragma once
 #include <array>
+#include <functional>
 #include <string>
 #include <vector>
 
+#include "../io/scene_file.hpp"
 #include "../scene/assembly.hpp"
 
 namespace realcam::shot {
+
+/// Functions that read pictures; the programs supply those of OpenImageIO.
+struct PictureReaders {
+    io::ImageReader texture;
+    /// `layer`: name of an OpenEXR layer, or empty. `warn`: receives what was tolerated in the file.
+    std::function<Environment(const std::string& path, const std::string& layer,
+                              const std::function<void(const std::string&)>& warn)>
+        environment;
+};
 
 // Additions of a shot file to the scene that it photographs. `location`: position in the shot file, for messages.
 

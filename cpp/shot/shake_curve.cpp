@@ -9,7 +9,7 @@
 
 #include "../error.hpp"
 #include "../io/files/readable_file.hpp"
-#include "../io/text/nearest_names.hpp"
+#include "../io/text/help_page.hpp"
 #include "../io/text/printable.hpp"
 #include "../io/text/text_lines.hpp"
 

@@ -12,8 +12,8 @@
 
 #include "../error.hpp"
 #include "../io/files/readable_file.hpp"
-#include "../io/text/number_words.hpp"
 #include "../io/text/printable.hpp"
+#include "../io/text/text_number.hpp"
 #include "../io/text/toml_document.hpp"
 #include "read_camera_keys.hpp"
 #include "read_scene_request.hpp"

@@ -4,7 +4,6 @@
 
 #include "../io/text/printable.hpp"
 #include "../render/effect_names.hpp"
-#include "names.hpp"
 #include "read_camera_keys.hpp"
 #include "shot_table.hpp"
 

@@ -10,7 +10,7 @@
 #include "../io/lens/lens_file.hpp"
 #include "../render/default_view.hpp"
 #include "../render/render_settings.hpp"
-#include "../scene/environment_change.hpp"
+#include "../scene/scene.hpp"
 #include "scene_request.hpp"
 
 namespace realcam::shot {

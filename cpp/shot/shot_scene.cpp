@@ -7,9 +7,9 @@
 #include <utility>
 
 #include "../error.hpp"
-#include "../io/text/nearest_names.hpp"
+#include "../io/text/help_page.hpp"
 #include "../io/text/printable.hpp"
-#include "../scene/instance_names.hpp"
+#include "../scene/assembly.hpp"
 
 namespace realcam::shot {
 namespace {

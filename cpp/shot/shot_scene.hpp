@@ -1,7 +1,6 @@
 #pragma once
-#include "../keep_going.hpp"
+#include "../checkpoint.hpp"
 #include "../scene/assembly.hpp"
-#include "picture_readers.hpp"
 #include "scene_request.hpp"
 
 namespace realcam::shot {

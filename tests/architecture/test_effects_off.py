@@ -27,7 +27,7 @@ CUTS = {
         (r"    Effects effects;.*?\n\n", ""),
         (r"(?<=int surfaces, Move&& move\) \{\n).*?(?=    \}\n\};)", "        (void)surfaces, (void)move;\n"),
     ],
-    "camera/pupil_half.hpp": [(r"    if constexpr \(effects\.have_wavelengths\(\)\) draw_wavelengths.*?\n", "")],
+    "camera/ray_request.hpp": [(r"    if constexpr \(effects\.have_wavelengths\(\)\) draw_wavelengths.*?\n", "")],
     "camera/effects.hpp": [(r"kCompiledEffects\[\] = \{[^;]*\};", "kCompiledEffects[] = {{}};")],
     "camera/rays_with_effects.hpp": [
         (r'#include "diffracted_rays.hpp"', '#include "generate_rays.hpp"'),

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "bytes.hpp"
-#include "io/lens/bundled_lenses.hpp"
 #include "io/lens/lens_file.hpp"
+#include "io/lens/lens_text.hpp"
 #include "mutate_text.hpp"
 #include "optics/prescription/lens_checks.hpp"
 #include "target.hpp"

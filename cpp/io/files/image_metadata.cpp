@@ -4,7 +4,7 @@
 #include <initializer_list>
 #include <numbers>
 
-#include "../../optics/coating/coated_faces.hpp"
+#include "../../optics/coating/coated_surface.hpp"
 #include "../../optics/lens/focus.hpp"
 #include "../../render/effect_names.hpp"
 

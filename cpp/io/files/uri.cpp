@@ -1,8 +1,10 @@
 #include "uri.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 
 namespace realcam::io {
 namespace {
@@ -66,6 +68,31 @@ std::optional<std::string> data_of_uri(std::string_view uri) {
     const std::size_t at = uri.substr(0, 1000).find(mark);
     if (!is_data_uri(uri) || at == std::string_view::npos) return std::nullopt;
     return base64_decoded(uri.substr(at + mark.size()));
+}
+
+std::optional<std::string> find_beside(const std::string& scene_path, const std::string& name) {
+    namespace fs = std::filesystem;
+    // No system has longer paths, and a name with a null character would be truncated at it.
+    constexpr std::size_t kLongestPath = 4096;
+    if (name.empty() || name.size() > kLongestPath || name.find('\0') != std::string::npos) return std::nullopt;
+    const fs::path folder = fs::path(scene_path).parent_path();
+    std::string slashes = name;
+    std::replace(slashes.begin(), slashes.end(), '\\', '/');
+    for (const std::string& spelling : {name, slashes, percent_decoded(slashes)}) {
+        if (spelling.find('\0') != std::string::npos) continue;
+        for (const fs::path& candidate : {folder / spelling, folder / fs::path(spelling).filename()}) {
+            std::error_code error;
+            if (fs::is_regular_file(candidate, error)) return candidate.string();
+        }
+    }
+    return std::nullopt;
+}
+
+std::string suffix_of(const std::string& path) {
+    std::string suffix = std::filesystem::path(path).extension().string();
+    for (char& c : suffix)
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    return suffix;
 }
 
 }  // namespace realcam::io

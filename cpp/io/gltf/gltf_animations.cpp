@@ -1,4 +1,4 @@
-#include "gltf_animations.hpp"
+#include "gltf_readers.hpp"
 
 #include <cmath>
 #include <map>
@@ -8,7 +8,7 @@
 
 #include "../../math/motion.hpp"
 #include "../text/printable.hpp"
-#include "gltf_transform.hpp"
+#include "gltf_nodes.hpp"
 
 namespace realcam::io {
 namespace {

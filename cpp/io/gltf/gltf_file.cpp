@@ -3,14 +3,9 @@
 #include <optional>
 
 #include "../../error.hpp"
-#include "gltf_animations.hpp"
-#include "gltf_cameras.hpp"
-#include "gltf_extensions.hpp"
-#include "gltf_lights.hpp"
-#include "gltf_materials.hpp"
 #include "gltf_meshes.hpp"
 #include "gltf_nodes.hpp"
-#include "gltf_pictures.hpp"
+#include "gltf_readers.hpp"
 
 namespace realcam::io {
 namespace {

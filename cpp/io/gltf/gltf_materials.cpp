@@ -1,4 +1,4 @@
-#include "gltf_materials.hpp"
+#include "gltf_readers.hpp"
 
 #include <algorithm>
 #include <limits>

@@ -1,15 +1,64 @@
 #include "gltf_nodes.hpp"
 
+#include <algorithm>
 #include <utility>
+#include <vector>
 
 #include "../../error.hpp"
+#include "../../math/affine.hpp"
+#include "../../math/interpolate_affine.hpp"
 #include "../files/regular_file.hpp"
+#include "../scene/file_motion.hpp"
 #include "../text/printable.hpp"
-#include "gltf_instancing.hpp"
-#include "gltf_transform.hpp"
+#include "gltf_accessors.hpp"
 
 namespace realcam::io {
+
 namespace {
+
+/// Greatest number of instances per node: in a file of a megabyte, a thousand nodes may share a million transforms.
+constexpr std::size_t kMost = std::size_t{1} << 21;
+
+/// Returns the transforms of a node's instances (EXT_mesh_gpu_instancing) in the node's frame; empty if the node does
+/// not have this extension, and hence one mesh. `label`: names the node in messages. Throws SceneFileError.
+std::vector<Affine<double>> instances_of(const Json& node, GltfAccessors& accessors, const GltfDocument& document,
+                                         const std::string& label) {
+    const Json& attributes = node["extensions"]["EXT_mesh_gpu_instancing"]["attributes"];
+    std::size_t count = 0;
+    for (const char* name : {"TRANSLATION", "ROTATION", "SCALE"})
+        if (!attributes[name].is_null()) count = std::max(count, accessors.count(attributes[name]));
+    if (count > kMost)
+        document.fail(label + ": has " + std::to_string(count) + " instances; at most " + std::to_string(kMost) +
+                      " are read");
+    const auto read = [&](const char* name, const char* type, std::size_t components) {
+        std::vector<float> numbers;
+        if (attributes[name].is_null()) return numbers;
+        const std::string where = label + ": " + name + " of its instances";
+        numbers = accessors.numbers(attributes[name], type, where);
+        if (numbers.size() != components * count)
+            document.fail(where + ": has " + std::to_string(numbers.size() / components) + " elements for " +
+                          std::to_string(count) + " instances; one for each is wanted");
+        return numbers;
+    };
+    const std::vector<float> translations = read("TRANSLATION", "VEC3", 3), rotations = read("ROTATION", "VEC4", 4),
+                             scales = read("SCALE", "VEC3", 3);
+    const auto vector = [](const std::vector<float>& numbers, std::size_t at) {
+        return static_cast<Vec3d>(Vec3f{numbers[at], numbers[at + 1], numbers[at + 2]});
+    };
+    std::vector<Affine<double>> out;
+    out.reserve(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        FileMotion transform;
+        if (!translations.empty()) transform.translation = vector(translations, 3 * i);
+        if (!scales.empty()) transform.scale = vector(scales, 3 * i);
+        if (!rotations.empty()) {
+            const Quaternion turn = {vector(rotations, 4 * i), static_cast<double>(rotations[4 * i + 3])};
+            if (dot(turn, turn) > 0) transform.rotation = turn;
+        }
+        out.push_back(transform.parent_from_node(0));
+    }
+    return out;
+}
 
 class NodeLayout {
 public:
@@ -158,6 +207,38 @@ std::vector<Affine<double>> global_transforms(const std::vector<FileNode>& nodes
         transforms.push_back(node.parent == kNoParent ? node.parent_from_node
                                                       : transforms[node.parent] * node.parent_from_node);
     return transforms;
+}
+
+namespace {
+
+Vec3d vector_of(const Json& numbers, Vec3d otherwise) {
+    return {numbers[std::size_t{0}].number(otherwise.x), numbers[1].number(otherwise.y),
+            numbers[2].number(otherwise.z)};
+}
+
+Affine<double> matrix_of(const Json& m) {  // column-major
+    const auto column = [&](std::size_t c) {
+        return Vec3d{m[4 * c].number(0), m[4 * c + 1].number(0), m[4 * c + 2].number(0)};
+    };
+    return {column(0), column(1), column(2), column(3)};
+}
+
+}  // namespace
+
+FileMotion standing(const Json& node) {
+    FileMotion motion;
+    const Json& q = node["rotation"];
+    // Files round quaternions to seven digits; `rotation` accepts any length.
+    const Quaternion turn = {vector_of(q, {0, 0, 0}), q[3].number(1)};
+    if (dot(turn, turn) > 0) motion.rotation = turn;
+    motion.scale = vector_of(node["scale"], {1, 1, 1});
+    motion.translation = vector_of(node["translation"], {0, 0, 0});
+    return motion;
+}
+
+Affine<double> transform_of(const Json& node) {
+    if (node["matrix"].size() == 16) return matrix_of(node["matrix"]);
+    return standing(node).parent_from_node(0);
 }
 
 }  // namespace realcam::io

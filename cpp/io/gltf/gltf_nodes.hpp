@@ -3,10 +3,19 @@
 #include <vector>
 
 #include "../../checkpoint.hpp"
+#include "../../math/affine.hpp"
+#include "../scene/file_motion.hpp"
 #include "../scene/file_scene.hpp"
+#include "../text/json.hpp"
 #include "gltf_accessors.hpp"
 
 namespace realcam::io {
+
+/// Returns the transform of a glTF node to its parent: from its matrix, or from translation, rotation and scale.
+Affine<double> transform_of(const Json& node);
+
+/// Returns a node's translation, rotation and scale as a motion without keys.
+FileMotion standing(const Json& node);
 
 inline constexpr std::size_t kNoGltfNode = static_cast<std::size_t>(-1);
 

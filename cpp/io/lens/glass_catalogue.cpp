@@ -1,7 +1,6 @@
 #include <map>
 #include <set>
 
-#include "bundled_lenses.hpp"
 #include "lens_file.hpp"
 #include "lens_glass.hpp"
 #include "lens_material.hpp"

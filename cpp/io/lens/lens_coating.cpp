@@ -1,9 +1,9 @@
 #include "lens_coating.hpp"
 
-#include "../../optics/coating/coated_faces.hpp"
+#include "../../optics/coating/coated_surface.hpp"
+#include "../../optics/prescription/coating.hpp"
 #include "../../optics/prescription/coating_checks.hpp"
-#include "../../optics/prescription/metals.hpp"
-#include "../../optics/prescription/named_coatings.hpp"
+#include "../../optics/prescription/coating_material.hpp"
 #include "lens_material.hpp"
 #include "lens_text.hpp"
 

@@ -8,10 +8,9 @@
 #include <system_error>
 
 #include "../../optics/prescription/lens_checks.hpp"
-#include "../files/file_suffix.hpp"
 #include "../files/regular_file.hpp"
+#include "../files/uri.hpp"
 #include "../text/toml_document.hpp"
-#include "bundled_lenses.hpp"
 #include "lens_format.hpp"
 #include "lens_text.hpp"
 #include "lens_toml.hpp"

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "../../keep_going.hpp"
+#include "../../checkpoint.hpp"
 #include "../../optics/prescription/lens_system.hpp"
 
 namespace realcam::io {

@@ -11,10 +11,10 @@
 #include "../../optics/prescription/lens_checks.hpp"
 #include "../../optics/prescription/lens_limits.hpp"
 #include "../text/printable.hpp"
-#include "lens_asphere_terms.hpp"
 #include "lens_error.hpp"
 #include "lens_format.hpp"
 #include "lens_placements.hpp"
+#include "lens_prescription.hpp"
 #include "lens_rims.hpp"
 #include "lens_states.hpp"
 

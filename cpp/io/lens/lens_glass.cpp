@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "../text/nearest_names.hpp"
+#include "../text/help_page.hpp"
 #include "../text/printable.hpp"
 #include "../text/text_number.hpp"
 #include "lens_material.hpp"

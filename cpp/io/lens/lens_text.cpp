@@ -5,7 +5,6 @@
 
 #include "../text/printable.hpp"
 #include "../text/text_number.hpp"
-#include "../text/utf8.hpp"
 
 namespace realcam::io {
 namespace {

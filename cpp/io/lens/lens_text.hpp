@@ -1,15 +1,25 @@
 #pragma once
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "../../checkpoint.hpp"
+#include "../files/bundled_file.hpp"
 #include "lens_error.hpp"
 
 namespace realcam::io {
+
+// Files of lenses/, compiled into the library; the definitions are generated.
+
+// Returns the bundled lenses, in the order of the file names.
+std::span<const BundledFile> bundled_lens_files();
+
+// Returns the glass catalogue, lenses/glass.toml; empty if there is no catalogue.
+std::string_view bundled_glass_catalogue();
 
 /// Greatest number of surfaces in a file: those of a lens, and as many dummies that are merged.
 inline constexpr std::size_t kMostFileSurfaces = 1024;

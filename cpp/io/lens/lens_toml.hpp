@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "../../keep_going.hpp"
+#include "../../checkpoint.hpp"
 #include "../../optics/prescription/lens_system.hpp"
 #include "../text/toml_table.hpp"
 #include "lens_format.hpp"

@@ -3,10 +3,9 @@
 #include <numbers>
 #include <set>
 
-#include "../../optics/prescription/named_coatings.hpp"
+#include "../../optics/prescription/coating.hpp"
 #include "../text/printable.hpp"
 #include "../text/text_number.hpp"
-#include "../text/utf8.hpp"
 #include "lens_glass.hpp"
 #include "lens_material.hpp"
 #include "lens_text.hpp"

@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "../../keep_going.hpp"
+#include "../../checkpoint.hpp"
 #include "../../optics/prescription/lens_system.hpp"
 #include "../text/toml_table.hpp"
 

@@ -9,10 +9,10 @@
 #include <utility>
 
 #include "../../error.hpp"
-#include "../files/file_beside.hpp"
 #include "../files/regular_file.hpp"
+#include "../files/uri.hpp"
+#include "../scene/decoded_image.hpp"
 #include "../scene/scene_cleanup.hpp"
-#include "../scene/vertex_colours.hpp"
 #include "../text/printable.hpp"
 #include "../text/text_lines.hpp"
 #include "mtl_file.hpp"

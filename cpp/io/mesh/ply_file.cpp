@@ -7,11 +7,10 @@
 
 #include "../../error.hpp"
 #include "../../scene/scene_checks.hpp"
+#include "../scene/decoded_image.hpp"
 #include "../scene/scene_cleanup.hpp"
-#include "../scene/vertex_colours.hpp"
 #include "../text/printable.hpp"
-#include "ply_corners.hpp"
-#include "ply_slots.hpp"
+#include "ply_data.hpp"
 
 namespace realcam::io {
 namespace {

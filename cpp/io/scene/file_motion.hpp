@@ -3,7 +3,7 @@
 #include <memory>
 #include <vector>
 
-#include "../../math/quaternion.hpp"
+#include "../../math/interpolate_affine.hpp"
 
 namespace realcam::io {
 

@@ -3,21 +3,75 @@
 // scene_lights and scene_materials make a Scene of it.
 
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "../../math/affine.hpp"
+#include "../../math/vec3.hpp"
 #include "../../scene/scene_view.hpp"
-#include "file_material.hpp"
 #include "file_motion.hpp"
+#include "gltf_material.hpp"
+#include "texture_transform.hpp"
 
 namespace realcam::io {
+
+// Materials as described in scene files. Only scene_materials.cpp decides how they are rendered.
+
+/// Material of an MTL file (Alias|Wavefront, File Formats 4.2, 1995), with later additions: Ke, norm, and the
+/// statements for physically based rendering, which begin with P. Members have the names of the format.
+struct MtlMaterial {
+    Vec3f Ka = {0, 0, 0};           ///< ambient; not needed by a path tracer
+    Vec3f Kd = {0.6f, 0.6f, 0.6f};  ///< the format has no default; many viewers use this one
+    Vec3f Ks = {0, 0, 0};
+    Vec3f Ke = {0, 0, 0};
+    Vec3f Tf = {1, 1, 1};     ///< transmission filter
+    float Ns = 0;             ///< Phong exponent
+    std::optional<float> Ni;  ///< index of refraction, 0.001 to 10
+    float d = 1;              ///< 0..1, 1 is opaque; Tr is 1 - d
+
+    /// Illumination model, 0 to 10. The format has no default. Model 2 has highlights, and model 1 only colour and
+    /// ambient; so it is 2 for a material that has Ks, and 1 for others.
+    int illum = 1;
+
+    std::optional<float> Pr, Pm;  ///< roughness and metallic, 0..1; either one selects that model
+    float Pc = 0, Pcr = 0;  ///< clearcoat and its roughness, 0..1
+
+    FileTexture map_Kd, map_Ks, map_Ke;  ///< colours that multiply Kd, Ks and Ke
+    FileTexture map_d, map_Ns, map_Pr, map_Pm;  ///< numbers that multiply d, Ns, Pr and Pm
+    FileTexture bump;  ///< heights, bright is high
+    float bm = 1;  ///< factor of those heights
+    FileTexture norm;  ///< normals in tangent space
+};
+
+/// Material of a scene file. Without content it is the default for meshes without a material.
+struct FileMaterial {
+    std::string name;
+    std::variant<std::monostate, MtlMaterial, GltfMaterial> content;
+    /// Without content: white instead of grey, because the vertex colours are the surface's colours.
+    bool is_white = false;
+
+    /// Returns the texture of the surface's colour.
+    FileTexture colour_texture() const {
+        if (const auto* mtl = std::get_if<MtlMaterial>(&content)) return mtl->map_Kd;
+        const auto* gltf = std::get_if<GltfMaterial>(&content);
+        return gltf ? gltf->colour_texture() : FileTexture{};
+    }
+
+    /// Returns the texture coordinate sets of a glTF mesh that the textures use, that of the first texture first: its
+    /// vertices get them as uvs and second_uvs.
+    std::vector<std::uint32_t> uv_sets() const {
+        const auto* gltf = std::get_if<GltfMaterial>(&content);
+        return gltf && !gltf->uv_sets.empty() ? gltf->uv_sets : std::vector<std::uint32_t>{0};
+    }
+};
 
 /// Vertices, in units of the file. Several meshes may share them.
 struct FileVertices {
     std::vector<Vec3d> positions;
     std::vector<Vec3f> normals;  ///< empty, or one per position; (0, 0, 0) if a vertex has no normal
-    std::vector<Vec2f> uvs;      ///< empty, or one per position; as in the file, except that v is upwards
+    std::vector<Vec2f> uvs;  ///< empty, or one per position; as in the file, except that v is upwards
     std::vector<Vec2f> second_uvs;  ///< like uvs
     std::vector<VertexColor> colours;  ///< empty, or one per position; linear
     std::vector<std::uint32_t> position_ids;  ///< empty, or one per position: see Smoothing

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "../../math/vec3.hpp"
-#include "file_texture.hpp"
+#include "texture_transform.hpp"
 
 namespace realcam::io {
 

@@ -1,4 +1,4 @@
-#include "scene_materials.hpp"
+#include "scene_textures.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "../text/printable.hpp"
-#include "vertex_colours.hpp"
+#include "decoded_image.hpp"
 
 namespace realcam::io {
 namespace {

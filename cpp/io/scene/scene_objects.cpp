@@ -3,10 +3,9 @@
 #include <algorithm>
 
 #include "../../error.hpp"
-#include "../text/nearest_names.hpp"
+#include "../text/help_page.hpp"
 #include "../text/printable.hpp"
 #include "scene_geometry.hpp"
-#include "scene_lights.hpp"
 
 namespace realcam::io {
 namespace {

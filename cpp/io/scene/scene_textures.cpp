@@ -5,9 +5,8 @@
 #include <vector>
 
 #include "../../error.hpp"
-#include "../files/file_beside.hpp"
 #include "../files/regular_file.hpp"
-#include "../text/one_line.hpp"
+#include "../files/uri.hpp"
 #include "../text/printable.hpp"
 #include "made_textures.hpp"
 

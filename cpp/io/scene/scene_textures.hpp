@@ -61,4 +61,8 @@ private:
     std::size_t bytes_ = 0, checked_bytes_ = 0;  // size of scene_.textures
 };
 
+/// Makes scene.materials from the materials of the file, with the same indices, and the textures that they need; warns
+/// of properties that are not modelled. `scale`: metres per unit of the file.
+void make_materials(Scene& scene, const FileScene& file, double scale, SceneTextures& textures);
+
 }  // namespace realcam::io

@@ -1,9 +1,10 @@
 #pragma once
 #include <cmath>
+#include <cstdint>
 #include <initializer_list>
 
 #include "../../math/vec3.hpp"
-#include "../../scene/texture_reference.hpp"
+#include "../../scene/material.hpp"
 
 namespace realcam::io {
 
@@ -52,6 +53,26 @@ public:
 
 private:
     Vec3d from_u_ = {1, 0, 0}, from_v_ = {0, 1, 0}, offset_ = {0, 0, 0};
+};
+
+/// Texture of a material property.
+struct FileTexture {
+    std::int32_t picture = -1;  ///< index in FileScene::pictures, or -1
+    std::uint32_t uv_set = 0;  ///< 0: FileVertices::uvs; 1: second_uvs
+    TextureTransform transform;
+    TextureSampler sampler = {};
+
+    /// Returns the reference for the renderer; `texture`: index of the picture in the scene's textures.
+    TextureReference reference(std::int32_t texture) const {
+        TextureReference out = transform.of(texture);
+        out.sampler = sampler;
+        out.uv_set = static_cast<std::int8_t>(uv_set);
+        return out;
+    }
+    /// True if both are mapped to a surface in the same way.
+    bool lies_as(const FileTexture& b) const { return transform == b.transform && sampler == b.sampler; }
+
+    explicit operator bool() const { return picture >= 0; }
 };
 
 }  // namespace realcam::io

@@ -2,7 +2,6 @@
 
 #include "../files/regular_file.hpp"
 #include "../text/toml_document.hpp"
-#include "bundled_sensors.hpp"
 
 namespace realcam::io {
 namespace {

@@ -1,12 +1,19 @@
 #pragma once
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "../../camera/sensor.hpp"
-#include "../../keep_going.hpp"
+#include "../../checkpoint.hpp"
+#include "../files/bundled_file.hpp"
 
 namespace realcam::io {
+
+// Files of sensors/, compiled into the library; the definition is generated.
+
+/// Returns the bundled sensors, in the order of the file names.
+std::span<const BundledFile> bundled_sensor_files();
 
 /// Returns the names of the bundled sensors, sorted.
 std::vector<std::string> sensor_names();

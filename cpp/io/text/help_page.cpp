@@ -1,8 +1,11 @@
 #include "help_page.hpp"
 
 #include <algorithm>
+#include <cctype>
+#include <numeric>
 #include <sstream>
 #include <string_view>
+#include <utility>
 
 namespace realcam::io {
 namespace {
@@ -66,6 +69,63 @@ std::string text_of(const HelpPage& page) {
     if (!page.examples.empty()) text += "\nExamples:\n";
     for (const std::string& example : page.examples) text += std::string(kIndent, ' ') + example + '\n';
     return text;
+}
+
+namespace {
+
+char lower(char c) {
+    return static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+}
+
+/// Returns the Levenshtein distance, ignoring case.
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+    std::vector<std::size_t> row(b.size() + 1);
+    std::iota(row.begin(), row.end(), std::size_t{0});
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        std::size_t diagonal = std::exchange(row[0], i + 1);
+        for (std::size_t j = 0; j < b.size(); ++j) {
+            const std::size_t changed = diagonal + (lower(a[i]) != lower(b[j]));
+            diagonal = row[j + 1];
+            row[j + 1] = std::min({changed, row[j] + 1, diagonal + 1});
+        }
+    }
+    return row.back();
+}
+
+bool contains(std::string_view text, std::string_view part) {
+    return std::search(text.begin(), text.end(), part.begin(), part.end(),
+                       [](char x, char y) { return lower(x) == lower(y); }) != text.end();
+}
+
+}  // namespace
+
+std::string did_you_mean(std::string_view name, const std::vector<std::string>& candidates) {
+    // Limits, because the work grows with the product of the lengths: longer names are not misspellings, and
+    // suggestions from longer lists are not useful.
+    constexpr std::size_t kLongestName = 64, kMostCandidates = 10000;
+    if (name.size() > kLongestName || candidates.size() > kMostCandidates) return {};
+    std::vector<std::pair<std::size_t, std::string_view>> near;
+    for (const std::string& candidate : candidates) {
+        if (candidate.size() > kLongestName) continue;
+        const bool part = !name.empty() && (contains(candidate, name) || contains(name, candidate));
+        const std::size_t distance = part ? 0 : edit_distance(name, candidate);
+        // Compares the first word as well ("tesar" for "tessar-50mm"), with a stricter limit because it is short.
+        const std::string_view word = std::string_view(candidate).substr(0, candidate.find('-'));
+        const std::size_t of_word = edit_distance(name, word);
+        if (distance <= std::max<std::size_t>(2, candidate.size() / 3))
+            near.emplace_back(distance, candidate);
+        else if (of_word <= std::max<std::size_t>(1, word.size() / 3))
+            near.emplace_back(of_word, candidate);
+    }
+    std::sort(near.begin(), near.end());
+    if (near.size() > 3) near.resize(3);
+    if (near.empty()) return {};
+    std::string text = " (did you mean ";
+    for (std::size_t i = 0; i < near.size(); ++i) {
+        if (i > 0) text += i + 1 == near.size() ? " or " : ", ";
+        text += '"' + std::string(near[i].second) + '"';
+    }
+    return text + "?)";
 }
 
 }  // namespace realcam::io

@@ -9,7 +9,6 @@
 
 #include "printable.hpp"
 #include "text_number.hpp"
-#include "utf8.hpp"
 
 namespace realcam::io {
 namespace {

@@ -1,8 +1,30 @@
 #pragma once
+#include <cstddef>
 #include <string>
 #include <string_view>
 
 namespace realcam::io {
+
+/// Returns the number of bytes of the first character of a text, which is not empty; 0 if it is not valid UTF-8.
+std::size_t utf8_size(std::string_view text);
+
+/// True if the bytes are valid UTF-8.
+bool is_utf8(std::string_view bytes);
+
+/// Returns the position of the first byte of the character that a byte belongs to.
+std::size_t utf8_begin(std::string_view text, std::size_t byte);
+
+/// Appends the character of a code point.
+void append_utf8(std::string& out, unsigned point);
+
+/// Returns the code point of a surrogate pair of UTF-16.
+constexpr unsigned from_surrogates(unsigned high, unsigned low) {
+    return 0x10000 + ((high - 0xd800) << 10) + (low - 0xdc00);
+}
+
+/// Returns a message as one line for a terminal: control characters become blanks; words of more than 300 bytes and
+/// lines of more than 2000, which only broken input has, lose their middle.
+std::string one_line(const std::string& message);
 
 /// Returns any bytes as one line of valid UTF-8: control characters become blanks, and invalid bytes become U+FFFD.
 std::string printable(std::string_view bytes);

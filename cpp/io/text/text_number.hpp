@@ -3,9 +3,20 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <string>
 #include <string_view>
+#include <vector>
 
 namespace realcam::io {
+
+// Parses numbers of a command line. CLI11's own conversion is not suitable: it reads numbers as long double and then
+// rounds again, so that an option could differ from the same number in a shot file, and it takes 010 for 8.
+
+/// Parses a text that is one number, or "inf"; std::nullopt for other texts and for NaN.
+std::optional<double> number_in(const std::string& text);
+
+/// Parses `count` finite numbers with a separator between them; std::nullopt for other texts.
+std::optional<std::vector<double>> numbers_in(const std::string& text, char separator, std::size_t count);
 
 /// Takes a number from the beginning of a text, also "nan", "inf", ".5" and a "+". Returns std::nullopt, and leaves the
 /// text unchanged, if there is no number. Numbers too large for a double are infinite, and those too small are 0.

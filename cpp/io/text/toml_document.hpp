@@ -2,7 +2,7 @@
 #include <string>
 #include <string_view>
 
-#include "../../keep_going.hpp"
+#include "../../checkpoint.hpp"
 #include "toml_table.hpp"
 
 namespace realcam::io {

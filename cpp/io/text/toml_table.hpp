@@ -12,7 +12,7 @@
 #include <string_view>
 
 #include "../../error.hpp"
-#include "nearest_names.hpp"
+#include "help_page.hpp"
 #include "printable.hpp"
 
 namespace realcam::io {

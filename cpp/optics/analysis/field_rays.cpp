@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "../lens/parabasal.hpp"
-#include "aim_all.hpp"
+#include "ray_aiming.hpp"
 
 namespace realcam {
 

@@ -1,9 +1,12 @@
 #pragma once
 #include <optional>
+#include <vector>
 
 #include "../../math/hypotenuse.hpp"
+#include "../pupil/pupil_pattern.hpp"
 #include "../trace/aiming_path.hpp"
 #include "../trace/film_frame.hpp"
+#include "../trace/ray_loop.hpp"
 #include "aim_request.hpp"
 #include "object_point.hpp"
 
@@ -76,5 +79,11 @@ private:
     Entry chief_{0, 0};
     Vec3d frame_{0, 0, 0};  ///< origin of the object's frame, in the lens frame
 };
+
+/// Returns the rays through all points of a pattern on the stop, in units of `reach`. Large patterns are aimed
+/// together, starting from a fitted map from stop to entry plane, and as accurately as one by one; rays for which this
+/// fails are aimed one by one. Passes on what `loop` throws to stop it.
+std::vector<AimedRay> aim_all(const RayAimer& aim, const std::vector<PupilPoint>& pattern, double reach,
+                              const RayLoop& loop = {});
 
 }  // namespace REALCAM_NAMESPACE

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "../coating/polarised_ray.hpp"
-#include "../lens/axial_share.hpp"
+#include "../lens/exposure.hpp"
 #include "../lens/paraxial.hpp"
 #include "../trace/film_frame.hpp"
 #include "ray_aiming.hpp"

@@ -3,7 +3,7 @@
 #include <array>
 #include <vector>
 
-#include "../../math/fit_polynomial.hpp"
+#include "../../math/least_squares.hpp"
 #include "coated_surface.hpp"
 #include "coating_polynomials.hpp"
 

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "../trace/lens_entry.hpp"
 #include "../trace/lens_trace.hpp"
+#include "../trace/trace_request.hpp"
 
 namespace realcam {
 

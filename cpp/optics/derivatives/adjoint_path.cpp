@@ -4,7 +4,7 @@
 #include <numeric>
 #include <utility>
 
-#include "../trace/lens_entry.hpp"
+#include "../trace/trace_request.hpp"
 
 namespace realcam {
 

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <optional>
 
-#include "../lens/lens_tilts.hpp"
+#include "../lens/lens_changes.hpp"
 #include "../trace/film_frame.hpp"
 
 namespace realcam {

@@ -1,7 +1,5 @@
 #include "ghost.hpp"
 
-#include "film_mirror.hpp"
-
 namespace realcam {
 
 GhostPath ghost_path(const LensSystem& lens, double wavelength_nm, GhostPair pair) {
@@ -37,6 +35,19 @@ GhostPath ghost_path(const LensSystem& lens, double wavelength_nm, GhostPair pai
         at = here;
     }
     return {-1 / rays[0].slope, -rays[0].height / rays[0].slope, rays[0], rays[1], meetings};
+}
+
+LensSystem with_film_mirror(LensSystem lens, double reflectance, double radius) {
+    Surface film;
+    film.type = SurfaceType::mirror;
+    film.clear_semi_diameter = radius;
+    film.curvature = 1 / lens.film_radius_of_curvature;
+    film.placement = lens.film_placement;
+    film.coating.kind = CoatingKind::reflectance;
+    film.coating.reflectance = reflectance;
+    lens.surfaces.back().thickness = lens.film_distance;
+    lens.surfaces.push_back(film);
+    return lens;
 }
 
 }  // namespace realcam

@@ -2,9 +2,14 @@
 #include <vector>
 
 #include "../lens/paraxial.hpp"
-#include "../prescription/crossing.hpp"
+#include "../prescription/clearance.hpp"
+#include "../prescription/lens_system.hpp"
 
 namespace REALCAM_NAMESPACE {
+
+/// Returns the lens with its film appended as the last surface: a mirror with the film's curvature and placement, this
+/// reflectance and a clear semi-diameter of `radius` mm. For light that the film reflects back into the lens.
+LensSystem with_film_mirror(LensSystem lens, double reflectance, double radius);
 
 /// First-order data of a ghost: light that is reflected once by each of two surfaces on its way to the film.
 struct GhostPath {

@@ -8,7 +8,7 @@
 
 #include "../../math/hypotenuse.hpp"
 #include "../../math/matrix2.hpp"
-#include "../prescription/surface_frames.hpp"
+#include "../prescription/lens_system.hpp"
 #include "../pupil/film_surface.hpp"
 
 namespace realcam {

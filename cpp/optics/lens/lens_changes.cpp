@@ -2,8 +2,9 @@
 
 #include <string>
 
-#include "../coating/coated_faces.hpp"
+#include "../coating/coated_surface.hpp"
 #include "../prescription/lens_checks.hpp"
+#include "../prescription/lens_system.hpp"
 
 namespace realcam {
 
@@ -87,6 +88,99 @@ LensSystem with_coating(LensSystem lens, const Coating& coating, const std::vect
         lens.surfaces[static_cast<std::size_t>(index)].coating = coating;
     }
     validate(lens);
+    return lens;
+}
+
+namespace {
+
+/// Prepends a motion to a surface's own placement. `goes_on`: the surfaces behind follow it.
+void put_before(Surface& surface, const Affine<double>& motion, bool goes_on) {
+    SurfacePlacement& own = surface.placement;
+    own = SurfacePlacement::of(own.is_in_place() ? motion : motion * own.frame());
+    own.returns = !goes_on;
+}
+
+bool goes_on(const Surface& surface) {
+    return !surface.placement.returns || surface.placement.is_in_place();
+}
+
+}  // namespace
+
+bool move_each_alone(LensSystem& lens, int first, int last, const Affine<double>& motion) {
+    const auto surface = [&](int i) -> Surface& { return lens.surfaces[static_cast<std::size_t>(i)]; };
+    for (int i = first; i <= last; ++i)
+        if (!moves_alone(surface(i))) return false;
+    // Frame of the axis in front of surface i, relative to that in front of the first surface.
+    Affine<double> to_here;
+    for (int i = first; i <= last; ++i) {
+        put_before(surface(i), inverse_motion(to_here) * motion * to_here, false);
+        to_here = to_here * along_axis(surface(i).thickness);
+    }
+    return true;
+}
+
+void move_element(LensSystem& lens, int first, int last, const Affine<double>& motion) {
+    const auto surface = [&](int i) -> Surface& { return lens.surfaces[static_cast<std::size_t>(i)]; };
+    const bool is_at_end = last + 1 == static_cast<int>(lens.surfaces.size());
+    const bool may_end = first == last || is_at_end || !goes_on(surface(last + 1));
+    if (may_end && move_each_alone(lens, first, last, motion)) return;
+    if (is_at_end || !goes_on(surface(first)) || !goes_on(surface(last + 1)))
+        throw InputError("surfaces " + std::to_string(first + 1) + " to " + std::to_string(last + 1) +
+                         " cannot be moved together: their own placements, or that of the surface behind, leave no "
+                         "room for another");
+    Affine<double> to_here;
+    for (int i = first; i <= last; ++i) {
+        if (!surface(i).placement.returns) to_here = to_here * surface(i).placement.frame();
+        to_here = to_here * along_axis(surface(i).thickness);
+    }
+    put_before(surface(first), motion, true);
+    put_before(surface(last + 1), inverse_motion(to_here) * inverse_motion(motion) * to_here, true);
+}
+
+LensSystem with_element_tilted(const LensSystem& lens, int first, int last, const SurfacePlacement& placement,
+                               double pivot) {
+    check_surface_exists(lens, first);
+    check_surface_exists(lens, last);
+    if (last < first) throw InputError("an element goes from a first to a last surface, which does not come before it");
+    LensSystem result = lens;
+    move_element(result, first, last,
+                 pivot == 0 ? placement.frame() : along_axis(pivot) * placement.frame() * along_axis(-pivot));
+    validate(result);
+    return result;
+}
+
+namespace {
+
+Affine<double> shift(Vec3d by) {
+    return {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, by};
+}
+
+/// Frame of the film's vertex on the last axis, before the film's own placement.
+Affine<double> film_on_axis(const LensSystem& lens) {
+    return surface_frames(lens).last_axis * along_axis(lens.film_distance);
+}
+
+}  // namespace
+
+LensSystem with_lens_moved(const LensSystem& lens, const SurfacePlacement& move, double pivot) {
+    LensSystem moved = lens;
+    SurfacePlacement& front = moved.surfaces.front().placement;
+    if (front.returns && !front.is_in_place())
+        throw InputError("the lens cannot be tilted or shifted: its first surface is moved alone");
+    const Affine<double> film = film_on_axis(lens) * lens.film_placement.frame();
+    const Vec3d about = film.origin - Vec3d{0, 0, pivot};
+    const Affine<double> motion = shift(about) * move.frame() * shift(-about);
+    front = SurfacePlacement::of(motion * front.frame());
+    // The film keeps its position: its placement compensates the motion of the last axis.
+    moved.film_placement = SurfacePlacement::of(inverse_motion(film_on_axis(moved)) * film);
+    validate(moved);
+    return moved;
+}
+
+LensSystem without_move(LensSystem lens) {
+    SurfacePlacement& front = lens.surfaces.front().placement;
+    if (!front.returns) front = {};
+    lens.film_placement = {};
     return lens;
 }
 

@@ -4,9 +4,40 @@
 #include <map>
 #include <utility>
 
+#include "../prescription/lens_checks.hpp"
 #include "../prescription/lens_system.hpp"
 
 namespace REALCAM_NAMESPACE {
+
+/// Returns the lens moved as a whole in front of a fixed film, like the front standard of a view camera or a tilt-shift
+/// lens. The lens frame, and with it the camera's pose, remains that of the film. `move` is relative to the lens frame;
+/// it rotates the lens about the point `pivot` mm in front of the film's centre, on the axis through it. Throws
+/// InputError if the first surface is moved alone, and LensFileError if the lens cannot be built.
+LensSystem with_lens_moved(const LensSystem& lens, const SurfacePlacement& move, double pivot = 0);
+
+/// Returns the lens without the motion of the whole lens, and with the film centred on the last axis.
+LensSystem without_move(LensSystem lens);
+
+/// True if the surface's placement moves only itself, or if it has no placement yet.
+inline bool moves_alone(const Surface& surface) {
+    return surface.placement.returns || surface.placement.is_in_place();
+}
+
+/// Moves surfaces `first` to `last`, counted from 0, as one rigid piece; all others and the film keep their positions.
+/// `motion` is relative to the axis in front of the first surface. Throws InputError if existing placements of the
+/// surfaces leave no room for another.
+void move_element(LensSystem& lens, int first, int last, const Affine<double>& motion);
+
+/// Moves surfaces like move_element, by placements that move only the surfaces themselves. Returns false, and changes
+/// nothing, if the axis turns at one of them.
+bool move_each_alone(LensSystem& lens, int first, int last, const Affine<double>& motion);
+
+/// Returns the lens with surfaces `first` to `last`, counted from 0, moved as one rigid piece; all others and the film
+/// keep their positions. `placement` is relative to the axis in front of the first surface; it rotates the piece about
+/// the point on that axis that lies `pivot` mm behind the surface's vertex. Throws InputError if there are no such
+/// surfaces, and LensFileError if the lens cannot be built.
+LensSystem with_element_tilted(const LensSystem& lens, int first, int last, const SurfacePlacement& placement,
+                               double pivot = 0);
 
 /// Throws InputError if the lens has no surface of this index, counted from 0.
 void check_surface_exists(const LensSystem& lens, int index);

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "../coating/coated_faces.hpp"
+#include "../coating/coated_surface.hpp"
 #include "best_focus.hpp"
 #include "lens_changes.hpp"
 

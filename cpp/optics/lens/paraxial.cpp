@@ -2,9 +2,9 @@
 
 #include <limits>
 
-#include "../prescription/lens_axis.hpp"
+#include "../prescription/lens_system.hpp"
+#include "lens_changes.hpp"
 #include "parabasal.hpp"
-#include "tilt_shift.hpp"
 
 namespace realcam {
 

@@ -7,7 +7,7 @@
 #include <optional>
 #include <utility>
 
-#include "../../math/monotone_curve.hpp"
+#include "../../math/curves.hpp"
 #include "../../math/root.hpp"
 #include "../prescription/lens_checks.hpp"
 #include "focus.hpp"

@@ -8,6 +8,61 @@
 
 namespace REALCAM_NAMESPACE {
 
+/// Ray-surface intersection on an optical path through the lens.
+struct Crossing {
+    int surface;  ///< from 0 at the front
+    bool in_order;  ///< true: light arrives from the medium in front of the surface, in prescription order
+    bool is_reflected;  ///< true: a surface that normally transmits reflects here, in a ghost path
+
+    // The `indices` below are the result of LensSystem::indices.
+    /// Refractive index of the medium from which the light comes.
+    double index_before(const std::vector<double>& indices) const { return index(indices, in_order); }
+    /// Refractive index of the medium on the other side of the surface.
+    double index_beyond(const std::vector<double>& indices) const { return index(indices, !in_order); }
+    /// Refractive index of the medium into which the light goes.
+    double index_behind(const std::vector<double>& indices) const {
+        return is_reflected ? index_before(indices) : index_beyond(indices);
+    }
+
+private:
+    double index(const std::vector<double>& indices, bool in_front) const {
+        return indices[static_cast<std::size_t>(in_front ? surface : surface + 1)];
+    }
+};
+
+/// Two refracting surfaces, counted from 0 at the front, that reflect light on its path to the film; `first` is the one
+/// nearer to the film and reflects first. The film itself, as `first`, has the index after the last surface's.
+struct GhostPair {
+    int first, second;
+
+    bool operator==(const GhostPair&) const = default;
+};
+
+/// True if a surface index of a GhostPair denotes the film.
+inline bool is_film(const LensSystem& lens, int surface) {
+    return surface == static_cast<int>(lens.surfaces.size());
+}
+
+/// Direct (ghost-free) path to the film: every surface transmits or, as a mirror, reflects.
+std::vector<Crossing> crossings_of(const LensSystem& lens);
+
+/// Ghost path to the film by reflection at the two surfaces. The film is a mirror (with_film_mirror).
+std::vector<Crossing> crossings_of(const LensSystem& lens, GhostPair pair);
+
+/// Returns the path of light in the opposite direction.
+std::vector<Crossing> reversed(std::vector<Crossing> crossings);
+
+/// All pairs whose first surface has an index in [first_begin, first_end), and refracts or is the film.
+std::vector<GhostPair> ghost_pairs(const LensSystem& lens, int first_begin, int first_end);
+
+/// All pairs of refracting surfaces.
+inline std::vector<GhostPair> ghost_pairs(const LensSystem& lens) {
+    return ghost_pairs(lens, 1, static_cast<int>(lens.surfaces.size()));
+}
+
+/// All pairs of the film and a refracting surface.
+std::vector<GhostPair> film_ghost_pairs(const LensSystem& lens);
+
 /// Overlap of two faces: light meets the second one in front of the first, so that the lens cannot be made.
 struct FaceOverlap {
     int first, second;  ///< surfaces, from 0

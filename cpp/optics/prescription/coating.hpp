@@ -1,5 +1,7 @@
 #pragma once
+#include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -65,5 +67,18 @@ inline double thickness_of_waves(const CoatingMaterial& material, double waves, 
 inline Coating quarter_wave_coating(const CoatingMaterial& material, double design_wavelength_nm) {
     return layered_coating({{material, thickness_of_waves(material, 0.25, design_wavelength_nm)}}, "quarter_wave");
 }
+
+/// Refractive index of a film of magnesium fluoride, the usual single-layer coating (H. A. Macleod, Thin-Film Optical
+/// Filters), and the design wavelength, to which eye and film are most sensitive.
+inline constexpr double kQuarterWaveIndex = 1.38, kQuarterWaveDesign_nm = 550;
+
+/// Names of the predefined coatings in lens files and in Python.
+const std::vector<std::string>& named_coatings();
+
+/// Returns std::nullopt if no coating has that name.
+std::optional<Coating> named_coating(std::string_view name);
+
+/// Returns std::nullopt if no metal has that name.
+std::optional<CoatingMaterial> named_metal(std::string_view name);
 
 }  // namespace REALCAM_NAMESPACE

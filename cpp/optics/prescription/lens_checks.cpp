@@ -7,8 +7,8 @@
 #include "clearance.hpp"
 #include "coating_checks.hpp"
 #include "form_checks.hpp"
-#include "lens_axis.hpp"
 #include "lens_limits.hpp"
+#include "lens_system.hpp"
 
 namespace realcam {
 

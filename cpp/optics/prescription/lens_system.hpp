@@ -6,11 +6,39 @@
 #include <vector>
 
 #include "../../error.hpp"
-#include "iris_shape.hpp"
+#include "../../platform.hpp"
 #include "surface.hpp"
-#include "zoom_range.hpp"
 
 namespace REALCAM_NAMESPACE {
+
+/// One position of the zoom ring, with the lens at rest: wide open, and not refocused. Lengths in mm.
+struct ZoomPosition {
+    std::string name;
+    std::vector<double> thicknesses;  ///< thicknesses behind ZoomRange::surfaces, in their order
+    double film_distance = 0;  ///< last vertex to film
+    double focus_distance = std::numeric_limits<double>::infinity();  ///< object plane to film
+    double stop_semi_diameter = 0;  ///< clear semi-diameter of the aperture stop; 0: zooming does not change it
+
+    bool operator==(const ZoomPosition&) const = default;
+};
+
+/// Thicknesses that the zoom ring changes. `positions` is empty for a lens of fixed focal length.
+struct ZoomRange {
+    std::vector<int> surfaces;  ///< surfaces whose thicknesses change, also by focusing; from 0, ascending
+    std::vector<ZoomPosition> positions;
+    int current = 0;  ///< index of the lens's current position
+
+    bool operator==(const ZoomRange&) const = default;
+};
+
+/// Blades of an iris diaphragm, independent of its opening. blades = 0: a round diaphragm.
+struct IrisShape {
+    int blades = 0;
+    double rounding = 0;      ///< 0: straight edges; 1: the opening is a circle
+    double rotation_rad = 0;  ///< angle of the first blade, from the x axis towards y
+
+    bool operator==(const IrisShape&) const = default;
+};
 
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 inline constexpr int kMaxSurfaces = 256;
@@ -88,5 +116,23 @@ LensSystem centred(LensSystem lens);
 
 /// Returns the lens at rest in the zoom position of this index: wide open, and focused as the position specifies.
 LensSystem at_zoom_position(LensSystem lens, int position);
+
+/// True if all surfaces are surfaces of revolution about one common axis. The film's placement is ignored.
+inline bool has_axis(const LensSystem& lens) {
+    return std::ranges::all_of(lens.surfaces, [](const Surface& s) { return s.asymmetry().empty(); });
+}
+
+/// Frames of a lens's surfaces: transforms from the surface's own frame (origin at its vertex) to the lens frame, whose
+/// origin is the front vertex before the front surface's own placement.
+struct SurfaceFrames {
+    std::vector<Affine<double>> surfaces;
+    Affine<double> last_axis;  ///< axis behind the last surface, with origin at its vertex; the film is placed along it
+};
+
+SurfaceFrames surface_frames(const LensSystem& lens);
+
+/// Transform from the frame of surface `index` + 1 to that of surface `index`. Exactly a translation by the thickness
+/// if neither surface is moved.
+Affine<double> frame_of_next(const LensSystem& lens, int index);
 
 }  // namespace REALCAM_NAMESPACE

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "moved_outline.hpp"
+#include "pupil_outline.hpp"
 #include "pupil_outline_search.hpp"
 
 namespace realcam {

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "moved_outline.hpp"
 #include "pupil_grid_view.hpp"
+#include "pupil_outline.hpp"
 #include "pupil_outline_search.hpp"
 #include "pupil_search.hpp"
 #include "stray_search.hpp"

@@ -2,10 +2,29 @@
 #include <vector>
 
 #include "../analysis/object_point.hpp"
+#include "../trace/lens_path.hpp"
 #include "../trace/ray_loop.hpp"
-#include "copy_path.hpp"
 
 namespace REALCAM_NAMESPACE {
+
+/// Direct path to the film through one lens at several wavelengths. The shapes of the surfaces are prepared once for
+/// all wavelengths, because preparing a freeform takes longer than tracing it.
+class CopyPath {
+public:
+    CopyPath(const LensSystem& lens, const std::vector<double>& wavelengths_nm);
+
+    /// View for tracing at one of the wavelengths; valid as long as the path.
+    struct At {
+        LensView<double> view;
+        double entry_position, entry_index;  ///< see LensPath
+    };
+    At at(std::size_t wavelength) const;
+
+private:
+    LensPath<double> first_;
+    std::vector<std::vector<SurfaceView<double>>> surfaces_;  ///< for each wavelength
+    std::vector<double> entry_indices_;
+};
 
 /// Rays of one object point at one wavelength that fill the stop of the nominal lens. In a copy, slightly different
 /// surfaces in front of the stop displace them on it: all rays are shifted so that the chief ray passes the stop's

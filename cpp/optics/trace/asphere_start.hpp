@@ -4,7 +4,7 @@
 #include <numbers>
 #include <vector>
 
-#include "../../math/fit_polynomial.hpp"
+#include "../../math/least_squares.hpp"
 #include "../prescription/lens_system.hpp"
 #include "lens_view.hpp"
 

@@ -2,7 +2,7 @@
 #include <array>
 #include <vector>
 
-#include "../../math/fit_polynomial.hpp"
+#include "../../math/least_squares.hpp"
 #include "../prescription/known_wavelengths.hpp"
 #include "index_cubic.hpp"
 #include "lens_path.hpp"

@@ -1,17 +1,86 @@
 #pragma once
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
 #include <optional>
 #include <vector>
 
-#include "../prescription/crossing.hpp"
-#include "../prescription/surface_frames.hpp"
+#include "../prescription/aperture_shape.hpp"
+#include "../prescription/clearance.hpp"
+#include "../prescription/lens_system.hpp"
+#include "aperture.hpp"
 #include "lens_trace.hpp"
-#include "make_aperture.hpp"
+#include "lens_view.hpp"
 #include "open_iris.hpp"
-#include "path_frames.hpp"
 #include "traced_shape.hpp"
 
 namespace REALCAM_NAMESPACE {
+
+namespace path_frames_detail {
+
+inline bool has_placements(const LensSystem& lens) {
+    for (const Surface& surface : lens.surfaces)
+        if (!surface.placement.is_in_place()) return true;
+    return false;
+}
+
+/// True if a surface needs the code for LensKind::any: it is a freeform, or its aperture is not a centred circle.
+inline bool is_free(const Surface& surface) {
+    return !surface.form.is_none() || !surface.aperture_shape.is_plain();
+}
+
+/// Transform from the frame of surface `to` to that of its neighbour `from`.
+inline Affine<double> neighbour(const LensSystem& lens, int from, int to) {
+    return to > from ? frame_of_next(lens, from) : inverse_motion(frame_of_next(lens, to));
+}
+
+/// Returns -1 if the z axis of a crossing's surface points backwards in the frame of the surface crossed before, so
+/// that light that travels to +z there travels to -z here; else 1. A frame at a right angle counts as pointing
+/// forwards.
+inline double turn_before(const LensSystem& lens, const std::vector<Crossing>& crossings, std::size_t crossing) {
+    const int to = crossings[crossing].surface;
+    const Affine<double> frame = crossing == 0 ? lens.surfaces[static_cast<std::size_t>(to)].placement.frame()
+                                               : neighbour(lens, crossings[crossing - 1].surface, to);
+    constexpr double kRightAngle = 1e-9;
+    return frame.z.z < -kRightAngle ? -1 : 1;
+}
+
+template <class T>
+FrameChange<T> change_to(const Affine<double>& frame) {
+    return {static_cast<Vec3<T>>(frame.origin), static_cast<Vec3<T>>(frame.x), static_cast<Vec3<T>>(frame.y),
+            static_cast<Vec3<T>>(frame.z), 1};
+}
+
+}  // namespace path_frames_detail
+
+template <class T>
+AperturePiece<T> aperture_piece(bool is_rectangle, Vec2d half, Vec2d offset, double angle_deg) {
+    const double angle = angle_deg * std::numbers::pi / 180;
+    const auto to = [](double v) { return static_cast<T>(v); };
+    return {to(offset.x),   to(offset.y),   to(std::cos(angle)), to(std::sin(angle)),
+            to(1 / half.x), to(1 / half.y), is_rectangle};
+}
+
+template <class T>
+ApertureView<T> aperture_view(const ApertureShape& shape) {
+    ApertureView<T> view{};
+    if (shape.is_plain()) return view;
+    view.is_shaped = 1;
+    const bool is_polygon = shape.kind == ApertureOutline::polygon;
+    view.has_outer = !is_polygon && shape.half.x > 0;
+    if (view.has_outer)
+        view.outer = aperture_piece<T>(shape.kind == ApertureOutline::rectangle, shape.half, shape.offset, 0);
+    for (const Obscuration& piece : shape.obscurations)
+        view.obscuration[view.obscurations++] =
+            aperture_piece<T>(piece.is_rectangle, piece.half, piece.offset, piece.angle_deg);
+    if (!is_polygon) return view;
+    for (const Vec2d& corner : shape.corners) {
+        view.corner_x[view.corners] = static_cast<T>(shape.offset.x + corner.x);
+        view.corner_y[view.corners++] = static_cast<T>(shape.offset.y + corner.y);
+    }
+    return view;
+}
 
 enum class LightDirection { to_film, to_scene };
 

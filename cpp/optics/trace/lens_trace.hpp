@@ -1,12 +1,11 @@
 #pragma once
 #include <type_traits>
 
-#include "asphere_newton.hpp"
+#include "asphere.hpp"
 #include "freeform_search.hpp"
 #include "index_cubic.hpp"
 #include "lens_rays.hpp"
 #include "lens_view.hpp"
-#include "ray_status.hpp"
 #include "refraction.hpp"
 
 namespace REALCAM_NAMESPACE {

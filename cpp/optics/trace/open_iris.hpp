@@ -1,5 +1,5 @@
 #pragma once
-#include "../prescription/iris_shape.hpp"
+#include "../prescription/lens_system.hpp"
 #include "lens_view.hpp"
 
 namespace REALCAM_NAMESPACE {

@@ -4,8 +4,8 @@
 #include <functional>
 #include <vector>
 
+#include "../../checkpoint.hpp"
 #include "../../error.hpp"
-#include "../../keep_going.hpp"
 #include "../../platform.hpp"
 
 namespace REALCAM_NAMESPACE {

@@ -9,7 +9,7 @@
 #include "camera/camera.hpp"
 #include "doctest/doctest.h"
 #include "io/lens/lens_file.hpp"
-#include "math/uniform_keys.hpp"
+#include "math/motion.hpp"
 #include "scene/light.hpp"
 
 using namespace realcam;

@@ -4,7 +4,7 @@
 #include <limits>
 #include <random>
 
-#include "camera/code_table.hpp"
+#include "camera/develop.hpp"
 #include "doctest/doctest.h"
 
 using namespace realcam;

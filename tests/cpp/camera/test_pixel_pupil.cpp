@@ -7,7 +7,7 @@
 
 #include "doctest/doctest.h"
 #include "math/random.hpp"
-#include "render/learning_passes.hpp"
+#include "render/adaptive_sampling.hpp"
 
 using namespace realcam;
 

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "about.hpp"
-#include "camera/last_setup.hpp"
+#include "camera/camera_setup.hpp"
 #include "doctest/doctest.h"
-#include "embree/fast_pupil_tracer.hpp"
+#include "embree/lens_rays.hpp"
 #include "pixel_rays.hpp"
 #include "pupil_region.hpp"
 

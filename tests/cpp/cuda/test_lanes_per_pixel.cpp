@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "cuda/lanes_per_pixel.hpp"
+#include "cuda/warp_tiles.hpp"
 #include "doctest/doctest.h"
 
 using namespace realcam;

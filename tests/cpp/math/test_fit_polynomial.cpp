@@ -1,7 +1,7 @@
 // Least squares: a polynomial is found again, and points that say too little leave the rest at 0.
 
 #include "doctest/doctest.h"
-#include "math/fit_polynomial.hpp"
+#include "math/least_squares.hpp"
 
 using realcam::fit_polynomial;
 

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "io/lens/bundled_lenses.hpp"
 #include "io/lens/lens_file.hpp"
+#include "io/lens/lens_text.hpp"
 
 namespace realcam {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "embree/fast_pupil_tracer.hpp"
+#include "embree/lens_rays.hpp"
 #include "hard_lenses.hpp"
 #include "optics/pupil/pupil.hpp"
 #include "oracle.hpp"

@@ -3,7 +3,6 @@
 #include <vector>
 
 #include "optics/prescription/coating.hpp"
-#include "optics/prescription/named_coatings.hpp"
 
 namespace realcam::test {
 

@@ -1,9 +1,8 @@
 #include <numbers>
 
-#include "camera/default_film.hpp"
+#include "camera/camera.hpp"
 #include "doctest/doctest.h"
 #include "io/lens/lens_file.hpp"
-#include "render/daylight.hpp"
 #include "render/default_view.hpp"
 #include "render/metering.hpp"
 

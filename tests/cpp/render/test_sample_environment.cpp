@@ -7,8 +7,8 @@
 
 #include "bare_scene.hpp"
 #include "chi_square.hpp"
-#include "math/append_cdf.hpp"
-#include "render/environment_samples.hpp"
+#include "math/sampling_tables.hpp"
+#include "render/light_samples.hpp"
 #include "scene/light.hpp"
 #include "scene/render_space_scene.hpp"
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "camera/default_film.hpp"
+#include "camera/camera.hpp"
 #include "doctest/doctest.h"
 #include "io/lens/lens_file.hpp"
 #include "render/axis_crossings.hpp"

@@ -4,7 +4,7 @@
 #include <set>
 
 #include "../../../math/hypotenuse.hpp"
-#include "../../../optics/prescription/surface_frames.hpp"
+#include "../../../optics/prescription/lens_system.hpp"
 #include "../../../optics/trace/film_frame.hpp"
 #include "../../text/json_writer.hpp"
 #include "prescription_reader.hpp"

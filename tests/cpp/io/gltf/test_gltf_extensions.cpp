@@ -4,8 +4,8 @@
 #include <cstring>
 #include <string>
 
-#include "camera/default_film.hpp"
-#include "camera/picture_angle.hpp"
+#include "camera/camera.hpp"
+#include "camera/pinhole_camera.hpp"
 #include "gltf_files.hpp"
 #include "io/lens/lens_file.hpp"
 #include "render/default_view.hpp"

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "gltf_files.hpp"
-#include "io/scene/scene_materials.hpp"
+#include "io/scene/scene_textures.hpp"
 
 using namespace scene_files;
 

@@ -10,7 +10,7 @@
 
 #include "about.hpp"
 #include "doctest/doctest.h"
-#include "io/lens/bundled_lenses.hpp"
+#include "io/lens/lens_text.hpp"
 #include "optics/prescription/lens_checks.hpp"
 #include "refusal.hpp"
 #include "traced_ray.hpp"

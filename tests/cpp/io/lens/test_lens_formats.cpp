@@ -15,7 +15,7 @@
 #include "optics/lens/focus.hpp"
 #include "optics/lens/lens_changes.hpp"
 #include "optics/lens/zoom.hpp"
-#include "optics/prescription/named_coatings.hpp"
+#include "optics/prescription/coating.hpp"
 #include "optics/trace/lens_path.hpp"
 
 namespace {

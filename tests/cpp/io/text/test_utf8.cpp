@@ -1,7 +1,7 @@
 #include <string>
 
 #include "doctest/doctest.h"
-#include "io/text/utf8.hpp"
+#include "io/text/printable.hpp"
 
 using namespace realcam::io;
 

@@ -8,7 +8,6 @@
 #include "about.hpp"
 #include "doctest/doctest.h"
 #include "measurement.hpp"
-#include "optics/analysis/psf_measures.hpp"
 #include "optics/analysis/psf_pupil.hpp"
 #include "refusal.hpp"
 #include "traced_ray.hpp"

@@ -1,7 +1,6 @@
 // Rays through given places of the real stop: they meet them, none is missed that the lens lets pass, and what cannot
 // be reached is said to be so.
 
-#include "optics/analysis/aim_all.hpp"
 #include "optics/analysis/ray_aiming.hpp"
 #include "optics/centred_lenses.hpp"
 

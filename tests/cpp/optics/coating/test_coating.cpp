@@ -10,12 +10,11 @@
 #include "optics/analysis/ray_aiming.hpp"
 #include "optics/analysis/transmission.hpp"
 #include "optics/centred_lenses.hpp"
-#include "optics/coating/coated_faces.hpp"
 #include "optics/coating/coated_surface.hpp"
 #include "optics/coating/thin_film.hpp"
 #include "optics/lens/focus.hpp"
 #include "optics/lens/lens_changes.hpp"
-#include "optics/prescription/named_coatings.hpp"
+#include "optics/prescription/coating.hpp"
 #include "optics/trace/lens_path.hpp"
 
 using namespace realcam;

@@ -6,14 +6,14 @@
 
 #include "camera/film_spectrum.hpp"
 #include "doctest/doctest.h"
-#include "io/lens/bundled_lenses.hpp"
 #include "io/lens/lens_file.hpp"
+#include "io/lens/lens_text.hpp"
 #include "measurement.hpp"
 #include "optics/centred_lenses.hpp"
-#include "optics/coating/coated_faces.hpp"
+#include "optics/coating/coated_surface.hpp"
 #include "optics/coating/fit_coatings.hpp"
 #include "optics/lens/lens_changes.hpp"
-#include "optics/prescription/named_coatings.hpp"
+#include "optics/prescription/coating.hpp"
 #include "optics/three_layers.hpp"
 #include "optics/trace/lens_dispersion.hpp"
 

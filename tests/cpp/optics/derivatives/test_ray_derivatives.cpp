@@ -9,7 +9,7 @@
 #include "form_oracle.hpp"
 #include "optics/derivatives/adjoint_path.hpp"
 #include "optics/derivatives/dual_path.hpp"
-#include "optics/lens/lens_tilts.hpp"
+#include "optics/lens/lens_changes.hpp"
 #include "refusal.hpp"
 #include "traced_ray.hpp"
 

@@ -8,7 +8,6 @@
 #include "about.hpp"
 #include "doctest/doctest.h"
 #include "measurement.hpp"
-#include "optics/ghost/film_mirror.hpp"
 #include "traced_ray.hpp"
 
 using namespace realcam;

@@ -8,13 +8,13 @@
 
 #include "camera/ghost_tables.hpp"
 #include "doctest/doctest.h"
-#include "io/lens/bundled_lenses.hpp"
 #include "io/lens/lens_file.hpp"
+#include "io/lens/lens_text.hpp"
 #include "measurement.hpp"
 #include "optics/centred_lenses.hpp"
-#include "optics/coating/coated_faces.hpp"
+#include "optics/coating/coated_surface.hpp"
 #include "optics/ghost/ghost_coatings.hpp"
-#include "optics/prescription/named_coatings.hpp"
+#include "optics/prescription/coating.hpp"
 #include "optics/three_layers.hpp"
 
 namespace {

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "camera/camera_setup.hpp"
-#include "embree/fast_pupil_tracer.hpp"
 #include "embree/lens_rays.hpp"
 #include "pixel_rays.hpp"
 #include "refusal.hpp"

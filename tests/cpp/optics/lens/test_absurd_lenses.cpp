@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "camera/camera_setup.hpp"
-#include "camera/field_of_view.hpp"
-#include "embree/fast_pupil_tracer.hpp"
+#include "camera/pinhole_camera.hpp"
+#include "embree/lens_rays.hpp"
 #include "measurement.hpp"
 #include "optics/analysis/field_rays.hpp"
 #include "optics/analysis/ray_aiming.hpp"

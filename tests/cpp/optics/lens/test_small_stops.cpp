@@ -4,7 +4,7 @@
 #include <string>
 
 #include "about.hpp"
-#include "camera/field_of_view.hpp"
+#include "camera/pinhole_camera.hpp"
 #include "field_picture.hpp"
 #include "measurement.hpp"
 #include "optics/lens/best_focus.hpp"

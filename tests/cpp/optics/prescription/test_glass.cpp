@@ -7,9 +7,9 @@
 
 #include "about.hpp"
 #include "doctest/doctest.h"
-#include "io/lens/bundled_lenses.hpp"
 #include "io/lens/lens_file.hpp"
 #include "io/lens/lens_glass.hpp"
+#include "io/lens/lens_text.hpp"
 #include "refusal.hpp"
 
 namespace {

@@ -6,7 +6,7 @@
 
 #include "doctest/doctest.h"
 #include "io/lens/lens_file.hpp"
-#include "optics/pupil/moved_outline.hpp"
+#include "optics/pupil/pupil_outline.hpp"
 #include "optics/pupil/pupil_outline_search.hpp"
 #include "optics/pupil/pupil_track.hpp"
 

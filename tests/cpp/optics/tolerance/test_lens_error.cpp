@@ -9,7 +9,6 @@
 
 #include "about.hpp"
 #include "doctest/doctest.h"
-#include "optics/tolerance/glass_error.hpp"
 #include "refusal.hpp"
 #include "traced_ray.hpp"
 

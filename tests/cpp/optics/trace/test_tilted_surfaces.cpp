@@ -5,9 +5,9 @@
 
 #include "about.hpp"
 #include "doctest/doctest.h"
+#include "optics/lens/lens_changes.hpp"
 #include "optics/lens/lens_edits.hpp"
-#include "optics/lens/lens_tilts.hpp"
-#include "optics/prescription/surface_frames.hpp"
+#include "optics/prescription/lens_system.hpp"
 #include "refusal.hpp"
 #include "traced_ray.hpp"
 

@@ -1,0 +1,188 @@
+#include "render_notices.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "../camera/develop.hpp"
+#include "../io/files/image_metadata.hpp"
+#include "../optics/coating/coated_surface.hpp"
+#include "../render/effect_names.hpp"
+#include "../render/metering.hpp"
+#include "values.hpp"
+
+namespace realcam::app {
+namespace {
+
+std::string percent(double part, double whole) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.1f%%", whole > 0 ? 100 * part / whole : 0.0);
+    return text;
+}
+
+/// A rate in millions per second: "12.3 M".
+std::string million(double count, double seconds) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.1f M", seconds > 0 ? 1e-6 * count / seconds : 0.0);
+    return text;
+}
+
+}  // namespace
+
+std::string summary(const shot::Shot& shot, const RenderSettings& settings, const Image& image,
+                    const std::vector<std::string>& pictures, const std::string& denoiser, double seconds,
+                    bool verbose) {
+    const Camera& camera = shot.camera;
+    const LensSystem& lens = camera.lens;
+    const Film& film = camera.film;
+    const RenderStats& stats = image.stats;
+    const FirstOrder data = first_order(lens, lens.wavelength_nm);
+    std::string text;
+    const auto line = [&](std::string what, const std::string& value) {
+        what.resize(12, ' ');
+        text += what + value + '\n';
+    };
+    const std::string model = io::name_of(camera.model);
+    line("lens", (lens.title.empty() ? lens.name : lens.title) + (model == "full" ? "" : ", as " + model + " model"));
+    line("", "focal length " + number_text(data.effective_focal_length) + " mm, f/" + number_text(data.f_number, 3) +
+                 (lens.iris.blades > 0 && !lens.is_wide_open() ? " with " + std::to_string(lens.iris.blades) + " blades"
+                                                               : "") +
+                 ", focus " + distance_text(lens.focus_distance / 1000));
+    const Vec3d from = camera.pose.position_m, to = camera.pose.look_at_m;
+    const auto point = [](Vec3d p) { return number_text(p.x) + "," + number_text(p.y) + "," + number_text(p.z); };
+    line("camera", "at " + point(from) + ", looks at " + point(to));
+    line("film", number_text(film.width_mm) + " x " + number_text(film.height_mm) + " mm, " +
+                     std::to_string(film.width) + " x " + std::to_string(film.height) + " pixels of " +
+                     std::to_string(image.spp) + (image.spp == 1 ? " sample" : " samples"));
+    line("exposure", exposure_text(camera.exposure_time_s) + ", ISO " + number_text(camera.iso) +
+                         (shot.is_metered ? " (metered: the average lands on middle grey)" : ""));
+    const std::vector<std::string> effects = names_of(settings.effects);
+    if (!effects.empty()) {
+        std::string names;
+        for (const std::string& name : effects) names += (names.empty() ? "" : ", ") + name;
+        const auto light = settings.spectral_light();
+        line("effects", names + (light ? ", illuminant " + light->text() : ""));
+        if (any_is(settings.effects, &EffectInfo::needs_coatings)) line("coatings", coating_summary(lens));
+    }
+    if (verbose) {
+        const double busy = stats.lens_seconds + stats.scene_seconds + stats.other_seconds;
+        const auto count = [](std::uint64_t n) { return static_cast<double>(n); };
+        line("lens rays", million(count(stats.sampled_rays), stats.seconds) + "/s; " +
+                              million(count(stats.sampled_rays), stats.lens_seconds) + "/s a core while in the lens, " +
+                              percent(stats.lens_seconds, busy) + " of the time; " +
+                              percent(count(stats.passed_rays), count(stats.sampled_rays)) +
+                              " of the sampled rays pass");
+        line("scene rays", million(count(stats.scene_rays), stats.seconds) + "/s; " +
+                               million(count(stats.scene_rays), stats.scene_seconds) +
+                               "/s a core while in the scene, " + percent(stats.scene_seconds, busy) + " of the time");
+    }
+    line("time", number_text(seconds, 3) + " s" +
+                     (verbose ? ", of which " + number_text(stats.seconds, 3) + " s for the picture (set-up " +
+                                    number_text(stats.setup_seconds, 2) + " s)"
+                              : "") +
+                     " on " + stats.device);
+    if (!denoiser.empty()) line("denoised", "by " + denoiser);
+    for (const std::string& path : pictures) line("picture", path);
+    return text;
+}
+
+std::string frame_summary(int frame, const Camera& camera, const std::vector<std::string>& pictures) {
+    const FirstOrder data = first_order(camera.lens, camera.lens.wavelength_nm);
+    std::string text = "frame " + std::to_string(frame) + ": " + number_text(data.effective_focal_length) + " mm, f/" +
+                       number_text(data.f_number, 3) + ", focus " + distance_text(camera.lens.focus_distance / 1000) +
+                       ", " + exposure_text(camera.exposure_time_s) + ", ISO " + number_text(camera.iso);
+    for (const std::string& path : pictures) text += ", " + path;
+    return text + '\n';
+}
+
+namespace {
+
+constexpr double kNearlyAll = 0.75;  // fraction of the pixels
+// 8-bit luminance codes: values below kBlack are two stops or more below middle grey; from kWhite on, hardly any tonal
+// detail is left.
+constexpr int kBlack = 64, kWhite = 235;
+constexpr double kOffBy_stops = 3;  // night scenes are meant to be darker than middle grey, and snow brighter
+
+/// Fractions of the pixels that are black and white.
+struct Ends {
+    double black = 0, white = 0;
+};
+
+Ends ends_of(const Image& image, double iso, ToneCurve tone) {
+    const CodeTable code(iso, tone);
+    std::size_t black = 0, white = 0;
+    const std::size_t count = image.exposure.size() / 3;
+    for (std::size_t i = 0; i < count; ++i) {
+        const float* rgb = &image.exposure[3 * i];
+        const int grey = code(0.2126f * rgb[0] + 0.7152f * rgb[1] + 0.0722f * rgb[2]);
+        black += grey < kBlack;
+        white += grey >= kWhite;
+    }
+    const auto pixels = static_cast<double>(std::max<std::size_t>(count, 1));
+    return {static_cast<double>(black) / pixels, static_cast<double>(white) / pixels};
+}
+
+}  // namespace
+
+double stops_above_grey(const Image& image, double iso) {
+    constexpr double kGrey = 10;  // lux seconds times ISO (ISO 12232)
+    return std::log2(metered_exposure(image) * iso / kGrey);
+}
+
+std::string exposure_notice(const Image& image, const Camera& camera, ToneCurve tone) {
+    const double stops = stops_above_grey(image, camera.iso);
+    if (std::isinf(stops)) return "the picture is black: no light reaches the film";
+    const Ends ends = ends_of(image, camera.iso, tone);
+    const bool is_dark = stops < -kOffBy_stops && ends.black >= kNearlyAll;
+    const bool is_bright = stops > kOffBy_stops && ends.white >= kNearlyAll;
+    if (!is_dark && !is_bright) return "";
+    const std::string time = exposure_text(camera.exposure_time_s / std::exp2(stops));
+    const std::string head = std::string("the picture is nearly all ") + (is_dark ? "black" : "white") + ", " +
+                             number_text(std::fabs(stops), 2) + " stops " + (is_dark ? "below" : "above") +
+                             " middle grey at " + exposure_text(camera.exposure_time_s) + ", ISO " +
+                             number_text(camera.iso) + "; ";
+    return head + "--exposure-time auto or about " + time.substr(0, time.size() - 2) +
+           (is_dark ? ", a higher --iso or a smaller --f-number is wanted"
+                    : ", a lower --iso or a larger --f-number is wanted");
+}
+
+namespace {
+
+std::string duration_text(double seconds) {
+    if (seconds < 100) return number_text(std::max(1.0, std::round(seconds)), 2) + " s";
+    if (seconds < 6000) return number_text(seconds / 60, 2) + " minutes";
+    return number_text(seconds / 3600, 2) + " hours";
+}
+
+/// Shorter durations are not announced.
+constexpr double kLong_s = 3;
+
+}  // namespace
+
+std::string SamplingNotice::aim() const {
+    const bool is_in_codes = goal_.unit == NoiseUnit::codes;
+    std::string text =
+        "samples are taken until the noise is " +
+        (is_in_codes ? counted(goal_.noise, "code") + " of 255" : number_text(100 * goal_.noise) + "% of the light");
+    if (std::isfinite(goal_.seconds)) text += ", for " + number_text(goal_.seconds) + " s at most";
+    if (sampling_ == shot::Sampling::unsaid) text += "; --noise-codes, --seconds or --spp say otherwise";
+    return text;
+}
+
+double SamplingNotice::took(double share) {
+    share_ = share;
+    elapsed_s_ = std::chrono::duration<double>(Clock::now() - start_).count();
+    return std::min(1.0, std::max(share, elapsed_s_ / goal_.seconds));
+}
+
+std::string SamplingNotice::expectation() {
+    if (has_reported_ || !(share_ > 0) || share_ >= 1) return "";
+    has_reported_ = true;
+    const double all_s = elapsed_s_ / share_;
+    if (all_s < kLong_s) return "";
+    const std::string all = "about " + duration_text(all_s);
+    if (all_s <= goal_.seconds) return "that is expected to take " + all;
+    return "that would take " + all + "; the picture ends after " + duration_text(goal_.seconds);
+}
+
+}  // namespace realcam::app

@@ -1,0 +1,37 @@
+#pragma once
+#include <cstddef>
+#include <vector>
+
+#include "../scene/file_scene.hpp"
+#include "gltf_accessors.hpp"
+#include "gltf_buffers.hpp"
+#include "gltf_document.hpp"
+
+namespace realcam::io {
+
+/// Animates the nodes of a scene by the file's first animation; its channels that are not supported, and further
+/// animations, are named in scene.warnings. `numbers`: index in the file of each node. Throws SceneFileError.
+void read_gltf_animations(FileScene& scene, const GltfDocument& document, GltfAccessors& accessors,
+                          const std::vector<std::size_t>& numbers, Checkpoint& checkpoint);
+
+/// Sets scene.pictures to the images of the file; embedded ones are still without their bytes.
+void list_pictures(FileScene& scene, const GltfDocument& document);
+
+/// Fetches the bytes of the embedded pictures that materials of scene.meshes use. Pictures that cannot be read stay
+/// empty.
+void fetch_pictures(FileScene& scene, const GltfDocument& document, GltfBuffers& buffers);
+
+/// Sets scene.materials to the materials of the file. scene.pictures must have been listed; a picture without bytes is
+/// added for textures that name none. Each kind of error gives one warning.
+void read_gltf_materials(FileScene& scene, const GltfDocument& document);
+
+/// Warns once of each extension that a file uses and that is not supported.
+void warn_of_extensions(FileScene& scene, const GltfDocument& document);
+
+/// Fills scene.cameras with the cameras that the file lists.
+void read_gltf_cameras(FileScene& scene, const GltfDocument& document);
+
+/// Sets scene.lights to the lights of KHR_lights_punctual.
+void read_gltf_lights(FileScene& scene, const GltfDocument& document);
+
+}  // namespace realcam::io

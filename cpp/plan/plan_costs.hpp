@@ -1,0 +1,181 @@
+#pragma once
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "../camera/develop.hpp"
+#include "../render/effect_names.hpp"
+#include "../render/progress.hpp"
+#include "../render/session.hpp"
+#include "../render/take_picture.hpp"
+#include "plan.hpp"
+#include "scene_facts.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+namespace plan_bounces_detail {
+
+/// Pixels of the longer side, pixels of the side of a square, and samples per pixel. Pictures are compared by means
+/// over squares, because roulette lets few paths continue, which light up single pixels.
+inline constexpr int kLongSide = 48, kSquare = 4, kSamples = 32;
+/// Fraction of the threshold that the small picture may lack. It underestimates light that few samples find, such as
+/// that of many reflections in glass. Superfluous bounces cost little, because few paths take them.
+inline constexpr double kMargin = 0.5;
+
+/// Renders a small picture; returns linear 8-bit codes of its squares, three channels each. With another number of
+/// bounces the same paths are followed as far as they go, so that two pictures differ only by the light of the
+/// additional bounces.
+inline std::vector<double> small_picture(Session& session, const Assembly& scene, const Camera& camera,
+                                         RenderSettings settings, int max_bounces, const Progress& progress) {
+    settings.max_bounces = max_bounces;
+    const Image image = take_picture(session, scene, camera, settings, progress);
+    std::vector<double> codes;
+    for (int top = 0; top < image.height; top += kSquare)
+        for (int left = 0; left < image.width; left += kSquare)
+            for (int channel = 0; channel < 3; ++channel) {
+                const int bottom = std::min(top + kSquare, image.height), right = std::min(left + kSquare, image.width);
+                double sum = 0;
+                for (int y = top; y < bottom; ++y)
+                    for (int x = left; x < right; ++x)
+                        sum += static_cast<double>(
+                            image.exposure[static_cast<std::size_t>(3 * (y * image.width + x) + channel)]);
+                codes.push_back(code_of(sensor_value(sum / ((bottom - top) * (right - left)), camera.iso)));
+            }
+    return codes;
+}
+
+inline double largest_difference(const std::vector<double>& a, const std::vector<double>& b) {
+    double largest = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, std::fabs(a[i] - b[i]));
+    return largest;
+}
+
+}  // namespace plan_bounces_detail
+
+/// Decides on the number of bounces: the least with which every square of a small picture lacks less than kMargin times
+/// the threshold of codes. `settings`: those of the picture. Throws what take_picture throws.
+inline void plan_bounces(Session& session, const Assembly& scene, Camera camera, RenderSettings settings, Plan& plan,
+                         const Progress& progress) {
+    using namespace plan_bounces_detail;
+    if (settings.max_bounces) {
+        plan.max_bounces = *settings.max_bounces;
+        return;
+    }
+    const double threshold = settings.thresholds.codes;
+    camera.film = with_long_side(camera.film, kLongSide);
+    // A pinhole camera shows the differences faster, if the lens has an axis.
+    if (const LensSystem on_axis = centred(camera.lens); on_axis.is_rotational()) {
+        camera.lens = on_axis;
+        camera.model = CameraModel::pinhole;
+    }
+    settings.spp = kSamples;
+    settings.noise.reset();
+    settings.effects = {};
+    settings.pupil_sampling = PupilSampling::outline;
+    settings.illuminant.reset();
+    settings.layers = {};
+    const auto with = [&](int bounces) { return small_picture(session, scene, camera, settings, bounces, progress); };
+    const std::vector<double> all = with(kMostBounces);
+    const double indirect = largest_difference(with(0), all);
+    double lacking = indirect, lacking_before = indirect;
+    plan.max_bounces = 0;
+    for (const int bounces : {1, 2, 3, 4, 6, 8, 12, 16, 24, 32, kMostBounces}) {
+        if (lacking < kMargin * threshold) break;
+        lacking_before = lacking;
+        plan.max_bounces = bounces;
+        lacking = bounces == kMostBounces ? 0 : largest_difference(with(bounces), all);
+    }
+    const auto codes = [](double size) { return counted(size, "code", 2); };
+    plan.decisions.push_back(
+        {"bounces", indirect, SizeUnit::codes, threshold, plan.max_bounces > 0, DecidedBy::planner, std::nullopt,
+         plan.max_bounces == 0 ? "light that has bounced brings " + codes(indirect)
+                               : "with " + counted(plan.max_bounces, "bounce") + " the picture lacks " +
+                                     codes(lacking) + ", with fewer " + codes(lacking_before) +
+                                     " (half the threshold is allowed), with direct light alone " + codes(indirect)});
+}
+
+namespace measure_times_detail {
+
+/// Long enough that the resolution of the clock and the start of a device do not matter.
+inline constexpr double kLeast_s = 0.02;
+
+/// Seconds for `spp` samples per pixel: the least of three runs, because other programs can only slow one down.
+inline double seconds_of(Session& session, int spp, const Progress& progress) {
+    double least = kInfinity;
+    for (int i = 0; i < 3; ++i) {
+        const auto begin = std::chrono::steady_clock::now();
+        session.add(spp, progress);
+        least = std::min(least, seconds_since(begin));
+    }
+    return least;
+}
+
+}  // namespace measure_times_detail
+
+/// Measures the additional time of each effect of a plan on the session's device, relative to the full lens without
+/// effects, one effect at a time; takes some tenths of a second for each. Preparations, which a picture needs once, are
+/// not counted. `settings`: those of the picture. Effects that this camera cannot have get no time.
+inline void measure_times(Session& session, const Assembly& scene, Camera camera, RenderSettings settings, Plan& plan,
+                          const Progress& progress) {
+    using namespace measure_times_detail;
+    const KeepGoing keep_going = progress ? KeepGoing([&] { return progress(0.0); }) : KeepGoing();
+    const Film whole = camera.film;
+    int long_side = 96;
+    camera.film = with_long_side(whole, long_side);
+    camera.model = CameraModel::full_lens;
+    settings.layers = {};
+    settings.noise.reset();
+    settings.max_bounces = plan.max_bounces;
+    EffectChoice none;
+    none.motion_blur = none.rolling_shutter = false;
+    const auto set = [&](const EffectChoice& effects) {
+        settings.effects = effects;
+        RenderSettings given = settings;
+        if (!effects.have_wavelengths()) given.illuminant.reset();
+        session.set(scene, camera, given, keep_going);
+        session.add(1, progress);  // runs what a device does only once
+    };
+    set(none);
+    // The film grows until a run takes kLeast_s: a sample of a small film costs nearly as much as one of the whole
+    // picture. On a fast device it grows to the whole picture, where the use of memory counts, too.
+    int spp = 1;
+    double alone = seconds_of(session, spp, progress);
+    while (alone < kLeast_s && spp < (1 << 20)) {
+        if (camera.film == whole) {
+            spp *= 2;
+        } else {
+            camera.film = with_long_side(whole, long_side *= 2);
+            set(none);
+        }
+        alone = seconds_of(session, spp, progress);
+    }
+    std::vector<std::optional<double>> with(plan.decisions.size());
+    for (std::size_t k = 0; k < plan.decisions.size(); ++k) {
+        if (plan.decisions[k].name == "bounces") {
+            settings.max_bounces = 0;
+            set(none);
+            plan.decisions[k].time = std::max(alone / seconds_of(session, spp, progress) - 1, 0.0);
+            settings.max_bounces = plan.max_bounces;
+            continue;
+        }
+        const EffectInfo* effect = find_effect(plan.decisions[k].name);
+        if (!effect) continue;  // it comes with the camera model
+        EffectChoice one = none;
+        one.*effect->member = true;
+        try {
+            set(one);
+        } catch (const InputError&) {
+            continue;  // for example because the index of a glass is not known at all wavelengths
+        }
+        with[k] = seconds_of(session, spp, progress);
+    }
+    set(none);
+    alone = std::min(alone, seconds_of(session, spp, progress));
+    for (std::size_t k = 0; k < with.size(); ++k)
+        if (with[k]) plan.decisions[k].time = std::max(*with[k] / alone - 1, 0.0);
+}
+
+}  // namespace REALCAM_NAMESPACE
