@@ -3,7 +3,7 @@
     python benchmarks/texture_filtering.py
 
 A model of the renderer's lookup in numpy, so that filters can be compared before they are built: bilinear in the finest
-level, as cpp/scene/texture.hpp is, or in a level that a sample's footprint chooses, the level between two by chance
+level, as cpp/scene/textures/texture.hpp is, or in a level that a sample's footprint chooses, the level between two by chance
 (Pharr et al. 2024). The footprint's two widths on the plane, across and along the view, count as their larger one or as
 their geometric mean. It is that of a pixel; of a pixel over the square root of the samples, which is what one sample
 stands for; or of a pixel over the square root of the sample's number, which needs no plan of how many there will be.

@@ -1,10 +1,10 @@
 # The GPU's kernels that take samples: a file for each kind of lens, kind of scene and set of effects, so that they
 # compile side by side. Together they take minutes, so those with effects are compiled for fewer kinds: the rest is
-# served by a kernel for any lens and any scene. kernel_for in cpp/cuda/render_kernel.cu takes the first of their list,
+# served by a kernel for any lens and any scene. kernel_for in cpp/cuda/kernels/render_kernel.cu takes the first of their list,
 # which is written here, that serves a picture.
 function(realcam_add_render_kernels target)
   # As many sets as kCompiledEffects has, by their numbers there.
-  set(effects_file ${PROJECT_SOURCE_DIR}/cpp/camera/effects.hpp)
+  set(effects_file ${PROJECT_SOURCE_DIR}/cpp/camera/effects/effects.hpp)
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${effects_file})
   file(READ ${effects_file} text)
   string(REGEX MATCH "kCompiledEffects\\[\\] = {([^;]*)}" sets "${text}")
@@ -38,7 +38,7 @@ function(realcam_add_render_kernels target)
     endif()
     string(APPEND kernels "REALCAM_RENDER_KERNEL(${effects}, ${lens}, ${scene}, ${halves})\n")
     set(file ${PROJECT_BINARY_DIR}/cuda/render_kernel_effects${effects}_${lens}_lens_${scene}_scene${suffix}.cu)
-    configure_file(${PROJECT_SOURCE_DIR}/cpp/cuda/render_kernel_instance.cu.in ${file} @ONLY)
+    configure_file(${PROJECT_SOURCE_DIR}/cpp/cuda/kernels/render_kernel_instance.cu.in ${file} @ONLY)
     target_sources(${target} PRIVATE ${file})
   endforeach()
   file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/cuda/include/render_kernels.inc CONTENT "${kernels}" @ONLY)

@@ -1,4 +1,4 @@
-"""Writes cpp/scene/ggx_tables.hpp: how much light GGX microfacets give back after a single reflection.
+"""Writes cpp/scene/materials/ggx_tables.hpp: how much light GGX microfacets give back after a single reflection.
 
     python tools/make_ggx_tables.py
 
@@ -82,7 +82,7 @@ def main() -> None:
     # At grazing incidence the ratio is 1, and the quadrature 0 / 0.
     seen = [albedos(c, a) for a in alphas for c in np.maximum(columns, 1e-3) ** 2]
     means = [averages(a) for a in alphas]
-    Path("cpp/scene/ggx_tables.hpp").write_text(
+    Path("cpp/scene/materials/ggx_tables.hpp").write_text(
         "#pragma once\n"
         "// Written by tools/make_ggx_tables.py, which says what the numbers are. Macros, because host and\n"
         "// device each need an array of their own (ggx_albedo.hpp).\n"

@@ -1,4 +1,4 @@
-"""Writes cpp/scene/loss_tables.hpp: light that single scattering loses at rough borders, and metals under coats.
+"""Writes cpp/scene/materials/loss_tables.hpp: light that single scattering loses at rough borders, and metals under coats.
 
     python tools/make_loss_tables.py    # a minute; after make_ggx_tables.py, whose tables it reads
 
@@ -38,10 +38,10 @@ def gauss(nodes: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 class GgxTable:
-    """What cpp/scene/ggx_albedo.hpp reads: for all cosines at one alpha."""
+    """What cpp/scene/materials/ggx_albedo.hpp reads: for all cosines at one alpha."""
 
     def __init__(self) -> None:
-        text = Path("cpp/scene/ggx_tables.hpp").read_text()
+        text = Path("cpp/scene/materials/ggx_tables.hpp").read_text()
         self.rows, self.columns = (int(re.search(rf"GGX_{name} (\d+)", text)[1]) for name in ("ROWS", "COLUMNS"))
 
         def numbers(name: str) -> np.ndarray:
@@ -217,7 +217,7 @@ def main() -> None:
         "COAT_ROWS": COAT_ROWS,
         "COAT_COLUMNS": COAT_COLUMNS,
     }
-    Path("cpp/scene/loss_tables.hpp").write_text(
+    Path("cpp/scene/materials/loss_tables.hpp").write_text(
         "#pragma once\n"
         "// Written by tools/make_loss_tables.py, which says what the numbers are. Macros, because host and\n"
         "// device each need an array of their own (dielectric_border.hpp, bsdf.hpp).\n"

@@ -1,10 +1,10 @@
-"""Writes cpp/camera/spectra.hpp: the spectra that dispersion works with, every 5 nm from 380 to 780.
+"""Writes cpp/camera/effects/dispersion/spectra.hpp: the spectra that dispersion works with, every 5 nm from 380 to 780.
 
 Needs colour-science (pip install colour-science), for its tables alone: the CIE 1931 observer, the CIE illuminants
 D65, D50, A and FL2, and the basis of Mallett and Yuksel, "Spectral Primary Decomposition for Rendering with sRGB
 Reflectance" (EGSR 2019).
 
-    python tools/make_spectra.py && clang-format -i cpp/camera/spectra.hpp
+    python tools/make_spectra.py && clang-format -i cpp/camera/effects/dispersion/spectra.hpp
 """
 
 import warnings
@@ -17,7 +17,7 @@ warnings.simplefilter("ignore")
 import colour  # noqa: E402
 from colour.recovery import MSDS_BASIS_FUNCTIONS_sRGB_MALLETT2019 as BASIS  # noqa: E402
 
-TARGET = Path(__file__).resolve().parents[1] / "cpp/camera/spectra.hpp"
+TARGET = Path(__file__).resolve().parents[1] / "cpp/camera/effects/dispersion/spectra.hpp"
 WAVELENGTHS_NM = np.arange(380, 781, 5)
 HEAD = """#pragma once
 #include <array>

@@ -10,7 +10,7 @@ PAGE = Path(__file__).parents[1] / "docs" / "generated" / "effects.md"
 TOP = """\
 # Effects
 
-*Made by `python tools/write_effects.py` from `cpp/camera/effects.hpp`.*
+*Made by `python tools/write_effects.py` from `cpp/camera/effects/effects.hpp`.*
 
 What a picture may have besides what every picture has. `effects={"dispersion", "ghosts=1e-8", "-motion_blur"}`,
 `--effects` and `effects` in shot files name them; [plan.md](../plan.md) says how `"auto"` decides.

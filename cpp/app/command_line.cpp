@@ -9,7 +9,7 @@
 #include <string>
 #include <utility>
 
-#include "../cuda/cuda_devices.hpp"
+#include "../cuda/device/cuda_devices.hpp"
 #include "../devices/devices.hpp"
 #include "../io/text/help_page.hpp"
 #include "../io/text/json_writer.hpp"

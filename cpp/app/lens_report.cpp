@@ -7,7 +7,7 @@
 #include <numbers>
 #include <optional>
 
-#include "../camera/pinhole_camera.hpp"
+#include "../camera/models/pinhole_camera.hpp"
 #include "../io/text/json_writer.hpp"
 #include "../math/hypotenuse.hpp"
 #include "../optics/analysis/transmission.hpp"

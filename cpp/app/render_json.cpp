@@ -5,7 +5,7 @@
 #include "../io/files/image_metadata.hpp"
 #include "../io/text/json_writer.hpp"
 #include "../plan/plan.hpp"
-#include "../render/effect_names.hpp"
+#include "../render/settings/effect_names.hpp"
 #include "render_notices.hpp"
 
 namespace realcam::app {

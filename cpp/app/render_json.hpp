@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "../plan/plan.hpp"
-#include "../render/image.hpp"
+#include "../render/film/image.hpp"
 #include "../shot/shot.hpp"
 
 namespace realcam::app {

@@ -4,11 +4,11 @@
 #include <cmath>
 #include <cstdio>
 
-#include "../camera/develop.hpp"
+#include "../camera/film/develop.hpp"
 #include "../io/files/image_metadata.hpp"
 #include "../optics/coating/coated_surface.hpp"
-#include "../render/effect_names.hpp"
-#include "../render/metering.hpp"
+#include "../render/session/metering.hpp"
+#include "../render/settings/effect_names.hpp"
 #include "values.hpp"
 
 namespace realcam::app {

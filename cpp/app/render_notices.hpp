@@ -3,9 +3,9 @@
 #include <string>
 #include <vector>
 
-#include "../camera/camera.hpp"
-#include "../camera/develop.hpp"
-#include "../render/image.hpp"
+#include "../camera/film/camera.hpp"
+#include "../camera/film/develop.hpp"
+#include "../render/film/image.hpp"
 #include "../shot/shot.hpp"
 #include "../shot/shot_request.hpp"
 

@@ -5,7 +5,7 @@
 #include <map>
 #include <memory>
 
-#include "../cuda/bench_kernels.hpp"
+#include "../cuda/rays/bench_kernels.hpp"
 #include "../devices/devices.hpp"
 #include "../embree/kernels.hpp"
 #include "../embree/lens_rays.hpp"

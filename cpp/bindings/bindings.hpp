@@ -5,13 +5,13 @@
 #include <optional>
 #include <string>
 
-#include "../camera/camera.hpp"
-#include "../camera/develop.hpp"
+#include "../camera/film/camera.hpp"
+#include "../camera/film/develop.hpp"
 #include "../io/lens/lens_file.hpp"
 #include "../optics/analysis/object_point.hpp"
 #include "../optics/prescription/lens_system.hpp"
-#include "../render/progress.hpp"
-#include "../render/render_settings.hpp"
+#include "../render/session/progress.hpp"
+#include "../render/settings/render_settings.hpp"
 #include "../scene/assembly.hpp"
 #include "unlocked.hpp"
 

@@ -1,5 +1,5 @@
 #include "bindings.hpp"
-#include "value_state.hpp"
+#include "values/value_state.hpp"
 
 PYBIND11_MODULE(_core, m) {
     using namespace realcam::bindings;

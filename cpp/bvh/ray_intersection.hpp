@@ -1,5 +1,5 @@
 #pragma once
-#include "../scene/surface_point.hpp"
+#include "../scene/geometry/surface_point.hpp"
 #include "wide_bvh.hpp"
 
 namespace REALCAM_NAMESPACE {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "../scene/surface_point.hpp"
+#include "../scene/geometry/surface_point.hpp"
 
 namespace realcam {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 #include <vector>
 
-#include "../scene/render_space_scene.hpp"
+#include "../scene/render_space/render_space_scene.hpp"
 #include "build_wide_bvh.hpp"
 
 namespace REALCAM_NAMESPACE {

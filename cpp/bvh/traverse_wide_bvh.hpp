@@ -1,5 +1,5 @@
 #pragma once
-#include "../scene/opacity.hpp"
+#include "../scene/geometry/opacity.hpp"
 #include "ray_intersection.hpp"
 
 namespace REALCAM_NAMESPACE {

@@ -9,9 +9,9 @@
 
 #include "../math/motion.hpp"
 #include "../optics/lens/exposure.hpp"
-#include "direct_lens_path.hpp"
-#include "exposed_rays.hpp"
-#include "pinhole_camera.hpp"
+#include "effects/direct_lens_path.hpp"
+#include "models/exposed_rays.hpp"
+#include "models/pinhole_camera.hpp"
 
 namespace realcam {
 

@@ -8,10 +8,10 @@
 #include "../optics/pupil/pupil.hpp"
 #include "../optics/pupil/pupil_grid.hpp"
 #include "../platform.hpp"
-#include "camera.hpp"
-#include "effect_tables.hpp"
-#include "entrance_pupil_search.hpp"
-#include "lens_map.hpp"
+#include "effects/effect_tables.hpp"
+#include "effects/entrance_pupil_search.hpp"
+#include "film/camera.hpp"
+#include "models/lens_map.hpp"
 
 namespace REALCAM_NAMESPACE {
 

@@ -1,6 +1,6 @@
 #pragma once
-#include "exposed_rays.hpp"
-#include "rays_with_effects.hpp"
+#include "effects/rays_with_effects.hpp"
+#include "models/exposed_rays.hpp"
 
 namespace REALCAM_NAMESPACE {
 

@@ -1,11 +1,11 @@
 #pragma once
 #include "../bvh/scene_bvh.hpp"
-#include "bench_kernels.hpp"
-#include "cuda_devices.hpp"
-#include "cuda_rays.hpp"
-#include "cuda_session.hpp"
-#include "ray_arrays.hpp"
-#include "shared_device_array.hpp"
+#include "device/cuda_devices.hpp"
+#include "device/shared_device_array.hpp"
+#include "rays/bench_kernels.hpp"
+#include "rays/cuda_rays.hpp"
+#include "rays/ray_arrays.hpp"
+#include "session/cuda_session.hpp"
 
 namespace realcam {
 

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "../error.hpp"
-#include "../render/progress.hpp"
+#include "../render/session/progress.hpp"
 #include "oidn_library.hpp"
 
 namespace realcam {

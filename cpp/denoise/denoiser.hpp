@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "../checkpoint.hpp"
-#include "../render/image.hpp"
+#include "../render/film/image.hpp"
 
 namespace realcam {
 

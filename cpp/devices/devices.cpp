@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <charconv>
 
-#include "../cuda/cuda_devices.hpp"
-#include "../cuda/cuda_session.hpp"
+#include "../cuda/device/cuda_devices.hpp"
+#include "../cuda/session/cuda_session.hpp"
 #include "../embree/embree_session.hpp"
 #include "../embree/lens_rays.hpp"
 #include "../error.hpp"

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "../error.hpp"
-#include "../scene/opacity.hpp"
+#include "../scene/geometry/opacity.hpp"
 
 namespace realcam {
 

@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "../scene/render_space_scene.hpp"
+#include "../scene/render_space/render_space_scene.hpp"
 #include "embree_api.hpp"
 
 namespace realcam {

@@ -12,12 +12,12 @@
 #include <utility>
 
 #include "../camera/camera_setup.hpp"
-#include "../render/adaptive_sampling.hpp"
-#include "../render/film_control_variates.hpp"
-#include "../render/film_sums.hpp"
-#include "../render/live_frame.hpp"
-#include "../render/progress.hpp"
-#include "../render/traced_lights.hpp"
+#include "../render/film/film_control_variates.hpp"
+#include "../render/film/film_sums.hpp"
+#include "../render/lights/traced_lights.hpp"
+#include "../render/session/adaptive_sampling.hpp"
+#include "../render/session/live_frame.hpp"
+#include "../render/session/progress.hpp"
 #include "embree_scene.hpp"
 #include "host_frame.hpp"
 #include "kernels.hpp"

@@ -1,7 +1,7 @@
 #pragma once
 #include <memory>
 
-#include "../render/session.hpp"
+#include "../render/session/session.hpp"
 
 namespace realcam {
 

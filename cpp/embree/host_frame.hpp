@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "../render/live_frame.hpp"
+#include "../render/session/live_frame.hpp"
 
 namespace realcam {
 

@@ -6,17 +6,17 @@
 #include <utility>
 
 #include "../camera/ray_request.hpp"
-#include "../camera/sensor_request.hpp"
+#include "../camera/sensor/sensor_request.hpp"
 #include "../optics/analysis/aim_request.hpp"
 #include "../optics/analysis/film_points_request.hpp"
 #include "../optics/trace/trace_request.hpp"
-#include "../render/gather_ghosts.hpp"
-#include "../render/ghost_film.hpp"
-#include "../render/path_settings.hpp"
-#include "../render/pixel_sum.hpp"
-#include "../render/render_samples.hpp"
-#include "../render/see_layers.hpp"
-#include "../render/trace_lights.hpp"
+#include "../render/film/pixel_sum.hpp"
+#include "../render/ghosts/gather_ghosts.hpp"
+#include "../render/ghosts/ghost_film.hpp"
+#include "../render/layers/see_layers.hpp"
+#include "../render/lights/trace_lights.hpp"
+#include "../render/path/path_settings.hpp"
+#include "../render/path/render_samples.hpp"
 #include "packet_scene.hpp"
 
 // Built once for each instruction set, see cmake/RealcamInstructionSets.cmake.

@@ -1,7 +1,7 @@
 #pragma once
 #include <cstdint>
 
-#include "../camera/camera.hpp"
+#include "../camera/film/camera.hpp"
 #include "../camera/ray_request.hpp"
 #include "../optics/analysis/film_points_request.hpp"
 #include "../optics/analysis/point_bundle.hpp"

@@ -1,5 +1,5 @@
 #pragma once
-#include "../render/path_state.hpp"
+#include "../render/path/path_state.hpp"
 #include "embree_api.hpp"
 
 namespace REALCAM_NAMESPACE {

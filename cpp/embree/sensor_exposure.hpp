@@ -1,5 +1,5 @@
 #pragma once
-#include "../camera/sensor_request.hpp"
+#include "../camera/sensor/sensor_request.hpp"
 #include "../checkpoint.hpp"
 
 namespace realcam {

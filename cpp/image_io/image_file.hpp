@@ -9,11 +9,11 @@
 #include <utility>
 #include <vector>
 
-#include "../camera/develop.hpp"
+#include "../camera/film/develop.hpp"
 #include "../checkpoint.hpp"
 #include "../io/files/image_metadata.hpp"
 #include "../io/scene_file.hpp"
-#include "../render/image.hpp"
+#include "../render/film/image.hpp"
 
 namespace realcam::image_io {
 

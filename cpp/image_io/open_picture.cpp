@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "../camera/sensor_response.hpp"
+#include "../camera/sensor/sensor_response.hpp"
 #include "../error.hpp"
 #include "../io/files/readable_file.hpp"
 #include "../io/files/uri.hpp"

@@ -5,8 +5,8 @@
 #include <numbers>
 #include <vector>
 
-#include "../camera/develop.hpp"
-#include "../camera/generate_rays.hpp"
+#include "../camera/film/develop.hpp"
+#include "../camera/models/generate_rays.hpp"
 #include "../math/hypotenuse.hpp"
 #include "../optics/pupil/pupil_tracer.hpp"
 #include "../optics/trace/lens_path.hpp"

@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "../camera/camera.hpp"
-#include "../camera/develop.hpp"
+#include "../camera/film/camera.hpp"
+#include "../camera/film/develop.hpp"
 #include "../math/hypotenuse.hpp"
 #include "../optics/analysis/transmission.hpp"
 #include "../optics/ghost/ghost.hpp"

@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "../camera/camera_view.hpp"
-#include "../camera/effects.hpp"
+#include "../camera/effects/effects.hpp"
+#include "../camera/models/camera_view.hpp"
 #include "../error.hpp"
 #include "../number_text.hpp"
-#include "../render/render_settings.hpp"
+#include "../render/settings/render_settings.hpp"
 
 namespace REALCAM_NAMESPACE {
 

@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "../camera/develop.hpp"
-#include "../render/effect_names.hpp"
-#include "../render/progress.hpp"
-#include "../render/session.hpp"
-#include "../render/take_picture.hpp"
+#include "../camera/film/develop.hpp"
+#include "../render/session/progress.hpp"
+#include "../render/session/session.hpp"
+#include "../render/session/take_picture.hpp"
+#include "../render/settings/effect_names.hpp"
 #include "plan.hpp"
 #include "scene_facts.hpp"
 

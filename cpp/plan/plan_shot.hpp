@@ -3,10 +3,10 @@
 #include <cstdio>
 #include <string>
 
-#include "../camera/direct_lens_path.hpp"
+#include "../camera/effects/direct_lens_path.hpp"
 #include "../optics/coating/coated_surface.hpp"
-#include "../render/effect_names.hpp"
-#include "../render/render_settings.hpp"
+#include "../render/settings/effect_names.hpp"
+#include "../render/settings/render_settings.hpp"
 #include "lens_errors.hpp"
 #include "light_effects.hpp"
 #include "plan.hpp"

@@ -3,9 +3,9 @@
 #include <cmath>
 #include <vector>
 
-#include "../camera/pupil_sampling.hpp"
+#include "../camera/models/pupil_sampling.hpp"
 #include "../math/hypotenuse.hpp"
-#include "../render/take_picture.hpp"
+#include "../render/session/take_picture.hpp"
 #include "plan.hpp"
 #include "scene_facts.hpp"
 

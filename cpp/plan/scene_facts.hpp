@@ -3,7 +3,7 @@
 #include <cmath>
 #include <vector>
 
-#include "../camera/camera.hpp"
+#include "../camera/film/camera.hpp"
 #include "../math/hypotenuse.hpp"
 #include "../math/vec3.hpp"
 

@@ -2,7 +2,7 @@
 #include <string>
 #include <vector>
 
-#include "../camera/shake.hpp"
+#include "../camera/film/shake.hpp"
 
 namespace realcam::shot {
 

@@ -6,8 +6,8 @@
 #include <optional>
 #include <utility>
 
-#include "../camera/camera.hpp"
-#include "../camera/pinhole_camera.hpp"
+#include "../camera/film/camera.hpp"
+#include "../camera/models/pinhole_camera.hpp"
 #include "../error.hpp"
 #include "../io/lens/lens_file.hpp"
 #include "../math/hypotenuse.hpp"
@@ -16,8 +16,8 @@
 #include "../optics/lens/focus.hpp"
 #include "../optics/lens/rings.hpp"
 #include "../optics/prescription/lens_checks.hpp"
-#include "../render/default_view.hpp"
-#include "../render/metering.hpp"
+#include "../render/framing/default_view.hpp"
+#include "../render/session/metering.hpp"
 #include "shot_scene.hpp"
 
 namespace realcam::shot {

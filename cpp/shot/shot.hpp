@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "../camera/camera_key.hpp"
-#include "../camera/shake.hpp"
-#include "../render/progress.hpp"
-#include "../render/session.hpp"
+#include "../camera/film/camera_key.hpp"
+#include "../camera/film/shake.hpp"
+#include "../render/session/progress.hpp"
+#include "../render/session/session.hpp"
 #include "../scene/assembly.hpp"
 #include "scene_request.hpp"
 #include "shot_request.hpp"

@@ -3,7 +3,7 @@
 #include <filesystem>
 
 #include "../io/text/printable.hpp"
-#include "../render/effect_names.hpp"
+#include "../render/settings/effect_names.hpp"
 #include "read_camera_keys.hpp"
 #include "shot_table.hpp"
 

@@ -5,10 +5,10 @@
 #include <string_view>
 #include <vector>
 
-#include "../camera/camera_view.hpp"
-#include "../camera/develop.hpp"
-#include "../camera/pupil_sampling.hpp"
-#include "../render/path_settings.hpp"
+#include "../camera/film/develop.hpp"
+#include "../camera/models/camera_view.hpp"
+#include "../camera/models/pupil_sampling.hpp"
+#include "../render/path/path_settings.hpp"
 #include "shot_request.hpp"
 
 namespace realcam::shot {

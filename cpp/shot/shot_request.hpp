@@ -4,12 +4,12 @@
 #include <string>
 #include <vector>
 
-#include "../camera/camera_key.hpp"
-#include "../camera/develop.hpp"
-#include "../camera/shake.hpp"
+#include "../camera/film/camera_key.hpp"
+#include "../camera/film/develop.hpp"
+#include "../camera/film/shake.hpp"
 #include "../io/lens/lens_file.hpp"
-#include "../render/default_view.hpp"
-#include "../render/render_settings.hpp"
+#include "../render/framing/default_view.hpp"
+#include "../render/settings/render_settings.hpp"
 #include "../scene/scene.hpp"
 #include "scene_request.hpp"
 

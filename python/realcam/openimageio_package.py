@@ -1,6 +1,6 @@
 """Raw access to picture files through the package OpenImageIO, for the extension.
 
-cpp/bindings/openimageio_package.cpp calls this module; cpp/image_io interprets the values.
+cpp/bindings/pictures/openimageio_package.cpp calls this module; cpp/image_io interprets the values.
 """
 
 from __future__ import annotations

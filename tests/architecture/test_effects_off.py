@@ -16,46 +16,46 @@ import pytest
 pytestmark = pytest.mark.pictures  # nvcc compiles for ten seconds
 ROOT = Path(__file__).parents[2]
 KERNEL = """
-#include "cuda/render_kernel_template.hpp"
+#include "cuda/kernels/render_kernel_template.hpp"
 namespace realcam::render_kernel_detail {
 template __global__ void render<LensKind::plain, SceneKind::plain, 0, false>(const __grid_constant__ RenderJob, int);
 }
 """
 # What is cut out of which file: each pattern must be found once.
 CUTS = {
-    "camera/effect_views.hpp": [
+    "camera/effects/effect_views.hpp": [
         (r"    Effects effects;.*?\n\n", ""),
         (r"(?<=int surfaces, Move&& move\) \{\n).*?(?=    \}\n\};)", "        (void)surfaces, (void)move;\n"),
     ],
     "camera/ray_request.hpp": [(r"    if constexpr \(effects\.have_wavelengths\(\)\) draw_wavelengths.*?\n", "")],
-    "camera/effects.hpp": [(r"kCompiledEffects\[\] = \{[^;]*\};", "kCompiledEffects[] = {{}};")],
-    "camera/rays_with_effects.hpp": [
-        (r'#include "diffracted_rays.hpp"', '#include "generate_rays.hpp"'),
+    "camera/effects/effects.hpp": [(r"kCompiledEffects\[\] = \{[^;]*\};", "kCompiledEffects[] = {{}};")],
+    "camera/effects/rays_with_effects.hpp": [
+        (r'#include "diffraction/diffracted_rays.hpp"', '#include "../models/generate_rays.hpp"'),
         (r"template <int N, Effects effects>\n    requires\(effects\.diffraction\).*?\n\};\n", ""),
         (r"/// generate_rays_from for a full lens with.*?(?=/// generate_rays_from with effects)", ""),
         (r"    if constexpr \(may_lack_coatings.*?    \} else \{\n(.*?;\n).*?    \}\n\}\n", r"\1}\n"),
         (r"std::conditional_t<.*?>;", "NoWavelengths;"),
     ],
-    "render/advance_path.hpp": [
+    "render/path/advance_path.hpp": [
         (r"    if constexpr \(effects\.have_wavelengths\(\)\) draw_wavelengths.*?\n", ""),
         (r"    // Diffraction at the edges of the aperture.*?\n    \}\n", ""),
     ],
-    "render/path_state.hpp": [
+    "render/path/path_state.hpp": [
         (r"template <int N>\nstruct SharedResults.*?(?=template <int N, Effects effects>)", ""),
         (r"    \[\[no_unique_address\]\] .* shared;\n(.*\n){2}", ""),
     ],
-    "render/render_samples.hpp": [
+    "render/path/render_samples.hpp": [
         (r"/// Converts the light of a sample.*?(?=/// Takes one block)", ""),
         (r"    if constexpr \(effects\.have_wavelengths\(\)\)\n.*?(?=\}\n\n\}  // namespace)", ""),
     ],
-    "cuda/render_kernel_template.hpp": [
+    "cuda/kernels/render_kernel_template.hpp": [
         (r"/// Adds a contribution from a neighbouring pixel.*?(?=/// Number of samples)", ""),
         (r"    if constexpr \(effects\.have_wavelengths\(\)\) \{.*?\n    \}\n", ""),
         (r"    const bool shares = .*?;\n", ""),
         (r"            if constexpr \(effects\.share_pixels\(\)\)\n.*\n", ""),
         (r"        if \(shares\) \{.*?\} else \{\n(.*?)        \}\n", r"\1"),
     ],
-    "render/splat_ghosts.hpp": [
+    "render/ghosts/splat_ghosts.hpp": [
         (r"/// Diffracts light that geometrical optics brings to .*?(?=\}  // namespace splat_ghosts_detail)", ""),
         (r"template <LensKind lens_kind, SceneKind scene_kind, bool has_wavelengths.*?\n\}\n", ""),
     ],

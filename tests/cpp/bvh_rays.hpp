@@ -9,7 +9,7 @@
 
 #include "bvh/build_wide_bvh.hpp"
 #include "bvh/traverse_wide_bvh.hpp"
-#include "scene/light_sample.hpp"
+#include "scene/materials/light_sample.hpp"
 
 namespace realcam::test {
 

@@ -3,8 +3,8 @@
 
 #include <cstdint>
 
-#include "camera/camera.hpp"
-#include "camera/generate_rays.hpp"
+#include "camera/film/camera.hpp"
+#include "camera/models/generate_rays.hpp"
 
 namespace realcam::test {
 

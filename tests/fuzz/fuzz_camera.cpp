@@ -4,8 +4,8 @@
 #include <memory>
 #include <vector>
 
-#include "camera/camera.hpp"
 #include "camera/camera_setup.hpp"
+#include "camera/film/camera.hpp"
 #include "camera/ray_request.hpp"
 #include "draw_lens.hpp"
 #include "embree/kernels.hpp"

@@ -6,7 +6,7 @@
 
 #include "../../optics/coating/coated_surface.hpp"
 #include "../../optics/lens/focus.hpp"
-#include "../../render/effect_names.hpp"
+#include "../../render/settings/effect_names.hpp"
 
 namespace realcam::io {
 namespace {

@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include "../../camera/pinhole_camera.hpp"
-#include "../../render/render_settings.hpp"
+#include "../../camera/models/pinhole_camera.hpp"
+#include "../../render/settings/render_settings.hpp"
 
 namespace realcam::io {
 

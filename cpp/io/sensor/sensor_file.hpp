@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "../../camera/sensor.hpp"
+#include "../../camera/sensor/sensor.hpp"
 #include "../../checkpoint.hpp"
 #include "../files/bundled_file.hpp"
 

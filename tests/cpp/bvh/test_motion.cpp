@@ -6,11 +6,11 @@
 
 #include "both_traversals.hpp"
 #include "bvh_rays.hpp"
-#include "camera/camera.hpp"
+#include "camera/film/camera.hpp"
 #include "doctest/doctest.h"
 #include "io/lens/lens_file.hpp"
 #include "math/motion.hpp"
-#include "scene/light.hpp"
+#include "scene/lights/light.hpp"
 
 using namespace realcam;
 using namespace realcam::test;

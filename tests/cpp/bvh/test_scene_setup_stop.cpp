@@ -6,7 +6,7 @@
 #include <thread>
 
 #include "bvh/build_wide_bvh.hpp"
-#include "scene/render_space_scene.hpp"
+#include "scene/render_space/render_space_scene.hpp"
 #include "scene/scene_checks.hpp"
 
 using namespace realcam;

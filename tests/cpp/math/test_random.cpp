@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "about.hpp"
-#include "camera/generate_rays.hpp"
+#include "camera/models/generate_rays.hpp"
 #include "doctest/doctest.h"
 
 namespace {

@@ -8,8 +8,8 @@
 
 #include "embree/lens_rays.hpp"
 #if defined(REALCAM_HAS_CUDA)
-#include "cuda/cuda_devices.hpp"
-#include "cuda/cuda_rays.hpp"
+#include "cuda/device/cuda_devices.hpp"
+#include "cuda/rays/cuda_rays.hpp"
 #endif
 
 namespace realcam::test {

@@ -5,7 +5,7 @@
 
 #include "both_traversals.hpp"
 #include "doctest/doctest.h"
-#include "render/advance_path.hpp"
+#include "render/path/advance_path.hpp"
 
 namespace realcam::test {
 

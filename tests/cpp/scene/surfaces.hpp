@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "scene/make_bsdf.hpp"
+#include "scene/materials/make_bsdf.hpp"
 
 namespace realcam::test {
 

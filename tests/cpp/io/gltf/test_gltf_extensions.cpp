@@ -4,11 +4,11 @@
 #include <cstring>
 #include <string>
 
-#include "camera/camera.hpp"
-#include "camera/pinhole_camera.hpp"
+#include "camera/film/camera.hpp"
+#include "camera/models/pinhole_camera.hpp"
 #include "gltf_files.hpp"
 #include "io/lens/lens_file.hpp"
-#include "render/default_view.hpp"
+#include "render/framing/default_view.hpp"
 
 namespace {
 

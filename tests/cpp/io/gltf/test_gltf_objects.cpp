@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "gltf_files.hpp"
-#include "scene/bounding_box.hpp"
+#include "scene/geometry/bounding_box.hpp"
 
 using namespace scene_files;
 

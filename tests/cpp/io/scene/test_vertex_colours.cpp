@@ -5,9 +5,9 @@
 #include <string>
 
 #include "gltf_files.hpp"
-#include "scene/opacity.hpp"
-#include "scene/render_space_scene.hpp"
-#include "scene/surface_point.hpp"
+#include "scene/geometry/opacity.hpp"
+#include "scene/geometry/surface_point.hpp"
+#include "scene/render_space/render_space_scene.hpp"
 
 namespace {
 

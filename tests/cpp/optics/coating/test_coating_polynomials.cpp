@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string>
 
-#include "camera/film_spectrum.hpp"
+#include "camera/effects/dispersion/film_spectrum.hpp"
 #include "doctest/doctest.h"
 #include "io/lens/lens_file.hpp"
 #include "io/lens/lens_text.hpp"

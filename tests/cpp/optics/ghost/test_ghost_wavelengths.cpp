@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "camera/ghost_tables.hpp"
+#include "camera/effects/ghosts/ghost_tables.hpp"
 #include "doctest/doctest.h"
 #include "io/lens/lens_file.hpp"
 #include "io/lens/lens_text.hpp"

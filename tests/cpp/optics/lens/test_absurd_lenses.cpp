@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "camera/camera_setup.hpp"
-#include "camera/pinhole_camera.hpp"
+#include "camera/models/pinhole_camera.hpp"
 #include "embree/lens_rays.hpp"
 #include "measurement.hpp"
 #include "optics/analysis/field_rays.hpp"

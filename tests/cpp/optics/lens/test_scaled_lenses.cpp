@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "camera/camera_setup.hpp"
-#include "camera/pinhole_camera.hpp"
+#include "camera/models/pinhole_camera.hpp"
 #include "measurement.hpp"
 #include "optics/centred_lenses.hpp"
 #include "optics/hard_lens_list.hpp"

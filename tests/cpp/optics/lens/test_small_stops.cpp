@@ -4,7 +4,7 @@
 #include <string>
 
 #include "about.hpp"
-#include "camera/pinhole_camera.hpp"
+#include "camera/models/pinhole_camera.hpp"
 #include "field_picture.hpp"
 #include "measurement.hpp"
 #include "optics/lens/best_focus.hpp"

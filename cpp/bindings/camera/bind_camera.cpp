@@ -1,0 +1,242 @@
+#include <pybind11/numpy.h>
+#include <pybind11/stl.h>
+
+#include <optional>
+#include <tuple>
+#include <variant>
+#include <vector>
+
+#include "../../camera/film/camera.hpp"
+#include "../../camera/models/pinhole_camera.hpp"
+#include "../../embree/lens_rays.hpp"
+#include "../../io/files/image_metadata.hpp"
+#include "../../optics/pupil/pupil.hpp"
+#include "../../shot/shot_keys.hpp"
+#include "../bindings.hpp"
+#include "../values/arrays.hpp"
+#include "../values/short_text.hpp"
+#include "../values/value_methods.hpp"
+
+namespace realcam::bindings {
+
+using namespace py::literals;
+
+namespace {
+
+std::tuple<double, double, double> triple_of(Vec3d v) {
+    return {v.x, v.y, v.z};
+}
+
+CameraModel model_from(const std::string& name) {
+    if (const auto model = shot::model_named(name)) return *model;
+    throw InputError("unknown camera model \"" + name + "\"; pinhole, thin, mapped, thick or full is wanted");
+}
+
+Film make_film(double width_mm, double height_mm, std::pair<int, int> resolution, std::pair<double, double> shift_mm) {
+    const Film film{width_mm, height_mm, resolution.first, resolution.second, {shift_mm.first, shift_mm.second}};
+    validate(film);
+    return film;
+}
+
+Film changed_film(const Film& film, std::optional<double> width_mm, std::optional<double> height_mm,
+                  std::optional<std::pair<int, int>> resolution, std::optional<std::pair<double, double>> shift_mm) {
+    return make_film(width_mm.value_or(film.width_mm), height_mm.value_or(film.height_mm),
+                     resolution.value_or(std::pair(film.width, film.height)),
+                     shift_mm.value_or(std::pair(film.shift_mm.x, film.shift_mm.y)));
+}
+
+/// Keyframe: (time_s, position, look_at) or (time_s, position, look_at, up).
+using Key = std::variant<std::tuple<double, Triple, Triple>, std::tuple<double, Triple, Triple, Triple>>;
+
+std::vector<PoseKey> motion_from(const std::vector<Key>& keys) {
+    std::vector<PoseKey> motion;
+    for (const Key& key : keys) {
+        if (const auto* with_up = std::get_if<1>(&key)) {
+            const auto& [time, position, look_at, up] = *with_up;
+            motion.push_back({time, {vector_of(position), vector_of(look_at), vector_of(up)}});
+        } else {
+            const auto& [time, position, look_at] = std::get<0>(key);
+            motion.push_back({time, {vector_of(position), vector_of(look_at), Pose().up}});
+        }
+    }
+    return motion;
+}
+
+py::tuple keys_of(const Camera& camera) {
+    py::list keys;
+    for (const PoseKey& key : camera.motion)
+        keys.append(py::make_tuple(key.time_s, triple_of(key.pose.position_m), triple_of(key.pose.look_at_m),
+                                   triple_of(key.pose.up)));
+    return py::tuple(keys);
+}
+
+Camera make_camera(const LensSystem& lens, std::optional<Film> film, const Triple& position, const Triple& look_at,
+                   const Triple& up, double exposure_time_s, double iso, const std::string& model,
+                   double shutter_opens_s, double readout_time_s, const std::vector<Key>& motion) {
+    Camera camera;
+    camera.lens = lens;
+    camera.film = film ? *film : default_film(lens, std::nullopt, std::nullopt);
+    camera.pose = {vector_of(position), vector_of(look_at), vector_of(up)};
+    camera.model = model_from(model);
+    camera.exposure_time_s = exposure_time_s;
+    camera.iso = iso;
+    camera.shutter = {shutter_opens_s, readout_time_s};
+    validate(camera);
+    if (!motion.empty()) set_motion(camera, motion_from(motion));
+    return camera;
+}
+
+Camera changed_camera(Camera camera, const std::optional<LensSystem>& lens, const std::optional<Film>& film,
+                      const std::optional<Triple>& position, const std::optional<Triple>& look_at,
+                      const std::optional<Triple>& up, std::optional<double> exposure_time_s, std::optional<double> iso,
+                      const std::optional<std::string>& model, std::optional<double> shutter_opens_s,
+                      std::optional<double> readout_time_s, const std::optional<std::vector<Key>>& motion) {
+    if (position || look_at || up) camera.motion.clear();
+    if (lens) camera.lens = *lens;
+    if (film) camera.film = *film;
+    if (position) camera.pose.position_m = vector_of(*position);
+    if (look_at) camera.pose.look_at_m = vector_of(*look_at);
+    if (up) camera.pose.up = vector_of(*up);
+    camera.exposure_time_s = exposure_time_s.value_or(camera.exposure_time_s);
+    camera.iso = iso.value_or(camera.iso);
+    if (model) camera.model = model_from(*model);
+    camera.shutter.opens_s = shutter_opens_s.value_or(camera.shutter.opens_s);
+    camera.shutter.readout_time_s = readout_time_s.value_or(camera.shutter.readout_time_s);
+    if (motion && motion->empty()) camera.motion.clear();
+    validate(camera);
+    if (motion && !motion->empty()) set_motion(camera, motion_from(*motion));
+    return camera;
+}
+
+/// Returns a Python named tuple, in degrees.
+py::object field_of_view_deg(const Camera& camera) {
+    const FieldOfView view = field_of_view(camera);
+    const auto degrees = [](double radians) { return radians * 180 / std::numbers::pi; };
+    return py::module_::import("realcam._core")
+        .attr("FieldOfView")(degrees(view.horizontal), degrees(view.vertical), degrees(view.diagonal));
+}
+
+std::optional<std::tuple<double, double, double>> pupil_position(const Camera& camera) {
+    const std::optional<Vec3d> position = entrance_pupil_position_m(camera);
+    if (!position) return std::nullopt;
+    return triple_of(*position);
+}
+
+std::string text_of(const Film& film) {
+    const bool is_shifted = film.shift_mm.x != 0 || film.shift_mm.y != 0;
+    return "<realcam.Film " + digits(film.width_mm) + " x " + digits(film.height_mm) + " mm, " +
+           std::to_string(film.width) + " x " + std::to_string(film.height) + " pixels" +
+           (is_shifted ? ", shifted by (" + digits(film.shift_mm.x) + ", " + digits(film.shift_mm.y) + ") mm>" : ">");
+}
+
+std::string text_of(const Camera& camera) {
+    const std::string name = camera.lens.name.empty() ? "a lens" : shortened(camera.lens.name);
+    const std::string model =
+        camera.model == CameraModel::full_lens ? "" : std::string(", ") + io::name_of(camera.model);
+    return "<realcam.Camera with " + name + " f/" + digits(nominal_first_order(camera.lens).f_number) + model + " at " +
+           point_text(camera.pose.position_m) + ", looks at " + point_text(camera.pose.look_at_m) + ", " +
+           time_text(camera.exposure_time_s) + ", ISO " + digits(camera.iso) + '>';
+}
+
+void bind_film(py::module_& m) {
+    py::class_<Film> film(m, "Film", "The light-sensitive rectangle and its pixels.");
+    def_hashable_value(film);
+    film.def(py::init(&make_film), "width_mm"_a = 36.0, "height_mm"_a = 24.0, "resolution"_a = std::pair(960, 640),
+             "shift_mm"_a = std::pair(0.0, 0.0),
+             R"(resolution: (columns, rows). shift_mm: of the film's middle from the lens's axis, right and up as the
+picture shows it: a shift lens's, or the principal point of a sensor, whose pixel is principal_point.
+The lens, and Camera.position, stay where they are. Raises InputError.)")
+        .def_readonly("width_mm", &Film::width_mm)
+        .def_readonly("height_mm", &Film::height_mm)
+        .def_property_readonly("resolution", [](const Film& f) { return std::pair(f.width, f.height); })
+        .def_property_readonly("shift_mm", [](const Film& f) { return std::pair(f.shift_mm.x, f.shift_mm.y); })
+        .def_property_readonly(
+            "principal_point",
+            [](const Film& f) {
+                const Vec2<double> axis = f.pixel_of({0, 0});
+                return std::pair(axis.x, axis.y);
+            },
+            "(column, row) at which the lens's axis meets the film, from the picture's upper left corner.")
+        .def("replace", &changed_film, py::kw_only(), "width_mm"_a = py::none(), "height_mm"_a = py::none(),
+             "resolution"_a = py::none(), "shift_mm"_a = py::none(),
+             "The film with some of what Film() takes changed. None stays.")
+        .def("__repr__", [](const Film& f) { return text_of(f); });
+}
+
+}  // namespace
+
+void bind_camera(py::module_& m) {
+    bind_film(m);
+    m.attr("FieldOfView") = py::module_::import("collections")
+                                .attr("namedtuple")("FieldOfView", py::make_tuple("horizontal", "vertical", "diagonal"),
+                                                    "module"_a = "realcam");
+    py::class_<Camera> camera_class(
+        m, "Camera",
+        R"(Lens, film, pose and exposure. position is the middle of the film (the sensor), in front of which the whole
+lens is: entrance_pupil_position_m says from where the scene is seen. Film(shift_mm=...) moves the film
+from there, and nothing else: film_centre_m is its middle then, and position and look_at stay on the
+lens's axis.)");
+    def_hashable_value(camera_class);
+    camera_class
+        .def(py::init(&make_camera), "lens"_a, py::kw_only(), "film"_a = py::none(), "position"_a = Triple{0, 0, 0},
+             "look_at"_a = Triple{0, 0, -1}, "up"_a = Triple{0, 1, 0}, "exposure_time_s"_a = 1.0 / 125, "iso"_a = 100.0,
+             "model"_a = "full", "shutter_opens_s"_a = 0.0, "readout_time_s"_a = 0.0, "motion"_a = std::vector<Key>(),
+             R"(film: None for the lens's own. position, look_at: metres, scene. iso: sensitivity (ISO 12232).
+model: "full" (every surface), "thick" (paraxial matrix), "mapped" (an ideal lens with
+the real one's distortion and vignetting), "thin" (ideal lens), "pinhole".
+shutter_opens_s: time in the scene at which the exposure begins. readout_time_s: of a rolling shutter,
+the time from the top row of pixels to the bottom one; each is exposed for exposure_time_s.
+motion: keys (time_s, position, look_at) or (time_s, position, look_at, up) in rising order of time, in
+place of position, look_at and up, which are then those at time 0. Between keys the camera moves evenly.
+Raises InputError.)")
+        .def("replace", &changed_camera, py::kw_only(), "lens"_a = py::none(), "film"_a = py::none(),
+             "position"_a = py::none(), "look_at"_a = py::none(), "up"_a = py::none(), "exposure_time_s"_a = py::none(),
+             "iso"_a = py::none(), "model"_a = py::none(), "shutter_opens_s"_a = py::none(),
+             "readout_time_s"_a = py::none(), "motion"_a = py::none(),
+             R"(The camera with some of what Camera() takes changed. None stays; so does the film with another lens
+(see Film.for_lens). A new position, look_at or up ends its motion. Raises InputError.)")
+        .def_property_readonly(
+            "field_of_view_deg", &field_of_view_deg,
+            R"(FieldOfView(horizontal, vertical, diagonal): angles in front of the lens, in degrees, between what lands
+on opposite edges and corners of the film, by real rays at the lens's focus. Where the film is larger
+than the lens's image, between the edges of the image. Raises InputError where the camera's model has no
+place for its lens.)")
+        .def_property_readonly("entrance_pupil_position_m", &pupil_position,
+                               R"((x, y, z), scene: the middle of the paraxial entrance pupil, from where the camera
+sees the scene; turning about it shows no parallax. None where it lies at infinity.)")
+        .def_property_readonly(
+            "film_centre_m", [](const Camera& c) { return triple_of(film_centre_m(c)); },
+            "(x, y, z), scene: the middle of the film, which is position but for Film(shift_mm=...).")
+        .def_readonly("lens", &Camera::lens)
+        .def_readonly("film", &Camera::film)
+        .def_property_readonly("position", [](const Camera& c) { return triple_of(c.pose.position_m); })
+        .def_property_readonly("look_at", [](const Camera& c) { return triple_of(c.pose.look_at_m); })
+        .def_property_readonly("up", [](const Camera& c) { return triple_of(c.pose.up); })
+        .def_readonly("exposure_time_s", &Camera::exposure_time_s)
+        .def_readonly("iso", &Camera::iso)
+        .def_property_readonly("shutter_opens_s", [](const Camera& c) { return c.shutter.opens_s; })
+        .def_property_readonly("readout_time_s", [](const Camera& c) { return c.shutter.readout_time_s; })
+        .def(
+            "pose_at",
+            [](const Camera& camera, double time_s) {
+                const Pose pose = pose_at(camera, time_s);
+                return py::make_tuple(triple(pose.position_m), triple(pose.look_at_m), triple(pose.up));
+            },
+            "time_s"_a, "Where the motion has the camera at a time: position, look_at and up, in the scene, metres.")
+        .def_property_readonly("motion", &keys_of, "Keys (time_s, position, look_at, up); none: it stands still.")
+        .def_property_readonly("model", [](const Camera& c) { return io::name_of(c.model); })
+        .def("__repr__", [](const Camera& c) { return text_of(c); });
+    m.def(
+        "pupil_setup",
+        [](const LensSystem& lens, double film_radius_mm, bool on_one_core) {
+            const Unlocked unlocked;
+            PupilTracer tracer = fast_pupil_tracer();
+            if (on_one_core) tracer.for_each = PupilTracer().for_each;
+            return Pupil(lens, film_radius_mm, std::move(tracer)).image_radius();
+        },
+        "lens"_a, "film_radius_mm"_a, "on_one_core"_a = false,
+        R"(Finds the lens's pupil for every film radius up to this one (what render does after any change of focus or
+stop). Returns the radius beyond which no light arrives, mm.)");
+}
+
+}  // namespace realcam::bindings

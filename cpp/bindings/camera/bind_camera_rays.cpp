@@ -1,0 +1,200 @@
+#include <pybind11/numpy.h>
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "../../camera/camera_setup.hpp"
+#include "../../camera/effects/dispersion/film_spectrum.hpp"
+#include "../../cuda/rays/ray_arrays.hpp"
+#include "../../devices/devices.hpp"
+#include "../../embree/lens_rays.hpp"
+#include "../bindings.hpp"
+#include "../values/restored.hpp"
+#include "../values/short_text.hpp"
+#include "../values/value_methods.hpp"
+
+namespace realcam::bindings {
+
+using namespace py::literals;
+
+namespace {
+
+/// Camera rays as numpy arrays or DeviceArrays.
+struct CameraRaysResult {
+    py::object origins_m, directions, weights, pixels, wavelengths_nm, times_s;
+};
+
+/// Shortest and longest wavelength in nm; std::nullopt: the lens's design wavelength.
+using GivenWavelengths = std::optional<std::pair<double, double>>;
+
+/// Validated request for camera rays.
+struct RayOrder {
+    Camera camera;
+    std::uint32_t spp, seed;
+    std::optional<int> gpu;
+    LensEffects effects;
+
+    RayRange all() const { return all_rays(camera.film.width, camera.film.height, spp); }
+};
+
+/// Effects that give each ray a wavelength of its own, drawn from the given range.
+LensEffects effects_for(const Camera& camera, const GivenWavelengths& given) {
+    LensEffects effects;
+    if (!given) return effects;
+    const auto [first, last] = *given;
+    // In this range polynomials reproduce the refractive indices of glasses to within 1e-5 (WavelengthVariable).
+    if (!(first >= 300 && first <= last && last <= 2500))
+        throw InputError("wavelengths_nm must be two numbers between 300 and 2500, the shorter one first");
+    if (camera.model != CameraModel::full_lens)
+        throw InputError("wavelengths_nm needs the camera model \"full\": others know the lens at one wavelength");
+    effects.dispersion = true;
+    effects.even_wavelengths = WavelengthRange{first, last};
+    return effects;
+}
+
+RayOrder order_of(const Camera& camera, int spp, std::int64_t seed, const std::string& device,
+                  const GivenWavelengths& wavelengths) {
+    if (spp < 1) throw InputError("spp must be at least 1");
+    if (seed < 0 || seed > 0xffffffff) throw InputError("the seed must lie between 0 and 4294967295");
+    const std::optional<int> gpu = gpu_for_rays(device);
+    if (gpu) validate_on_gpu(camera);
+    return {camera, static_cast<std::uint32_t>(spp), static_cast<std::uint32_t>(seed), gpu,
+            effects_for(camera, wavelengths)};
+}
+
+/// Must be called without the GIL.
+std::shared_ptr<const CameraSetup> setup_of(const RayOrder& order) {
+    static LastSetup last;
+    return last.make(order.camera, fast_pupil_tracer(), order.effects);
+}
+
+CameraRaysResult rays_on_gpu(const RayOrder& order, RayRange range) {
+    const CameraRayArrays rays = [&] {
+        const Unlocked unlocked;
+        return generate_ray_arrays(*order.gpu, *setup_of(order), order.spp, order.seed, range);
+    }();
+    return {py::cast(rays.origins_m), py::cast(rays.directions),     py::cast(rays.weights),
+            py::cast(rays.pixels),    py::cast(rays.wavelengths_nm), py::cast(rays.times_s)};
+}
+
+CameraRaysResult rays_on_host(const RayOrder& order, RayRange range) {
+    constexpr std::int64_t kBetweenSignals = 1 << 20;  // about ten milliseconds of work
+    const std::int64_t count = range.count;
+    py::array_t<double> origins_m({count, std::int64_t{3}}), times_s(count);
+    py::array_t<float> directions({count, std::int64_t{3}}), weights(count), wavelengths_nm(count);
+    py::array_t<int> pixels(count);
+    const CameraRayOutput out{origins_m.mutable_data(), directions.mutable_data(), weights.mutable_data(),
+                              wavelengths_nm.mutable_data(), times_s.mutable_data()};
+    int* of = pixels.mutable_data();
+    for (std::int64_t done = 0; done < count; done += kBetweenSignals) {
+        heed_signals();
+        const Unlocked unlocked;
+        const RayRange part = {range.first + done, std::min(kBetweenSignals, count - done)};
+        generate_camera_rays(*setup_of(order), order.spp, order.seed, part, out.from(done));
+        for (std::int64_t i = 0; i < part.count; ++i) of[done + i] = static_cast<int>((part.first + i) / order.spp);
+    }
+    return {origins_m, directions, weights, pixels, wavelengths_nm, times_s};
+}
+
+CameraRaysResult rays_of(const RayOrder& order, RayRange range) {
+    return order.gpu ? rays_on_gpu(order, range) : rays_on_host(order, range);
+}
+
+/// Iterator over chunks of the camera's rays.
+struct RayChunks {
+    RayOrder order;
+    std::int64_t max_rays, next = 0;
+};
+
+RayChunks chunks_of(const Camera& camera, int spp, std::int64_t seed, const std::string& device,
+                    const GivenWavelengths& wavelengths_nm, std::int64_t max_rays) {
+    if (max_rays < 1) throw InputError("max_rays must be at least 1");
+    return {order_of(camera, spp, seed, device, wavelengths_nm), max_rays};
+}
+
+CameraRaysResult next_chunk(RayChunks& chunks) {
+    const std::int64_t left = chunks.order.all().count - chunks.next;
+    if (left <= 0) throw py::stop_iteration();
+    const RayRange range = {chunks.next, std::min(left, chunks.max_rays)};
+    chunks.next += range.count;
+    return rays_of(chunks.order, range);
+}
+
+/// Returns an array with one row per wavelength cell: its first and last wavelength in nm, and the film's response
+/// (red, green, blue) to white if all light is in this cell.
+py::array_t<double> film_of_white(const std::string& illuminant) {
+    const FilmSpectrum spectrum(Illuminant::parse(illuminant));
+    py::array_t<double> rows({static_cast<py::ssize_t>(spectrum.cells().size()), py::ssize_t{5}});
+    double* row = rows.mutable_data();
+    for (const WavelengthCell& cell : spectrum.cells()) {
+        *row++ = static_cast<double>(cell.first_nm);
+        *row++ = static_cast<double>(cell.last_nm);
+        for (int channel = 0; channel < 3; ++channel)
+            *row++ =
+                static_cast<double>(cell.film[3 * channel] + cell.film[3 * channel + 1] + cell.film[3 * channel + 2]);
+    }
+    return rows;
+}
+
+}  // namespace
+
+template <>
+struct RestoredCheck<CameraRaysResult> {
+    static void check(const CameraRaysResult& rays) {
+        const py::ssize_t count = restored_length(rays.weights);
+        for (const py::object* vectors : {&rays.origins_m, &rays.directions})
+            check_restored_array(*vectors, {'f', {count, 3}});
+        for (const py::object* numbers : {&rays.weights, &rays.wavelengths_nm, &rays.times_s})
+            check_restored_array(*numbers, {'f', {count}});
+        check_restored_array(rays.pixels, {'i', {count}});
+    }
+};
+
+void bind_camera_rays(py::module_& m) {
+    py::class_<CameraRaysResult> rays(
+        m, "CameraRays",
+        R"(The rays of a camera, spp for each pixel, row by row from the top left. Arrays of numpy, or
+DeviceArrays.)");
+    def_result(rays);
+    rays.def_readonly("origins_m", &CameraRaysResult::origins_m, "(N, 3) float64, scene.")
+        .def_readonly("directions", &CameraRaysResult::directions, "(N, 3) float32, unit, scene.")
+        .def_readonly(
+            "weights", &CameraRaysResult::weights,
+            R"((N,) float32: irradiance on the film for unit radiance; the mean over a pixel's rays of weight times
+radiance is its irradiance. 0: the lens blocks the ray.)")
+        .def_readonly("pixels", &CameraRaysResult::pixels, "(N,) int32: row * columns + column.")
+        .def_readonly("wavelengths_nm", &CameraRaysResult::wavelengths_nm,
+                      "(N,) float32: for which the lens was traced.")
+        .def_readonly("times_s", &CameraRaysResult::times_s,
+                      "(N,) float64: when the shutter lets them through, stratified over each pixel's exposure.")
+        .def("__repr__", [](const CameraRaysResult& r) {
+            return "<realcam.CameraRays " + counted(py::len(r.weights), "ray") + '>';
+        });
+    py::class_<RayChunks>(m, "RayChunks", "An iterator over a camera's rays: see Camera.ray_chunks.")
+        .def("__iter__", [](const py::object& self) { return self; })
+        .def("__next__", &next_chunk, "Returns CameraRays.");
+    py::reinterpret_borrow<py::class_<Camera>>(m.attr("Camera"))
+        .def(
+            "generate_rays",
+            [](const Camera& camera, int spp, std::int64_t seed, const std::string& device,
+               const GivenWavelengths& wavelengths_nm) {
+                const RayOrder order = order_of(camera, spp, seed, device, wavelengths_nm);
+                return rays_of(order, order.all());
+            },
+            py::kw_only(), "spp"_a = 1, "seed"_a = 0, "device"_a = "cpu", "wavelengths_nm"_a = py::none(),
+            R"(The rays that render would trace, for any other renderer, 56 bytes each. Returns CameraRays.
+wavelengths_nm: a pair (shortest, longest). Each ray has one of its own, drawn evenly between them, for
+which every glass has its own index: weight times spectral radiance times (longest - shortest) is the
+irradiance of that band. None: all have the lens's design wavelength.
+device: "cpu": arrays of numpy. "cuda", "cuda:1": DeviceArrays, made in that GPU's memory and left
+there. "auto": a GPU if there is one. Raises InputError, DeviceError.)")
+        .def("ray_chunks", &chunks_of, py::kw_only(), "spp"_a = 1, "seed"_a = 0, "device"_a = "cpu",
+             "wavelengths_nm"_a = py::none(), "max_rays"_a = std::int64_t{1} << 22,
+             R"(The same rays in pieces of at most max_rays, for pictures whose rays memory does not hold: an iterator
+over CameraRays. A piece may end between two rays of a pixel. Raises InputError, DeviceError.)");
+    m.def("_film_of_white", &film_of_white, "illuminant"_a);
+}
+
+}  // namespace realcam::bindings

@@ -1,0 +1,253 @@
+#include <pybind11/complex.h>
+#include <pybind11/stl.h>
+
+#include <numeric>
+#include <variant>
+
+#include "../../embree/lens_rays.hpp"
+#include "../../optics/analysis/psf.hpp"
+#include "../../optics/analysis/psf_pupil.hpp"
+#include "../../optics/analysis/transmission.hpp"
+#include "../../optics/coating/coated_surface.hpp"
+#include "../bindings.hpp"
+#include "../values/short_text.hpp"
+#include "../values/value_methods.hpp"
+#include "analysis_arguments.hpp"
+
+namespace realcam::bindings {
+
+using namespace py::literals;
+
+template <>
+struct RestoredCheck<PsfColour> : AnyMembers {};
+template <>
+struct RestoredCheck<Psf> {
+    static void check(const Psf& psf) {
+        require_restored(psf.size >= 2 && psf.pitch_um > 0 && std::isfinite(psf.pitch_um) && !psf.colours.empty());
+        const auto size = static_cast<std::size_t>(psf.size);
+        require_restored(psf.values.size() == size * size);
+    }
+};
+
+namespace {
+
+using Wavelengths = std::variant<double, std::vector<double>>;
+
+std::vector<PsfColour> colours_from(const LensSystem& lens, const std::optional<Wavelengths>& wavelength_nm,
+                                    const std::optional<std::vector<double>>& weights) {
+    std::vector<double> wavelengths;
+    if (const auto* several = wavelength_nm ? std::get_if<std::vector<double>>(&*wavelength_nm) : nullptr)
+        wavelengths = *several;
+    else
+        wavelengths = {wavelength_nm ? std::get<double>(*wavelength_nm) : lens.wavelength_nm};
+    if (weights && weights->size() != wavelengths.size())
+        throw InputError("psf: there are " + std::to_string(weights->size()) + " weights for " +
+                         counted(wavelengths.size(), "wavelength"));
+    std::vector<PsfColour> colours;
+    for (std::size_t i = 0; i < wavelengths.size(); ++i)
+        colours.push_back({wavelength_or_design(lens, wavelengths[i]), weights ? (*weights)[i] : 1});
+    return colours;
+}
+
+PsfMethod method_from(const std::string& name) {
+    if (name == "direct") return PsfMethod::direct;
+    if (name == "fft") return PsfMethod::fft;
+    if (name == "geometric") return PsfMethod::geometric;
+    throw InputError("unknown method \"" + name + "\"; direct, fft or geometric is wanted");
+}
+
+/// Computes the PSF with numpy's FFT.
+Psf psf_by_fft(const LensSystem& lens, const PsfRequest& request) {
+    std::vector<PsfPupil> pupils;
+    Psf psf;
+    {
+        const Unlocked unlocked;
+        const RayLoop loop = parallel_ray_loop(heed_signals);
+        auto [parts, started] = psf_detail::start(lens, request, loop);
+        psf = std::move(started);
+        for (const psf_detail::Part& part : parts) pupils.push_back(psf_pupil(part, psf, loop));
+    }
+    const py::object inverse = py::module_::import("numpy.fft").attr("ifft2");
+    double ideal = 0;
+    for (const PsfPupil& pupil : pupils) {
+        const auto n = static_cast<std::size_t>(pupil.size);
+        const auto size = static_cast<std::size_t>(psf.size), first = n - size / 2;
+        const py::array_t<std::complex<double>> sums =
+            inverse(array_from(pupil.values, {pupil.size, pupil.size}), "norm"_a = "forward");
+        const std::complex<double>* from = sums.data();
+        for (std::size_t y = 0; y < size; ++y)
+            for (std::size_t x = 0; x < size; ++x)
+                psf.values[y * size + x] += pupil.scale * std::norm(from[(first + y) % n * n + (first + x) % n]);
+        double amplitude = 0;
+        for (const std::complex<double>& value : pupil.values) amplitude += std::abs(value);
+        ideal += pupil.scale * amplitude * amplitude;
+        psf.rays += std::count_if(pupil.values.begin(), pupil.values.end(), [](auto v) { return v != 0.0; });
+    }
+    psf.strehl = *std::max_element(psf.values.begin(), psf.values.end()) / ideal;
+    return psf;
+}
+
+Psf make_psf(const LensSystem& lens, double field_deg, const std::optional<Wavelengths>& wavelength_nm,
+             const std::string& method, int size, std::optional<double> pitch_um,
+             std::optional<double> object_distance_m, const FilmPoint& film_mm, std::optional<double> film_distance_mm,
+             const std::string& centre, std::optional<std::int64_t> rays,
+             const std::optional<std::vector<double>>& weights) {
+    if (centre != "chief" && centre != "centroid")
+        throw InputError("unknown centre \"" + centre + "\"; chief or centroid is wanted");
+    if (pitch_um && !(*pitch_um > 0)) throw InputError("psf: pitch_um must be a positive length");
+    if (rays && *rays <= 0) throw InputError("psf: rays must be a positive number");
+    if (film_distance_mm && !std::isfinite(*film_distance_mm))
+        throw InputError("film_distance_mm must be a finite length, or None for the film");
+    const PsfRequest request{field_from(field_deg, object_distance_m, film_mm),
+                             colours_from(lens, wavelength_nm, weights),
+                             film_distance_mm.value_or(lens.film_distance),
+                             method_from(method),
+                             size,
+                             pitch_um.value_or(0),
+                             centre == "chief" ? PsfCentre::chief : PsfCentre::centroid,
+                             rays.value_or(0)};
+    if (request.method == PsfMethod::fft) return psf_by_fft(lens, request);
+    const Unlocked unlocked;
+    return psf_of(lens, request, parallel_ray_loop(heed_signals));
+}
+
+py::array_t<double> pixel_positions_um(const Psf& psf) {
+    return array_of(static_cast<std::size_t>(psf.size),
+                    [&](std::size_t i) { return (static_cast<int>(i) - psf.size / 2) * psf.pitch_um; });
+}
+
+double mean_wavelength(const Psf& psf) {
+    double sum = 0;
+    for (const PsfColour& colour : psf.colours) sum += colour.weight * colour.wavelength_nm;
+    return sum;
+}
+
+py::tuple mtf(const Psf& psf, const std::optional<InputArray<double>>& frequencies_per_mm) {
+    const InputArray<double> frequencies =
+        frequencies_per_mm.value_or(array_of(static_cast<std::size_t>(psf.size / 2 + 1), [&](std::size_t i) {
+            return 1e3 * static_cast<double>(i) / (psf.size * psf.pitch_um);
+        }));
+    if (frequencies.ndim() != 1) throw InputError("frequencies_per_mm must be an array of shape (N,)");
+    const auto along = [&](bool tangential) {
+        return array_of(static_cast<std::size_t>(frequencies.size()),
+                        [&](std::size_t i) { return modulation(psf, frequencies.data()[i], tangential); });
+    };
+    return py::make_tuple(frequencies, along(true), along(false));
+}
+
+}  // namespace
+
+void bind_psf(py::module_& m) {
+    py::class_<Psf> psf(m, "PSF",
+                        "Point spread function: where the light of one object point goes on the film, as a square of "
+                        "points (docs/psf.md).");
+    def_value(psf);
+    psf.def_property_readonly(
+           "values", [](const Psf& p) { return array_from(p.values, {p.size, p.size}); },
+           R"((size, size): share of the light that passes the lens, per um^2; their sum times pitch_um^2 is 1 over the
+whole film. Rows from the lowest y, columns from the lowest x.)")
+        .def_readonly("pitch_um", &Psf::pitch_um, "From point to point.")
+        .def_property_readonly("x_um", &pixel_positions_um, "(size,): of the columns, from the array's middle.")
+        .def_property_readonly("y_um", &pixel_positions_um,
+                               "(size,): of the rows; a positive field lies in the y-z plane.")
+        .def_property_readonly(
+            "centre_mm", [](const Psf& p) { return std::pair(p.centre_mm.x, p.centre_mm.y); },
+            "(x, y) on the film, from the axis: of the point at x_um = y_um = 0.")
+        .def_property_readonly("wavelength_nm", &mean_wavelength, "The mean of several, by their weights.")
+        .def_property_readonly(
+            "wavelengths_nm",
+            [](const Psf& p) { return array_of(p.colours.size(), [&](auto i) { return p.colours[i].wavelength_nm; }); })
+        .def_property_readonly(
+            "weights",
+            [](const Psf& p) { return array_of(p.colours.size(), [&](auto i) { return p.colours[i].weight; }); },
+            "(N,): shares of the light, whose sum is 1.")
+        .def_readonly("strehl", &Psf::strehl,
+                      "Largest value over that of the same rays all in phase; nan for the method \"geometric\".")
+        .def_readonly("rays", &Psf::rays, "Of all wavelengths.")
+        .def_property_readonly(
+            "energy",
+            [](const Psf& p) {
+                return std::accumulate(p.values.begin(), p.values.end(), 0.0) * p.pitch_um * p.pitch_um;
+            },
+            "Share of the light on the array: the rest falls beside it.")
+        .def(
+            "energy_inside",
+            [](const Psf& p, double radius_um, std::pair<double, double> about_um) {
+                return energy_inside(p, radius_um, {about_um.first, about_um.second});
+            },
+            "radius_um"_a, "about_um"_a = std::pair(0.0, 0.0),
+            "Share of the light within a circle about a point (x, y), as far as the array reaches.")
+        .def("mtf", &mtf, "frequencies_per_mm"_a = py::none(),
+             R"(Modulation transfer: (frequencies per mm, tangential, sagittal), three arrays of shape (N,). Tangential
+is the contrast of lines across y, sagittal of lines across x. None: 0 to half of one over pitch_um.)")
+        .def("__repr__", [](const Psf& p) {
+            return "<realcam.PSF " + std::to_string(p.size) + " x " + std::to_string(p.size) + ", pitch " +
+                   digits(p.pitch_um) + " um, Strehl " + digits(p.strehl) + '>';
+        });
+    static const std::string text =
+        R"(Point spread function: the light of one object point on the film, with diffraction, from the exact wavefront.
+field_deg, film_mm, object_distance_m: as for wavefront.
+wavelength_nm: one or several, whose light is added; None is the design wavelength. weights: of several, None: equal.
+method: "direct", the sum of the rays as plane waves, for any wavefront; "fft", the same by a Fourier transform, where
+  the wavefront is not too steep for one; "geometric", the rays themselves, without diffraction.
+size: points across the array. pitch_um: from one to the next; None is a quarter of wavelength x f-number, up to half of
+  it for a spot that is larger than the array.
+film_distance_mm: last vertex to the plane of the PSF; None: the film.
+centre: of the array: "chief", where the chief ray of the first wavelength meets that plane, or "centroid", of the spot.
+rays: at least so many for each wavelength; None: as many as the wavefront and the array need. Not used by "fft".
+Returns a PSF. Raises InputError where no light passes, a glass is not known at a wavelength, or the rays given cannot
+follow the wavefront.)";
+    py::reinterpret_borrow<py::class_<LensSystem>>(m.attr("Lens"))
+        .def("psf", &make_psf, "field_deg"_a = 0.0, "wavelength_nm"_a = py::none(), py::kw_only(),
+             "method"_a = "direct", "size"_a = 128, "pitch_um"_a = py::none(), "object_distance_m"_a = py::none(),
+             "film_mm"_a = py::none(), "film_distance_mm"_a = py::none(), "centre"_a = "chief", "rays"_a = py::none(),
+             "weights"_a = py::none(), text.c_str());
+}
+
+using namespace py::literals;
+
+namespace {
+
+double transmission(const LensSystem& lens, double field_deg, std::optional<double> wavelength_nm,
+                    std::optional<double> object_distance_m, const std::string& polarisation,
+                    const std::string& pattern, int samples, const std::optional<InputArray<double>>& pupil) {
+    if (polarisation != "traced" && polarisation != "averaged")
+        throw InputError("unknown polarisation \"" + polarisation + "\"; traced or averaged is wanted");
+    const double wavelength = wavelength_or_design(lens, wavelength_nm);
+    std::vector<PupilPoint> points = pattern_from(pattern, samples, pupil);
+    const Unlocked unlocked;
+    const BundleTransmission bundle = bundle_transmission(lens, wavelength, field_from(field_deg, object_distance_m),
+                                                          std::move(points), parallel_ray_loop(heed_signals));
+    return polarisation == "traced" ? bundle.mean_traced : bundle.mean_averaged;
+}
+
+}  // namespace
+
+void bind_transmission(py::module_& m) {
+    static const std::string text =
+        std::string(
+            R"(Share of the power of unpolarised light that the lens lets through, of the light of one object point that passes
+the rims: the mean over the part of the stop that it fills. Fresnel's or the films' losses at every surface; glass
+itself absorbs nothing here. Surfaces of which the lens does not say how they are coated (unknown_coatings) are taken
+for bare glass, mirrors for perfect ones.
+)") + kFieldText +
+        R"(polarisation: "traced" follows both polarisations through the lens; "averaged" takes the mean of s and p at each
+  surface, as if light were unpolarised between them.
+)" + kPatternText +
+        "Raises InputError where no ray passes, or a material is not known at that wavelength.";
+    py::reinterpret_borrow<py::class_<LensSystem>>(m.attr("Lens"))
+        .def("transmission", &transmission, "field_deg"_a = 0.0, "wavelength_nm"_a = py::none(), py::kw_only(),
+             "object_distance_m"_a = py::none(), "polarisation"_a = "traced", "pattern"_a = "rings", "samples"_a = 8,
+             "pupil"_a = py::none(), text.c_str())
+        .def_property_readonly(
+            "t_stop", [](const LensSystem& lens) { return t_stop(lens, lens.wavelength_nm); },
+            R"(f-number / sqrt(transmittance) at the design wavelength, the transmittance being that of the ray along
+the axis times the share of the pupil that no central obstruction takes: the f-number of a lens without losses that
+gives as bright a picture there. inf where the lens has no f-number.)")
+        .def_property_readonly(
+            "unknown_coatings", &surfaces_with_unknown_coating,
+            R"(Indices of the surfaces of which the lens does not say how they are coated: glass in air, taken for bare,
+and mirrors, taken for perfect. Cemented faces are bare without being said so.)");
+}
+
+}  // namespace realcam::bindings

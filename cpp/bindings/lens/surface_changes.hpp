@@ -1,0 +1,131 @@
+#pragma once
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <array>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "../../optics/prescription/coating.hpp"
+#include "../../optics/prescription/surface.hpp"
+#include "../bindings.hpp"
+
+namespace realcam::bindings {
+
+/// Terms of each row of kFormTerms as dicts; omitted ones are left unchanged.
+using TermsDicts = std::array<std::optional<py::dict>, kFormTermsCount>;
+
+/// Changes of a surface's form and aperture; omitted ones are left unchanged.
+struct FormChanges {
+    using Number = std::optional<double>;
+    std::optional<std::string> form;
+    Number radius_of_curvature_x_mm, conic_x;
+    std::optional<std::map<int, double>> radial_terms;
+    std::optional<std::map<std::pair<int, int>, double>> xy_terms;
+    TermsDicts terms;
+    std::optional<py::dict> aperture;
+    std::optional<std::vector<py::dict>> obscurations;
+};
+
+/// Applies changes to a surface. An empty dict removes the respective form or aperture. Throws InputError for an
+/// invalid name, key or value.
+void change_form(Surface& surface, const FormChanges& to);
+
+/// Returns the values in the format that change_form accepts.
+std::string form_name(const Surface& surface);
+std::map<int, double> radial_terms_of(const Surface& surface);
+std::map<std::pair<int, int>, double> xy_terms_of(const Surface& surface);
+/// `row`: of kFormTerms. Empty if the surface has no such terms.
+py::dict terms_of(const Surface& surface, std::size_t row);
+py::dict aperture_of(const Surface& surface);
+std::vector<py::dict> obscurations_of(const Surface& surface);
+
+/// Converts the name of a known coating or a Coating. Throws InputError.
+Coating coating_from(const pybind11::object& coating);
+
+/// Changes of a surface; omitted ones are left unchanged.
+struct SurfaceChanges {
+    using Number = std::optional<double>;
+    using Numbers = std::optional<std::vector<double>>;
+    using Name = std::optional<std::string>;
+    using Dict = std::optional<py::dict>;
+    using Dicts = std::optional<std::vector<py::dict>>;
+    using RadialTerms = std::optional<std::map<int, double>>;
+    using XyTerms = std::optional<std::map<std::pair<int, int>, double>>;
+
+    Number radius_of_curvature_mm, thickness_mm;
+    std::optional<Glass> material;
+    Number clear_semi_diameter_mm, conic;
+    RadialTerms aspheric_coefficients;
+    Number inner_semi_diameter_mm;
+    Name type;
+    std::optional<Coating> coating;
+    Numbers decentre_mm, tilt_deg;
+    std::optional<bool> returns;
+    FormChanges form;
+};
+
+/// Returns the changed surface. Throws InputError for invalid values.
+Surface changed_surface(Surface surface, const SurfaceChanges& to);
+
+template <class>
+using Index = int;
+template <std::size_t>
+using TermsDict = SurfaceChanges::Dict;
+
+/// The rows of kFormTerms, for parameter packs with one parameter for each row.
+inline constexpr std::make_index_sequence<kFormTermsCount> kFormRows;
+
+namespace surface_changes_detail {
+
+template <class T, class Function, std::size_t... row, class... First>
+void def(std::index_sequence<row...>, py::class_<T>& type, const char* name, Function function, const char* text,
+         First... first) {
+    using C = SurfaceChanges;
+    using namespace py::literals;
+    type.def(
+        name,
+        [function](const T& self, Index<First>... indices, C::Number radius, C::Number thickness,
+                   const py::object& material, C::Number clear, C::Number conic, const C::RadialTerms& aspheric,
+                   C::Number inner, const C::Name& surface_type, const py::object& coating, const C::Numbers& decentre,
+                   const C::Numbers& tilt, std::optional<bool> returns, const C::Name& form, C::Number radius_x,
+                   C::Number conic_x, const C::RadialTerms& radial, const C::XyTerms& xy,
+                   const TermsDict<row>&... terms, const C::Dict& aperture, const C::Dicts& obscurations) {
+            const bool stays = material.is(py::ellipsis());
+            const SurfaceChanges changes{radius,
+                                         thickness,
+                                         stays ? std::nullopt : std::optional(glass_from(material)),
+                                         clear,
+                                         conic,
+                                         aspheric,
+                                         inner,
+                                         surface_type,
+                                         coating.is_none() ? std::nullopt : std::optional(coating_from(coating)),
+                                         decentre,
+                                         tilt,
+                                         returns,
+                                         {form, radius_x, conic_x, radial, xy, {terms...}, aperture, obscurations}};
+            return function(self, indices..., changes);
+        },
+        first..., py::kw_only(), "radius_of_curvature_mm"_a = py::none(), "thickness_mm"_a = py::none(),
+        "material"_a = py::ellipsis(), "clear_semi_diameter_mm"_a = py::none(), "conic"_a = py::none(),
+        "aspheric_coefficients"_a = py::none(), "inner_semi_diameter_mm"_a = py::none(), "type"_a = py::none(),
+        "coating"_a = py::none(), "decentre_mm"_a = py::none(), "tilt_deg"_a = py::none(), "returns"_a = py::none(),
+        "form"_a = py::none(), "radius_of_curvature_x_mm"_a = py::none(), "conic_x"_a = py::none(),
+        "radial_terms"_a = py::none(), "xy_terms"_a = py::none(), (py::arg(kFormWords[row].key) = py::none())...,
+        "aperture"_a = py::none(), "obscurations"_a = py::none(), text);
+}
+
+}  // namespace surface_changes_detail
+
+/// Defines a method with the arguments `first` and, by keyword, those of Surface. Omitted ones are left unchanged; the
+/// default of a material is `...`, because None is air.
+template <class T, class Function, class... First>
+void def_surface_changes(py::class_<T>& type, const char* name, Function function, const char* text, First... first) {
+    surface_changes_detail::def(kFormRows, type, name, function, text, first...);
+}
+
+}  // namespace realcam::bindings

@@ -1,0 +1,125 @@
+// Bindings for reading and writing picture files.
+
+#include <pybind11/numpy.h>
+#include <pybind11/stl.h>
+
+#include <cstring>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "../../image_io/image_file.hpp"
+#include "../bindings.hpp"
+
+namespace realcam::bindings {
+
+using namespace py::literals;
+
+namespace {
+
+/// Returns the pixels and the reader's warnings.
+py::tuple read_environment(const std::string& path, const std::string& layer) {
+    Environment environment;
+    std::vector<std::string> warnings;
+    {
+        const Unlocked unlocked;
+        environment = image_io::read_environment(
+            path, layer, [&](const std::string& warning) { warnings.push_back(warning); }, heed_signals);
+    }
+    py::array_t<float> pixels({environment.height, environment.width, 3});
+    std::memcpy(pixels.mutable_data(), environment.pixels.data(), environment.pixels.size() * sizeof(Vec3f));
+    return py::make_tuple(pixels, warnings);
+}
+
+using FloatArray = py::array_t<float, py::array::c_style | py::array::forcecast>;
+
+/// Returns views of the named layers, which are arrays of the picture's size. `kept` receives arrays that had to be
+/// converted and must outlive the views.
+std::vector<image_io::PictureView::Layer> layers_from(const py::dict& layers, const FloatArray& depth,
+                                                      std::vector<py::array>& kept) {
+    std::vector<image_io::PictureView::Layer> views;
+    for (std::size_t i = 0; i < kLayers.size(); ++i) {
+        const LayerInfo& info = kLayers[i];
+        if (!layers.contains(info.name) || static_cast<Layer>(i) == Layer::depth) continue;
+        const py::object given = layers[info.name];
+        py::array array;
+        if (info.is_number)
+            array = py::array_t<std::uint32_t, py::array::c_style | py::array::forcecast>(given);
+        else
+            array = FloatArray(given);
+        if (array.ndim() != (info.channels == 1 ? 2 : 3) || array.shape(0) != depth.shape(0) ||
+            array.shape(1) != depth.shape(1) || (array.ndim() == 3 && array.shape(2) != info.channels))
+            throw InputError("the layer \"" + std::string(info.name) + "\" must have the shape (H, W" +
+                             (info.channels == 1 ? ")" : ", " + std::to_string(info.channels) + ")") +
+                             " of the picture");
+        views.push_back({static_cast<Layer>(i), array.data()});
+        kept.push_back(std::move(array));
+    }
+    return views;
+}
+
+template <class T>
+T member(const py::object& image, const char* name) {
+    try {
+        return image.attr(name).cast<T>();
+    } catch (const py::cast_error&) {
+        throw InputError("the image's " + std::string(name) + " must be such as rc.render gives");
+    }
+}
+
+/// Writes a realcam.Image, `image`, to a file.
+void write_picture(const std::string& path, const py::object& image, bool film_tone) {
+    const auto exposure = member<FloatArray>(image, "pixels"), depth = member<FloatArray>(image, "depth");
+    if (exposure.ndim() != 3 || exposure.shape(2) != 3 || depth.ndim() != 2 || depth.shape(0) != exposure.shape(0) ||
+        depth.shape(1) != exposure.shape(1))
+        throw InputError("the picture's pixels must have the shape (H, W, 3), and its depth (H, W)");
+    std::vector<py::array> kept;
+    const image_io::PictureView picture{static_cast<int>(depth.shape(1)),
+                                        static_cast<int>(depth.shape(0)),
+                                        exposure.data(),
+                                        depth.data(),
+                                        layers_from(py::dict(image.attr("layers")), depth, kept),
+                                        member<IdNames>(image, "object_names"),
+                                        member<IdNames>(image, "material_names")};
+    io::ImageMetadata metadata =
+        io::metadata_of(member<Camera>(image, "camera"), member<RenderSettings>(image, "settings"));
+    metadata.spp = member<int>(image, "spp");
+    metadata.seed = member<std::uint32_t>(image, "seed");
+    metadata.denoiser = member<std::string>(image, "denoiser");
+    metadata.plan = member<std::string>(image, "plan");
+    const Unlocked unlocked;
+    image_io::write_image(picture, path, metadata, film_tone ? ToneCurve::film : ToneCurve::linear, heed_signals);
+}
+
+using Entries = std::vector<std::pair<std::string, std::string>>;
+
+py::tuple read_film(const std::string& path) {
+    image_io::FilmFile film;
+    {
+        const Unlocked unlocked;
+        film = image_io::read_film(path, heed_signals);
+    }
+    py::array_t<float> exposure({film.height, film.width, 3});
+    std::memcpy(exposure.mutable_data(), film.exposure.data(), film.exposure.size() * sizeof(float));
+    return py::make_tuple(exposure, film.entries);
+}
+
+void write_codes(const std::string& path, const py::array_t<std::uint8_t, py::array::c_style>& codes,
+                 const Entries& entries) {
+    if (codes.ndim() != 3 || codes.shape(2) != 3) throw InputError("codes of the shape (H, W, 3) are wanted");
+    const Unlocked unlocked;
+    image_io::write_codes(path, static_cast<int>(codes.shape(1)), static_cast<int>(codes.shape(0)), codes.data(),
+                          entries, heed_signals);
+}
+
+}  // namespace
+
+// Paths are bytes objects, from os.fsencode.
+void bind_pictures(py::module_& m) {
+    m.def("_read_environment", &read_environment, "path"_a, "layer"_a);
+    m.def("_write_picture", &write_picture, "path"_a, "image"_a, "film_tone"_a);
+    m.def("_write_codes", &write_codes, "path"_a, "codes"_a, "entries"_a);
+    m.def("_read_film", &read_film, "path"_a);
+}
+
+}  // namespace realcam::bindings

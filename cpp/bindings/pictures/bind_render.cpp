@@ -1,0 +1,184 @@
+#include <pybind11/numpy.h>
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "../../camera/film/develop.hpp"
+#include "../../devices/cuda_plugin.hpp"
+#include "../../devices/devices.hpp"
+#include "../../render/session/metering.hpp"
+#include "../../render/session/take_picture.hpp"
+#include "../../render/settings/effect_names.hpp"
+#include "../../shot/shot_keys.hpp"
+#include "../bindings.hpp"
+#include "../values/arrays.hpp"
+#include "../values/short_text.hpp"
+#include "../values/value_methods.hpp"
+#include "owned_session.hpp"
+#include "picture.hpp"
+
+namespace realcam::bindings {
+
+using namespace py::literals;
+
+void warn_of_device(const std::string& text) {
+    const py::gil_scoped_acquire acquire;
+    if (PyErr_WarnEx(PyExc_UserWarning, text.c_str(), 1) < 0) throw py::error_already_set();
+}
+
+ToneCurve tone_curve_from(const std::string& name) {
+    if (const auto tone = shot::tone_named(name)) return *tone;
+    throw InputError("unknown tone curve \"" + name + "\"; film or linear is wanted");
+}
+
+std::uint32_t seed_from(std::int64_t seed, const char* what) {
+    if (seed < 0 || seed > 0xffffffff)
+        throw InputError("the " + std::string(what) + " must lie between 0 and 4294967295");
+    return static_cast<std::uint32_t>(seed);
+}
+
+bool heed_signals() {
+    stop_at_exit();
+    const py::gil_scoped_acquire acquire;
+    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+    return true;
+}
+
+Progress progress_of(const py::object& callback) {
+    if (!callback.is_none() && !PyCallable_Check(callback.ptr()))
+        throw InputError("progress must be a function of the share done, 0 to 1");
+    return [&callback](double done) {
+        heed_signals();
+        const py::gil_scoped_acquire acquire;
+        if (callback.is_none()) return true;
+        const py::object answer = callback(done);
+        if (answer.is_none()) return true;
+        const int goes_on = py::isinstance<py::str>(answer) ? -1 : PyObject_IsTrue(answer.ptr());
+        if (goes_on >= 0) return goes_on != 0;
+        PyErr_Clear();
+        throw InputError("progress must return False to stop, and else True or None; it returned " +
+                         py::module_::import("reprlib").attr("repr")(answer).cast<std::string>());
+    };
+}
+
+namespace {
+
+/// `keeps_stopped`: if the progress function stops rendering, returns the picture of the samples taken so far.
+py::dict render(const Assembly& scene, const Camera& camera, const RenderSettings& settings, const std::string& device,
+                const py::object& progress, bool keeps_stopped) {
+    const Progress report = progress_of(progress);
+    const KeepGoing finishes = keeps_stopped ? KeepGoing(heed_signals) : KeepGoing();
+    Image image = OwnedSession::shared(device).use(
+        [&](const auto& session) { return take_picture(*session, scene, camera, settings, report, finishes); });
+    return picture_from(std::move(image), settings.layers);
+}
+
+py::array_t<std::uint8_t> develop(const InputArray<float>& exposure, double iso, const std::string& tone) {
+    const ToneCurve curve = tone_curve_from(tone);
+    if (!(iso > 0) || !std::isfinite(iso)) throw InputError("the ISO number must be positive");
+    py::array_t<std::uint8_t> codes(std::vector<py::ssize_t>(exposure.shape(), exposure.shape() + exposure.ndim()));
+    const float* from = exposure.data();
+    std::uint8_t* to = codes.mutable_data();
+    constexpr py::ssize_t kBetweenSignals = 1 << 20;  // about ten milliseconds of work
+    const Unlocked unlocked;
+    const CodeTable code(iso, curve);
+    for (py::ssize_t done = 0; done < exposure.size(); done += kBetweenSignals) {
+        heed_signals();
+        for (py::ssize_t i = done; i < std::min(done + kBetweenSignals, exposure.size()); ++i) to[i] = code(from[i]);
+    }
+    return codes;
+}
+
+std::string line_text(const EffectInfo& effect) {
+    return effect.name + (": " + line_of(effect));
+}
+
+std::string line_text(const Device& device) {
+    return device.name + ": " + device.description;
+}
+
+}  // namespace
+
+template <>
+struct RestoredCheck<Device> : AnyMembers {};
+
+void bind_render(py::module_& m) {
+    py::class_<RenderStats> stats(m, "RenderStats", "What a picture cost. Stage seconds are summed over the threads.");
+    def_hashable_value(stats);
+    stats.def_readonly("seconds", &RenderStats::seconds, "Wall clock, all of it.")
+        .def_readonly("setup_seconds", &RenderStats::setup_seconds, "Pupil and scene; part of seconds.")
+        .def_readonly("lens_seconds", &RenderStats::lens_seconds)
+        .def_readonly("scene_seconds", &RenderStats::scene_seconds)
+        .def_readonly("other_seconds", &RenderStats::other_seconds)
+        .def_readonly("sampled_rays", &RenderStats::sampled_rays, "Sent into the lens.")
+        .def_readonly("passed_rays", &RenderStats::passed_rays, "That left it.")
+        .def_readonly("scene_rays", &RenderStats::scene_rays, "Camera, shadow and bounce rays.")
+        .def_readonly("device", &RenderStats::device)
+        .def("__repr__", [](const RenderStats& s) {
+            return "<realcam.RenderStats " + digits(s.seconds) + " s on " + s.device + '>';
+        });
+    m.def("_render", &render, "scene"_a, "camera"_a, "settings"_a, "device"_a, "progress"_a, "keeps_stopped"_a);
+    m.def(
+        "_effect_notices",
+        [](const LensSystem& lens, const RenderSettings& settings) { return effect_notices(settings.effects, lens); },
+        "lens"_a, "settings"_a);
+    py::class_<EffectInfo> effect_type(m, "EffectInfo", "Optional effect of a picture. str() is a line of it.");
+    def_copy(effect_type);
+    // Each effect is one Python object that refers to the static table.
+    py::tuple effect_rows(std::size(kEffects));
+    for (std::size_t i = 0; i < std::size(kEffects); ++i)
+        effect_rows[i] = py::cast(kEffects[i], py::return_value_policy::reference);
+    def_pickle(
+        effect_type, [](const py::object& self) { return self.attr("name"); },
+        [effect_rows](const std::string& name) -> py::object {
+            const EffectInfo* effect = find_effect(name);
+            if (!effect) throw InputError("it is an effect that this version does not have");
+            return effect_rows[static_cast<std::size_t>(effect - kEffects)];
+        });
+    effect_type.def_readonly("name", &EffectInfo::name, "For effects=(...).")
+        .def_readonly("what", &EffectInfo::what, "It is.")
+        .def_readonly("needs", &EffectInfo::needs, "Of lens, scene and camera.")
+        .def_readonly("usage", &EffectInfo::usage, "What else to know, or \"\".")
+        .def_property_readonly("is_on", &EffectInfo::is_on, "Unless it is left out, as \"-name\".")
+        .def_property_readonly(
+            "parameter",
+            [](const EffectInfo& effect) {
+                return effect.parameter ? std::optional(EffectChoice().*effect.parameter) : std::nullopt;
+            },
+            "What name alone means of \"name=number\"; None: it has none.")
+        .def_readonly("has_wavelengths", &EffectInfo::has_wavelengths,
+                      "Samples have one each, so that an illuminant can be named.")
+        .def_readonly("needs_full_lens", &EffectInfo::needs_full_lens, "The camera model \"full\".")
+        .def_readonly("needs_coatings", &EffectInfo::needs_coatings, "In the lens file; else they are guessed.")
+        .def_readonly("shows_in_previews", &EffectInfo::shows_in_previews,
+                      "In pictures of fewer pixels than were asked for.")
+        .def_readonly("cpu_time", &EffectInfo::cpu_time,
+                      "Of a picture with it over one without (benchmarks/effects.py); 0: not measured.")
+        .def_readonly("gpu_time", &EffectInfo::gpu_time, "Likewise.")
+        .def_property_readonly("description", &line_of, "What it is and needs, in a line.")
+        .def("__str__", py::overload_cast<const EffectInfo&>(&line_text))
+        .def("__repr__", [](const EffectInfo& e) { return std::string("<realcam.EffectInfo ") + e.name + '>'; });
+    m.def("effects", [effect_rows] { return py::list(effect_rows); }, "All effects that can be named.");
+    m.def("develop", &develop, "exposure"_a, "iso"_a, "tone"_a = "film",
+          R"(Film exposure in lux seconds (any shape) as 8-bit sRGB codes at a sensitivity; 10 / iso lux seconds become
+middle grey, 118. tone: "film" (soft highlights) or "linear" (clipped).)");
+    m.def(
+        "_metered_exposure",
+        [](const py::array_t<float, py::array::c_style | py::array::forcecast>& exposure) {
+            Image image;
+            image.exposure = PictureFloats({exposure.data(), static_cast<std::size_t>(exposure.size())});
+            return metered_exposure(image);
+        },
+        "exposure"_a);
+    py::class_<Device> device_type(m, "Device", "What this machine can render with. str() is a line of it.");
+    def_hashable_value(device_type);
+    device_type.def_readonly("name", &Device::name, "For device=...: \"cpu\", \"cuda:0\", ...")
+        .def_readonly("description", &Device::description, "For people.")
+        .def("__str__", py::overload_cast<const Device&>(&line_text))
+        .def("__repr__", [](const Device& d) { return "<realcam.Device " + line_text(d) + '>'; });
+    m.def("devices", &devices, "All devices of this machine, the CPU first.");
+    m.def("_name_cuda_plugin", &name_cuda_plugin, "path"_a);
+}
+
+}  // namespace realcam::bindings

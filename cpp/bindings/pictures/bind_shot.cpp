@@ -1,0 +1,305 @@
+#include <pybind11/numpy.h>
+#include <pybind11/stl.h>
+
+#include <map>
+#include <tuple>
+#include <utility>
+
+#include "../../camera/film/camera_key.hpp"
+#include "../../camera/film/shake.hpp"
+#include "../../io/files/image_metadata.hpp"
+#include "../../render/session/session.hpp"
+#include "../../shot/shake_curve.hpp"
+#include "../../shot/shot.hpp"
+#include "../../shot/shot_file.hpp"
+#include "../bindings.hpp"
+#include "../scene/picture_readers.hpp"
+#include "../values/arrays.hpp"
+#include "../values/short_text.hpp"
+#include "../values/value_methods.hpp"
+#include "owned_session.hpp"
+
+namespace realcam::bindings {
+
+using namespace py::literals;
+
+template <>
+struct LastEnumerator<CameraKeyInterpolation> : LastIs<CameraKeyInterpolation::step> {};
+template <>
+struct RestoredCheck<CameraKey> {
+    static void check(const CameraKey& key) { validate(key); }
+};
+template <>
+struct RestoredCheck<ShakeKey> : AnyMembers {};
+template <>
+struct RestoredCheck<Shake> {
+    static void check(const Shake& shake) { validate(shake); }
+};
+
+namespace {
+
+using Number = std::optional<double>;
+using CurvePoint = std::tuple<double, Triple, Triple>;
+
+constexpr const char* kInterpolations[] = {"linear", "smooth", "step"};
+
+CameraKeyInterpolation camera_key_interpolation_from(const std::string& name) {
+    for (std::size_t i = 0; i < std::size(kInterpolations); ++i)
+        if (name == kInterpolations[i]) return static_cast<CameraKeyInterpolation>(i);
+    throw InputError("interpolation: \"" + name + "\": linear, smooth or step is wanted");
+}
+
+CameraKey make_key(double time_s, std::optional<LensSystem> lens, Number focus_m, Number focal_length_mm,
+                   Number f_number, std::optional<int> blades, Number blade_rounding, Number blade_rotation_deg,
+                   Number exposure_time_s, Number iso, std::optional<std::pair<double, double>> film_shift_mm,
+                   const std::string& interpolation) {
+    CameraKey key{
+        time_s, focus_m, focal_length_mm, f_number, exposure_time_s, iso, camera_key_interpolation_from(interpolation)};
+    key.lens = std::move(lens);
+    key.blades = blades;
+    key.blade_rounding = blade_rounding;
+    key.blade_rotation_deg = blade_rotation_deg;
+    if (film_shift_mm) std::tie(key.film_right_mm, key.film_up_mm) = *film_shift_mm;
+    validate(key);
+    return key;
+}
+
+std::string text_of_key(const CameraKey& key) {
+    std::string text = "<realcam.CameraKey at " + digits(key.time_s) + " s";
+    const auto add = [&](const char* before, const Number& value, const char* unit) {
+        if (value) text += std::string(", ") + before + digits(*value) + unit;
+    };
+    if (key.lens) text += ", " + key.lens->name;
+    add("focus ", key.focus_m, " m");
+    add("", key.focal_length_mm, " mm");
+    add("f/", key.f_number, "");
+    if (key.blades) text += ", " + std::to_string(*key.blades) + " blades";
+    add("blades rounded ", key.blade_rounding, "");
+    add("blades turned ", key.blade_rotation_deg, " deg");
+    add("", key.exposure_time_s, " s");
+    add("ISO ", key.iso, "");
+    add("film ", key.film_right_mm, " mm right");
+    add("film ", key.film_up_mm, " mm up");
+    return text + '>';
+}
+
+Shake make_shake(double rms_deg, double rms_mm, double corner_hz, std::int64_t seed,
+                 const std::vector<CurvePoint>& curve) {
+    Shake shake{{}, rms_deg, rms_mm, corner_hz, seed_from(seed)};
+    for (const auto& [time_s, rotation_deg, position_m] : curve)
+        shake.curve.push_back({time_s, vector_of(rotation_deg), vector_of(position_m)});
+    validate(shake);
+    return shake;
+}
+
+std::string text_of_shake(const Shake& shake) {
+    std::string text = "<realcam.Shake";
+    if (!shake.curve.empty()) text += " of " + std::to_string(shake.curve.size()) + " keys";
+    if (shake.rms_deg > 0) text += " " + digits(shake.rms_deg) + " deg";
+    if (shake.rms_mm > 0) text += " " + digits(shake.rms_mm) + " mm";
+    return text + '>';
+}
+
+py::tuple shake_positions(const Shake& shake, const std::vector<double>& times_s) {
+    const std::vector<ShakeKey> keys = shake_at(shake, times_s);
+    const std::vector<py::ssize_t> shape = {static_cast<py::ssize_t>(keys.size()), 3};
+    py::array_t<double> angles(shape), positions(shape);
+    auto to_angles = angles.mutable_unchecked<2>();
+    auto to_positions = positions.mutable_unchecked<2>();
+    for (py::ssize_t i = 0; i < shape[0]; ++i) {
+        const ShakeKey& key = keys[static_cast<std::size_t>(i)];
+        const auto fill = [i](auto& to, Vec3d v) { to(i, 0) = v.x, to(i, 1) = v.y, to(i, 2) = v.z; };
+        fill(to_angles, key.rotation_deg);
+        fill(to_positions, key.position_m);
+    }
+    return py::make_tuple(angles, positions);
+}
+
+py::tuple curve_of(const Shake& shake) {
+    py::list curve;
+    for (const ShakeKey& key : shake.curve)
+        curve.append(py::make_tuple(key.time_s, triple(key.rotation_deg), triple(key.position_m)));
+    return py::tuple(curve);
+}
+
+/// Throws InputError if the keys are invalid or the camera cannot take the state of one of them.
+void check_camera_keys(const Camera& camera, const std::vector<CameraKey>& keys) {
+    validate(keys);
+    check_keys(keys, "the camera", [&](const CameraKey& key) { check_key(camera, key_at(keys, key.time_s)); });
+}
+
+Camera camera_at_time(const Camera& camera, const std::vector<CameraKey>& keys, const std::optional<Shake>& shake,
+                      double opens_s) {
+    const Unlocked unlocked;
+    return shot::camera_at(camera, keys, shake.value_or(Shake{}), opens_s);
+}
+
+std::vector<double> followed_isos(const Assembly& scene, const Camera& camera, const std::vector<CameraKey>& keys,
+                                  const RenderSettings& settings, const std::vector<int>& numbers,
+                                  double frames_per_second, double smoothing_s, const std::string& device) {
+    const py::none no_callback;
+    const Progress report = progress_of(no_callback);
+    return OwnedSession::shared(device).use([&](const auto& session) {
+        shot::FollowedIso followed(*session, scene, camera, keys, settings, frames_per_second, smoothing_s);
+        std::vector<double> isos;
+        for (const int number : numbers) isos.push_back(followed.at(number, report));
+        return isos;
+    });
+}
+
+void bind_key(py::module_& m) {
+    py::class_<CameraKey> key(m, "CameraKey", "What the rings and dials of a camera say at a time of a film.");
+    def_hashable_value(key);
+    key.def(py::init(&make_key), "time_s"_a, py::kw_only(), "lens"_a = py::none(), "focus_m"_a = py::none(),
+            "focal_length_mm"_a = py::none(), "f_number"_a = py::none(), "blades"_a = py::none(),
+            "blade_rounding"_a = py::none(), "blade_rotation_deg"_a = py::none(), "exposure_time_s"_a = py::none(),
+            "iso"_a = py::none(), "film_shift_mm"_a = py::none(), "interpolation"_a = "linear",
+            R"(lens: a cut to another Lens, which is on the camera from here on; until the first of them, the camera's
+own is. The rings of a lens, focus_m to blade_rotation_deg, go between its own keys alone. One without
+keys for focus and f-number takes over those of the lens before, whatever it has itself.
+focus_m: object plane to film, or inf. focal_length_mm: of a zoom lens at rest. What is None is that of
+the keys beside. film_shift_mm: (right, up). Between keys it, 1 / focus_m, and rounding and angle of the
+blades change evenly, and the others by even ratios; lens and blades jump. interpolation: of the way
+from here on; "smooth" goes from rest to rest, and through the smooth keys between without a stop;
+"step" stays, and jumps at the next key. Raises InputError.)")
+        .def_readonly("time_s", &CameraKey::time_s)
+        .def_readonly("lens", &CameraKey::lens)
+        .def_readonly("focus_m", &CameraKey::focus_m)
+        .def_readonly("focal_length_mm", &CameraKey::focal_length_mm)
+        .def_readonly("f_number", &CameraKey::f_number)
+        .def_readonly("blades", &CameraKey::blades)
+        .def_readonly("blade_rounding", &CameraKey::blade_rounding)
+        .def_readonly("blade_rotation_deg", &CameraKey::blade_rotation_deg)
+        .def_readonly("exposure_time_s", &CameraKey::exposure_time_s)
+        .def_readonly("iso", &CameraKey::iso)
+        .def_property_readonly("film_shift_mm",
+                               [](const CameraKey& k) -> std::optional<std::pair<double, double>> {
+                                   if (!k.film_right_mm || !k.film_up_mm) return std::nullopt;
+                                   return std::pair(*k.film_right_mm, *k.film_up_mm);
+                               })
+        .def_property_readonly(
+            "interpolation",
+            [](const CameraKey& k) { return kInterpolations[static_cast<std::size_t>(k.interpolation)]; })
+        .def("__repr__", &text_of_key);
+}
+
+void bind_shake(py::module_& m) {
+    py::class_<Shake> shake(
+        m, "Shake",
+        "The shake of a camera in the hand: a curve that was measured, one that is drawn, or both, which are added.");
+    def_hashable_value(shake);
+    shake
+        .def(py::init(&make_shake), py::kw_only(), "rms_deg"_a = 0.0, "rms_mm"_a = 0.0, "corner_hz"_a = 1.0,
+             "seed"_a = 0, "curve"_a = std::vector<CurvePoint>(),
+             R"(rms_deg, rms_mm: of each angle and of each shift, about and along the camera's axes to the right, up and
+back. Each is a Gaussian process of its own, drawn with the seed, with the one-sided spectrum
+4 rms^2 / (pi corner_hz) / (1 + (f / corner_hz)^2)^2 over the frequency f, up to ten corners.
+curve: (time_s, (x, y, z) in degrees, (x, y, z) in metres) in rising order of time; about x, then y,
+then z. Raises InputError.)")
+        .def_static(
+            "load",
+            [](const py::object& path) {
+                const std::string name = path_from(path);
+                return Shake{.curve = shot::read_shake_curve(name)};
+            },
+            "path"_a,
+            R"(Reads a curve from a .csv, whose first line names its columns: time_s, x_deg, y_deg, z_deg, x_m, y_m,
+z_m; but for the time any may be missing. Raises InputError naming file and line.)")
+        .def("at", &shake_positions, "times_s"_a,
+             "Where it has the camera at (N,) times: angles (N, 3) in degrees, and shifts (N, 3) in metres.")
+        .def_readonly("rms_deg", &Shake::rms_deg)
+        .def_readonly("rms_mm", &Shake::rms_mm)
+        .def_readonly("corner_hz", &Shake::corner_hz)
+        .def_readonly("seed", &Shake::seed)
+        .def_property_readonly("curve", &curve_of)
+        .def("__repr__", &text_of_shake);
+}
+
+/// Returns the shot keys that are command line options.
+py::list listed_shot_keys() {
+    py::list keys;
+    for (const shot::ShotKey& key : shot::shot_keys())
+        keys.append(py::make_tuple(key.name, key.option, key.group, key.placeholder, key.help()));
+    return keys;
+}
+
+/// Returns the command line options for values given by key name.
+std::vector<std::pair<const shot::ShotKey*, std::string>> options_of(const std::map<std::string, std::string>& words) {
+    std::vector<std::pair<const shot::ShotKey*, std::string>> options;
+    for (const shot::ShotKey& key : shot::shot_keys())
+        if (const auto word = words.find(key.name); word != words.end()) options.emplace_back(&key, word->second);
+    return options;
+}
+
+/// Returns the fields of realcam.Shot by name, and true if neither a number of samples nor a noise goal is specified.
+/// `changes` and `words`: see shot::ShotChanges. `given`: a scene that replaces the file's, which messages call by the
+/// path; `lens`: replaces the request's; `denoises`: the picture will be denoised.
+py::tuple read_shot(const py::object& path, const std::string& changes, const std::map<std::string, std::string>& words,
+                    const std::optional<Assembly>& given, std::optional<LensSystem> lens, bool denoises,
+                    const std::string& device) {
+    shot::ShotRequest request;
+    Camera camera;
+    Assembly scene;
+    std::vector<std::string> notes;
+    const shot::PictureReaders readers = picture_readers();
+    const std::string name = path_from(path);
+    {
+        const Unlocked unlocked;
+        const shot::ShotChanges changed{changes, options_of(words)};
+        request = given ? shot::shot_of_scene(name, changed) : shot::read_shot(name, changed);
+        request.lens_in_memory = std::move(lens);
+        request.denoises = denoises;
+        shot::resolve_noise_goal(request);
+        request.lens_options.keep_going = heed_signals;
+        request.lens_options.warn = [&](const std::string& note) { notes.push_back(note); };
+        shot::resolve_keys(request);
+        camera = shot::camera_of(request);
+        request.lens_options = {};  // its functions refer to local variables
+        scene = given ? shot::scene_of(request, *given, readers, heed_signals)
+                      : shot::scene_of(request, readers, heed_signals);
+    }
+    for (const std::string& note : notes)
+        if (PyErr_WarnEx(PyExc_UserWarning, note.c_str(), 1) < 0) throw py::error_already_set();
+    shot::Shot shot = shot::set_up(request, std::move(camera), std::move(scene));
+    if (request.meters_exposure_time()) {
+        const py::none no_callback;
+        const Progress report = progress_of(no_callback);
+        OwnedSession::shared(device).use([&](const auto& session) { meter(shot, request, *session, report); });
+    }
+    py::dict fields("scene"_a = shot.scene, "camera"_a = shot.camera, "settings"_a = request.settings,
+                    "tone"_a = request.tone == ToneCurve::film ? "film" : "linear",
+                    "keys"_a = py::tuple(py::cast(request.keys)),
+                    "shake"_a = request.shake.is_still() ? std::nullopt : std::optional(request.shake),
+                    "iso_follows_s"_a = request.iso_follows_s);
+    return py::make_tuple(std::move(fields), request.sampling == shot::Sampling::unsaid);
+}
+
+py::dict metadata(const Camera& camera, const RenderSettings& settings, int spp, std::uint32_t seed,
+                  const std::string& plan, const std::string& denoiser) {
+    py::dict entries;
+    io::ImageMetadata metadata = io::metadata_of(camera, settings);
+    metadata.spp = spp;
+    metadata.seed = seed;
+    metadata.plan = plan;
+    metadata.denoiser = denoiser;
+    for (const auto& [name, value] : metadata.entries()) entries[py::str(name)] = value;
+    return entries;
+}
+
+}  // namespace
+
+void bind_shot(py::module_& m) {
+    bind_key(m);
+    bind_shake(m);
+    m.def("_check_camera_keys", &check_camera_keys, "camera"_a, "keys"_a);
+    m.def("_camera_at", &camera_at_time, "camera"_a, "keys"_a, "shake"_a, "opens_s"_a);
+    m.def("_frames_to_plan", &shot::frames_to_plan, "numbers"_a, "camera"_a, "keys"_a, "frames_per_second"_a);
+    m.def("_frame_seed", &shot::frame_seed, "seed"_a, "number"_a);
+    m.def("_followed_isos", &followed_isos, "scene"_a, "camera"_a, "keys"_a, "settings"_a, "numbers"_a,
+          "frames_per_second"_a, "smoothing_s"_a, "device"_a);
+    m.def("_shot_keys", &listed_shot_keys);
+    m.def("_read_shot", &read_shot, "path"_a, "changes"_a, "words"_a, "scene"_a, "lens"_a, "denoises"_a, "device"_a);
+    m.def("_metadata", &metadata, "camera"_a, "settings"_a, "spp"_a, "seed"_a, "plan"_a, "denoiser"_a);
+}
+
+}  // namespace realcam::bindings

@@ -1,0 +1,49 @@
+#pragma once
+#include <pybind11/numpy.h>
+#include <pybind11/stl.h>
+
+#include <array>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "../../camera/effects/dispersion/dispersion_view.hpp"
+#include "../../render/film/film_sums.hpp"
+#include "../bindings.hpp"
+#include "../values/arrays.hpp"
+
+namespace realcam::bindings {
+
+/// Column and row of a region's first pixel, its width and its height.
+using RegionNumbers = std::array<int, 4>;
+
+inline FilmRegion region_from(const RegionNumbers& region) {
+    return {region[0], region[1], region[2], region[3]};
+}
+
+/// Converts the sums of a region to a dict with an array (height, width) that has the fields of PixelSum, and with its
+/// stats.
+py::dict region_sums_to(RegionSums sums, const FilmRegion& region);
+
+/// Converts the layer sums of a region to an array (height, width) with the fields of LayerSum.
+py::array layer_sums_to(std::vector<LayerSum> sums, const FilmRegion& region);
+
+/// Converts each film to a dict: light (a number), sums (films, height, width, 3) int64, blocks and units_per_lux.
+py::list splats_to(std::vector<SplatFilm> films);
+
+/// Rendering statistics by their names in Python.
+using StatNumbers = std::map<std::string, double>;
+
+RenderStats stats_from(const StatNumbers& numbers);
+
+/// Accumulated film as Python arrays, in the formats of the functions above. Throws InputError if shapes differ.
+struct FilmArrays {
+    InputArray<PixelSum> pixels;
+    std::optional<InputArray<LayerSum>> layers;
+    py::list splats;
+
+    AccumulatedFilm film() const;
+};
+
+}  // namespace realcam::bindings

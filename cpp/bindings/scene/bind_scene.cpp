@@ -1,0 +1,175 @@
+#include <pybind11/stl.h>
+
+#include <memory>
+#include <optional>
+#include <tuple>
+
+#include "../../io/scene_file.hpp"
+#include "../../scene/geometry/bounding_box.hpp"
+#include "../../scene/scene.hpp"
+#include "../../scene/scene_checks.hpp"
+#include "../bindings.hpp"
+#include "../values/arrays.hpp"
+#include "../values/short_text.hpp"
+#include "../values/value_methods.hpp"
+#include "picture_readers.hpp"
+#include "scene_from_arrays.hpp"
+
+namespace realcam::bindings {
+
+using namespace py::literals;
+
+namespace {
+
+Vec3d unit_vector(const char* what, const Triple& direction) {
+    const Vec3d d = vector_of(direction);
+    const double size = length(d);
+    if (!(size > 0) || !std::isfinite(size)) throw InputError(std::string(what) + " must be a finite vector, not zero");
+    return (1 / size) * d;
+}
+
+Assembly load(const py::object& path, double scale, const std::vector<std::string>& objects) {
+    const std::string name = path_from(path);
+    const Unlocked unlocked;
+    return io::read_scene(name, {scale, objects, heed_signals}, picture_readers().texture);
+}
+
+template <class Change>
+Assembly with_valid_static_geometry(const Assembly& scene, Change&& change) {
+    const Assembly changed = with_static_geometry(scene, change);
+    validate(*changed.static_geometry, {}, !changed.instances.empty());
+    return changed;
+}
+
+/// `warnings` receives the picture reader's warnings.
+Environment environment_from(const py::object& radiance, const std::string& layer, std::vector<std::string>& warnings) {
+    if (py::isinstance<py::str>(radiance) || py::hasattr(radiance, "__fspath__"))
+        return picture_readers().environment(path_from(radiance), layer,
+                                             [&](const std::string& warning) { warnings.push_back(warning); });
+    if (!layer.empty()) throw InputError("layer is one of an OpenEXR file, and the environment is no file");
+    Environment environment;
+    if (py::isinstance<py::array>(radiance) && radiance.cast<py::array>().ndim() == 3) {
+        const auto pixels = radiance.cast<InputArray<float>>();
+        if (pixels.shape(2) != 3 || pixels.size() == 0)
+            throw InputError("an environment image must be an array of shape (H, W, 3)");
+        environment.height = static_cast<std::int32_t>(pixels.shape(0));
+        environment.width = static_cast<std::int32_t>(pixels.shape(1));
+        const float* data = pixels.data();
+        for (py::ssize_t i = 0; i < pixels.size(); i += 3)
+            environment.pixels.push_back({data[i], data[i + 1], data[i + 2]});
+    } else {
+        try {
+            const bool several = py::isinstance<py::sequence>(radiance) || py::isinstance<py::array>(radiance);
+            const float value = several ? 0.0f : radiance.cast<float>();
+            environment.constant = several ? rgb(radiance.cast<Colour>()) : grey(value);
+        } catch (const py::cast_error&) {
+            throw InputError(
+                "an environment must be a number, (r, g, b), an image of shape (H, W, 3), or the path of one");
+        }
+    }
+    return environment;
+}
+
+Assembly with_environment(const Assembly& scene, const py::object& radiance, double scale, double rotation_deg,
+                          const std::string& layer) {
+    return with_valid_static_geometry(scene, [&](Scene& changed) {
+        changed.environment =
+            realcam::changed(environment_from(radiance, layer, changed.warnings), {scale, rotation_deg});
+    });
+}
+
+Assembly with_sun(const Assembly& scene, const Triple& direction, const Colour& illuminance) {
+    const Vec3d d = unit_vector("the sun's direction", direction);
+    return with_valid_static_geometry(
+        scene, [&](Scene& changed) { changed.suns.push_back({static_cast<Vec3f>(d), rgb(illuminance)}); });
+}
+
+Assembly with_point_light(const Assembly& scene, const Triple& position, const Colour& intensity) {
+    return with_valid_static_geometry(
+        scene, [&](Scene& changed) { changed.points.push_back({vector_of(position), rgb(intensity)}); });
+}
+
+Assembly with_spot_light(const Assembly& scene, const Triple& position, const Triple& direction,
+                         const Colour& intensity, double inner_cone_deg, double outer_cone_deg) {
+    constexpr double kDegree = 0.017453292519943295;
+    const Vec3d axis = unit_vector("the spot's direction", direction);
+    if (!(inner_cone_deg >= 0 && inner_cone_deg <= outer_cone_deg && outer_cone_deg <= 90))
+        throw InputError("0 <= inner_cone_deg <= outer_cone_deg <= 90 is wanted");
+    return with_valid_static_geometry(scene, [&](Scene& changed) {
+        changed.points.push_back(
+            {vector_of(position), rgb(intensity), axis, kDegree * inner_cone_deg, kDegree * outer_cone_deg});
+    });
+}
+
+using Corner = std::tuple<double, double, double>;
+
+std::pair<Corner, Corner> bounds(const Assembly& scene) {
+    const BoundingBox box = bounding_box(scene);
+    return {Corner{box.low.x, box.low.y, box.low.z}, Corner{box.high.x, box.high.y, box.high.z}};
+}
+
+std::string text_of(const Assembly& scene) {
+    std::string text = "<realcam.Scene " + counted(scene.triangle_count(), "triangle") + ", " +
+                       counted(scene.static_geometry->materials.size(), "material");
+    if (!scene.instances.empty()) text += ", " + counted(scene.instances.size(), "instance");
+    return text + (scene.has_light() ? ">" : ", no light>");
+}
+
+}  // namespace
+
+void bind_scene(py::module_& m) {
+    py::class_<Assembly> scene_class(
+        m, "Scene",
+        R"(Triangles, materials and lights, and instances of other scenes, any number of each;
+metres, right-handed, y up. A value: what changes it returns a new one. Materials and warnings are
+those of static geometry; objects bring their own along.)");
+    def_value(scene_class);
+    scene_class
+        .def_static(
+            "load", &load, "path"_a, py::kw_only(), "scale"_a = 1.0, "objects"_a = std::vector<std::string>{},
+            R"(Reads .obj (with its .mtl), .gltf, .glb or .ply. scale: metres per unit of the file; objects: names
+of nodes (of an OBJ: what follows "o" or "g") that become instances, each with all below it, to be moved
+by their names; of several nodes "car" the second is "car.2". Only regular files are read.
+Raises SceneFileError, and KeyboardInterrupt on Ctrl-C. What could be put up with is in warnings.)")
+        .def_static(
+            "from_arrays", &scene_from_arrays, "vertices_m"_a, "triangles"_a, py::kw_only(), "normals"_a = py::none(),
+            "uvs"_a = py::none(), "triangle_materials"_a = py::none(), "materials"_a = std::vector<PythonMaterial>{},
+            "colors"_a = py::none(),
+            R"(vertices_m: (V, 3) float; triangles: (T, 3) int; normals: (V, 3) unit, zero for flat; uvs: (V, 2);
+triangle_materials: (T,) indices into materials; colors: (V, 3) or (V, 4), linear Rec. 709, by which the
+materials' diffuse or base colours, and a fourth number by which their opacity is multiplied.
+Raises InputError or SceneFileError.)")
+        .def("with_environment", &with_environment, "radiance"_a, py::kw_only(), "scale"_a = 1.0,
+             "rotation_deg"_a = 0.0, "layer"_a = "",
+             R"(The scene in light from all around: a number or (r, g, b) in cd/m^2, or an (H, W, 3) latitude-longitude
+image (row 0 up, its middle column towards -z), or the path of one (see realcam.read_environment; layer: of an
+OpenEXR file). Its light is
+multiplied by scale, and an image turned about the vertical by rotation_deg, counterclockwise as seen from above: at
+90 its middle column lies towards -x. Raises InputError and ImageFileError.)")
+        .def("with_sun", &with_sun, "direction"_a, "illuminance"_a,
+             "With parallel light that travels along direction; illuminance (r, g, b) in lux.")
+        .def("with_point_light", &with_point_light, "position_m"_a, "intensity"_a,
+             "With a point light; intensity (r, g, b) in cd.")
+        .def("with_spot_light", &with_spot_light, "position_m"_a, "direction"_a, "intensity"_a, py::kw_only(),
+             "inner_cone_deg"_a = 0.0, "outer_cone_deg"_a = 45.0,
+             R"(With a spot: a point light of that intensity (r, g, b), in cd, along direction, which fades from the
+inner cone to nothing at the outer one (KHR_lights_punctual); the cones' angles are from the axis. Raises
+InputError.)")
+        .def_property_readonly("triangle_count", &Assembly::triangle_count, "Of static geometry and all instances.")
+        .def_property_readonly("material_count", [](const Assembly& s) { return s.static_geometry->materials.size(); })
+        .def_property_readonly("has_light", &Assembly::has_light)
+        .def_property_readonly("bounds_m", &bounds, "Lowest and highest corner of the bounding box.")
+        .def_property_readonly(
+            "warnings",
+            [](const Assembly& s) {
+                py::list texts;
+                for (const std::string& warning : s.static_geometry->warnings) texts.append(text_from(warning));
+                return texts;
+            },
+            "What the reader put up with, such as a missing texture.")
+        .def("__repr__", [](const Assembly& s) { return text_of(s); });
+    bind_instances(scene_class);
+    bind_scene_materials(scene_class);
+}
+
+}  // namespace realcam::bindings

@@ -1,0 +1,94 @@
+#include <pybind11/numpy.h>
+#include <pybind11/stl.h>
+
+#include "../../error.hpp"
+#include "../bindings.hpp"
+#include "device_array.hpp"
+
+namespace realcam::bindings {
+
+using namespace py::literals;
+
+namespace {
+
+py::dtype dtype_of(const SharedDeviceArray& array) {
+    switch (array.type()) {
+        case NumberType::float32: return py::dtype::of<float>();
+        case NumberType::float64: return py::dtype::of<double>();
+        case NumberType::int32: return py::dtype::of<std::int32_t>();
+        case NumberType::uint8: return py::dtype::of<std::uint8_t>();
+    }
+    throw InputError("an array of unknown type");
+}
+
+py::tuple shape_of(const SharedDeviceArray& array) {
+    return py::tuple(py::cast(array.shape()));
+}
+
+std::string device_of(const SharedDeviceArray& array) {
+    return "cuda:" + std::to_string(array.ordinal());
+}
+
+py::array numpy_of(const SharedDeviceArray& array) {
+    py::array copy(dtype_of(array), array.shape());
+    void* const to = copy.mutable_data();
+    const Unlocked unlocked;
+    array.download(to);
+    return copy;
+}
+
+py::object host_copy_of(const SharedDeviceArray& array, const py::object& dtype, const py::object& copy) {
+    if (!copy.is_none() && !copy.cast<bool>())
+        throw py::value_error("a DeviceArray becomes a numpy array only as a copy; copy=False is out of reach");
+    const py::array numbers = numpy_of(array);
+    return dtype.is_none() ? py::object(numbers) : numbers.attr("astype")(dtype, "copy"_a = false);
+}
+
+py::dict interface_of(const SharedDeviceArray& array) {
+    const auto address = reinterpret_cast<std::uintptr_t>(array.data());
+    return py::dict("version"_a = 3, "shape"_a = shape_of(array), "typestr"_a = dtype_of(array).attr("str"),
+                    "data"_a = py::make_tuple(address, false), "strides"_a = py::none(), "stream"_a = py::none());
+}
+
+std::string repr_of(const SharedDeviceArray& array) {
+    return "realcam.DeviceArray(shape=" + py::repr(shape_of(array)).cast<std::string>() +
+           ", dtype=" + py::str(dtype_of(array)).cast<std::string>() + ", device=\"" + device_of(array) + "\")";
+}
+
+}  // namespace
+
+void bind_device_array(py::module_& m) {
+    py::class_<SharedDeviceArray>(
+        m, "DeviceArray",
+        R"(Numbers in a GPU's memory, in C order. torch.from_dlpack, cupy.from_dlpack, torch.as_tensor and cupy.asarray
+share that memory without a copy, on any stream; numpy.asarray copies it to the host. It is freed with the
+last of those who share it.)")
+        .def_property_readonly("shape", &shape_of)
+        .def_property_readonly("dtype", &dtype_of, "numpy.dtype: float64, float32, int32 or uint8.")
+        .def_property_readonly("device", &device_of, "As in `device` of Lens.trace: \"cuda:0\".")
+        .def("numpy", &numpy_of, "A copy in the host's memory. Raises DeviceError.")
+        .def("__array__", &host_copy_of, "dtype"_a = py::none(), py::kw_only(), "copy"_a = py::none(),
+             "For numpy.asarray. Raises ValueError for copy=False, and DeviceError.")
+        .def("__len__",
+             [](const SharedDeviceArray& array) { return array.shape().empty() ? 0 : array.shape().front(); })
+        .def("__repr__", &repr_of)
+        .def("__reduce__",
+             [](const SharedDeviceArray&) -> py::tuple {
+                 throw py::type_error("a DeviceArray lies in a GPU's memory; pickle what its numpy() returns");
+             })
+        .def_property_readonly("__cuda_array_interface__", &interface_of, "Version 3.")
+        .def(
+            "__dlpack__",
+            [](const SharedDeviceArray& array, const py::object&, const py::object& max_version,
+               const py::object& dl_device,
+               const py::object& copy) { return dlpack_capsule(array, max_version, dl_device, copy); },
+            py::kw_only(), "stream"_a = py::none(), "max_version"_a = py::none(), "dl_device"_a = py::none(),
+            "copy"_a = py::none(),
+            R"(As the Python array API standard has it; the numbers are complete, so that any stream may read them.
+Raises BufferError for a device other than its own and the host, and for the host with copy=False.)")
+        .def("__dlpack_device__", [](const SharedDeviceArray& array) {
+            return py::make_tuple(static_cast<int>(dlpack::kCuda), array.ordinal());
+        });
+}
+
+}  // namespace realcam::bindings

@@ -1,0 +1,30 @@
+#pragma once
+#include <array>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "../../io/scene/decoded_image.hpp"
+#include "../../scene/scene.hpp"
+#include "../bindings.hpp"
+
+namespace realcam::bindings {
+
+/// Self-contained material for Python, with its name in the scene file and its textures.
+struct PythonMaterial {
+    std::string name;  ///< empty: the material has no name
+    Material values;  ///< texture indices are unset
+    /// In the order of kMaterialTextures; null: no texture.
+    std::array<std::shared_ptr<const Texture>, kMaterialTextures.size()> textures;
+};
+
+PythonMaterial material_of(const std::shared_ptr<const Scene>& scene, std::size_t index);
+
+/// Replaces the material at an index, or appends it. A replaced material's name is kept, if it has one.
+void set_material(Scene& scene, std::size_t index, const PythonMaterial& material);
+
+/// Converts pixels: (H, W) or (H, W, 1) grey, (H, W, 3) or (H, W, 4), as codes 0 to 255 or fractions 0 to 1. An opacity
+/// texture without a fourth channel uses the mean of its channels. Throws InputError for any other array.
+std::shared_ptr<const Texture> texture_from(const py::object& pixels, io::TextureUse use);
+
+}  // namespace realcam::bindings

@@ -1,0 +1,266 @@
+#pragma once
+#include <cmath>
+#include <numbers>
+
+#include "../../camera/film/camera.hpp"
+#include "../../camera/sensor/sensor.hpp"
+#include "../../optics/lens/parabasal.hpp"
+#include "../../optics/lens/paraxial.hpp"
+#include "../../optics/prescription/coating_checks.hpp"
+#include "../../optics/prescription/form_checks.hpp"
+#include "../../optics/prescription/lens_checks.hpp"
+#include "../../render/film/image.hpp"
+#include "../../scene/scene_checks.hpp"
+#include "material.hpp"
+#include "restored.hpp"
+
+namespace realcam::bindings {
+
+// Checks of unpickled values of the core. Results of calculations are checked in the files that bind them.
+
+template <class T>
+struct RestoredCheck<Vec2<T>> : AnyMembers {};
+template <class T>
+struct RestoredCheck<Vec3<T>> : AnyMembers {};
+template <class T>
+struct RestoredCheck<Affine<T>> : AnyMembers {};
+template <>
+struct RestoredCheck<Color> : AnyMembers {};
+
+// Types of a lens.
+
+template <>
+struct LastEnumerator<Glass::Formula> : LastIs<Glass::Formula::table> {};
+template <>
+struct LastEnumerator<CoatingKind> : LastIs<CoatingKind::reflectance> {};
+template <>
+struct LastEnumerator<SurfaceType> : LastIs<SurfaceType::aperture> {};
+
+template <>
+struct RestoredCheck<Glass::TablePoint> : AnyMembers {};
+template <>
+struct RestoredCheck<Glass::Parts> : AnyMembers {};  // checked by restored_glass
+
+/// Creates a glass through the public constructors. Throws InputError.
+inline Glass restored_glass(Glass::Parts parts) {
+    const auto made = [&] {
+        if (parts.formula == Glass::Formula::table) return Glass::table(std::move(parts.points));
+        if (parts.formula == Glass::Formula::cauchy) return Glass::cauchy(std::move(parts.coefficients));
+        require_restored(parts.coefficients.size() % 2 == 0);
+        std::vector<Glass::SellmeierTerm> terms;
+        for (std::size_t i = 0; i + 1 < parts.coefficients.size(); i += 2)
+            terms.push_back({parts.coefficients[i], parts.coefficients[i + 1]});
+        return Glass::sellmeier(terms);
+    };
+    require_restored(parts.formula == Glass::Formula::table ? parts.coefficients.empty() : parts.points.empty());
+    Glass glass = made();
+    glass.label = std::move(parts.label);
+    return glass;
+}
+
+template <>
+struct RestoredCheck<CoatingMaterial::Point> : AnyMembers {};
+template <>
+struct RestoredCheck<CoatingMaterial> : AnyMembers {};  // checked by the coating, whose error names the layer
+template <>
+struct RestoredCheck<CoatingLayer> {
+    static void check(const CoatingLayer& layer) { check_coating(layered_coating({layer})); }
+};
+template <>
+struct RestoredCheck<Coating> {
+    static void check(const Coating& coating) {
+        // Checks the metal even if the coating's kind does not use it, because code that evaluates a material's index
+        // relies on valid points.
+        check_coating(metal_mirror(coating.metal));
+        check_coating(coating);
+    }
+};
+template <>
+struct LastEnumerator<BaseForm> : LastIs<BaseForm::toroid> {};
+/// Variants of terms, see kFormTerms.
+template <class E>
+    requires(is_form_variant<E>)
+struct LastEnumerator<E> : LastIs<E{1}> {};
+template <>
+struct LastEnumerator<ApertureOutline> : LastIs<ApertureOutline::polygon> {};
+
+// Checked by the surface or the lens.
+template <>
+struct RestoredCheck<SurfacePlacement> : AnyMembers {};
+template <>
+struct RestoredCheck<XyTerm> : AnyMembers {};
+template <class Terms>
+    requires requires { Terms::words; }
+struct RestoredCheck<Terms> : AnyMembers {};
+template <>
+struct RestoredCheck<SurfaceForm> : AnyMembers {};
+template <>
+struct RestoredCheck<Obscuration> : AnyMembers {};
+template <>
+struct RestoredCheck<ApertureShape> : AnyMembers {};
+template <>
+struct RestoredCheck<Surface> {
+    /// Checks that do not depend on the lens.
+    static void check(const Surface& surface) {
+        if (!std::isfinite(surface.curvature)) throw InputError("a radius of curvature of 0 is no surface");
+        if (surface.aspheric.size() > static_cast<std::size_t>(kMaxAsphericTerms))
+            throw InputError("a surface has more aspheric coefficients than " + std::to_string(kMaxAsphericTerms));
+        if (const std::string why = form_error(surface); !why.empty()) throw InputError("a surface " + why);
+    }
+};
+template <>
+struct RestoredCheck<IrisShape> : AnyMembers {};
+template <>
+struct RestoredCheck<FocusingRule> : AnyMembers {};
+template <>
+struct RestoredCheck<ZoomPosition> : AnyMembers {};
+template <>
+struct RestoredCheck<ZoomRange> : AnyMembers {};
+template <>
+struct RestoredCheck<LensSystem> {
+    static void check(const LensSystem& lens) {
+        // Checked first, because refractive indices are evaluated at this wavelength, and messages print it as an
+        // integer.
+        if (!(lens.wavelength_nm >= 100 && lens.wavelength_nm <= 20000))
+            throw LensFileError("the design wavelength must lie between 100 and 20000 nm");
+        validate(lens);
+        if (const std::string why = film_distance_error(lens); !why.empty()) throw LensFileError(why);
+        if (!(lens.stop_semi_diameter >= 0 && lens.stop_semi_diameter <= kLongest))
+            throw LensFileError("the radius of the lens's open stop must be a length of 0 or more");
+        if (std::isnan(lens.focus_distance)) throw LensFileError("the focus distance is no number");
+        if (!(lens.focusing.nearest_mm >= 0)) throw LensFileError("the nearest focus must be 0 or a distance");
+    }
+};
+template <>
+struct RestoredCheck<FirstOrder> : AnyMembers {};
+template <>
+struct RestoredCheck<Meridian> : AnyMembers {};
+
+// Types of a camera and its film, sensor and exposure.
+
+template <>
+struct LastEnumerator<CameraModel> : LastIs<CameraModel::full_lens_double> {};
+
+template <>
+struct RestoredCheck<Film> {
+    static void check(const Film& film) { validate(film); }
+};
+template <>
+struct RestoredCheck<Pose> : AnyMembers {};
+template <>
+struct RestoredCheck<PoseKey> : AnyMembers {};
+template <>
+struct RestoredCheck<Shutter> : AnyMembers {};
+template <>
+struct RestoredCheck<Camera> {
+    static void check(const Camera& camera) { validate(camera); }
+};
+
+template <>
+struct RestoredCheck<QuantumEfficiency> : AnyMembers {};
+template <>
+struct RestoredCheck<SensorPoint> : AnyMembers {};
+template <>
+struct RestoredCheck<SensorConversion> : AnyMembers {};
+template <>
+struct RestoredCheck<SensorNoise> : AnyMembers {};
+template <>
+struct RestoredCheck<Sensor> {
+    static void check(const Sensor& sensor) { validate(sensor); }
+};
+
+template <>
+struct RestoredCheck<RenderStats> : AnyMembers {};
+
+// Types of a scene.
+
+template <>
+struct LastEnumerator<MaterialModel> : LastIs<MaterialModel::metallic_roughness> {};
+template <>
+struct LastEnumerator<FresnelTerm> : LastIs<FresnelTerm::physical> {};
+template <>
+struct LastEnumerator<TextureEncoding> : LastIs<TextureEncoding::linear> {};
+template <>
+struct LastEnumerator<TextureWrap> : LastIs<TextureWrap::mirror> {};
+template <>
+struct LastEnumerator<TextureFilter> : LastIs<TextureFilter::nearest> {};
+
+template <>
+inline constexpr bool has_names_of_files<Scene> = true;
+template <>
+inline constexpr bool has_names_of_files<Instance> = true;
+template <>
+inline constexpr bool has_names_of_files<SceneCamera> = true;
+template <>
+inline constexpr bool has_names_of_files<PythonMaterial> = true;
+
+template <>
+struct RestoredCheck<Triangle> : AnyMembers {};
+template <>
+struct RestoredCheck<VertexColor> : AnyMembers {};
+template <>
+struct RestoredCheck<TextureSampler> : AnyMembers {};
+template <>
+struct RestoredCheck<TextureReference> : AnyMembers {};
+template <>
+struct RestoredCheck<Material> : AnyMembers {};
+template <>
+struct RestoredCheck<ScenePointLight> : AnyMembers {};
+template <>
+struct RestoredCheck<SunLight> : AnyMembers {};
+template <>
+struct RestoredCheck<Environment> : AnyMembers {};
+template <>
+struct RestoredCheck<Texture> {
+    static void check(const Texture& texture) {
+        const std::size_t texels = static_cast<std::size_t>(std::max(texture.width, 0)) *
+                                   static_cast<std::size_t>(std::max(texture.height, 0));
+        const std::size_t numbers = texture.rgba.empty() ? texture.linear_rgba.size() : texture.rgba.size();
+        if (texels == 0 || numbers != 4 * texels) throw InputError("a texture is not of the size that it states");
+        for (const float number : texture.linear_rgba)
+            if (!(number >= 0) || !std::isfinite(number))
+                throw InputError("a texture must hold finite numbers, none below 0");
+    }
+};
+template <>
+struct RestoredCheck<Motion> {
+    static void check(const Motion& motion) {
+        if (const std::string why = motion_error(motion); !why.empty()) throw InputError(why);
+    }
+};
+template <>
+struct RestoredCheck<SceneCamera> {
+    static void check(const SceneCamera& camera) {
+        const Affine<double>& transform = camera.scene_from_camera;
+        for (const Vec3d& column : {transform.x, transform.y, transform.z, transform.origin})
+            require_restored(std::isfinite(column.x) && std::isfinite(column.y) && std::isfinite(column.z));
+        require_restored(camera.vertical_field_rad >= 0 && camera.vertical_field_rad < std::numbers::pi);
+    }
+};
+template <>
+struct RestoredCheck<Scene> : AnyMembers {};
+template <>
+struct RestoredCheck<Instance> : AnyMembers {};
+template <>
+struct RestoredCheck<Assembly> {
+    static void check(const Assembly& scene) {
+        SceneChecks().check(scene);
+        for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+            const std::ptrdiff_t whole = scene.instances[i].part_of;
+            if (whole < Instance::kNoWhole || whole >= static_cast<std::ptrdiff_t>(i))
+                throw InputError(label(scene, i) + " is a part of instance " + std::to_string(whole) +
+                                 "; one that comes before it is wanted");
+        }
+    }
+};
+template <>
+struct RestoredCheck<PythonMaterial> {
+    /// Values are checked together with the scene that receives the material.
+    static void check(const PythonMaterial& material) {
+        for (const auto member : kMaterialTextures)
+            if ((material.values.*member).texture != -1)
+                throw InputError("a material without a scene has textures of one");
+    }
+};
+
+}  // namespace realcam::bindings

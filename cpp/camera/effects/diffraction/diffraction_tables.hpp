@@ -1,0 +1,60 @@
+#pragma once
+#include <memory>
+#include <vector>
+
+#include "../../../error.hpp"
+#include "../../../optics/analysis/aperture_diffraction.hpp"
+#include "../direct_lens_path.hpp"
+#include "../entrance_pupil_search.hpp"
+#include "diffraction_view.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// Entrance-pupil bounds of the light that makes starbursts. Owns the memory of its view.
+class StarburstTables {
+public:
+    /// `film_radius`: radius of a circle that contains the film, mm. `direct_path`: of the same lens.
+    StarburstTables(const LensSystem& lens, double film_radius, std::shared_ptr<const DirectLensPath> direct_path,
+                    const PupilTracer& tracer);
+
+    GhostView view() const;
+
+private:
+    std::shared_ptr<const DirectLensPath> direct_path_;
+    HalfTangentBins directions_;
+    std::vector<GhostEntry> entries_;
+};
+
+/// Diffraction of a lens, prepared for rendering. Owns the memory of its view.
+class DiffractionTables {
+public:
+    /// `film_radius`: radius of a circle that contains the film, mm. Throws InputError if no light passes the lens.
+    DiffractionTables(const LensSystem& lens, double film_radius, const PupilTracer& tracer);
+
+    /// `film_steradians`: approximate solid angle of the film (EffectTables::views).
+    DiffractionView view(double film_steradians) const;
+
+private:
+    static constexpr int kRadii = 12, kRadiiWithBlades = 5, kAzimuths = 8;
+
+    static InputError no_light(const LensSystem& lens) {
+        return InputError("diffraction: no light passes lens \"" + lens.name + "\" to the film's middle");
+    }
+    static bool has_blades(const LensSystem& lens) { return lens.iris.blades > 0 && !lens.is_wide_open(); }
+
+    double radius_of(int row) const { return film_radius_ * row / (radii_ - 1); }
+    /// Azimuth of a sector, at uniform steps of the view's azimuth parameter, which runs from 0 to 4 along a square.
+    double azimuth_of(int sector) const;
+
+    std::vector<DirectionBox> boxes_of(const LensSystem& lens, const PupilTracer& tracer) const;
+
+    void add(const ApertureDiffraction& diffraction);
+
+    double film_radius_;
+    int radii_, azimuths_;
+    std::vector<DiffractionNode> nodes_;
+    std::vector<AliasEntry> entries_;
+    std::vector<DiffractionEdge> edges_;
+};
+
+}  // namespace REALCAM_NAMESPACE

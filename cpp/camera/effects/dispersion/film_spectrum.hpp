@@ -1,0 +1,60 @@
+#pragma once
+#include <array>
+#include <vector>
+
+#include "../../../optics/prescription/known_wavelengths.hpp"
+#include "dispersion_view.hpp"
+#include "illuminant.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+// Scenes are RGB. The colour of a surface or light is upsampled to a spectrum with the basis of Mallett and Yuksel
+// (2019), times that of the illuminant. For each wavelength, film and sRGB form a 3 x 3 matrix from the scene's colour
+// to the picture's. Its integral over the visible wavelengths is the identity for D65, sRGB's white. For any illuminant
+// the film is white-balanced: each channel is scaled so that white stays white.
+
+namespace film_spectrum_detail {
+
+using Matrix = std::array<double, 9>;  ///< row by row
+
+/// CIE XYZ to linear sRGB (IEC 61966-2-1).
+inline constexpr Matrix kSrgbFromXyz = {3.2404542, -1.5371385, -0.4985314, -0.9692660, 1.8760108,
+                                        0.0415560, 0.0556434,  -0.2040259, 1.0572252};
+
+Matrix product(const Matrix& a, const Matrix& b);
+
+Matrix inverse(const Matrix& m);
+
+std::array<double, 3> basis_at(double wavelength_nm);
+
+/// Response of a film channel to white.
+inline double row_sum(const Matrix& m, std::size_t row) {
+    return m[3 * row] + m[3 * row + 1] + m[3 * row + 2];
+}
+
+}  // namespace film_spectrum_detail
+
+/// Wavelengths of a picture under an illuminant, and the film's matrix over them.
+class FilmSpectrum {
+public:
+    static constexpr int kCells = 64 * kSharedWavelengths;
+
+    /// Throws InputError if the illuminant has too little of a colour for white to be balanced.
+    explicit FilmSpectrum(const Illuminant& illuminant);
+    /// Uniform over a range of wavelengths, for rays without a colour.
+    explicit FilmSpectrum(WavelengthRange range);
+
+    const std::vector<WavelengthCell>& cells() const { return cells_; }
+    WavelengthRange range() const {
+        return {static_cast<double>(cells_.front().first_nm), static_cast<double>(cells_.back().last_nm)};
+    }
+    /// Mean of WavelengthCell::film over all cells.
+    std::array<float, 9> mean_film() const;
+    /// 32 wavelengths with the distribution of those of samples.
+    std::vector<double> even_wavelengths() const;
+
+private:
+    std::vector<WavelengthCell> cells_;
+};
+
+}  // namespace REALCAM_NAMESPACE

@@ -1,0 +1,67 @@
+#pragma once
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "../../../error.hpp"
+#include "spectra.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+struct SpectrumPoint {
+    double wavelength_nm, power;
+
+    bool operator==(const SpectrumPoint&) const = default;
+};
+
+/// Spectrum of all light in a picture: a standard illuminant (D65, D50, A, FL2), a single line, or a table.
+class Illuminant {
+public:
+    static constexpr const char* kWanted =
+        "D65, D50, A, FL2, a wavelength in nm, or a table of wavelengths and powers (400:0.5,550:1,700:0.2)";
+
+    Illuminant() = default;
+
+    /// Throws InputError if the name is unknown.
+    static Illuminant named(std::string_view name);
+    /// Throws InputError if the wavelength is not from 380 to 780 nm.
+    static Illuminant line(double wavelength_nm);
+    /// Linear between its points, 0 outside. Throws InputError for fewer than two points, wavelengths that are not
+    /// strictly increasing, and values out of range.
+    static Illuminant table(std::vector<SpectrumPoint> points);
+    /// Parses the one-word form that users write. Throws InputError if it is invalid.
+    static Illuminant parse(std::string_view text);
+
+    bool is_line() const { return points_.size() == 1; }
+    const std::vector<SpectrumPoint>& points() const { return points_; }
+
+    /// Relative power at a wavelength from 380 to 780 nm; 0 for a line, which has no density.
+    double power(double wavelength_nm) const;
+
+    /// Text from which parse makes this illuminant.
+    std::string text() const;
+
+    bool operator==(const Illuminant&) const = default;
+
+    /// Value of a spectrum of spectra.hpp, at a wavelength from 380 to 780 nm.
+    static double at(const VisibleSpectrum& spectrum, double wavelength_nm);
+
+private:
+    struct Named {
+        const char* name;
+        const VisibleSpectrum& spectrum;
+    };
+    static constexpr Named kNamed[] = {
+        {"D65", kIlluminantD65}, {"D50", kIlluminantD50}, {"A", kIlluminantA}, {"FL2", kIlluminantFL2}};
+
+    [[noreturn]] static void fail(const std::string& why) { throw InputError("illuminant: " + why); }
+
+    /// Returns NaN if the text is not a finite number.
+    static double number_in(std::string_view text);
+    static std::string short_text(double value);
+
+    std::string name_ = "D65";
+    std::vector<SpectrumPoint> points_;  ///< one point for a line
+};
+
+}  // namespace REALCAM_NAMESPACE

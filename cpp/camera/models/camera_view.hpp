@@ -1,0 +1,149 @@
+#pragma once
+#include <cstddef>
+
+#include "../../math/key_interval.hpp"
+#include "../../math/lanes.hpp"
+#include "../../optics/pupil/film_surface.hpp"
+#include "../../optics/pupil/pupil_grid_view.hpp"
+#include "../../optics/trace/lens_polynomial_view.hpp"
+#include "../../optics/trace/lens_view.hpp"
+#include "../effects/effect_views.hpp"
+#include "../effects/traced_lights_view.hpp"
+#include "lens_map_view.hpp"
+#include "pixel_pupil.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// Circle of confusion of a paraxial lens, from two rays whose heights are linear in the distance t in front of the
+/// front vertex, mm. The marginal ray from the axial film point through the pupil's rim has the height rim + t *
+/// rim_slope. The chief ray from a film height of 1 mm has the height middle + t * middle_slope, the inverse of the
+/// magnification at t. So the diameter of the disc on the film is 2 |rim| / |middle|.
+struct CircleOfConfusion {
+    float rim, rim_slope;
+    float middle, middle_slope;
+    float least_middle;  ///< least height of the chief ray: that at one pupil radius from the pupil
+};
+
+/// Diameter on the film, mm. `distance_mm`: from the front vertex along the axis towards the scene; may be infinite.
+REALCAM_INLINE float circle_diameter(const CircleOfConfusion& circle, float distance_mm) {
+    if (!(distance_mm < 1e30f)) return 2.0f * std::fabs(circle.rim_slope / circle.middle_slope);
+    const float rim = circle.rim + distance_mm * circle.rim_slope;
+    const float height = std::fabs(circle.middle + distance_mm * circle.middle_slope);
+    return 2.0f * std::fabs(rim) / (height > circle.least_middle ? height : circle.least_middle);
+}
+
+/// Camera models in order of increasing accuracy. All have the same film, focus and exposure on the axis.
+enum class CameraModel : int {
+    pinhole,     ///< centre of the entrance pupil: everything is sharp
+    thin_lens,   ///< ideal lens in the entrance pupil: defocus and cos^4 falloff only
+    mapped_lens,  ///< thin_lens with the real lens's distortion and vignetting
+    thick_lens,  ///< paraxial matrix of the real lens, with its two pupils and its real film distance
+    polynomial_lens,   ///< polynomials fitted to the rays of the real lens
+    full_lens,         ///< every surface of the prescription
+    full_lens_double,  ///< full_lens in double precision, for comparison; CPU only
+};
+
+/// True if rays are sampled over the real lens's pupil.
+REALCAM_INLINE bool has_real_pupil(CameraModel model) {
+    return model == CameraModel::polynomial_lens || model == CameraModel::full_lens ||
+           model == CameraModel::full_lens_double;
+}
+
+/// Ideal lens in the entrance pupil. Lengths in mm.
+struct ThinLens {
+    float image_distance;           ///< from film to pupil; gives the real lens's magnification
+    float inverse_object_distance;  ///< from pupil to the plane in focus; 0 at infinity
+    float pupil_radius;
+};
+
+/// Paraxial lens as a matrix from the last vertex back to the front one: h = D h' - B u', u = -C h' + A u'.
+struct ThickLens {
+    float A, B, C, D;
+    float exit_pupil_distance;  ///< film to exit pupil, positive towards the scene, mm
+    float exit_pupil_radius;
+};
+
+/// Pose of the camera in render space.
+struct CameraPlacement {
+    Vec3f position;             ///< centre of the unshifted film, metres
+    Vec3f right, up, backward;  ///< unit: x, y, z of the lens frame
+};
+
+/// Parameters of a camera for the render kernels. The base CameraPlacement is that at the start of the exposure.
+struct CameraView : CameraPlacement, EffectViews {
+    CameraModel model;
+    int width, height;                    ///< pixels
+    float film_half_width, film_half_height;  ///< mm
+    Vec2f film_middle;                        ///< film centre, from the axis, mm
+    float film_distance;                  ///< last vertex to film, mm
+    float film_curvature;  ///< see FilmSurface; 0 for a rotationally symmetric lens, whose film is flat
+    float axis_irradiance;  ///< of the real lens for unit radiance; used by the ideal models
+    float front_vertex_m;   ///< film to front vertex, metres
+    float pupil_m;          ///< film to entrance pupil, metres
+    ThinLens thin;
+    ThickLens thick;
+    LensMapView map;  ///< model mapped_lens; else without nodes
+    CircleOfConfusion circle;
+    PupilView pupil;  ///< centred, rotationally symmetric lenses
+    PupilGridView pupil_grid;  ///< all other lenses; else without nodes
+    TracedLightsView traced_lights;
+    PixelPupils pixel_pupils;
+    LensView<float> lens;
+    const LensView<double>* lens_in_double;  ///< model full_lens_double; else null
+    LensPolynomialView polynomial;           ///< model polynomial_lens; else without coefficients
+    // Times as fractions of the exposure; 0 if nothing moves during it:
+    float row_time;      ///< delay of each row of pixels after the row above
+    float exposed_time;  ///< exposure time of each row
+    const CameraPlacement* keys;  ///< keyframes of a moving camera at uniformly spaced times; positions relative to the
+                                  ///< base placement
+    int key_count;
+};
+
+/// True if the camera needs the code for LensKind::any.
+REALCAM_INLINE bool has_any_lens(const CameraView& camera) {
+    return camera.pupil_grid.nodes || camera.lens.kind == LensKind::any;
+}
+
+/// Camera at a time of the exposure. The axes are interpolated linearly between two keys and re-orthonormalised.
+REALCAM_INLINE CameraPlacement camera_at(const CameraView& camera, float time) {
+    if (camera.key_count == 0) return camera;
+    const KeyInterval at = key_interval(time, camera.key_count);
+    const CameraPlacement &a = camera.keys[at.first], &b = camera.keys[at.first + 1];
+    const Vec3f backward = normalized(mix(a.backward, b.backward, at.share)), right = mix(a.right, b.right, at.share);
+    const Vec3f across = normalized(right - dot(right, backward) * backward);
+    return {camera.position + mix(a.position, b.position, at.share), across, cross(backward, across), backward};
+}
+
+/// Depth of a point: its distance from the film along the camera's axis, metres.
+REALCAM_INLINE float depth_from(const CameraPlacement& camera, Vec3f point) {
+    return dot(camera.position - point, camera.backward);
+}
+
+/// Position of the lens's front vertex in render space, metres.
+REALCAM_INLINE Vec3f front_vertex(const CameraPlacement& camera, float front_vertex_m) {
+    return camera.position - front_vertex_m * camera.backward;
+}
+
+/// Returns the view with every array replaced by a copy; `copy(pointer, count)` returns the address of the copy.
+template <class Copy>
+CameraView with_copied_arrays(CameraView view, Copy&& copy) {
+    const auto move = [&](auto*& array, int count) {
+        if (array) array = copy(array, static_cast<std::size_t>(count));
+    };
+    move(view.lens.surfaces, view.lens.count);
+    view.lens.free.move_arrays(view.lens.count, move);
+    move(view.keys, view.key_count);
+    move(view.map.nodes, view.map.count);
+    move(view.polynomial.coefficients, 2 * LensPolynomialView::kVectors * view.polynomial.terms);
+    view.move_arrays(view.lens.count, move);
+    view.traced_lights.move_arrays(move);
+    move(view.pupil.nodes, view.pupil.rows + 1);
+    move(view.pupil.outline, view.pupil.rows * PupilView::kSectors);
+    const PupilGridView& grid = view.pupil_grid;
+    move(view.pupil_grid.nodes, (grid.columns / kCellsPerPupilNode + 1) * (grid.rows / kCellsPerPupilNode + 1));
+    move(view.pupil_grid.cells, grid.columns * grid.rows);
+    move(view.pupil_grid.outline, grid.columns * grid.rows * 2 * PupilGridView::kSectors);
+    return view;
+}
+
+}  // namespace REALCAM_NAMESPACE

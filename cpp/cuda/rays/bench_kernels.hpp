@@ -1,0 +1,29 @@
+#pragma once
+#include "../../camera/film/camera.hpp"
+#include "../../optics/pupil/pupil_tracer.hpp"
+#include "../../scene/assembly.hpp"
+
+namespace realcam {
+
+/// Rays per second on one GPU, in the best of several rounds.
+struct LensRayRates {
+    double traced;  ///< through all surfaces, starting from given rays: trace_lens alone
+    double generated;  ///< sampling of film and pupil, lens, and transform to the scene: generate_rays
+    double passed;  ///< fraction of the generated rays that pass the lens
+};
+
+/// Measures rays over the whole film and pupil of a camera. Throws DeviceError, and InputError like CameraSetup.
+LensRayRates lens_ray_rates(int ordinal, const Camera& camera, PupilTracer tracer);
+
+struct HitRates {
+    double build_seconds;  ///< BVH construction on the host
+    double upload_seconds;
+    double camera_rays;  ///< closest hits per second of camera rays
+    double bounce_rays;  ///< closest hits per second of cosine-weighted rays scattered at the camera rays' hits
+    double uniform_rays;  ///< closest hits per second of rays scattered there uniformly over the hemisphere
+};
+
+/// Measures closest hits in a scene: one camera ray for each pixel, and one bounce at its hit.
+HitRates hit_rates(int ordinal, const Assembly& scene, const Camera& camera, PupilTracer tracer);
+
+}  // namespace realcam

@@ -1,0 +1,154 @@
+#pragma once
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <string>
+#include <vector>
+
+#include "../../camera/effects/dispersion/dispersion_view.hpp"
+#include "../../render/film/film_sums.hpp"
+#include "../../render/path/sample_range.hpp"
+#include "../../render/settings/render_settings.hpp"
+#include "../device/stop_flag.hpp"
+#include "../kernels/layer_kernels.hpp"
+#include "../kernels/render_kernel.hpp"
+#include "device_ghosts.hpp"
+#include "device_scene.hpp"
+
+namespace realcam {
+
+/// Range of rows of the picture and of the samples of their pixels.
+struct FilmPart {
+    int first_row, row_count;
+    std::uint32_t first_sample, sample_count;
+};
+
+/// One GPU with its copies of scene, camera and film. Created by make_on_device and used by one thread at a time; every
+/// member function makes that GPU current and may throw DeviceError.
+class DeviceRenderer {
+public:
+    explicit DeviceRenderer(int ordinal);
+
+    int ordinal() const { return ordinal_; }
+    /// Stop flag, which any thread may raise. Render kernels then end within the time of a sample, and pixels may
+    /// differ in their numbers of samples.
+    StopFlag& stop_flag() { return stop_; }
+
+    /// Copy a scene, its instance transforms, or a camera to the GPU. The host's copies may be freed afterwards.
+    void set_scene(const RenderSpaceScene& scene, const SceneBvh& bvh);
+    void set_instances(const RenderSpaceScene& scene, const SceneBvh& bvh);
+    void set_camera(const CameraView& camera);
+    /// Resets the learned pupils (PixelPupil) for a new picture. `learns`: true if its pixels learn their pupils.
+    void forget_pupils(bool learns);
+    /// Makes the results of all samples so far available to later samples.
+    void learn_pupils();
+
+    /// Set the sources of splatted light for the following pictures, at most kMostSplats, and allocate `films` empty
+    /// films for each (GhostFilmView).
+    void set_splats(const std::vector<SplatSource>& sources);
+    void clear_splats(int width, int height, int films);
+    /// Launches the splatted light's samples that correspond to a range of the pixels' samples.
+    void splat(const SampleRange& range, const PathSettings& settings);
+    std::vector<SplatFilm> download_splats();
+    /// Traces splatted light for a range of samples into separate films, `films` for each source, and leaves the
+    /// picture's films unchanged.
+    std::vector<SplatFilm> splats_apart(const std::vector<SplatSource>& sources, int films, const SampleRange& range,
+                                        const PathSettings& settings);
+
+    /// Reserves memory for exposing, merging and developing this many pixels. Throws OutOfDeviceMemory.
+    void reserve_film(std::int64_t pixels, bool merges);
+
+    /// Allocates the sums of this many pixels and sets them to 0.
+    void clear_film(std::int64_t pixels);
+
+    /// Adds samples to the film, which holds the rows of `part`. Returns when they are done or rendering was stopped.
+    /// `done` counts samples. `counts`: sample counts of the part's pixels, including `counts.taken` samples before the
+    /// part's first one.
+    void expose(const FilmPart& part, const RenderSettings& settings, const PixelCounts& counts,
+                std::atomic<std::int64_t>& done);
+
+    /// Renders the samples of a region into host memory, separately from the film. The order of summation is that of
+    /// the whole film, whatever the region. `counts`: of the region's pixels.
+    FilmSums expose_region(const FilmRegion& region, const SampleRange& range, const RenderSettings& settings,
+                           const PixelCounts& counts);
+
+    /// Adds samples to the film asynchronously.
+    void add(const FilmPart& part, const RenderSettings& settings);
+
+    /// Develops the film asynchronously to 8-bit sRGB, 3 values per pixel, into pinned host memory.
+    void develop_codes(const FilmControlVariates& balance, double exposure_time_s, double iso, ToneCurve curve,
+                       std::uint8_t* codes);
+
+    /// The stream in which all work of this renderer runs.
+    cudaStream_t stream() const { return stream_; }
+
+    /// Adds another GPU's film of the same pixels to this film.
+    void merge_film(const DeviceRenderer& other);
+
+    /// Copy the sums of `pixels` pixels to the film, or the whole film to the host.
+    void upload_film(const PixelSum* from, std::int64_t pixels);
+    void download_film(PixelSum* to);
+
+    /// Develops the film asynchronously to exposure and depth, 3 and 1 values per pixel, in this GPU's memory.
+    void develop_here(const FilmControlVariates& balance, double exposure_time_s, float* exposure, float* depth);
+
+    /// Develops the film to exposure and depth in host memory. Synchronous.
+    void develop(const FilmControlVariates& balance, double exposure_time_s, float* exposure, float* depth);
+
+    /// Writes the number of samples of each pixel to host memory.
+    void count_samples(std::int64_t* counts);
+
+    /// Trace the first hits of the part's samples, summed per pixel, and the first hits of its pixel-centre rays, into
+    /// host memory. If rendering was stopped, they end early and their results are unusable. `done` counts samples.
+    void see_layers(const FilmPart& part, std::uint32_t seed, LayerSum* sums, std::atomic<std::int64_t>& done);
+    void see_pixel_centre_surfaces(const FilmPart& part, PixelCentreSurface* surfaces);
+
+    /// Returns the counts since clear_counts(), which is asynchronous.
+    RenderCounts counts();
+    void clear_counts();
+
+    /// Waits for all queued work.
+    void wait() const;
+
+private:
+    /// Launches every kernel on zero pixels, so that the GPU loads the code and reserves the threads' local memory.
+    void rehearse();
+    /// Launches samples that are added to `sums`, which starts at the part's first row. `counts`: in this GPU's memory.
+    /// `pixels`: the number of pixels by which the threads per pixel are chosen. `sharing`: the region of the film
+    /// whose pixels share samples.
+    void launch(const FilmPart& part, const RenderSettings& settings, PixelSum* sums, const PixelCounts& counts,
+                std::int64_t pixels, const FilmRegion& sharing, const volatile int* stop);
+
+    /// View of the film in this GPU's memory.
+    FilmView film(const FilmControlVariates& balance) const;
+
+    /// Returns the region if its pixels share samples; otherwise an empty one.
+    FilmRegion sharing_in(const FilmRegion& region, const RenderSettings& settings, const PixelCounts& counts) const;
+    FilmRegion rows_of(const FilmPart& part) const { return {0, part.first_row, camera_.width, part.row_count}; }
+    std::int64_t film_pixels() const { return static_cast<std::int64_t>(camera_.width) * camera_.height; }
+    std::int64_t pixels_of(const FilmPart& part) const {
+        return static_cast<std::int64_t>(part.row_count) * camera_.width;
+    }
+
+    SplattedLight splatted() const;
+
+    LayerJob layer_job(const FilmPart& part, std::uint32_t seed) const;
+
+    int ordinal_;
+    StopFlag stop_;
+    CudaStream stream_;
+    DeviceScene scene_;
+    DeviceArrays camera_arrays_;
+    CameraView camera_{};
+    std::array<DeviceGhosts, kMostSplats> splats_;
+    DeviceArray<PixelSum> sums_, others_, region_sums_;
+    DeviceArray<std::uint32_t> sample_counts_;
+    DeviceArray<PixelPupil> known_, found_;  ///< one for each pixel; see PixelPupils
+    DeviceArray<LayerSum> layer_sums_;
+    DeviceArray<PixelCentreSurface> pixel_centre_surfaces_;
+    DeviceArray<float> exposure_, depth_;
+    DeviceArray<std::uint8_t> codes_;
+    DeviceArray<RenderCounts> counts_;
+};
+
+}  // namespace realcam

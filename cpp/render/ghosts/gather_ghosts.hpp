@@ -1,0 +1,146 @@
+#pragma once
+#include "../path/advance_path.hpp"
+#include "ghost_lens_paths.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+// Ghosts of light that objects reflect, traced backward: from the film along one ghost path into the scene, where a
+// scene path begins as it does behind the lens. Light that a ray would collect by hitting a light itself is left to
+// samples that start at the lights (splat_ghosts.hpp), except where these cannot find it.
+
+namespace gather_ghosts_detail {
+
+/// Density below that of any sampled light: its MIS weight makes direct hits of lights count for nothing.
+inline constexpr float kLeftToLights = 1e-30f;
+
+struct NoProbe {
+    REALCAM_HD void enter(RenderStage) {}
+};
+
+/// Samples at random points of the film, with rays from there through the last vertex plane.
+template <int N>
+struct FilmRays {
+    SampleBlock<N> block;
+    LensRays<float, N> rays;
+    Lanes<float, N> weight;  ///< irradiance on the film per unit of radiance
+};
+
+/// Ray from a film point to a point of the entry rectangle in the last vertex plane.
+struct FilmRay {
+    Vec3f origin, direction;
+    float weight;
+};
+
+REALCAM_INLINE FilmRay round_film_ray(const CameraView& camera, const GhostView& ghosts, const GhostEntry* entries,
+                                      Vec2f film, Vec2f u) {
+    const auto [x, y] = film;
+    const float radius = std::sqrt(x * x + y * y), inverse = 1.0f / select(radius > 0.0f, radius, 1.0f);
+    const float out_x = select(radius > 0.0f, x * inverse, 1.0f), out_y = y * inverse;
+    const int bin = static_cast<int>(radius / ghosts.film_radius * static_cast<float>(kGhostBins));
+    const EntryPoint at = entry_point(entries[select(bin < kGhostBins, bin, kGhostBins - 1)], ghosts.reach, u);
+    const float to_x = at.along * out_x - at.across * out_y - x, to_y = at.along * out_y + at.across * out_x - y;
+    const float to_z = -camera.film_distance, squared = to_x * to_x + to_y * to_y + to_z * to_z;
+    const float scale = ghosts.film_index / std::sqrt(squared), cosine2 = to_z * to_z / squared;
+    return {{x, y, camera.film_distance},
+            {scale * to_x, scale * to_y, scale * to_z},
+            ghosts.film_index * ghosts.film_index * cosine2 / (squared * at.density)};
+}
+
+REALCAM_INLINE FilmRay free_film_ray(const CameraView& camera, const GhostView& ghosts, const GhostEntry* entries,
+                                     Vec2f film, Vec2f u) {
+    const int cell = ghosts.grid.cell_of(film);
+    const EntryPoint at = entry_point(entries[select(cell < 0, 0, cell)], ghosts.reach, u);
+    const FilmSurface<float> surface = film_surface(camera);
+    const Vec3f from = surface.point(film), to = Vec3f{at.along, at.across, 0} - from;
+    const float squared = dot(to, to), index = ghosts.film_index, scale = index / std::sqrt(squared);
+    // Product of the cosines at the film and in the plane, times the squared distance.
+    const float cosines = -to.z * dot(to, surface.direction(film, {0, 0, -1}));
+    const float weight = index * index * cosines / (squared * squared * at.density);
+    return {from, scale * to, select((cell >= 0) & (cosines > 0.0f), weight, 0.0f)};
+}
+
+template <LensKind lens_kind>
+REALCAM_INLINE FilmRay film_ray(const CameraView& camera, const GhostView& ghosts, int path, Vec2f film, Vec2f u) {
+    if constexpr (lens_kind == LensKind::any)
+        return free_film_ray(camera, ghosts, ghosts.entries + path * kGhostCells, film, u);
+    else
+        return round_film_ray(camera, ghosts, ghosts.entries + path * kGhostBins, film, u);
+}
+
+template <LensKind lens_kind, int N>
+REALCAM_INLINE void start_film_rays(const CameraView& camera, const GhostView& ghosts, const GhostBlock& block,
+                                    std::uint32_t first, FilmRays<N>& film) {
+    REALCAM_LANES
+    for (int i = 0; i < N; ++i) {
+        film.block.stream[i] = block.stream;
+        film.block.sample[i] = block.first_sample + first + static_cast<std::uint32_t>(i);
+        film.block.used[i] = 1;
+        const Vec2f u = film.block.random(i, dimension::film);
+        const int column = static_cast<int>(u.x * static_cast<float>(camera.width));
+        const int row = static_cast<int>(u.y * static_cast<float>(camera.height));
+        film.block.column[i] = select(column < camera.width, column, camera.width - 1);
+        film.block.row[i] = select(row < camera.height, row, camera.height - 1);
+        const float x = camera.film_middle.x + (1.0f - 2.0f * u.x) * camera.film_half_width,
+                    y = camera.film_middle.y + (2.0f * u.y - 1.0f) * camera.film_half_height;
+        const FilmRay ray =
+            film_ray<lens_kind>(camera, ghosts, block.number, {x, y}, film.block.random(i, dimension::pupil));
+        film.rays.origin.set(i, ray.origin);
+        film.rays.direction.set(i, ray.direction);
+        film.rays.status[i] = 0;
+        film.weight[i] = ray.weight;
+    }
+}
+
+}  // namespace gather_ghosts_detail
+
+/// Takes N samples of a block, from its sample `first` on, and calls splat(pixel, irradiance, dither) as splat_ghosts
+/// does. `SceneT`: as in advance_paths.
+template <LensKind lens_kind, SceneKind scene_kind, bool has_wavelengths, int N, class SceneT, class Splat>
+REALCAM_HD inline void gather_ghosts(const SceneView& view, const CameraView& camera, const PathSettings& settings,
+                                     const GhostView& ghosts, GhostRange range, std::uint32_t first, SceneT&& scene,
+                                     Splat&& splat) {
+    using namespace gather_ghosts_detail;
+    const GhostBlock block = ghost_block(ghosts, range);
+    FilmRays<N> film;
+    start_film_rays<lens_kind>(camera, ghosts, block, first, film);
+    [[maybe_unused]] Lanes<float, N> cell_position,
+        variable;  // position among the wavelength cells, and dispersion variable
+    if constexpr (has_wavelengths) {
+        REALCAM_LANES
+        for (int i = 0; i < N; ++i) {
+            cell_position[i] =
+                film.block.random(i, dimension::time).y * static_cast<float>(camera.dispersion.cell_count);
+            variable[i] = camera.dispersion.variable.at(wavelength_at(camera.dispersion, cell_position[i]));
+        }
+    }
+    PassedPower<N> passed;
+    pass_ghost_lens_path<lens_kind, has_wavelengths>(ghosts, block.path, film.rays, variable, passed);
+    CameraRays<N> camera_rays;
+    // A sample lands on one of width * height pixels, and takes this path with the given probability.
+    const float scale = static_cast<float>(camera.width) * static_cast<float>(camera.height) / block.path.probability;
+    REALCAM_LANES
+    for (int i = 0; i < N; ++i) {
+        camera_rays.weight[i] =
+            select(film.rays.status[i] == 0, scale * passed.of_unpolarised(i) * film.weight[i], 0.0f);
+        camera_rays.sampled[i] = 1;
+    }
+    set_camera_rays(camera, film.rays, camera_rays);
+    PathState<N> path;
+    PathResults<N> results;
+    if constexpr (scene_kind == SceneKind::any) expose_rays(camera, film.block, camera_rays, path.rays.time);
+    start_paths(camera_rays, path, results);
+    for (int i = 0; i < N; ++i) set_first_density<scene_kind>(camera, kLeftToLights, i, path);
+    NoProbe probe;
+    for (int bounce = 0;
+         advance_paths<scene_kind>(view, camera, settings, film.block, bounce, scene, probe, path, results);)
+        ++bounce;
+    for (int i = 0; i < N; ++i) {
+        Color c = results.irradiance[i];
+        if (is_black(c)) continue;
+        if constexpr (has_wavelengths) c = film_color(camera.dispersion, cell_position[i], c);
+        const std::int32_t pixel = film.block.row[i] * camera.width + film.block.column[i];
+        splat(pixel, c, unit_float(film.block.bits(i, 0)));
+    }
+}
+
+}  // namespace REALCAM_NAMESPACE

@@ -1,0 +1,285 @@
+#pragma once
+#include "../../camera/models/generate_rays.hpp"
+#include "../../scene/lights/light.hpp"
+#include "../path/emitter_hit.hpp"
+#include "ghost_lens_paths.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+// Ghosts and starbursts of lights, traced forward: from a light through a point in front of the lens, along one ghost
+// path or the direct path, to the point of the film that it reaches.
+
+namespace splat_ghosts_detail {
+
+/// Dimension pairs of the random sequence, after that of the ghost path.
+namespace ghost_dimension {
+inline constexpr std::uint32_t light = 1, entry = 2, time = 3, diffraction = 4;
+}
+
+/// Axes of a lens in the scene.
+struct LensFrame {
+    CameraPlacement camera;
+    float front_vertex_m;
+
+    REALCAM_INLINE Vec3f direction(Vec3f scene) const {
+        return {dot(scene, camera.right), dot(scene, camera.up), dot(scene, camera.backward)};
+    }
+    /// Scene coordinates of a point that is given in mm, relative to the front vertex.
+    REALCAM_INLINE Vec3f point_in_scene(Vec3f lens_mm) const {
+        return camera.position + (0.001f * lens_mm.x) * camera.right + (0.001f * lens_mm.y) * camera.up +
+               (0.001f * lens_mm.z - front_vertex_m) * camera.backward;
+    }
+};
+
+REALCAM_INLINE LensFrame lens_frame(const CameraView& camera, float time) {
+    return {camera_at(camera, time), camera.front_vertex_m};
+}
+
+/// Index of the pixel at a film point; -1 if it lies outside the film.
+REALCAM_INLINE std::int32_t pixel_at(const CameraView& camera, float x, float y) {
+    const float column =
+        0.5f * static_cast<float>(camera.width) * (1.0f - (x - camera.film_middle.x) / camera.film_half_width);
+    const float row =
+        0.5f * static_cast<float>(camera.height) * (1.0f + (y - camera.film_middle.y) / camera.film_half_height);
+    const bool inside = (column >= 0.0f) & (column < static_cast<float>(camera.width)) & (row >= 0.0f) &
+                        (row < static_cast<float>(camera.height));
+    return inside ? static_cast<std::int32_t>(row) * camera.width + static_cast<std::int32_t>(column) : -1;
+}
+
+/// Time from the beginning of the first row's exposure to the end of the last row's.
+REALCAM_INLINE float all_times(const CameraView& camera) {
+    return camera.exposed_time + camera.row_time * static_cast<float>(camera.height);
+}
+
+/// Weight of a sample of this time on a row of pixels. A row receives the light of its exposure or, if that is shorter,
+/// of the time until the next row begins.
+REALCAM_INLINE float exposure_weight(const CameraView& camera, std::int32_t row, float time) {
+    if (!(camera.row_time > 0.0f)) return 1.0f;
+    const float begin = static_cast<float>(row) * camera.row_time;
+    const float window = select(camera.exposed_time > camera.row_time, camera.exposed_time, camera.row_time);
+    return time >= begin && time <= begin + window ? all_times(camera) / window : 0.0f;
+}
+
+/// Samples on their way from a light to the film.
+template <int N>
+struct GhostSamples {
+    Lanes<std::uint32_t, N> number;
+    Lanes<float, N> cell_position, variable;  ///< wavelength's position among the cells, and dispersion variable
+    Lanes<float, N> time;
+    LightPick lights[N];
+    Vec3Lanes<float, N> from;  ///< unit, towards the light from the front vertex, in the lens's axes
+    LensRays<float, N> rays;  ///< first in front of the lens, then behind it
+    Lanes<float, N> density;  ///< of the entry point, per mm^2
+    Lanes<float, N> light_density;  ///< of the point on the lights, per steradian; kDelta: no ray hits it
+    ColorLanes<N> color;  ///< flux, then irradiance that its pixel would have if all samples were like it
+    SceneRays<N> shadow;
+};
+
+/// Sets the shadow ray from a point to the light that was sampled there.
+template <int N>
+REALCAM_INLINE void set_shadow_ray(Vec3f from, const LightSample& light, int lane, GhostSamples<N>& samples) {
+    const bool is_near = light.distance < kFarAway;
+    samples.shadow.origin.set(lane, from);
+    samples.shadow.direction.set(lane, is_near ? light.distance * light.direction : light.direction);
+    samples.shadow.far[lane] = is_near ? (light.reach > 0.0f ? light.reach : 0.0f) : kFarAway;
+}
+
+/// Chooses lights, as seen from the front vertex.
+template <SceneKind scene_kind, int N>
+REALCAM_INLINE void choose_lights(const SceneView& view, const CameraView& camera, std::uint32_t stream,
+                                  std::uint32_t first, GhostSamples<N>& samples) {
+    Vec2Lanes<float, N> u;
+    REALCAM_LANES
+    for (int i = 0; i < N; ++i)
+        u.set(i, sample_2d(stream, first + static_cast<std::uint32_t>(i), ghost_dimension::light));
+    for (int i = 0; i < N; ++i) {
+        const LensFrame frame = lens_frame(camera, samples.time[i]);
+        const LightReceiver middle{front_vertex(frame.camera, frame.front_vertex_m), {0, 0, 0}, samples.time[i]};
+        LightPick& light = samples.lights[i];
+        light = pick_light(view, middle, light_kinds(view, SkySampling::chosen, middle), 0, u[i], samples.number[i]);
+        Vec3f from = {0, 0, 1};  // behind the lens
+        samples.light_density[i] = kDelta;
+        if (light.probability > 0.0f) {
+            const LightSample sample = sample_picked<scene_kind>(view, middle, light);
+            from = frame.direction(sample.direction);
+            // For area lights that are seen from the side, kDelta means that there is no light.
+            if (light.kind == LightKind::area || light.kind == LightKind::environment)
+                samples.light_density[i] = sample.pdf < kDelta ? light.probability * sample.pdf : 0.0f;
+        }
+        samples.from.set(i, from);
+    }
+}
+
+/// Point in front of the lens through which light of a direction may take a ghost path.
+struct LightEntry {
+    Vec3f origin;
+    float density;  ///< per mm^2
+    bool seen;  ///< false if no light of that direction passes
+};
+
+REALCAM_INLINE LightEntry round_light_entry(const GhostView& ghosts, const GhostEntry* entries, Vec3f from, Vec2f u) {
+    const auto [x, y, z] = from;
+    const float sine = std::sqrt(x * x + y * y), half_tangent = sine / (1.0f - z);  // NaN directly behind the lens
+    const bool seen = (half_tangent < ghosts.largest_half_tangent) & (z < 0.9f);
+    const int bin = static_cast<int>(select(seen, half_tangent / ghosts.largest_half_tangent, 0.0f) *
+                                     static_cast<float>(kGhostBins));
+    const EntryPoint at = entry_point(entries[select(bin < kGhostBins, bin, kGhostBins - 1)], ghosts.reach, u);
+    const float inverse = 1.0f / select(sine > 0.0f, sine, 1.0f);
+    const float away_x = select(sine > 0.0f, x * inverse, 1.0f), away_y = y * inverse;
+    return {{-at.along * z * away_x - at.across * away_y, -at.along * z * away_y + at.across * away_x, at.along * sine},
+            at.density,
+            seen};
+}
+
+REALCAM_INLINE LightEntry free_light_entry(const GhostView& ghosts, const GhostEntry* entries, Vec3f from, Vec2f u) {
+    const bool ahead = from.z < 0.9f;
+    const Vec3f light = select(ahead, from, Vec3f{0, 0, -1});
+    const int cell = ghosts.grid.cell_of(half_tangents(light));
+    const EntryPoint at = entry_point(entries[select(cell < 0, 0, cell)], ghosts.reach, u);
+    const LightAxes axes = light_axes(light);
+    return {at.along * axes.x + at.across * axes.y, at.density, ahead && cell >= 0};
+}
+
+template <LensKind lens_kind>
+REALCAM_INLINE LightEntry light_entry(const GhostView& ghosts, int path, Vec3f from, Vec2f u) {
+    if constexpr (lens_kind == LensKind::any)
+        return free_light_entry(ghosts, ghosts.entries + path * kGhostCells, from, u);
+    else
+        return round_light_entry(ghosts, ghosts.entries + path * kGhostBins, from, u);
+}
+
+template <LensKind lens_kind, int N>
+REALCAM_INLINE void choose_entries(const GhostView& ghosts, const GhostBlock& block, std::uint32_t first,
+                                   GhostSamples<N>& samples) {
+    REALCAM_LANES
+    for (int i = 0; i < N; ++i) {
+        const Vec2f u = sample_2d(block.stream, first + static_cast<std::uint32_t>(i), ghost_dimension::entry);
+        const LightEntry entry = light_entry<lens_kind>(ghosts, block.number, samples.from[i], u);
+        samples.rays.origin.set(i, entry.origin);
+        samples.rays.direction.set(i, {0, 0, 1});
+        samples.rays.status[i] = select(entry.seen, 0, static_cast<int>(RayStatus::vignetted));
+        samples.density[i] = entry.density;
+    }
+}
+
+/// Sends the light from its own position to the entry point. `scale`: of the flux.
+template <SceneKind scene_kind, int N>
+REALCAM_INLINE void send_light(const SceneView& view, const CameraView& camera, float scale, GhostSamples<N>& samples) {
+    LensRays<float, N>& rays = samples.rays;
+    for (int i = 0; i < N; ++i) {
+        if (rays.status[i] != 0) continue;
+        const LensFrame frame = lens_frame(camera, samples.time[i]);
+        const LightReceiver here{frame.point_in_scene(rays.origin[i]), {0, 0, 0}, samples.time[i]};
+        const LightSample light = sample_picked<scene_kind>(view, here, samples.lights[i]);
+        // A near light has another direction here than at the front vertex, and the entry plane is perpendicular to the
+        // latter.
+        const Vec3f to_light = frame.direction(light.direction);
+        const float cosine = dot(to_light, samples.from[i]);
+        if (is_black(light.irradiance) || !(cosine > 0.0f)) {
+            rays.status[i] = static_cast<int>(RayStatus::vignetted);
+            continue;
+        }
+        const float over = scale * cosine / (samples.density[i] * samples.lights[i].probability);
+        samples.color.set(i, bounded_light(over * light.irradiance));
+        rays.direction.set(i, -to_light);
+        set_shadow_ray(here.position, light, i, samples);
+    }
+}
+
+/// Diffracts light that geometrical optics brings to `film`; returns the new film point and scales the light.
+/// Starbursts are the light that the edges of the aperture diffract; for lights that rays hit, the part of it that
+/// pixel samples leave to splats (set_first_density). The images of lights get all other light.
+template <int N>
+REALCAM_INLINE Vec2f diffracted(const CameraView& camera, GhostLight light, Vec2f film, Vec2f u, Vec2f v, int lane,
+                                GhostSamples<N>& samples) {
+    const float nm = wavelength_at(camera.dispersion, samples.cell_position[lane]);
+    Vec2f kick;
+    float weight = 1.0f;
+    if (light == GhostLight::direct) {
+        const DiffractionKick drawn = draw_kick(camera.diffraction, film, u, v);
+        kick = drawn.mm_per_nm;
+        weight = drawn.from_edge ? 0.0f : 1.0f;
+    } else {
+        const EdgeKick edge = draw_edge_kick(camera.diffraction, film, nm, u, v);
+        kick = edge.mm_per_nm;
+        weight = edge.weight;
+        if (samples.light_density[lane] < kDelta)
+            weight *= mis_weight(samples.light_density[lane], camera.diffraction.splat_density);
+    }
+    samples.color.set(lane, weight * samples.color[lane]);
+    return {film.x + nm * kick.x, film.y + nm * kick.y};
+}
+
+/// Finds the pixels that the light reaches, or -1, and its contribution there if nothing in the scene occludes it.
+template <LensKind lens_kind, SceneKind scene_kind, bool has_wavelengths, int N>
+REALCAM_INLINE void reach_film(const CameraView& camera, const GhostView& ghosts, std::uint32_t stream,
+                               std::uint32_t first, const PassedPower<N>& passed, GhostSamples<N>& samples,
+                               std::int32_t (&pixel)[N]) {
+    for (int i = 0; i < N; ++i) {
+        samples.shadow.active[i] = 0;
+        pixel[i] = -1;
+        if (samples.rays.status[i] != 0) continue;
+        Vec2f film = landing_on_film<lens_kind>(camera, samples.rays.origin[i], samples.rays.direction[i]);
+        const float irradiance = irradiance_of_flux<lens_kind>(camera, film);
+        if constexpr (has_wavelengths) {
+            if (ghosts.light != GhostLight::of_lights && camera.effects.diffraction) {
+                const std::uint32_t sample = first + static_cast<std::uint32_t>(i);
+                film = diffracted(camera, ghosts.light, film, sample_2d(stream, sample, ghost_dimension::diffraction),
+                                  sample_2d(stream, sample, ghost_dimension::diffraction + 1), i, samples);
+            }
+        }
+        pixel[i] = pixel_at(camera, film.x, film.y);
+        if (pixel[i] < 0) continue;
+        Color c = (irradiance * passed.of_unpolarised(i)) * samples.color[i];
+        if constexpr (has_wavelengths) c = film_color(camera.dispersion, samples.cell_position[i], c);
+        if constexpr (scene_kind == SceneKind::any) {
+            c = exposure_weight(camera, pixel[i] / camera.width, samples.time[i]) * c;
+            samples.shadow.number[i] = shadow_ray_number(samples.number[i]);
+            samples.shadow.time[i] = samples.time[i];
+        }
+        samples.color.set(i, c);
+        samples.shadow.active[i] = is_black(c) ? 0 : 1;
+    }
+}
+
+}  // namespace splat_ghosts_detail
+
+/// Takes N samples of a block, from its sample `first` on, and calls splat(pixel, irradiance, dither) for each that
+/// lights a pixel. The irradiance is that of the pixel if all samples were like this one; `dither`: a random number.
+/// `SceneT`: as in advance_paths.
+template <LensKind lens_kind, SceneKind scene_kind, bool has_wavelengths, int N, class SceneT, class Splat>
+REALCAM_HD inline void splat_ghosts(const SceneView& view, const CameraView& camera, const GhostView& ghosts,
+                                    GhostRange range, std::uint32_t first, SceneT&& scene, Splat&& splat) {
+    using namespace splat_ghosts_detail;
+    const GhostBlock block = ghost_block(ghosts, range);
+    const std::uint32_t stream = block.stream, first_sample = block.first_sample + first;
+    GhostSamples<N> samples;
+    REALCAM_LANES
+    for (int i = 0; i < N; ++i) {
+        const std::uint32_t sample = first_sample + static_cast<std::uint32_t>(i);
+        samples.number[i] = hash32(stream, sample);
+        samples.time[i] = samples.cell_position[i] = samples.variable[i] = 0;
+        if constexpr (scene_kind == SceneKind::any || has_wavelengths) {
+            const Vec2f u = sample_2d(stream, sample, ghost_dimension::time);
+            if constexpr (scene_kind == SceneKind::any) samples.time[i] = u.x * all_times(camera);
+            if constexpr (has_wavelengths) {
+                samples.cell_position[i] = u.y * static_cast<float>(camera.dispersion.cell_count);
+                samples.variable[i] =
+                    camera.dispersion.variable.at(wavelength_at(camera.dispersion, samples.cell_position[i]));
+            }
+        }
+    }
+    choose_lights<scene_kind>(view, camera, stream, first_sample, samples);
+    choose_entries<lens_kind>(ghosts, block, first_sample, samples);
+    send_light<scene_kind>(view, camera, 1.0f / block.path.probability, samples);
+    PassedPower<N> passed;
+    pass_ghost_lens_path<lens_kind, has_wavelengths>(ghosts, block.path, samples.rays, samples.variable, passed);
+    Lanes<std::int32_t, N> pixel, hidden;
+    reach_film<lens_kind, scene_kind, has_wavelengths>(camera, ghosts, stream, first_sample, passed, samples, pixel);
+    scene.occluded(samples.shadow, hidden);
+    for (int i = 0; i < N; ++i)
+        if (samples.shadow.active[i] && !hidden[i])
+            splat(pixel[i], samples.color[i], unit_float(hash32(samples.number[i])));
+}
+
+}  // namespace REALCAM_NAMESPACE

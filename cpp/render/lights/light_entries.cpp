@@ -1,0 +1,173 @@
+#include "light_entries.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "../../math/hypotenuse.hpp"
+#include "../../math/random.hpp"
+#include "../ghosts/splat_ghosts.hpp"
+#include "../path/emitter_hit.hpp"
+
+namespace realcam {
+namespace {
+
+constexpr int kBlock = PupilTracer::kBlock;
+/// Least number of hits that determine the extent of the entry.
+constexpr int kEnoughHits = 32;
+constexpr int kMostRounds = 10;
+
+float half_tangent_of(Vec3f from) {
+    return hypotenuse(from.x, from.y) / (1 - from.z);
+}
+
+/// Plane of the entries in the lens's own axes.
+EntryPlane plane_in_lens(const TracedLight& light) {
+    CameraPlacement lens{};
+    lens.right = {1, 0, 0};
+    lens.up = {0, 1, 0};
+    lens.backward = {0, 0, 1};
+    return entry_plane(lens, 0, light);
+}
+
+}  // namespace
+
+LightEntries::LightEntries(const SceneView& scene, const CameraView& camera, const CameraSetup& setup,
+                           const PupilTracer& tracer)
+    : scene_(scene),
+      camera_(camera),
+      to_film_(setup.effects().direct_lens_path().surfaces()),
+      tracer_(tracer),
+      pupil_entries_(setup.pupil_entries()),
+      front_reach_(entry_reach(setup.camera().lens)) {}
+
+Vec3f LightEntries::sample_position(const LightGroup& group, std::uint32_t number) const {
+    const Vec2f u = sample_joint_2d(0, number, 1), v = sample_joint_2d(0, number, 2);
+    const float time = v.x * splat_ghosts_detail::all_times(camera_);
+    const splat_ghosts_detail::LensFrame frame = splat_ghosts_detail::lens_frame(camera_, time);
+    const std::int32_t light = group.lights[static_cast<std::size_t>(v.y * static_cast<float>(group.lights.size()))];
+    if (group.kind == TracedLightKind::sun) return frame.direction(-scene_.suns[light].direction);
+    Vec3f position;
+    if (group.kind == TracedLightKind::point) {
+        position = point_light_at(scene_, scene_.points[light], time).position;
+    } else {
+        const AreaLight triangle = area_light_at(scene_, scene_.areas[light], time);
+        const Vec2f at = sample_triangle(u);
+        position = triangle.corner + at.x * triangle.edge_u + at.y * triangle.edge_v;
+    }
+    return 1000.0f * frame.direction(position - front_vertex(frame.camera, frame.front_vertex_m));
+}
+
+LightEntries::Probe LightEntries::probe(const Positions& positions, const TracedLight& light, const PlaneRectangle& in,
+                                        int count) const {
+    const EntryPlane plane = plane_in_lens(light);
+    const float columns_per_mm = static_cast<float>(camera_.width) / (2 * camera_.film_half_width);
+    Probe probe;
+    const auto widen = [&](PlaneRectangle& box, float along, float across) {
+        if (probe.hits == 0) box = {along, along, across, across};
+        box = {std::min(box.low_along, along), std::max(box.high_along, along), std::min(box.low_across, across),
+               std::max(box.high_across, across)};
+    };
+    for (int first = 0; first < count; first += kBlock) {
+        PupilTracer::Rays rays;
+        Vec2f at[kBlock];
+        for (int k = 0; k < kBlock; ++k) {
+            const auto number = static_cast<std::uint32_t>(first + k);
+            at[k] = in.at(sample_joint_2d(0, number, 0));
+            const Vec3f entry = at[k].x * plane.along + at[k].y * plane.across,
+                        position = positions[number % positions.size()];
+            const Vec3f direction = light.kind == TracedLightKind::sun ? -position : entry - position;
+            rays.origin.set(k, entry);
+            rays.direction.set(k, normalized(direction));
+            rays.status[k] = dot(direction, plane.from) < 0 ? 0 : static_cast<int>(RayStatus::vignetted);
+        }
+        tracer_.trace(to_film_, rays);
+        for (int k = 0; k < kBlock; ++k) {
+            if (rays.status[k] != 0) continue;
+            const Vec2f landing = film_surface(camera_).landing(rays.origin[k], rays.direction[k]);
+            const Vec2f film = {landing.x - camera_.film_middle.x, landing.y - camera_.film_middle.y};
+            // One pixel more, for other wavelengths and for diffraction.
+            if (!(std::fabs(film.x) <= camera_.film_half_width + 1 / columns_per_mm) ||
+                !(std::fabs(film.y) <= camera_.film_half_height + 1 / columns_per_mm))
+                continue;
+            widen(probe.entries, at[k].x, at[k].y);
+            widen(probe.film, columns_per_mm * film.x, columns_per_mm * film.y);
+            ++probe.hits;
+        }
+    }
+    return probe;
+}
+
+std::optional<FoundLight> LightEntries::of(const LightGroup& group) const {
+    TracedLight light{};
+    light.kind = group.kind;
+    Positions positions;
+    Vec3f middle = {0, 0, 0};
+    for (std::size_t k = 0; k < positions.size(); ++k) {
+        positions[k] = sample_position(group, static_cast<std::uint32_t>(k));
+        middle = middle + positions[k];
+    }
+    if (!(dot(middle, middle) > 0) || !std::isfinite(dot(middle, middle))) return std::nullopt;
+    light.from = normalized(middle);
+    const float sine = hypotenuse(light.from.x, light.from.y);
+    const Vec2f away = sine > 0 ? Vec2f{light.from.x / sine, light.from.y / sine} : Vec2f{1, 0};
+    light.along = {-light.from.z * away.x, -light.from.z * away.y, sine};
+    // A point of the front that is nearer to the light may see it within the field even if the front's centre does not.
+    Vec3f nearest = middle;
+    if (light.kind != TracedLightKind::sun) {
+        nearest = (1.0f / static_cast<float>(positions.size())) * middle;
+        const float beside = hypotenuse(nearest.x, nearest.y);
+        nearest = {std::max(0.0f, beside - front_reach_), 0, nearest.z};
+    }
+    GhostEntry entry{};  // unknown: the whole front is searched
+    if (pupil_entries_) {
+        if (!(half_tangent_of(normalized(nearest)) < 1.5f * pupil_entries_->largest_half_tangent()))
+            return std::nullopt;
+        entry = pupil_entries_->at(half_tangent_of(light.from));
+    }
+    // A near light is seen in another position and size than a distant one: the search begins at twice the size.
+    const float middle_along = 0.5f * (entry.low + entry.high),
+                reach = std::max({entry.high - entry.low, 2 * entry.half_width, front_reach_ / 64});
+    const PlaneRectangle front = {-front_reach_, front_reach_, -front_reach_, front_reach_};
+    PlaneRectangle in = {middle_along - reach, middle_along + reach, -reach, reach};
+    bool is_front = entry.half_width == 0;
+    if (is_front) in = front;
+    Probe found;
+    bool is_coarse = true;
+    for (int round = 0; round < kMostRounds; ++round) {
+        // Light outside the rectangle of a point or a sun is lost, while pixel samples find that of an emitter.
+        int rays = light.kind == TracedLightKind::triangles ? kBlock : 4 * kBlock;
+        found = probe(positions, light, in, rays);
+        if (found.hits < kEnoughHits && rays == kBlock) found = probe(positions, light, in, rays = 4 * kBlock);
+        if (found.hits == 0) {
+            if (is_front) return std::nullopt;
+            is_front = true;
+            in = front;
+            continue;
+        }
+        // A margin for light between the rays.
+        const auto widened = [&](float low, float high, float whole) {
+            const float share = found.hits < kEnoughHits ? 1.0f : is_coarse ? 0.3f : 0.1f;
+            const float margin = share * std::max(high - low, whole / std::sqrt(static_cast<float>(rays)));
+            return std::pair(low - margin, high + margin);
+        };
+        const PlaneRectangle& box = found.entries;
+        const auto [low, high] = widened(box.low_along, box.high_along, in.high_along - in.low_along);
+        const auto [left, right] = widened(box.low_across, box.high_across, in.high_across - in.low_across);
+        const bool is_inside = in.holds(low, left) && in.holds(high, right);
+        if (is_inside || round + 1 == kMostRounds) {
+            in = {low, high, left, right};
+            if (!is_coarse) break;
+            is_coarse = false;
+        } else {
+            // The pupil had few rays in this direction, as near the axis: there is more light next to the rectangle.
+            const float along = 0.5f * (in.high_along - in.low_along), across = 0.5f * (in.high_across - in.low_across);
+            in = {in.low_along - along, in.high_along + along, in.low_across - across, in.high_across + across};
+        }
+    }
+    light.entries = in;
+    const double wide = static_cast<double>(found.film.high_along - found.film.low_along),
+                 high = static_cast<double>(found.film.high_across - found.film.low_across);
+    return FoundLight{light, (wide + 1) * (high + 1)};
+}
+
+}  // namespace realcam

@@ -1,0 +1,154 @@
+#pragma once
+#include "../ghosts/splat_ghosts.hpp"
+#include "../path/emitter_hit.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+// Images of lights by light tracing: from a point on a light through a point at which its light enters the lens, to the
+// point of the film that it reaches. A lamp out of focus covers a large disc of the film, but each point of the disc
+// sees it in a small part of the pupil only: samples of pixels seldom hit the lamp, samples from the lamp always light
+// the disc.
+
+namespace trace_lights_detail {
+
+using splat_ghosts_detail::GhostSamples;
+
+/// Dimension pairs of the random sequence of a light.
+namespace traced_dimension {
+inline constexpr std::uint32_t entry = 0, point = 1, time = 2;
+}
+
+/// Point on a light, as seen from one entry point.
+struct TracedLightSample {
+    LightSample sample;  ///< irradiance over the density of the point
+    float traced = 0;  ///< traced_samples without the entry's cosine; unused unless is_met
+    bool is_met = false;  ///< true if samples of pixels can hit it
+};
+
+template <SceneKind scene_kind>
+REALCAM_INLINE TracedLightSample sample_traced_light(const SceneView& scene, const TracedLightsView& lights,
+                                                     std::int32_t number, const TracedLight& light, Vec3f entry,
+                                                     float time, Vec2f u) {
+    if (light.kind == TracedLightKind::sun) {
+        const SunLight& sun = scene.suns[light.first];
+        return {{-sun.direction, kFarAway, 1.0f, sun.illuminance, kDelta}};
+    }
+    if (light.kind == TracedLightKind::point) {
+        if constexpr (scene_kind == SceneKind::any)
+            return {sample_point_light(point_light_at(scene, scene.points[light.first], time), entry)};
+        return {sample_point_light(scene.points[light.first], entry)};
+    }
+    const CdfChoice chosen = choose_from_cdf(lights.cdfs + light.first + number, light.count, u.x);
+    const std::int32_t area = lights.triangles[light.first + chosen.index];
+    const AreaLight triangle = area_light_at<scene_kind>(scene, area, time);
+    const LightSample sample = sample_area<scene_kind>(scene, triangle, entry, {chosen.fresh, u.y});
+    TracedLightSample traced{sample, 0, true};
+    traced.sample.irradiance = (1.0f / chosen.probability) * sample.irradiance;
+    // The density per steradian contains the cosine and the distance.
+    if (sample.pdf < kDelta)
+        traced.traced = lights.scale * light.probability * chosen.probability * sample.pdf / light.entries.area();
+    return traced;
+}
+
+/// Chooses light, time, point and entry of each sample, and sends the light there. `wavelength`: position of each
+/// sample's first wavelength among the wavelength cells.
+template <SceneKind scene_kind, bool has_wavelengths, int N>
+REALCAM_INLINE void send_traced_light(const SceneView& view, const CameraView& camera, std::uint32_t round,
+                                      std::uint32_t first, GhostSamples<N>& samples, Lanes<float, N>& wavelength) {
+    const TracedLightsView& lights = camera.traced_lights;
+    for (int i = 0; i < N; ++i) {
+        const std::uint32_t number = first + static_cast<std::uint32_t>(i);
+        const std::int32_t at = lights.turns[number & static_cast<std::uint32_t>(lights.turn_count - 1)];
+        const TracedLight light = lights.lights[at];
+        const std::uint32_t stream = hash32(static_cast<std::uint32_t>(at), round), sample = number >> light.halvings;
+        samples.number[i] = hash32(round, number);
+        samples.time[i] = samples.cell_position[i] = samples.variable[i] = 0;
+        samples.light_density[i] = kDelta;
+        if constexpr (scene_kind == SceneKind::any || has_wavelengths) {
+            const Vec2f u = sample_joint_2d(stream, sample, traced_dimension::time);
+            if constexpr (scene_kind == SceneKind::any) samples.time[i] = u.x * splat_ghosts_detail::all_times(camera);
+            if constexpr (has_wavelengths) wavelength[i] = u.y * static_cast<float>(camera.dispersion.cell_count);
+        }
+        const Vec2f enters = light.entries.at(sample_joint_2d(stream, sample, traced_dimension::entry));
+        CameraPlacement placement = camera;
+        if constexpr (scene_kind == SceneKind::any) placement = camera_at(camera, samples.time[i]);
+        const EntryPlane plane = entry_plane(placement, camera.front_vertex_m, light);
+        const Vec3f entry = plane.middle + (0.001f * enters.x) * plane.along + (0.001f * enters.y) * plane.across;
+        const TracedLightSample traced = sample_traced_light<scene_kind>(
+            view, lights, at, light, entry, samples.time[i], sample_joint_2d(stream, sample, traced_dimension::point));
+        const float cosine = dot(traced.sample.direction, plane.from);
+        samples.rays.status[i] = static_cast<int>(RayStatus::vignetted);
+        if (is_black(traced.sample.irradiance) || !(cosine > 0.0f)) continue;
+        samples.rays.status[i] = 0;
+        // Equals 1 / (1 + 1 / r^2), for any r.
+        const float weight = traced.is_met ? 1.0f - mis_weight(1.0f, traced.traced / cosine) : 1.0f;
+        const float scale = weight * cosine * light.entries.area() / light.probability;
+        samples.color.set(i, bounded_light(scale * traced.sample.irradiance));
+        const splat_ghosts_detail::LensFrame frame{placement, camera.front_vertex_m};
+        samples.rays.origin.set(i, frame.direction(enters.x * plane.along + enters.y * plane.across));
+        samples.rays.direction.set(i, -frame.direction(traced.sample.direction));
+        splat_ghosts_detail::set_shadow_ray(entry, traced.sample, i, samples);
+    }
+}
+
+/// `first`: position of each sample's first wavelength among the wavelength cells.
+template <int N>
+REALCAM_INLINE void set_wavelengths(const DispersionView& view, const float (&first)[N], int step,
+                                    GhostSamples<N>& samples) {
+    REALCAM_LANES
+    for (int i = 0; i < N; ++i) {
+        samples.cell_position[i] = shared_cell_position(view, first[i], step);
+        samples.variable[i] = view.variable.at(wavelength_at(view, samples.cell_position[i]));
+    }
+}
+
+}  // namespace trace_lights_detail
+
+/// splat_ghosts for the images of lights. All lights take the direct path through the lens, so that each sample of a
+/// block has a light of its own.
+template <LensKind lens_kind, SceneKind scene_kind, bool has_wavelengths, int N, class SceneT, class Splat>
+REALCAM_HD inline void trace_lights(const SceneView& view, const CameraView& camera, const GhostView& direct,
+                                    GhostRange range, std::uint32_t first, SceneT&& scene, Splat&& splat) {
+    using namespace splat_ghosts_detail;
+    using namespace trace_lights_detail;
+    const auto block = static_cast<std::uint32_t>(range.first_block);
+    const std::uint32_t round = hash32(range.seed, static_cast<std::uint32_t>(range.first_block >> 24) + 1u);
+    const std::uint32_t first_sample = block * kGhostBlock + first;
+    GhostSamples<N> samples;
+    [[maybe_unused]] Lanes<float, N> wavelength;
+    send_traced_light<scene_kind, has_wavelengths>(view, camera, round, first_sample, samples, wavelength);
+    // Light of a sample enters at one point, from which each of its wavelengths takes a path of its own.
+    constexpr int kMostSteps = has_wavelengths ? kSharedWavelengths : 1;
+    const int steps = has_wavelengths && camera.dispersion.cell_count > 1 ? kMostSteps : 1;
+    const float share = 1.0f / static_cast<float>(steps);
+    const LensRays<float, N> entering = samples.rays;
+    const ColorLanes<N> sent = samples.color;
+    Lanes<std::int32_t, N> pixels[kMostSteps], reached = {}, hidden{};
+    ColorLanes<N> colors[kMostSteps];
+    for (int step = 0; step < steps; ++step) {
+        if constexpr (has_wavelengths) set_wavelengths(camera.dispersion, wavelength, step, samples);
+        samples.rays = entering;
+        samples.color = sent;
+        PassedPower<N> passed;
+        pass_ghost_lens_path<lens_kind, has_wavelengths>(direct, direct.paths[0], samples.rays, samples.variable,
+                                                         passed);
+        reach_film<lens_kind, scene_kind, has_wavelengths>(camera, direct, round, first_sample, passed, samples,
+                                                           pixels[step]);
+        for (int i = 0; i < N; ++i) {
+            if (!samples.shadow.active[i]) pixels[step][i] = -1;
+            colors[step].set(i, share * samples.color[i]);
+            reached[i] |= samples.shadow.active[i];
+        }
+    }
+    for (int i = 0; i < N; ++i) samples.shadow.active[i] = reached[i];
+    scene.occluded(samples.shadow, hidden);
+    for (int i = 0; i < N; ++i) {
+        if (!reached[i] || hidden[i]) continue;
+        for (int step = 0; step < steps; ++step)
+            if (pixels[step][i] >= 0)
+                splat(pixels[step][i], colors[step][i],
+                      unit_float(hash32(samples.number[i], static_cast<std::uint32_t>(step))));
+    }
+}
+
+}  // namespace REALCAM_NAMESPACE

@@ -1,0 +1,207 @@
+#pragma once
+#include <type_traits>
+
+#include "../../camera/effects/rays_with_effects.hpp"
+#include "../../camera/models/generate_rays.hpp"
+#include "path_state.hpp"
+#include "scatter_glossy_paths.hpp"
+#include "scatter_plain_paths.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// Sets the density against which the light that a ray hits straight from the lens is weighted, if that light is also
+/// sampled from the lights (splat_ghosts.hpp): as if the ray's direction had been sampled with this density at the
+/// front vertex.
+template <SceneKind scene_kind, int N>
+REALCAM_INLINE void set_first_density(const CameraView& camera, float density, int lane, PathState<N>& path) {
+    Vec3f front = front_vertex(camera, camera.front_vertex_m);
+    if constexpr (scene_kind == SceneKind::any) {
+        front = front_vertex(camera_at(camera, path.rays.time[lane]), camera.front_vertex_m);
+        path.receiver_sky[lane] = SkySampling::chosen;
+    }
+    if constexpr (scene_kind != SceneKind::plain) path.set_receiver_lobe(lane, {});
+    path.pdf[lane] = density;
+    path.receiver_position.set(lane, front);
+    path.receiver_normal.set(lane, {0, 0, 0});
+}
+
+/// Starts paths with the rays that have left the lens.
+template <int N>
+REALCAM_INLINE void start_paths(const CameraRays<N>& camera_rays, PathState<N>& path, PathResults<N>& results) {
+    REALCAM_LANES
+    for (int i = 0; i < N; ++i) {
+        path.rays.origin.set(i, camera_rays.origin[i]);
+        path.rays.direction.set(i, camera_rays.direction[i]);
+        path.rays.far[i] = kFarAway;
+        path.rays.active[i] = camera_rays.passed[i];
+        path.weight[i] = camera_rays.weight[i];
+        path.throughput.set(i, grey(camera_rays.weight[i]));
+        path.pdf[i] = kFromFilm;
+        path.absorption.set(i, {0, 0, 0});
+        results.irradiance.set(i, {0, 0, 0});
+        results.depth[i] = kFarAway;
+        results.weight[i] = camera_rays.weight[i];
+        results.sampled[i] = camera_rays.sampled[i];
+        results.passed[i] = camera_rays.passed[i];
+    }
+}
+
+enum class RenderStage { lens, scene, other };
+
+namespace advance_path_detail {
+
+/// First bounce with Russian roulette, which ends dim paths at random and increases the weight of the others.
+inline constexpr int kFirstRoulette = 3;
+
+/// Ends a path with the probability 1 - q, where q is the ratio of its throughput to its initial weight.
+template <int N>
+REALCAM_INLINE void play_roulette(const SampleBlock<N>& block, int bounce, int slot, PathState<N>& path) {
+    const Color throughput = path.throughput[slot];
+    const float kept = largest(throughput) / path.weight[slot];
+    if (!(kept < 1.0f)) return;
+    const float u = block.random(path.lane(slot), dimension::roulette + static_cast<std::uint32_t>(bounce)).x;
+    if (u < kept)
+        path.throughput.set(slot, (1.0f / kept) * throughput);
+    else
+        path.rays.active[slot] = 0;
+}
+
+template <int N>
+REALCAM_INLINE bool any_active(const SceneRays<N>& rays) {
+    std::int32_t any = 0;
+    for (int i = 0; i < N; ++i) any |= rays.active[i];
+    return any != 0;
+}
+
+/// Traces shadow rays, and adds the light of those that are not occluded. `darkens(i)`: true if path i ends when its
+/// light is occluded.
+template <SceneKind scene_kind, int N, class SceneT, class Probe, class Darkens>
+REALCAM_INLINE void add_light(const ShadowRays<N>& light, SceneT&& scene, Probe&& probe, const Darkens& darkens,
+                              PathState<N>& path, PathResults<N>& results) {
+    if (!any_active(light.rays)) return;
+    Lanes<std::int32_t, N> hidden;
+    probe.enter(RenderStage::scene);
+    scene.occluded(light.rays, hidden);
+    probe.enter(RenderStage::other);
+    const int slots = path.slots();
+    for (int i = 0; i < slots; ++i) {
+        const int lane = path.lane(i);
+        if (light.rays.active[i] & !hidden[i])
+            results.irradiance.set(lane, results.irradiance[lane] + light.unshadowed[i]);
+        if constexpr (scene_kind == SceneKind::any) {
+            if (darkens(i) & light.rays.active[i] & hidden[i]) path.rays.active[i] = 0;
+        }
+    }
+}
+
+/// Sets the properties of the shadow ray for light sample `number` that only scenes of SceneKind::any need.
+template <SceneKind scene_kind, int N>
+REALCAM_INLINE void number_shadow_ray(const PathState<N>& path, int slot, int number, SceneRays<N>& rays) {
+    if constexpr (scene_kind == SceneKind::any) {
+        rays.number[slot] = shadow_ray_number(hash32(path.rays.number[slot] + static_cast<std::uint32_t>(number)));
+        rays.time[slot] = path.rays.time[slot];
+    }
+}
+
+/// Scatters the path of a GPU's thread, which has room for one shadow ray: each is traced as soon as it has been set.
+template <SceneKind scene_kind, class SceneT, class Probe>
+REALCAM_INLINE void scatter_one(const SceneView& view, const PathSettings& settings, const SampleBlock<1>& block,
+                                int bounce, const Surfaces<1>& surfaces, SceneT&& scene, Probe&& probe,
+                                PathState<1>& path, PathResults<1>& results) {
+    struct {
+        ShadowRays<1> ray;
+        SceneT& scene;
+        Probe& probe;
+        PathState<1>& path;
+        PathResults<1>& results;
+
+        REALCAM_INLINE ShadowRays<1>& operator[](int number) {
+            number_shadow_ray<scene_kind>(path, 0, number, ray.rays);
+            return ray;
+        }
+        REALCAM_INLINE void trace(int, bool darkens) {
+            add_light<scene_kind>(ray, scene, probe, [=](int) { return darkens; }, path, results);
+        }
+    } shadow{{}, scene, probe, path, results};
+    const std::uint32_t first_dimension = dimension::of_bounce(bounce);
+    scatter_at<scene_kind>(view, settings, bounce, 0, surfaces.points[0],
+                           PathNumbers<1>(block, path, first_dimension + dimension::light),
+                           PathNumbers<1>(block, path, first_dimension + dimension::scatter),
+                           block.bits(0, first_dimension), path, shadow);
+}
+
+/// Scatters the paths of many lanes, and then traces all their shadow rays.
+template <SceneKind scene_kind, int N, class SurfacesT, class SceneT, class Probe>
+REALCAM_INLINE void scatter_many(const SceneView& view, const PathSettings& settings, const SampleBlock<N>& block,
+                                 int bounce, SurfacesT& surfaces, SceneT&& scene, Probe&& probe, PathState<N>& path,
+                                 PathResults<N>& results) {
+    LightRays<N> shadow;
+    std::int32_t darkens[N];  // surfaces that show only shadows
+    for (int k = 0; k < kLightSampleCount; ++k) {
+        REALCAM_LANES
+        for (int i = 0; i < N; ++i) shadow[k].rays.active[i] = 0;  // unused slots, too
+        for (int i = 0; i < path.count; ++i) number_shadow_ray<scene_kind>(path, i, k, shadow[k].rays);
+    }
+    if constexpr (scene_kind == SceneKind::plain)
+        scatter_plain_paths(view, settings, block, bounce, surfaces, path, shadow);
+    else
+        scatter_glossy_paths<scene_kind>(view, settings, block, bounce, surfaces, path, shadow, darkens);
+    for (const ShadowRays<N>& light : shadow.rays)
+        add_light<scene_kind>(light, scene, probe, [&](int i) { return darkens[i]; }, path, results);
+}
+
+}  // namespace advance_path_detail
+
+/// Generates the rays from the film through the lens, and starts their paths.
+template <LensKind lens_kind, SceneKind scene_kind, Effects effects = kNoEffects, int N>
+REALCAM_HD inline void begin_paths(const CameraView& camera, const SampleBlock<N>& block,
+                                   PathStateWith<N, effects>& path, PathResults<N>& results) {
+    CameraRays<N> camera_rays;
+    if constexpr (effects.have_wavelengths()) draw_wavelengths(camera.dispersion, block, path.wavelengths);
+    const FilmPointsWith<N, effects> film(camera, block, path.wavelengths);
+    generate_rays_with<lens_kind, effects>(camera, block, film, path.wavelengths, camera_rays);
+    if constexpr (scene_kind == SceneKind::any) expose_rays(camera, block, camera_rays, path.rays.time);
+    start_paths(camera_rays, path, results);
+    // Diffraction at the edges of the aperture spreads the light of lamps. Such rays have the density with which pixel
+    // samples and splats find that light equally well.
+    if constexpr (effects.diffraction) {
+        REALCAM_LANES
+        for (int i = 0; i < N; ++i)
+            set_first_density<scene_kind>(
+                camera, select(film.from_edge[i] != 0, camera.diffraction.splat_density, kFromFilm), i, path);
+    }
+}
+
+/// Traces each path to its next surface, adds the light that reaches it there, and scatters it. Returns true if any
+/// path continues. `SceneT` provides intersect(rays, hits) and occluded(rays, hidden) for N rays; `Probe` provides
+/// enter(RenderStage), which costs nothing if the time is not measured.
+template <SceneKind scene_kind, int N, class SceneT, class Probe>
+REALCAM_HD inline bool advance_paths(const SceneView& view, const CameraView& camera, const PathSettings& settings,
+                                     const SampleBlock<N>& block, int bounce, SceneT&& scene, Probe&& probe,
+                                     PathState<N>& path, PathResults<N>& results) {
+    using namespace advance_path_detail;
+    constexpr bool kIsPlain = scene_kind == SceneKind::plain;
+    Hits<N> hits;
+    std::conditional_t<N == 1, Surfaces<N>, std::conditional_t<kIsPlain, PlainSurfaces<N>, GlossySurfaces<N>>> surfaces;
+    if constexpr (scene_kind == SceneKind::any) {
+        const int slots = path.slots();
+        for (int i = 0; i < slots; ++i) path.rays.number[i] = ray_number(block, path.lane(i), bounce);
+    }
+    probe.enter(RenderStage::scene);
+    scene.intersect(path.rays, hits);
+    probe.enter(RenderStage::other);
+    shade_hits<scene_kind>(view, camera, settings, block, bounce, hits, path, results, surfaces);
+    if (path.count == 0) return false;  // on a GPU this frees the registers of what only continuing paths need
+    const int slots = path.slots();
+    if constexpr (N == 1)
+        scatter_one<scene_kind>(view, settings, block, bounce, surfaces, scene, probe, path, results);
+    else
+        scatter_many<scene_kind>(view, settings, block, bounce, surfaces, scene, probe, path, results);
+    if (bounce >= kFirstRoulette) {
+        for (int i = 0; i < slots; ++i)
+            if (path.rays.active[i]) play_roulette(block, bounce, i, path);
+    }
+    return any_active(path.rays);
+}
+
+}  // namespace REALCAM_NAMESPACE

@@ -1,0 +1,308 @@
+#pragma once
+#include "../../scene/lights/environment.hpp"
+#include "../../scene/scene_view.hpp"
+#include "emitter_hit.hpp"
+#include "light_choices.hpp"
+#include "path_state.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// sample_environment_image for many random numbers at once, vectorised.
+template <int N>
+class EnvironmentSamples {
+public:
+    REALCAM_INLINE EnvironmentSamples(const EnvironmentView& environment, const Vec2Lanes<float, N>& u, int slots)
+        : environment_(environment) {
+        Lanes<std::int32_t, N> begin;
+        REALCAM_LANES
+        for (int i = 0; i < slots; ++i) begin[i] = 0;
+        choose_from_cdfs(environment.marginal_cdf, begin, environment.height, u.y, slots, row_);
+        REALCAM_LANES
+        for (int i = 0; i < slots; ++i) begin[i] = row_.index[i] * (environment.width + 1);
+        choose_from_cdfs(environment.conditional_cdf, begin, environment.width, u.x, slots, column_);
+        for (int i = 0; i < slots; ++i)
+            radiance_.set(i, pixel_radiance(environment, {row_.index[i], column_.index[i]}));
+    }
+
+    REALCAM_INLINE LightSample operator[](int slot) const {
+        return sample_in_pixel(environment_, row_[slot], column_[slot], radiance_[slot]);
+    }
+
+private:
+    const EnvironmentView& environment_;
+    CdfChoices<N> row_, column_;
+    ColorLanes<N> radiance_;
+};
+
+// sample_light for all paths of a block at once, vectorised for area lights and the environment.
+
+template <int N>
+struct LightSamples {
+    Vec3Lanes<float, N> direction;
+    ColorLanes<N> irradiance;
+    Lanes<float, N> distance, reach, pdf;
+
+    REALCAM_INLINE LightSample operator[](int lane) const {
+        return {direction[lane], distance[lane], reach[lane], irradiance[lane], pdf[lane]};
+    }
+    REALCAM_INLINE void set(int lane, const LightSample& sample) {
+        direction.set(lane, sample.direction);
+        irradiance.set(lane, sample.irradiance);
+        distance[lane] = sample.distance;
+        reach[lane] = sample.reach;
+        pdf[lane] = sample.pdf;
+    }
+};
+
+namespace light_samples_detail {
+
+REALCAM_INLINE LightSample select(bool condition, const LightSample& a, const LightSample& b) {
+    using realcam::select;
+    return {select(condition, a.direction, b.direction), select(condition, a.distance, b.distance),
+            select(condition, a.reach, b.reach), select(condition, a.irradiance, b.irradiance),
+            select(condition, a.pdf, b.pdf)};
+}
+
+enum class Source : std::int32_t { none, area, sky, other };
+
+/// The lights that were picked for the lanes.
+template <int N>
+struct PickedLights {
+    Lanes<Source, N> source;
+    Lanes<float, N> probability;
+    Vec2Lanes<float, N> u;  ///< random numbers left over after the choice
+    LightSamples<N> others;
+    // For area lights:
+    Vec3Lanes<float, N> corner, edge_u, edge_v, normal;
+    ColorLanes<N> radiance;
+    Lanes<float, N> area, margin;
+    Lanes<std::int32_t, N> is_two_sided;
+    Lanes<std::uint32_t, N> triangle, instance;
+    bool any_area = false, any_sky = false, any_other = false;
+
+    REALCAM_INLINE void set_area(int lane, const AreaLight& light) {
+        source[lane] = Source::area;
+        any_area = true;
+        corner.set(lane, light.corner);
+        edge_u.set(lane, light.edge_u);
+        edge_v.set(lane, light.edge_v);
+        normal.set(lane, light.normal);
+        radiance.set(lane, light.radiance);
+        area[lane] = light.area;
+        margin[lane] = light.margin;
+        is_two_sided[lane] = light.is_two_sided;
+        triangle[lane] = light.triangle;
+        instance[lane] = light.instance;
+    }
+    REALCAM_INLINE void set_sky(int lane) {
+        source[lane] = Source::sky;
+        any_sky = true;
+    }
+    REALCAM_INLINE void set_other(int lane, const LightSample& sample) {
+        source[lane] = Source::other;
+        any_other = true;
+        others.set(lane, sample);
+    }
+    REALCAM_INLINE AreaLight area_light(int lane) const {
+        return {corner[lane],   edge_u[lane], edge_v[lane], normal[lane],   is_two_sided[lane],
+                radiance[lane], area[lane],   margin[lane], triangle[lane], instance[lane]};
+    }
+};
+
+}  // namespace light_samples_detail
+
+/// light_kinds of all surfaces, in lanes.
+template <int N>
+class LightKindsLanes {
+public:
+    template <class SurfacesT>
+    REALCAM_INLINE LightKindsLanes(const SceneView& scene, SkySampling sky, const SurfacesT& surfaces, int count) {
+        const int slots = whole_vectors<N>(count);
+        Lanes<float, N> local = {}, suns = {};
+        if (count_light_kinds(scene) > 1) {
+            if (scene.light_node_count > 0) {
+                const LightNode all = scene.light_nodes[0];
+                REALCAM_LANES
+                for (int i = 0; i < slots; ++i)
+                    local[i] = most_illuminance(all, {surfaces.position[i], surfaces.normal[i]});
+            }
+            for (int k = 0; k < scene.sun_count; ++k) {
+                const SunLight sun = scene.suns[k];
+                REALCAM_LANES
+                for (int i = 0; i < slots; ++i) suns[i] += sun_importance(sun, surfaces.normal[i]);
+            }
+        }
+        REALCAM_LANES
+        for (int i = 0; i < slots; ++i) {
+            const LightKinds kinds = light_kinds(scene, sky, local[i], suns[i]);
+            even_[i] = kinds.shares.even;
+            scale_[i] = kinds.shares.scale;
+            local_[i] = kinds.local_probability;
+            environment_[i] = kinds.environment_probability;
+            is_apart_[i] = kinds.environment_is_apart;
+        }
+    }
+    REALCAM_INLINE LightKinds operator[](int lane) const {
+        return {{even_[lane], scale_[lane]}, local_[lane], environment_[lane], is_apart_[lane] != 0};
+    }
+
+private:
+    Lanes<float, N> even_, scale_, local_, environment_;
+    Lanes<std::int32_t, N> is_apart_;
+};
+
+namespace light_samples_detail {
+
+/// Points on the area lights that were picked for the lanes.
+template <int N>
+struct LightPoints {
+    Vec2Lanes<float, N> at;  ///< barycentric
+    Lanes<std::int32_t, N> is_near;
+    Lanes<float, N> solid_angle;  ///< for near lights
+};
+
+/// Samples points as sample_area_light does.
+template <int N, class SurfacesT>
+REALCAM_INLINE void sample_light_points(const PickedLights<N>& picked, const SurfacesT& surfaces, int slots,
+                                        LightPoints<N>& drawn) {
+    using realcam::select;
+    std::int32_t any_near = 0;
+    REALCAM_LANES
+    for (int i = 0; i < slots; ++i) {
+        const bool is_near =
+            (picked.source[i] == Source::area) & realcam::is_near(picked.area_light(i), surfaces.position[i]);
+        drawn.is_near[i] = is_near ? 1 : 0;
+        any_near |= drawn.is_near[i];
+        drawn.at.set(i, sample_triangle(picked.u[i]));
+    }
+    if (any_near == 0) return;
+    REALCAM_LANES
+    for (int i = 0; i < slots; ++i) {
+        const SolidAngleSample near = sample_near(picked.area_light(i), surfaces.position[i], picked.u[i]);
+        const bool is_near = drawn.is_near[i] != 0;
+        const Vec2f far = drawn.at[i];
+        drawn.at.set(i, {select(is_near, near.at.x, far.x), select(is_near, near.at.y, far.y)});
+        drawn.solid_angle[i] = near.solid_angle;
+    }
+}
+
+/// True if indices into the environment's tables fit 32 bits.
+REALCAM_INLINE bool fits_lanes(const EnvironmentView& environment) {
+    return !environment.pixels || std::int64_t{environment.height} * (environment.width + 1) < (1 << 30);
+}
+
+/// Chooses among the point and area lights, for all surfaces.
+template <int N, class SurfacesT, class Seeds>
+REALCAM_INLINE void choose_local_lights(const SceneView& scene, const LightKindsLanes<N>& kinds,
+                                        const SurfacesT& surfaces, const PathState<N>& path, const PathNumbers<N>& u,
+                                        const Seeds& seed, LightChoices<N>& chosen) {
+    const int slots = whole_vectors<N>(path.count);
+    Lanes<float, N> rest;
+    Lanes<std::uint32_t, N> seeds;
+    for (int i = 0; i < slots; ++i) seeds[i] = seed(i);
+    REALCAM_LANES
+    for (int i = 0; i < slots; ++i) rest[i] = left_over(u[i].x, kinds[i].local_probability);
+    choose_lights<N>(
+        scene,
+        [&](int i) -> LightReceiver {
+            return {surfaces.position[i], surfaces.normal[i], 0.0f, surfaces.lobe(i, -path.rays.direction[i])};
+        },
+        rest, seeds, slots, chosen);
+}
+
+/// Picks lights as pick_light does for one receiver.
+template <SceneKind scene_kind, int N, class SurfacesT, class Seeds>
+REALCAM_INLINE void pick_lights(const SceneView& scene, const LightKindsLanes<N>& kinds, int number,
+                                const SurfacesT& surfaces, const PathState<N>& path, const PathNumbers<N>& u,
+                                const Seeds& seed, PickedLights<N>& picked) {
+    const int slots = whole_vectors<N>(path.count);
+    for (int i = 0; i < slots; ++i) picked.source[i] = Source::none;  // unused slots, too
+    LightChoices<N> local;
+    if (number == 0 && scene.light_node_count > 0) choose_local_lights(scene, kinds, surfaces, path, u, seed, local);
+    for (int i = 0; i < path.count; ++i) {
+        if (!surfaces.is_in_lanes(i)) continue;
+        const LightReceiver receiver = {surfaces.position[i], surfaces.normal[i], time_of<scene_kind>(path, i)};
+        const LightPick pick = pick_light_by(scene, receiver, kinds[i], number, u[i], [&](float) { return local[i]; });
+        if (!(pick.probability > 0.0f)) continue;
+        picked.u.set(i, pick.u);
+        picked.probability[i] = pick.probability;
+        if (pick.kind == LightKind::area)
+            picked.set_area(i, area_light_at<scene_kind>(scene, pick.index, receiver.time));
+        else if (pick.kind == LightKind::environment && fits_lanes(scene.environment))
+            picked.set_sky(i);
+        else
+            picked.set_other(i, sample_picked<scene_kind>(scene, receiver, pick));
+    }
+}
+
+}  // namespace light_samples_detail
+
+/// Draws light sample `number` for each path whose surface is_in_lanes(slot). Others get no light, with their normal
+/// as the direction. `u`, `seed(slot)`: as in sample_light.
+template <SceneKind scene_kind, int N, class SurfacesT, class Seeds>
+REALCAM_INLINE void sample_lights(const SceneView& scene, const LightKindsLanes<N>& kinds, int number,
+                                  const SurfacesT& surfaces, const PathState<N>& path, const PathNumbers<N>& u,
+                                  const Seeds& seed, LightSamples<N>& samples) {
+    using namespace light_samples_detail;
+    PickedLights<N> picked;
+    pick_lights<scene_kind>(scene, kinds, number, surfaces, path, u, seed, picked);
+    const int count = path.count, slots = whole_vectors<N>(count);
+    if (picked.any_area) {
+        LightPoints<N> drawn;
+        sample_light_points(picked, surfaces, slots, drawn);
+        if constexpr (scene_kind != SceneKind::plain) {
+            for (int i = 0; i < count; ++i)
+                if (picked.source[i] == Source::area)
+                    picked.radiance.set(
+                        i, emitted_radiance<scene_kind>(scene, picked.area_light(i), drawn.at[i].x, drawn.at[i].y));
+        }
+        REALCAM_LANES
+        for (int i = 0; i < slots; ++i) {
+            const AreaLight light = picked.area_light(i);
+            const DirectionToLight to_light =
+                direction_to_light(light, shines_on_both_sides<scene_kind>(light), surfaces.position[i], drawn.at[i]);
+            const bool is_near = drawn.is_near[i] != 0;
+            const float scale = select(is_near, drawn.solid_angle[i], 1.0f / to_light.pdf);
+            samples.direction.set(i, to_light.direction);
+            samples.irradiance.set(i, select(to_light.cosine > 0.0f, scale, 0.0f) * picked.radiance[i]);
+            samples.distance[i] = to_light.distance;
+            samples.reach[i] = to_light.reach;
+            samples.pdf[i] = select(is_near, 1.0f / drawn.solid_angle[i], to_light.pdf);
+        }
+    }
+    if (picked.any_sky) {
+        const auto set = [&](int i, const LightSample& sky) {
+            const bool is_sky = picked.source[i] == Source::sky;
+            samples.set(i, select(is_sky, sky, samples[i]));
+        };
+        if (scene.environment.pixels) {
+            const EnvironmentSamples<N> sky(scene.environment, picked.u, slots);
+            REALCAM_LANES
+            for (int i = 0; i < slots; ++i) set(i, sky[i]);
+        } else {
+            const Color radiance = scene.environment.constant;
+            REALCAM_LANES
+            for (int i = 0; i < slots; ++i) {
+                const Vec3f direction = sample_cosine(surfaces.normal[i], picked.u[i]);
+                const float pdf = cosine_pdf(surfaces.normal[i], direction);
+                set(i, {direction, kFarAway, 1.0f, select(pdf > 0.0f, 1.0f / pdf, 0.0f) * radiance, pdf});
+            }
+        }
+    }
+    if (picked.any_other) {
+        for (int i = 0; i < count; ++i)
+            if (picked.source[i] == Source::other) samples.set(i, picked.others[i]);
+    }
+    // Lanes without a light hold uninitialised memory, and a BSDF indexes tables by the direction.
+    REALCAM_LANES
+    for (int i = 0; i < slots; ++i) {
+        const float probability = picked.probability[i];
+        const bool is_lit = picked.source[i] != Source::none;
+        samples.direction.set(i, select(is_lit, samples.direction[i], surfaces.normal[i]));
+        samples.irradiance.set(
+            i, select(is_lit, bounded_light((1.0f / probability) * samples.irradiance[i]), Color{0, 0, 0}));
+        samples.pdf[i] = select(is_lit, probability * samples.pdf[i], kDelta);
+    }
+}
+
+}  // namespace REALCAM_NAMESPACE

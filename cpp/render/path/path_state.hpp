@@ -1,0 +1,164 @@
+#pragma once
+#include "../../camera/effects/rays_with_effects.hpp"
+#include "../../camera/models/exposed_rays.hpp"
+#include "../../camera/models/lane_numbers.hpp"
+#include "../../math/color.hpp"
+#include "../../scene/geometry/opacity.hpp"
+#include "../../scene/materials/light_sample.hpp"
+#include "../../scene/materials/scattering.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// Rays for traversal. Lanes with active 0 are skipped.
+template <int N>
+struct SceneRays {
+    Vec3Lanes<float, N> origin, direction;
+    Lanes<float, N> far;  ///< end of the ray, in lengths of its direction
+    Lanes<std::int32_t, N> active;
+    // Only for scenes of SceneKind::any:
+    Lanes<std::uint32_t, N> number;  ///< random number for the ray's decisions at holes
+    Lanes<float, N> time;  ///< fraction of the exposure (see instance_at.hpp)
+};
+
+/// Random number of the ray that a sample sends out at a bounce; bounce 0 is the camera's ray.
+template <int N>
+REALCAM_INLINE std::uint32_t ray_number(const SampleBlock<N>& block, int lane, int bounce) {
+    return path_ray_number(block.bits(lane, ~static_cast<std::uint32_t>(bounce)));
+}
+
+/// Results of a block of paths. Irradiance per sample: its mean over a pixel's samples is the pixel's irradiance.
+template <int N>
+struct PathResults {
+    ColorLanes<N> irradiance;
+    Lanes<float, N> depth;  ///< depth of the first hit along the camera's axis from the film, metres; negative behind
+                            ///< the film; kFarAway: no hit
+    Lanes<float, N> weight;  ///< weight of the sample in the exposure (CameraRays)
+    Lanes<std::int32_t, N> sampled, passed;
+};
+
+/// Contributions of a block of paths to other pixels, at the further wavelengths of their samples.
+template <int N>
+struct SharedResults {
+    ColorLanes<N> irradiance[kSharedWavelengths - 1];
+    ColorLanes<N> white[kSharedWavelengths - 1];  ///< sums for a white scene, in units of samples
+    Lanes<std::int32_t, N> away[kSharedWavelengths - 1];  ///< offset from the sample's own pixel; 0: no contribution
+};
+struct NothingShared {};
+struct NoExcess {};
+template <int N, Effects effects>
+struct PathResultsWith : PathResults<N> {
+    [[no_unique_address]] std::conditional_t<effects.share_pixels(), SharedResults<N>, NothingShared> shared;
+    /// Weight of the passing samples in their own pixel, less one, by channel (film_control_variates.hpp).
+    [[no_unique_address]] std::conditional_t<effects.have_wavelengths(), ColorLanes<N>, NoExcess> excess;
+};
+
+/// Paths on their way from the film into the scene: the next ray of each, and the state of the path up to it. At each
+/// surface the paths that continue move to the first slots.
+template <int N>
+struct PathState {
+    int count = N;  ///< slots in use; some of their paths may have ended since
+    SceneRays<N> rays;
+    ColorLanes<N> throughput;  ///< irradiance on the film per unit of radiance along the ray
+    Lanes<float, N> weight;  ///< initial throughput of the path
+    Lanes<float, N> pdf;  ///< density with which the ray's direction was sampled, per steradian
+    Vec3Lanes<float, N> receiver_position, receiver_normal;  ///< at the surface that the ray left (LightReceiver)
+    Vec3Lanes<float, N> receiver_to_eye;  ///< its LightLobe; unused for SceneKind::plain
+    Lanes<float, N> receiver_alpha, receiver_share;
+    Lanes<SkySampling, N> receiver_sky;  ///< sampling of the environment there; for SceneKind::any only
+    ColorLanes<N> absorption;  ///< absorption of the medium around the ray, per metre
+
+    REALCAM_INLINE PathState() {
+        REALCAM_LANES
+        for (int i = 0; i < N; ++i) lane_[i] = i;
+    }
+
+    /// Number of slots in use: count or, on a GPU, the constant 1.
+    REALCAM_INLINE int slots() const { return N > 1 ? count : 1; }
+    /// Lane of the block, and so the sample, to which the path in a slot belongs.
+    REALCAM_INLINE int lane(int slot) const {
+        if constexpr (N > 1) return lane_[slot];
+        return 0;
+    }
+    REALCAM_INLINE LightLobe receiver_lobe(int slot) const {
+        return {receiver_to_eye[slot], receiver_alpha[slot], receiver_share[slot]};
+    }
+    REALCAM_INLINE void set_receiver_lobe(int slot, LightLobe lobe) {
+        receiver_to_eye.set(slot, lobe.to_eye);
+        receiver_alpha[slot] = lobe.alpha;
+        receiver_share[slot] = lobe.share;
+    }
+    /// Moves the state that a path still needs once it has reached a surface to another slot.
+    template <SceneKind scene_kind>
+    REALCAM_INLINE void move(int from, int to) {
+        if constexpr (N > 1) {
+            lane_[to] = lane_[from];
+            rays.direction.set(to, rays.direction[from]);
+            throughput.set(to, throughput[from]);
+            weight[to] = weight[from];
+            if constexpr (scene_kind != SceneKind::plain) absorption.set(to, absorption[from]);
+            if constexpr (scene_kind == SceneKind::any) {
+                rays.time[to] = rays.time[from];
+                rays.number[to] = rays.number[from];
+                // Needed if the ray continues through a surface that shows only shadows:
+                pdf[to] = pdf[from];
+                receiver_position.set(to, receiver_position[from]);
+                receiver_normal.set(to, receiver_normal[from]);
+                receiver_sky[to] = receiver_sky[from];
+                set_receiver_lobe(to, receiver_lobe(from));
+            }
+        }
+    }
+
+private:
+    Lanes<std::int32_t, N> lane_;
+};
+
+/// Time at which a path goes through the scene, as a fraction of the exposure.
+template <SceneKind scene_kind, int N>
+REALCAM_INLINE float time_of(const PathState<N>& path, int lane) {
+    if constexpr (scene_kind == SceneKind::any) return path.rays.time[lane];
+    return 0.0f;
+}
+
+/// State of paths with these effects.
+template <int N, Effects effects>
+struct PathStateWith : PathState<N> {
+    WavelengthsWith<N, effects> wavelengths;
+};
+
+/// Random numbers of one dimension of a bounce, for each path. A GPU's thread draws them on demand, because it has no
+/// registers to keep them.
+template <int N>
+class PathNumbers {
+public:
+    REALCAM_INLINE PathNumbers(const SampleBlock<N>& block, const PathState<N>& path, std::uint32_t dimension)
+        : numbers_(block, dimension, whole_vectors<N>(path.count), [&](int slot) { return path.lane(slot); }) {}
+
+    REALCAM_INLINE Vec2f operator[](int slot) const { return numbers_[slot]; }
+
+private:
+    LaneNumbers<N> numbers_;
+};
+
+template <>
+class PathNumbers<1> {
+public:
+    REALCAM_INLINE PathNumbers(const SampleBlock<1>& block, const PathState<1>&, std::uint32_t dimension)
+        : block_(block), dimension_(dimension) {}
+
+    REALCAM_INLINE Vec2f operator[](int) const {
+        // By named constants, so that no code is generated for the other dimensions of the joint sequence.
+        if (dimension_ == kFirstLight) return block_.random(0, kFirstLight);
+        if (dimension_ == kFirstScatter) return block_.random(0, kFirstScatter);
+        return sample_2d(block_.stream[0], block_.sample[0], dimension_);
+    }
+
+private:
+    static constexpr std::uint32_t kFirstLight = dimension::first_bounce + dimension::light,
+                                   kFirstScatter = dimension::first_bounce + dimension::scatter;
+
+    const SampleBlock<1>& block_;
+    std::uint32_t dimension_;
+};
+
+}  // namespace REALCAM_NAMESPACE

@@ -1,0 +1,57 @@
+#include "metering.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "../../optics/coating/coated_surface.hpp"
+#include "../settings/effect_names.hpp"
+#include "take_picture.hpp"
+
+namespace realcam {
+
+double metered_exposure(const Image& image) {
+    const auto mean_up_to = [&](double limit) {
+        double sum = 0, count = 0;
+        for (std::size_t i = 0; i + 2 < image.exposure.size(); i += 3) {
+            const float* rgb = &image.exposure[i];
+            const double y = 0.2126 * static_cast<double>(rgb[0]) + 0.7152 * static_cast<double>(rgb[1]) +
+                             0.0722 * static_cast<double>(rgb[2]);
+            if (!(y > 0)) continue;
+            sum += std::min(y, limit);
+            ++count;
+        }
+        return count > 0 ? sum / count : 0.0;
+    };
+    double mean = mean_up_to(1e300);
+    for (int i = 0; i < 20; ++i) mean = mean_up_to(8 * mean);
+    return mean;
+}
+
+double metered_exposure_time(Session& session, const Assembly& scene, Camera camera, RenderSettings settings,
+                             const Progress& progress) {
+    constexpr double kLongSide = 96;
+    Film& film = camera.film;
+    const double scale = std::min(1.0, kLongSide / std::max(film.width, film.height));
+    film.width = std::max(1, static_cast<int>(film.width * scale));
+    film.height = std::max(1, static_cast<int>(film.height * scale));
+    camera.exposure_time_s = 1;
+    settings.spp = 16;
+    settings.noise.reset();
+    settings.layers = {};
+    if (settings.effects.is_automatic) {  // their choice depends on the exposure
+        EffectChoice effects;
+        // A real camera measures the light that its lens lets through.
+        const bool is_named = (settings.effects.named & bit_of(*find_effect("coatings"))) != 0;
+        effects.coatings =
+            is_named ? settings.effects.coatings
+                     : camera.model == CameraModel::full_lens && surfaces_with_unknown_coating(camera.lens).empty();
+        settings.effects = effects;
+        settings.illuminant.reset();
+    }
+    const double per_second = metered_exposure(take_picture(session, scene, camera, settings, progress));
+    if (!(per_second > 0) || !std::isfinite(per_second))
+        throw InputError("no light reaches the film, so that no exposure can be metered; an exposure time is wanted");
+    return 10 / (camera.iso * per_second);
+}
+
+}  // namespace realcam

@@ -1,0 +1,423 @@
+#include "session.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "../../optics/analysis/psf.hpp"
+#include "../layers/motion.hpp"
+#include "../layers/see_layers.hpp"
+#include "adaptive_sampling.hpp"
+#include "progress.hpp"
+
+namespace realcam {
+
+void Session::check(const Assembly& scene, const KeepGoing& keep_going) {
+    const Turn turn(mutex_, keep_going);
+    checks_.check(scene, {}, keep_going);
+}
+
+void Session::set(const Assembly& scene, const Camera& camera, const RenderSettings& settings,
+                  const KeepGoing& keep_going) {
+    const Turn turn(mutex_, keep_going);
+    check_all(scene, camera, settings, keep_going);
+    wait_for_free_frame(keep_going);
+    make_ready(scene, camera, settings, PupilStart::from_scratch, keep_going);
+}
+
+void Session::restart(const KeepGoing& keep_going) {
+    const Turn turn(mutex_, keep_going);
+    wait_for_free_frame(keep_going);
+    give_up_samples();
+}
+
+void Session::add(int spp, const Progress& progress) {
+    validate_spp(spp);
+    const KeepGoing keep_going = progress ? KeepGoing([&] { return progress(0.0); }) : KeepGoing();
+    const Turn turn(mutex_, keep_going);
+    if (!ready_) throw InputError("nothing is set that could be photographed; set() prepares it");
+    wait_for_free_frame(keep_going);
+    OwnStop stop(*this);
+    std::atomic<std::int64_t> done{0};
+    const double total = static_cast<double>(spp) * camera_.film.width * camera_.film.height *
+                         (settings_.layers.has_any(kSampledLayers) ? 2 : 1);
+    const auto work = [&] {
+        expose(spp, [&](const SampleRange& range) { take(range, {}, true, done, stop); });
+        mean_samples_ = stop ? mean_of(count_samples()) : mean_samples_ + spp;
+        see_what_is_missing(done, stop);
+    };
+    const auto begin = std::chrono::steady_clock::now();
+    // Layers may have to catch up with more samples than these.
+    run_with_progress(work, [&] { return std::min(1.0, static_cast<double>(done) / total); }, progress, stop);
+    exposing_seconds_ += seconds_since(begin);
+    if (stop) throw Cancelled();
+}
+
+ReachedNoise Session::add_until(const NoiseGoal& goal, const Progress& progress) {
+    validate(goal);
+    const KeepGoing keep_going = progress ? KeepGoing([&] { return progress(0.0); }) : KeepGoing();
+    const Turn turn(mutex_, keep_going);
+    if (!ready_) throw InputError("nothing is set that could be photographed; set() prepares it");
+    wait_for_frames(keep_going);
+    OwnStop stop(*this);
+    std::atomic<double> share{0};
+    ReachedNoise reached;
+    const auto work = [&] {
+        reached = take_until(goal, share, stop);
+        std::atomic<std::int64_t> done{0};
+        see_what_is_missing(done, stop);
+    };
+    const auto begin = std::chrono::steady_clock::now();
+    run_with_progress(work, [&] { return share.load(); }, progress, stop);
+    exposing_seconds_ += seconds_since(begin);
+    if (stop) throw Cancelled();
+    return reached;
+}
+
+std::shared_ptr<const LiveFrame> Session::shoot(const Assembly& scene, const Camera& camera,
+                                                const RenderSettings& settings, ToneCurve curve,
+                                                const KeepGoing& keep_going, std::shared_ptr<void> in_progress) {
+    const Turn turn(mutex_, keep_going);
+    check_all(scene, camera, settings, keep_going);
+    wait_for_free_frame(keep_going);
+    make_ready(scene, camera, settings, PupilStart::near_last, keep_going);
+    std::vector<SampleRange> ranges;
+    expose(settings.spp, [&](const SampleRange& range) { ranges.push_back(range); });
+    mean_samples_ += settings.spp;
+    try {
+        frames_.push_back(start(ranges, curve, std::move(in_progress)));
+    } catch (...) {
+        ready_ = false;
+        throw;
+    }
+    return frames_.back();
+}
+
+Image Session::picture(const KeepGoing& keep_going, std::int64_t most_layer_samples) {
+    return of_all_collected(keep_going, [&] {
+        if (lacks_layers(most_layer_samples)) {
+            OwnStop stop(*this);
+            std::atomic<std::int64_t> done{0};
+            run_heeding([&] { see_what_is_missing(done, stop, most_layer_samples); }, keep_going, stop);
+            if (stop) throw Cancelled();
+        }
+        Image image = develop();
+        add_layers(image, layer_film_, [&] { return develop_auxiliary_layers(); }, [&] { return count_samples(); });
+        image.spp = mean_samples_ == samples_ ? samples_ : mean_of(count_samples());
+        image.stats.setup_seconds = setup_seconds_;
+        image.stats.seconds = setup_seconds_ + exposing_seconds_;
+        return image;
+    });
+}
+
+template <class Work>
+void Session::take_part(std::int64_t first, int count, const Progress& progress, const std::atomic<std::int64_t>& done,
+                        std::size_t pixels, Work&& work) {
+    if (count < 0 || count > static_cast<int>(kSamplesPerSum))
+        throw InputError("a part of a picture has 0 to " + std::to_string(kSamplesPerSum) + " samples of each pixel");
+    if (first < 0 || first > std::numeric_limits<std::uint32_t>::max() - kSamplesPerSum)
+        throw InputError("the number of a part's first sample must lie between 0 and 4294967039");
+    const KeepGoing keep_going = progress ? KeepGoing([&] { return progress(0.0); }) : KeepGoing();
+    const Turn turn(mutex_, keep_going);
+    if (!ready_) throw InputError("nothing is set that could be photographed; set() prepares it");
+    wait_for_frames(keep_going);
+    OwnStop stop(*this);
+    const double total = static_cast<double>(count) * static_cast<double>(pixels);
+    run_with_progress([&] { work(next_samples(settings_.seed, first, first + count), stop); },
+                      [&] { return std::min(1.0, static_cast<double>(done) / total); }, progress, stop);
+    if (stop) throw Cancelled();
+}
+
+RegionSums Session::expose_region(const FilmRegion& region, std::int64_t first, int count,
+                                  const std::vector<std::uint32_t>& counts, const Progress& progress) {
+    if (!counts.empty() && counts.size() != region.pixels())
+        throw InputError("a sample count is wanted for each pixel of the region");
+    RegionSums sums;
+    std::atomic<std::int64_t> done{0};
+    take_part(first, count, progress, done, region.pixels(), [&](const SampleRange& range, OwnStop& stop) {
+        check_region(region);
+        if (settings_.pupil_sampling == PupilSampling::pixel)
+            throw InputError("pixels that learn their pupils from earlier samples cannot be taken in parts");
+        sums = take_region(region, range, {counts.empty() ? nullptr : counts.data(), 0}, done, stop);
+    });
+    return sums;
+}
+
+std::vector<LayerSum> Session::see_region(const FilmRegion& region, std::int64_t first, int count,
+                                          const Progress& progress) {
+    std::vector<LayerSum> sums;
+    std::atomic<std::int64_t> done{0};
+    take_part(first, count, progress, done, region.pixels(), [&](const SampleRange& range, OwnStop& stop) {
+        check_region(region);
+        sums.resize(region.pixels());
+        see_layers(region, range, sums, done, stop);
+    });
+    return sums;
+}
+
+std::vector<SplatFilm> Session::expose_splats(std::int64_t first, int count, const Progress& progress) {
+    std::vector<SplatFilm> films;
+    const std::atomic<std::int64_t> done{0};
+    take_part(first, count, progress, done, 1,
+              [&](const SampleRange& range, OwnStop& stop) { films = take_splats(range, stop); });
+    return films;
+}
+
+Image Session::picture_of(const AccumulatedFilm& film, const KeepGoing& keep_going) {
+    const Turn turn(mutex_, keep_going);
+    if (!ready_) throw InputError("nothing is set that could be photographed; set() prepares it");
+    wait_for_frames(keep_going);
+    const LayerSet wanted = settings_.layers;
+    const auto is_of_film = [&](const auto& sums) { return sums.size() == pixel_count(); };
+    if (!is_of_film(film.pixels) || (wanted.has_any(kSampledLayers) && !is_of_film(film.layers)))
+        throw InputError("the film has other pixels or layers than the picture");
+    for (const SplatFilm& splats : film.splats)
+        if (splats.blocks.empty() || splats.sums.size() != splats.blocks.size() * pixel_count())
+            throw InputError("the film has other pixels than the picture");
+    const FilmView view = view_of(film.pixels, camera_.film.width, camera_.film.height, settings_, film.splats);
+    LayerFilm layers{film.layers, {}};
+    if (wanted.has_any(kPixelCentreLayers)) {
+        layers.middle.resize(pixel_count());
+        OwnStop stop(*this);
+        run_heeding([&] { see_pixel_centre_surfaces(layers.middle, stop); }, keep_going, stop);
+        if (stop) throw Cancelled();
+    }
+    Image image = developed(view, camera_.exposure_time_s);
+    add_layers(
+        image, layers, [&] { return developed_auxiliary_layers(view, wanted, camera_.exposure_time_s); },
+        [&] { return samples_of(film.pixels); });
+    image.spp = mean_of(samples_of(film.pixels));
+    image.stats = film.stats;
+    return image;
+}
+
+SampleCounts Session::sample_counts(const KeepGoing& keep_going) {
+    const Turn turn(mutex_, keep_going);
+    wait_for_frames(keep_going);
+    const auto [width, height] = std::pair(camera_.film.width, camera_.film.height);
+    const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+    return {width, height, ready_ && !is_blank_ ? count_samples() : std::vector<std::int64_t>(pixels)};
+}
+
+void Session::cancel(Collected collected) {
+    raise_stop();
+    const std::unique_lock lock(mutex_);
+    const LowerStop lower{*this};
+    wait_for_frames({});
+    if (collected == Collected::drop) give_up_samples();
+}
+
+Session::Turn::Turn(std::timed_mutex& mutex, const KeepGoing& keep_going) : lock_(mutex, std::defer_lock) {
+    while (!lock_.try_lock_for(std::chrono::milliseconds(50)))
+        if (keep_going && !keep_going()) throw Cancelled();
+}
+
+void Session::check_all(const Assembly& scene, const Camera& camera, const RenderSettings& settings,
+                        const KeepGoing& keep_going) {
+    validate(settings);
+    validate(camera);
+    validate_effects(settings, camera);
+    checks_.check(scene, {}, keep_going);
+}
+
+void Session::check_region(const FilmRegion& region) const {
+    const auto is_inside = [](int first, int count, int end) {
+        return first >= 0 && count >= 1 && first < end && count <= end - first;
+    };
+    if (!is_inside(region.column, region.width, camera_.film.width) ||
+        !is_inside(region.row, region.height, camera_.film.height))
+        throw InputError("a region must lie on the film, which has " + std::to_string(camera_.film.width) + " x " +
+                         std::to_string(camera_.film.height) + " pixels");
+}
+
+void Session::wait_for_oldest(const KeepGoing& keep_going) {
+    wait(*frames_.front(), keep_going);
+    frames_.pop_front();
+}
+
+bool Session::is_same_exposure(const Assembly& scene, const Camera& camera) const {
+    return camera.motion == camera_.motion &&
+           ((!scene.moves() && !camera.moves()) ||
+            (camera.shutter == camera_.shutter && camera.exposure_time_s == camera_.exposure_time_s));
+}
+
+bool Session::has_sums_for(LayerSet wanted) const {
+    const LayerSet had = settings_.layers;
+    if (had.has_any(kHalfLayers) != wanted.has_any(kHalfLayers)) return false;  // these also disable light tracing
+    if (had.has(Layer::variance) == wanted.has(Layer::variance)) return true;
+    // Squares that are no longer requested do no harm, unless the excess of wavelengths needs their memory.
+    return had.has(Layer::variance) && !settings_.effects.have_wavelengths();
+}
+
+bool Session::is_same_picture(const Assembly& scene, const Camera& camera, const RenderSettings& settings) const {
+    return same_parts(scene, scene_) && same_transforms(scene, scene_) && camera.lens == camera_.lens &&
+           camera.film == camera_.film && camera.pose == camera_.pose && camera.model == camera_.model &&
+           is_same_exposure(scene, camera) && settings.seed == settings_.seed && settings.path() == settings_.path() &&
+           settings.effects == settings_.effects && settings.illuminant == settings_.illuminant &&
+           settings.pupil_sampling == settings_.pupil_sampling && settings.light_tracing == settings_.light_tracing &&
+           has_sums_for(settings.layers);
+}
+
+void Session::make_ready(const Assembly& wanted_scene, const Camera& wanted_camera, const RenderSettings& settings,
+                         PupilStart start, const KeepGoing& keep_going) {
+    const auto changed = without_left_out_motion(wanted_scene, wanted_camera, settings.effects);
+    const Assembly& scene = changed ? changed->scene : wanted_scene;
+    const Camera& camera = changed ? changed->camera : wanted_camera;
+    const bool is_same = ready_ && is_same_picture(scene, camera, settings);
+    // Frames of a camera that stands still add up to a picture, which has the pupil that any session would find.
+    const bool stands_still = is_same && start == PupilStart::near_last && !has_new_pupil();
+    if (!is_same || stands_still) {
+        ready_ = false;  // if anything fails from here on, the next call prepares everything
+        give_up_samples();
+        scene_ = {};  // frees its memory before the next scene takes as much
+        OwnStop stop(*this);
+        const auto begin = std::chrono::steady_clock::now();
+        prepare(scene, camera, settings, start, keep_going, stop);
+        setup_seconds_ = seconds_since(begin);
+        scene_ = scene;
+        ready_ = true;
+    }
+    camera_ = camera;
+    settings_ = settings;
+}
+
+void Session::give_up_samples() {
+    samples_ = mean_samples_ = 0;
+    exposing_seconds_ = 0;
+    is_blank_ = true;
+    forget_layers();
+}
+
+std::int64_t Session::mean_of(const std::vector<std::int64_t>& counts) {
+    double sum = 0;
+    for (const std::int64_t count : counts) sum += static_cast<double>(count);
+    return std::llround(sum / static_cast<double>(counts.size()));
+}
+
+void Session::forget_layers() {
+    layer_film_ = {};
+    layer_samples_ = 0;
+}
+
+bool Session::lacks_layers(std::int64_t most) const {
+    return (settings_.layers.has_any(kSampledLayers) && layer_samples_ < std::min(mean_samples_, most)) ||
+           (settings_.layers.has_any(kPixelCentreLayers) && layer_film_.middle.empty());
+}
+
+void Session::see_what_is_missing(std::atomic<std::int64_t>& done, OwnStop& stop, std::int64_t most) {
+    if (!lacks_layers(most) || stop) return;
+    try {
+        if (settings_.layers.has_any(kPixelCentreLayers) && layer_film_.middle.empty()) {
+            layer_film_.middle.resize(pixel_count());
+            see_pixel_centre_surfaces(layer_film_.middle, stop);
+        }
+        if (settings_.layers.has_any(kSampledLayers)) {
+            layer_film_.sums.resize(pixel_count());
+            const std::int64_t wanted = std::min(mean_samples_, most);
+            while (layer_samples_ < wanted && !stop) {
+                const SampleRange range = next_samples(settings_.seed, layer_samples_, wanted);
+                layer_samples_ += range.count;
+                see_layers(whole_film(), range, layer_film_.sums, done, stop);
+            }
+        }
+    } catch (...) {
+        forget_layers();
+        ready_ = false;
+        throw;
+    }
+    if (stop) forget_layers();
+}
+
+template <class AuxiliaryLayers, class Counts>
+void Session::add_layers(Image& image, const LayerFilm& layers, AuxiliaryLayers&& auxiliary, Counts&& counts) {
+    const LayerSet wanted = settings_.layers;
+    if (wanted.has_any(kSampledLayers) || wanted.has_any(kPixelCentreLayers)) {
+        const SurfaceIds ids(scene_);
+        const bool needs_camera = wanted.has_any({Layer::motion, Layer::position_middle});
+        const PlacedCamera placed = needs_camera ? placed_camera() : PlacedCamera{};
+        image.layers = developed(layers, wanted, ids, placed.origin_m);
+        if (wanted.has(Layer::motion))
+            image.layers.push_back(motion_vectors(layers.middle, scene_, camera_, placed.view, placed.origin_m));
+        if (wanted.has(Layer::object_id)) image.object_names = ids.object_names();
+        if (wanted.has(Layer::material_id)) image.material_names = ids.names_of_materials();
+    }
+    if (wanted.has_any({Layer::variance, Layer::traced_light}) || wanted.has_any(kHalfLayers))
+        for (LayerImage& layer : auxiliary()) image.layers.push_back(std::move(layer));
+    if (wanted.has(Layer::sample_count)) {
+        constexpr std::int64_t kMost = std::numeric_limits<std::uint32_t>::max();
+        LayerImage image_of_counts{Layer::sample_count, {}, {}};
+        for (const std::int64_t count : counts())
+            image_of_counts.numbers.push_back(static_cast<std::uint32_t>(std::min(count, kMost)));
+        image.layers.push_back(std::move(image_of_counts));
+    }
+    std::sort(image.layers.begin(), image.layers.end(),
+              [](const LayerImage& a, const LayerImage& b) { return a.layer < b.layer; });
+}
+
+double Session::seconds_of_layers(OwnStop& stop) {
+    if (!settings_.layers.has_any(kSampledLayers)) return 0;
+    std::vector<LayerSum> unused(pixel_count());
+    std::atomic<std::int64_t> done{0};
+    const auto begin = std::chrono::steady_clock::now();
+    see_layers(whole_film(), {settings_.seed, 0, 1}, unused, done, stop);
+    return seconds_since(begin);
+}
+
+ReachedNoise Session::take_until(const NoiseGoal& goal, std::atomic<double>& share, OwnStop& stop) {
+    const auto begin = std::chrono::steady_clock::now();
+    std::atomic<std::int64_t> done{0};
+    const auto take_round = [&](std::int64_t count, const std::uint32_t* counts, bool traces_lights) {
+        std::uint32_t before = 0;
+        expose(count, [&](const SampleRange& range) {
+            take(range, {counts, before}, traces_lights, done, stop);
+            before += range.count;
+        });
+    };
+    const bool is_new = is_blank_;
+    noise_so_far_ = {};
+    if (is_new) {
+        mean_samples_ = AdaptiveSampling::first_samples(goal);
+        // Counts for each pixel, though all are equal: the two halves of a tile must be independent, so that no pixel
+        // may share its samples.
+        const std::vector<std::uint32_t> first(pixel_count(), static_cast<std::uint32_t>(mean_samples_));
+        take_round(mean_samples_, first.data(), true);
+    }
+    AdaptiveSampling tiles(camera_.film.width, camera_.film.height, goal, camera_.iso, develop().exposure,
+                           count_samples(), develop_traced());
+    const auto pixels = static_cast<double>(pixel_count());
+    // Layers are computed afterwards, within the time limit of the goal.
+    const double layer_seconds = std::isfinite(goal.seconds) ? seconds_of_layers(stop) : 0;
+    double taken = is_new ? static_cast<double>(mean_samples_) * pixels : 0;
+    while (!stop) {
+        double affordable = kInfinity;
+        if (std::isfinite(goal.seconds)) {
+            const double spent = seconds_since(begin);
+            const double left =
+                goal.seconds - spent - layer_seconds * static_cast<double>(mean_samples_ - layer_samples_);
+            affordable = taken > 0 ? left / (spent / taken + layer_seconds / pixels)
+                                   : static_cast<double>(AdaptiveSampling::first_samples(goal)) * pixels;
+        }
+        const std::vector<std::uint32_t> counts = tiles.next(affordable);
+        const std::uint32_t most = *std::max_element(counts.begin(), counts.end());
+        if (most == 0) break;
+        take_round(most, counts.data(), tiles.traces_lights());
+        if (stop) {
+            mean_samples_ = mean_of(count_samples());
+            return noise_so_far_;  // differences of half a round are no measure of the noise
+        }
+        double round = 0;
+        for (const std::uint32_t count : counts) round += count;
+        mean_samples_ += static_cast<std::int64_t>(std::ceil(round / pixels));
+        taken += round;
+        tiles.add(develop().exposure, counts, tiles.traces_lights() ? develop_traced() : std::vector<float>());
+        noise_so_far_ = tiles.reached();
+        share = std::max(share.load(), std::min(1.0, taken / (taken + tiles.left())));
+    }
+    noise_so_far_ = tiles.reached();
+    look_for_lamps(noise_so_far_, least_lamp_share(), std::ranges::min(count_samples()));
+    return noise_so_far_;
+}
+
+}  // namespace realcam

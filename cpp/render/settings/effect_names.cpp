@@ -1,0 +1,135 @@
+#include "effect_names.hpp"
+#include "../../optics/coating/coated_surface.hpp"
+#include "../../optics/trace/lens_dispersion.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <iterator>
+#include <optional>
+
+namespace realcam {
+
+namespace {
+
+/// The effect's name without a leading minus sign and without a parameter.
+std::string effect_of(const std::string& name) {
+    const std::size_t begin = name.starts_with('-') ? 1 : 0;
+    return name.substr(begin, std::min(name.find('='), name.size()) - begin);
+}
+
+std::optional<double> share_from(const std::string& text) {
+    double value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size() || !(value >= 0 && value <= 1)) return std::nullopt;
+    return value;
+}
+
+std::string shortest(double value) {
+    char text[32];
+    const auto result = std::to_chars(text, text + sizeof text, value);
+    return {text, result.ptr};
+}
+
+}  // namespace
+
+const EffectInfo* find_effect(const std::string& name) {
+    const auto* const found = std::ranges::find_if(kEffects, [&](const auto& effect) { return name == effect.name; });
+    return found == std::end(kEffects) ? nullptr : found;
+}
+
+std::string line_of(const EffectInfo& effect) {
+    return std::string(effect.what) + "; needs " + effect.needs + (*effect.usage ? "; " : "") + effect.usage;
+}
+
+std::string listed(const std::vector<std::string>& words) {
+    std::string text;
+    for (std::size_t i = 0; i < words.size(); ++i)
+        text += (i == 0 ? "" : i + 1 == words.size() ? " and " : ", ") + words[i];
+    return text;
+}
+
+std::string effect_names() {
+    std::string names = "auto, none, ";
+    for (const EffectInfo& effect : kEffects)
+        names += std::string(&effect == kEffects ? "" : ", ") + (effect.is_on() ? "-" : "") + effect.name;
+    return names;
+}
+
+std::vector<std::string> names_of(const EffectChoice& effects) {
+    std::vector<std::string> names;
+    if (effects.is_automatic) names.push_back("auto");
+    for (const EffectInfo& effect : kEffects) {
+        const bool on = effects.*effect.member;
+        if (effects.is_automatic ? (effects.named & bit_of(effect)) == 0 : on == effect.is_on()) continue;
+        names.push_back((on ? "" : "-") + std::string(effect.name));
+        if (effect.parameter && effects.*effect.parameter != EffectChoice().*effect.parameter)
+            names.back() += "=" + shortest(effects.*effect.parameter);
+    }
+    return names;
+}
+
+EffectChoice effects_named(const std::vector<std::string>& names) {
+    EffectChoice effects;
+    for (const std::string& name : names) {
+        if (name == "none" && names.size() > 1)
+            throw InputError("\"none\" stands alone; other effects are named beside it");
+        if (name == "none") break;
+        if (name == "auto") {
+            effects.is_automatic = true;
+            continue;
+        }
+        const bool on = !name.starts_with('-');
+        const std::string plain = effect_of(name);
+        const EffectInfo* found = find_effect(plain);
+        if (!found)
+            throw InputError("unknown effect \"" + name.substr(0, 60) + "\"; some of " + effect_names() +
+                             " are wanted");
+        for (const std::string& other : names)
+            if (other != name && effect_of(other) == plain)
+                throw InputError(
+                    "the effect " + plain + " is " +
+                    (on != other.starts_with('-') ? "named with two parameters" : "both named and left out"));
+        effects.*found->member = on;
+        effects.named |= bit_of(*found);
+        const std::size_t equals = name.find('=');
+        if (equals == std::string::npos) continue;
+        const std::optional<double> value = share_from(name.substr(equals + 1));
+        if (!found->parameter || !on || !value)
+            throw InputError("\"" + name.substr(0, 60) + "\" is no effect; " +
+                             (found->parameter ? "after the equals sign a share from 0 to 1 is wanted"
+                                               : "the effect " + plain + " has no parameter"));
+        effects.*found->parameter = *value;
+    }
+    if (!effects.is_automatic) effects.named = 0;  // so that equal choices are equal
+    return effects;
+}
+
+namespace {
+
+/// "surface 3 of " or "surfaces 1, 2 and 3 of ", followed by the lens's name. `numbers`: from 1.
+std::string surfaces_text(const std::vector<int>& numbers, const LensSystem& lens) {
+    std::vector<std::string> words;
+    for (const int number : numbers) words.push_back(std::to_string(number));
+    return (words.size() == 1 ? "surface " : "surfaces ") + listed(words) + " of " + lens.name;
+}
+
+}  // namespace
+
+std::vector<std::string> effect_notices(const EffectChoice& effects, const LensSystem& lens) {
+    std::vector<std::string> notices;
+    if (const std::vector<int> without = surfaces_with_one_index(lens); effects.dispersion && !without.empty()) {
+        const bool one = without.size() == 1;
+        notices.push_back(std::string("dispersion: the ") + (one ? "glass of " : "glasses of ") +
+                          surfaces_text(without, lens) + (one ? " has" : " have") + " one index only, and so " +
+                          (one ? "does" : "do") + " not disperse light");
+    }
+    std::vector<int> unknown = surfaces_with_unknown_coating(lens);
+    for (int& surface : unknown) ++surface;
+    if (any_is(effects, &EffectInfo::needs_coatings) && !unknown.empty())
+        notices.push_back(std::string(first_that(effects, &EffectInfo::needs_coatings)->name) +
+                          ": it is not known what covers " + surfaces_text(unknown, lens) +
+                          "; glass is taken as bare, and a mirror as perfect");
+    return notices;
+}
+
+}  // namespace realcam

@@ -1,0 +1,94 @@
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "../../camera/effects/dispersion/illuminant.hpp"
+#include "../../camera/effects/effects.hpp"
+#include "../../camera/effects/ghosts/ghost_view.hpp"
+#include "../../camera/film/camera.hpp"
+#include "../../camera/models/pupil_sampling.hpp"
+#include "../../platform.hpp"
+#include "../layers/layers.hpp"
+#include "../path/path_settings.hpp"
+#include "noise_goal.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// Sizes from which on the planner simulates an effect (cpp/plan).
+struct PlanThresholds {
+    double pixels = 0.5;  ///< displacement or blur
+    double codes = 1;     ///< change of an 8-bit code of the developed picture
+
+    bool operator==(const PlanThresholds&) const = default;
+};
+
+inline constexpr const char* kQualityNames = "draft, photo or reference";
+
+/// Thresholds of a named quality; std::nullopt if the name is unknown.
+inline std::optional<PlanThresholds> quality_named(const std::string& name) {
+    if (name == "draft") return PlanThresholds{2, 4};
+    if (name == "photo") return PlanThresholds{};
+    if (name == "reference") return PlanThresholds{0.1, 0.25};
+    return std::nullopt;
+}
+
+struct LensEffects;
+
+inline constexpr int kMaxThreads = 4096;  ///< more than machines have cores; TBB fails far beyond this
+
+inline constexpr EffectChoice kAutomaticEffects = [] {
+    EffectChoice effects;
+    effects.is_automatic = true;
+    return effects;
+}();
+
+inline constexpr int kMostBounces = 64;  ///< after 64 mirrors that reflect 95%, 4% of the light is left
+
+/// Settings of a picture, common to the command line, shot files, Python, and all kinds of sessions.
+struct RenderSettings {
+    int spp = 64;  ///< samples per pixel
+    std::uint32_t seed = 0;
+    std::optional<int> max_bounces = {};  ///< 0: direct light only; std::nullopt: the planner decides
+    int threads = 0;      ///< CPU threads; 0: all
+    LightTransport transport = LightTransport::paths;
+    double clamp = 0;  ///< see PathSettings
+    LayerSet layers = {};
+    EffectChoice effects = kAutomaticEffects;
+    PlanThresholds thresholds = {};  ///< for automatic effects
+    std::optional<Illuminant> illuminant = {};  ///< for effects with wavelengths; std::nullopt: D65, the white of RGB
+    std::optional<NoiseGoal> noise = {};  ///< instead of spp
+    PupilSampling pupil_sampling = PupilSampling::outline;  ///< for a full lens
+    LightTracing light_tracing = LightTracing::weighted;  ///< for a full lens
+
+    bool operator==(const RenderSettings&) const = default;
+
+    /// Illuminant of a picture whose samples have wavelengths; otherwise std::nullopt.
+    std::optional<Illuminant> spectral_light() const {
+        return effects.have_wavelengths() ? std::optional(illuminant.value_or(Illuminant())) : std::nullopt;
+    }
+    LensEffects lens_effects() const;
+    std::optional<GhostChoice> ghost_choice() const;
+    /// Light that is traced from lamps is not separated by halves of the pupil.
+    LightTracing lights_traced() const { return layers.has_any(kHalfLayers) ? LightTracing::off : light_tracing; }
+    /// True if effects or bounces are left to the planner.
+    bool needs_plan() const { return effects.is_automatic || !max_bounces; }
+    /// Undecided bounces are set to kMostBounces.
+    PathSettings path() const { return {max_bounces.value_or(kMostBounces), transport, static_cast<float>(clamp)}; }
+};
+
+/// Throws InputError if the number of samples per pixel is out of range.
+inline void validate_spp(int spp) {
+    if (spp < 1 || spp > (1 << 24)) throw InputError("spp must lie between 1 and 16777216");
+}
+
+/// Reason why an illuminant does not go with the effects; empty if it does.
+std::string illuminant_error(const RenderSettings& settings);
+
+/// Throws InputError if settings are invalid or contradict each other.
+void validate(const RenderSettings& settings);
+
+/// Throws InputError if the camera does not support the effects, layers or pupil sampling of the settings.
+void validate_effects(const RenderSettings& settings, const Camera& camera);
+
+}  // namespace REALCAM_NAMESPACE

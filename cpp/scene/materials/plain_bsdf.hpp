@@ -1,0 +1,69 @@
+#pragma once
+#include "../../math/random.hpp"
+#include "../../math/sampling.hpp"
+#include "scattering.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+REALCAM_INLINE Vec3f mirrored_at(Vec3f normal, Vec3f direction) {
+    return (2.0f * dot(direction, normal)) * normal - direction;
+}
+
+/// Normalised, energy-conserving Phong lobe (Lafortune and Willems 1994): BSDF times cosine for a reflectance of 1, in
+/// local coordinates.
+REALCAM_INLINE float phong_value(Vec3f eye, float shininess, Vec3f light) {
+    const float density = phong_pdf({-eye.x, -eye.y, eye.z}, shininess, light);
+    return (shininess + 2.0f) / (shininess + 1.0f) * density * light.z;
+}
+
+/// BSDF of a plain material (Material::is_plain): Lambertian and Phong lobes, for kernels that need no others.
+class PlainBsdf {
+public:
+    Vec3f normal, geometric_normal, eye;
+    Color diffuse, phong;
+    float shininess;
+
+    REALCAM_INLINE bool is_opaque() const { return true; }
+    REALCAM_INLINE void keep_narrow_lobes() { diffuse = {0, 0, 0}; }
+    REALCAM_INLINE void keep_mirrors() { diffuse = phong = {0, 0, 0}; }
+
+    REALCAM_INLINE Color eval(Vec3f light) const {
+        const float cosine = dot(normal, light);
+        if (!(cosine > 0.0f && dot(geometric_normal, light) > 0.0f)) return {0, 0, 0};
+        Color value = (0.3183098862f * cosine) * diffuse;
+        if (!is_black(phong)) {
+            const float density = phong_pdf(mirrored_at(normal, eye), shininess, light);
+            value += ((shininess + 2.0f) / (shininess + 1.0f) * density * cosine) * phong;
+        }
+        return value;
+    }
+
+    REALCAM_INLINE float pdf(Vec3f light) const {
+        const float share = diffuse_share();
+        float density = share * cosine_pdf(normal, light);
+        if (share < 1.0f) density += (1.0f - share) * phong_pdf(mirrored_at(normal, eye), shininess, light);
+        return density;
+    }
+
+    /// Chooses a lobe by its reflectance, then a direction by its cosine or its power.
+    REALCAM_INLINE BsdfSample sample(Vec2f u, float) const {
+        BsdfSample result{normal, {0, 0, 0}, 0.0f, false};
+        if (is_black(diffuse) && is_black(phong)) return result;
+        const float share = diffuse_share();
+        const bool is_diffuse = u.x < share;
+        u.x = is_diffuse ? left_over(u.x, share) : left_over(u.x - share, 1.0f - share);
+        result.direction = is_diffuse ? sample_cosine(normal, u) : sample_phong(mirrored_at(normal, eye), shininess, u);
+        result.pdf = pdf(result.direction);
+        if (result.pdf > 0.0f) result.weight = (1.0f / result.pdf) * eval(result.direction);
+        return result;
+    }
+
+private:
+    /// Probability of sampling the Lambertian lobe: by the largest reflectance of each lobe.
+    REALCAM_INLINE float diffuse_share() const {
+        const float d = largest(diffuse), p = largest(phong);
+        return d > 0.0f ? d / (d + p) : 0.0f;
+    }
+};
+
+}  // namespace REALCAM_NAMESPACE
