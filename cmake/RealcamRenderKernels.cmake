@@ -1,7 +1,7 @@
 # The GPU's kernels that take samples: a file for each kind of lens, kind of scene and set of effects, so that they
 # compile side by side. Together they take minutes, so those with effects are compiled for fewer kinds: the rest is
-# served by a kernel for any lens and any scene. kernel_for in cpp/cuda/kernels/render_kernel.cu takes the first of their list,
-# which is written here, that serves a picture.
+# served by a kernel for any lens and any scene. kernel_for in cpp/cuda/kernels/render_kernel.cu takes the first of
+# their list, which is written here, that serves a picture.
 function(realcam_add_render_kernels target)
   # As many sets as kCompiledEffects has, by their numbers there.
   set(effects_file ${PROJECT_SOURCE_DIR}/cpp/camera/effects/effects.hpp)

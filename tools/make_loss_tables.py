@@ -1,4 +1,4 @@
-"""Writes cpp/scene/materials/loss_tables.hpp: light that single scattering loses at rough borders, and metals under coats.
+"""Writes cpp/scene/materials/loss_tables.hpp: what single scattering loses at rough borders, and metals under coats.
 
     python tools/make_loss_tables.py    # a minute; after make_ggx_tables.py, whose tables it reads
 
