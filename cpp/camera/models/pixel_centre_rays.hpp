@@ -24,13 +24,13 @@ REALCAM_INLINE Vec2f spiral(int index) {
 template <class View>
 REALCAM_INLINE Vec3f direction_to(const View& pupil, Vec2f film, Vec2f pupil_point) {
     const auto at = pupil_lookup(pupil, film.x, film.y);
-    const Vec2f d = at.from_box(trial), cosines = at.to_film(d);
+    const Vec2f d = at.from_box(pupil_point), cosines = at.to_film(d);
     return {cosines.x, cosines.y, -sqrt_or_zero(pupil.index_squared - d.x * d.x - d.y * d.y)};
 }
 
 REALCAM_INLINE Vec3f direction_to(const CameraView& camera, Vec2f film, Vec2f pupil_point) {
-    if (camera.pupil_grid.nodes) return direction_to(camera.pupil_grid, film, trial);
-    return direction_to(camera.pupil, film, trial);
+    if (camera.pupil_grid.nodes) return direction_to(camera.pupil_grid, film, pupil_point);
+    return direction_to(camera.pupil, film, pupil_point);
 }
 
 /// False if no light can reach a film point.
