@@ -59,11 +59,11 @@ private:
             text += " REFL";
         else if (const Glass& medium = medium_behind(i); !medium.is_air())
             text += ' ' + glass(medium);
-        return text + '\n' + commands_ + placement(placement);
+        return text + '\n' + commands_ + placement_commands(placement);
     }
 
     /// Returns XDE to CDE, and DAR if the placement returns; empty if the surface is neither decentred nor tilted.
-    static std::string placement(const SurfacePlacement& placement) {
+    static std::string placement_commands(const SurfacePlacement& placement) {
         const auto& [decentre, tilt, returns] = placement;
         if (placement.is_in_place()) return {};
         std::string text;
