@@ -113,11 +113,11 @@ struct ForbesTerms {
     void negate() { form_detail::negate_all(coefficients); }
     /// The factor of w, w = (r / radius)^2, as a polynomial in 2 w - 1.
     std::vector<double> in_powers() const { return forbes_polynomial(kind, coefficients); }
-    double sag(double x, double y, const ConicNumbers<double>& conic) const {
+    void add_sag(double& z, double x, double y, const ConicNumbers<double>& conic) const {
         const double r2 = x * x + y * y, w = r2 / (radius * radius),
                      sum = form_detail::polynomial(in_powers(), 2 * w - 1);
-        if (kind == ForbesKind::con) return w * w * sum;
-        return w * (1 - w) / std::sqrt(1 - conic.curvature * conic.curvature * r2) * sum;
+        const double root = std::sqrt(1 - conic.curvature * conic.curvature * r2);
+        z += kind == ForbesKind::con ? w * w * sum : w * (1 - w) / root * sum;
     }
     double vertex_curvature() const {
         return kind == ForbesKind::con ? 0 : 2 * form_detail::polynomial(in_powers(), -1) / (radius * radius);

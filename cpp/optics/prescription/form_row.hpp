@@ -16,7 +16,7 @@
 //   most()              maximum number of coefficients
 //   error(surface)      reason why the terms do not fit the surface's other parts; empty if they fit
 //   negate()            negates the sag
-//   sag(x, y, conic)    sag that the terms add, mm
+//   add_sag(z, x, y, conic)  adds the terms to a sag in mm
 //   vertex_curvature()  curvature that the terms add at the vertex, 1/mm
 //   add_to(polynomials, coefficients, conic)  conversion to what is traced. A template on the number type, which is a
 //                       dual number for derivatives with respect to the coefficients and the conic

@@ -38,8 +38,8 @@ struct SuperconicTerms {
     void negate() {
         for (std::size_t i = 1; i < coefficients.size(); i += 2) coefficients[i] = -coefficients[i];
     }
-    double sag(double x, double y, const ConicNumbers<double>& conic) const {
-        return departure(x * x + y * y, conic, coefficients);
+    void add_sag(double& z, double x, double y, const ConicNumbers<double>& conic) const {
+        z += departure(x * x + y * y, conic, coefficients);
     }
     double vertex_curvature() const { return 0; }
     /// Interpolates the departure from the conic, over w^2, at Chebyshev nodes.

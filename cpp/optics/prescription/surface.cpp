@@ -47,7 +47,7 @@ double Surface::sag(double x, double y) const {
     const double r = std::sqrt(r2);
     z += r * polynomial(form.radial, r);
     for (const XyTerm& term : form.xy) z += term.coefficient * std::pow(x, term.x) * std::pow(y, term.y);
-    over_terms(form, [&](const auto& terms) { z += terms.sag(x, y, {curvature, conic}); });
+    over_terms(form, [&](const auto& terms) { terms.add_sag(z, x, y, {curvature, conic}); });
     return z;
 }
 

@@ -96,11 +96,9 @@ struct ZernikeTerms {
     }
     void negate() { form_detail::negate_all(coefficients); }
     std::vector<XyTerm> as_xy() const { return zernike_as_xy(order, coefficients); }
-    double sag(double x, double y, const ConicNumbers<double>&) const {
-        double sum = 0;
+    void add_sag(double& z, double x, double y, const ConicNumbers<double>&) const {
         for (const XyTerm& term : as_xy())
-            sum += term.coefficient * std::pow(x / radius, term.x) * std::pow(y / radius, term.y);
-        return sum;
+            z += term.coefficient * std::pow(x / radius, term.x) * std::pow(y / radius, term.y);
     }
     double vertex_curvature() const { return 0; }
     template <class T>

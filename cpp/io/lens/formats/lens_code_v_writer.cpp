@@ -24,7 +24,7 @@ public:
             "\nDIM M\nWL " + exact_number(lens_.wavelength_nm) + "\nREF 1\nWTW 1\nXRI 0.0 0.0\nYRI 0.0 " +
             exact_number(corner()) + "\nWTF 1.0 1.0\n" + private_glasses() + "SO 0.0 " +
             (std::isfinite(object_distance()) ? exact_number(object_distance()) : "0.1e14") + '\n' + surfaces + "SI " +
-            exact_number(image_curvature()) + " 0.0\n" + placement(lens_.film_placement) + zoom() + "GO\n";
+            exact_number(image_curvature()) + " 0.0\n" + placement_commands(lens_.film_placement) + zoom() + "GO\n";
         return std::move(result_);
     }
 
