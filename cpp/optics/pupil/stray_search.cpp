@@ -43,12 +43,13 @@ StraySearch::Places StraySearch::points_around(std::uint32_t stream, bool is_sym
 }
 
 StraySearch::Places StraySearch::points_beside(std::uint32_t stream, const PupilHalves& halves) const {
-    const std::size_t count = halves.size();
+    const bool is_symmetric = halves.size() == 1;
     Places places;
     for (std::size_t i = 0; i < kBlock; ++i) {
         const Vec2f u = sample_2d(stream, static_cast<std::uint32_t>(i), dimension);
-        const Vec2f place = halves[i % count].beside(i / count % PupilRow::kSectors, u);
-        places.set(static_cast<int>(i), {place.x, i % count == 0 ? place.y : -place.y});
+        const std::size_t half = is_symmetric ? 0 : i % 2, sector = (is_symmetric ? i : i / 2) % PupilRow::kSectors;
+        const Vec2f place = halves[half].beside(sector, u);
+        places.set(static_cast<int>(i), {place.x, half == 0 ? place.y : -place.y});
     }
     return places;
 }
