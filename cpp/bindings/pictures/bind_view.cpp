@@ -64,8 +64,8 @@ the largest part of the lens's film that has its shape. Raises InputError.)");
              R"(The camera where it has the scene in its picture, in focus: position, look_at and focus_distance_m as
 given, and what is None chosen. scene_camera: the name of one of scene.cameras, whose place, direction
 and motion to take, or "none"; where nothing is said of the view it is the first of them. Without one the
-view follows the rules of docs/scenes.md: an object from its front (+z, or -y where up is z) and slightly
-above, where it fills nine tenths of the film, and a room from its open side or from a corner inside.
+view follows the rules of docs/scenes.md: an object from its front (+z, or -y where up is z), slightly above
+and aside, where it fills nine tenths of the film, and a room from its open side or from a corner inside.
 Of the camera itself lens, film, model and exposure stay. Raises InputError.)")
         .def("metered", &metered, "scene"_a, py::kw_only(), "device"_a = "auto", "max_bounces"_a = "auto",
              "progress"_a = py::none(),

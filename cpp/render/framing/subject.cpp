@@ -1,24 +1,22 @@
 #include "subject.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
 #include <numeric>
 #include <unordered_map>
-#include <utility>
-#include <vector>
 
 namespace realcam {
 namespace {
 
-struct Part {
-    BoundingBox box;
-    std::size_t triangles = 0;
-    bool is_subject = true;
-};
+std::array<double, 3> coordinates(Vec3d v) {
+    return {v.x, v.y, v.z};
+}
 
-/// Connected components of a scene's triangles by their vertices: the part of each triangle, and the number of parts.
+/// Connected components of a scene's triangles by their vertices.
 struct Components {
-    explicit Components(const Scene& scene) : of_triangle(scene.triangles.size()) {
+    explicit Components(const Scene& scene) {
         std::vector<std::uint32_t> parent(scene.positions_m.size());
         std::iota(parent.begin(), parent.end(), 0u);
         const auto root = [&](std::uint32_t v) {
@@ -27,190 +25,203 @@ struct Components {
         };
         for (const Triangle& t : scene.triangles)
             for (const int k : {1, 2}) parent[root(t.vertices[k])] = root(t.vertices[0]);
-        std::unordered_map<std::uint32_t, std::uint32_t> numbers;
-        for (std::size_t i = 0; i < of_triangle.size(); ++i)
-            of_triangle[i] = numbers.try_emplace(root(scene.triangles[i].vertices[0]), numbers.size()).first->second;
-        count = numbers.size();
+        std::unordered_map<std::uint32_t, std::size_t> indices;
+        for (const Triangle& t : scene.triangles)
+            of_triangle.push_back(indices.try_emplace(root(t.vertices[0]), indices.size()).first->second);
+        count = indices.size();
     }
 
-    std::vector<std::uint32_t> of_triangle;
+    std::vector<std::size_t> of_triangle;
     std::size_t count;
 };
 
+/// A triangle, or an instance of which only the box is known.
 struct Facet {
     BoundingBox box;
-    Vec3d area_m2;  ///< area vector along the normal; zero for the box of an instance
+    Vec3d area_m2 = {0, 0, 0};  ///< area vector along the normal
     bool emits = false;
 };
 
-class Parts {
+class Facets {
 public:
-    explicit Parts(const Assembly& assembly) : assembly_(assembly), every_(asks_every_triangle(assembly)) {
-        for_facets([&](std::size_t number, const Facet& facet) {
-            if (number >= all.size()) all.resize(number + 1);
-            all[number].box.add(facet.box);
-            all[number].triangles += facet.area_m2 == Vec3d{} ? kLeastSubject : 1;
-        });
-    }
+    explicit Facets(const Assembly& assembly) : assembly_(assembly) {}
 
-    /// Calls f(index of the part, facet).
-    template <class F>
-    void for_facets(F&& f) {
-        std::size_t first = for_triangles(*assembly_.static_geometry, 0, [](Vec3d p) { return p; }, f);
+    /// Calls visit(index of the part, facet).
+    template <class Visit>
+    void for_each(Visit&& visit) {
+        std::size_t first = for_triangles(*assembly_.static_geometry, {}, 0, visit);
         ObjectBoxes boxes;
+        const bool every = asks_every_triangle(assembly_);
         for (const Instance& instance : assembly_.instances) {
-            if (every_)
-                first = for_triangles(
-                    *instance.object, first, [&](Vec3d p) { return instance.scene_from_object.point(p); }, f);
+            if (every)
+                first = for_triangles(*instance.object, instance.scene_from_object, first, visit);
             else
-                f(first++, Facet{boxes.of(instance), {}});
+                visit(first++, Facet{boxes.of(instance)});
         }
     }
 
-    static constexpr std::size_t kLeastSubject = 4;  // triangles: a stray triangle in a hollow object is no subject
-    std::vector<Part> all;
-
 private:
-    template <class Placed, class F>
-    std::size_t for_triangles(const Scene& scene, std::size_t first, Placed&& placed, F& f) {
+    template <class Visit>
+    std::size_t for_triangles(const Scene& scene, const Affine<double>& map, std::size_t first, Visit& visit) {
         const Components& components = components_.try_emplace(&scene, scene).first->second;
         for (std::size_t i = 0; i < scene.triangles.size(); ++i) {
             const Triangle& t = scene.triangles[i];
-            const Vec3d a = placed(scene.positions_m[t.vertices[0]]), b = placed(scene.positions_m[t.vertices[1]]),
-                        c = placed(scene.positions_m[t.vertices[2]]);
+            const auto vertex = [&](int k) { return map.point(scene.positions_m[t.vertices[k]]); };
+            const Vec3d a = vertex(0), b = vertex(1), c = vertex(2);
             Facet facet{{a, a}, 0.5 * cross(b - a, c - a)};
             facet.box.add(b);
             facet.box.add(c);
             facet.emits = !scene.materials.empty() && scene.materials[t.material].emits();
-            f(first + components.of_triangle[i], facet);
+            visit(first + components.of_triangle[i], facet);
         }
         return first + components.count;
     }
 
     const Assembly& assembly_;
-    bool every_;
     std::unordered_map<const Scene*, Components> components_;
 };
 
-bool lies_within(const BoundingBox& inner, const BoundingBox& outer, double leave) {
-    const auto low = coordinates(inner.low - outer.low), high = coordinates(outer.high - inner.high);
-    const auto is_inside = [&](double distance) { return distance >= -leave; };
-    return std::ranges::all_of(low, is_inside) && std::ranges::all_of(high, is_inside);
-}
+/// A connected component, or an instance of which only the box is known.
+struct Part {
+    static constexpr double kFlat = 0.05;  // thickness over length
 
-/// Returns true for a part that may surround a subject and touch it: it is flat, like a floor or a wall, or has no more
-/// triangles than the subject, like the backdrop of a studio. Any other part must keep its distance, like a sky
-/// (stay_away).
-bool is_simple(const Part& part, std::size_t subject_triangles) {
-    constexpr double kFlat = 0.05;
-    const auto size = coordinates(part.box.size());
-    return std::ranges::min(size) <= kFlat * part.box.diagonal() || part.triangles <= subject_triangles;
-}
+    BoundingBox box;
+    std::size_t facets = 0;
+    bool emits = false, is_subject = false, must_stay_away = false;
 
-/// Returns true if no triangle of these parts is nearer to the subject than the subject is long. `others` has a flag
-/// for each part.
-bool stay_away(Parts& parts, const std::vector<bool>& others, const BoundingBox& subject) {
-    bool any_is_near = false;
-    parts.for_facets([&](std::size_t number, const Facet& facet) {
-        if (any_is_near || !others[number]) return;
-        const Vec3d middle = facet.box.nearest(subject.middle());
-        any_is_near = length(subject.nearest(middle) - middle) < subject.diagonal();
-    });
-    return !any_is_near;
-}
+    double size() const { return box.diagonal(); }
 
-/// Removes from `chosen`, which is sorted by length, the surroundings that enclose or carry the remaining parts.
-bool take_enclosing(Parts& parts, std::vector<Part*>& chosen) {
-    constexpr double kMuchLonger = 4;
-    std::vector<BoundingBox> rest(chosen.size() + 1);  // bounds of the parts from an index on
-    for (std::size_t k = chosen.size(); k-- > 0;) (rest[k] = rest[k + 1]).add(chosen[k]->box);
-    std::vector<BoundingBox> boxes(chosen.size() + 1);  // bounds of the parts before an index
-    std::vector<std::size_t> triangles(chosen.size() + 1);
-    for (std::size_t k = 0; k < chosen.size(); ++k) {
-        (boxes[k + 1] = boxes[k]).add(chosen[k]->box);
-        triangles[k + 1] = triangles[k] + chosen[k]->triangles;
+    /// The axis across a flat part; 3 if the part is not flat.
+    std::size_t thin_axis() const {
+        const auto sizes = coordinates(box.size());
+        const auto least = std::ranges::min_element(sizes);
+        return *least <= kFlat * size() ? static_cast<std::size_t>(least - sizes.begin()) : 3;
     }
-    for (std::size_t k = chosen.size() - 1; k > 0; --k) {
-        const double own = boxes[k].diagonal();
-        if (triangles[k] < Parts::kLeastSubject || !(own > 0) || !(chosen[k]->box.diagonal() >= kMuchLonger * own) ||
-            !lies_within(boxes[k], rest[k], own))
+
+    /// True if the other part lies inside the box of this one, or in front of or behind a flat part.
+    bool spans(const Part& other) const {
+        const auto low = coordinates(other.box.low - box.low), high = coordinates(box.high - other.box.high);
+        const std::size_t across = thin_axis();
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            if (axis != across && std::min(low[axis], high[axis]) < -kFlat * size()) return false;
+        return true;
+    }
+};
+
+/// Reduces `chosen`, which is sorted by size, to the parts that one of the largest parts carries or encloses. Returns
+/// false if there is no such part.
+bool choose_carried(std::vector<Part*>& chosen, Facets& facets, const std::vector<Part>& parts, Vec3d up) {
+    constexpr std::size_t kMostCarriers = 64, kOutweighs = 4;
+    constexpr double kMuchLonger = 3.5, kLonger = 2;
+    Part whole;
+    for (const Part* part : chosen) whole.box.add(part->box);
+    for (std::size_t k = 0; k < std::min(kMostCarriers, chosen.size()); ++k) {
+        const Part& carrier = *chosen[k];
+        const std::size_t across = carrier.thin_axis();
+        const bool is_ground = across < 3 && std::fabs(coordinates(up)[across]) > 0.9;
+        std::vector<Part*> carried;
+        Part subject;
+        std::size_t facets_beside = 0;
+        for (Part* part : chosen) {
+            const bool is_sheet = part->thin_axis() < 3 && part->size() >= whole.size() / kLonger;
+            const bool is_shell = part->size() >= kLonger * carrier.size() && part->spans(carrier);
+            part->must_stay_away = !is_sheet && !part->emits && (is_shell || part == &carrier);
+            if (is_sheet || is_shell || part->emits || part == &carrier) continue;
+            const double above = dot(part->box.middle() - carrier.box.middle(), up);
+            if (!carrier.spans(*part)) {
+                facets_beside += part->facets;
+            } else if (!is_ground || above >= -1e-6 * carrier.size()) {  // else the leg of a table
+                carried.push_back(part);
+                subject.box.add(part->box);
+                subject.facets += part->facets;
+            }
+        }
+        if (!(subject.size() > 0) || subject.facets < kOutweighs * facets_beside ||
+            carrier.size() < kLonger * subject.size() || whole.size() < kMuchLonger * subject.size())
             continue;
-        std::vector<bool> others(parts.all.size());
-        for (std::size_t i = k; i < chosen.size(); ++i)
-            if (!is_simple(*chosen[i], triangles[k]))
-                others[static_cast<std::size_t>(chosen[i] - parts.all.data())] = true;
-        if (std::ranges::find(others, true) != others.end() && !stay_away(parts, others, boxes[k])) continue;
-        for (std::size_t i = k; i < chosen.size(); ++i) chosen[i]->is_subject = false;
-        chosen.resize(k);
+        // The backdrop of a studio may be near its subject; a statue is not the surroundings of its small parts.
+        bool any_is_near = false;
+        facets.for_each([&](std::size_t index, const Facet& facet) {
+            if (!parts[index].must_stay_away || parts[index].facets <= subject.facets) return;
+            const Vec3d near = facet.box.nearest(subject.box.middle());
+            any_is_near |= length(subject.box.nearest(near) - near) < subject.size();
+        });
+        if (any_is_near) continue;
+        for (Part* part : chosen) part->must_stay_away = false;
+        chosen = carried;
         return true;
     }
     return false;
 }
 
-/// Removes small parts that are far from the large ones.
-bool take_far(std::vector<Part*>& parts) {
+/// Removes small parts that are far from the large ones. `chosen` is sorted by size.
+bool remove_far(std::vector<Part*>& chosen) {
     constexpr double kSmall = 0.1, kFar = 8;
-    const double least = kSmall * parts.back()->box.diagonal();
-    BoundingBox large;
-    for (const Part* part : parts)
-        if (part->box.diagonal() >= least) large.add(part->box);
-    return std::erase_if(parts, [&](Part* part) {
-               const Vec3d middle = part->box.middle();
-               part->is_subject = length(large.nearest(middle) - middle) <= kFar * large.diagonal();
-               return !part->is_subject;
-           }) > 0;
-}
-
-void choose_subject(Parts& parts) {
-    std::vector<Part*> chosen;
-    for (Part& part : parts.all)
-        if (part.triangles > 0) chosen.push_back(&part);
-    std::ranges::stable_sort(chosen, {}, [](const Part* part) { return part->box.diagonal(); });
-    while (!chosen.empty() && (take_enclosing(parts, chosen) || take_far(chosen))) {
-    }
+    Part large;
+    for (const Part* part : chosen)
+        if (part->size() >= kSmall * chosen.front()->size()) large.box.add(part->box);
+    return std::erase_if(chosen, [&](const Part* part) {
+        const Vec3d middle = part->box.middle();
+        return length(large.box.nearest(middle) - middle) > kFar * large.size();
+    });
 }
 
 }  // namespace
 
-Subject::Subject(const Assembly& assembly) {
-    Parts parts(assembly);
-    choose_subject(parts);
-    for (const Part& part : parts.all)
-        if (part.is_subject) box.add(part.box);
+Subject::Subject(const Assembly& assembly, Vec3d up) {
+    Facets facets(assembly);
+    std::vector<Part> parts;
+    facets.for_each([&](std::size_t index, const Facet& facet) {
+        if (index >= parts.size()) parts.resize(index + 1);
+        parts[index].box.add(facet.box);
+        parts[index].emits |= facet.emits;
+        ++parts[index].facets;
+    });
+    std::vector<Part*> chosen;
+    for (Part& part : parts)
+        if (!part.box.empty()) chosen.push_back(&part);
+    std::ranges::stable_sort(chosen, std::greater<>(), &Part::size);
+    while (choose_carried(chosen, facets, parts, up) || remove_far(chosen)) {
+    }
+    for (Part* part : chosen) {
+        part->is_subject = true;
+        part_boxes.push_back(part->box);
+        box.add(part->box);
+    }
     const double thickness = 0.02 * box.diagonal();
-    const auto low = coordinates(box.low), high = coordinates(box.high), size = coordinates(box.size());
     std::array<double, 6> covered_m2{};
     double inwards_m2 = 0, all_m2 = 0;
     bool is_lit_within = false;
-    parts.for_facets([&](std::size_t number, const Facet& facet) {
-        if (!parts.all[number].is_subject) return;
-        const auto from = coordinates(facet.box.low), to = coordinates(facet.box.high),
+    facets.for_each([&](std::size_t index, const Facet& facet) {
+        if (!parts[index].is_subject) return;
+        const auto to_low = coordinates(facet.box.high - box.low), to_high = coordinates(box.high - facet.box.low),
                    area = coordinates(facet.area_m2);
-        if (facet.emits) is_lit_within |= dot(box.middle() - facet.box.middle(), facet.area_m2) > 0;
-        bool is_wall = false;
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            const bool at_low = to[axis] <= low[axis] + thickness, at_high = from[axis] >= high[axis] - thickness;
-            if (!at_low && !at_high) continue;
-            is_wall = true;
-            covered_m2[2 * axis + (at_high ? 1 : 0)] += std::fabs(area[axis]);
-            inwards_m2 += at_high ? -area[axis] : area[axis];
-            all_m2 += std::fabs(area[axis]);
+        is_lit_within |= facet.emits && dot(box.middle() - facet.box.middle(), facet.area_m2) > 0;
+        bool is_in_side = false;
+        for (std::size_t side = 0; side < 6; ++side) {
+            if ((side % 2 ? to_high : to_low)[side / 2] > thickness) continue;
+            is_in_side = true;
+            covered_m2[side] += std::fabs(area[side / 2]);
+            inwards_m2 += side % 2 ? -area[side / 2] : area[side / 2];
+            all_m2 += std::fabs(area[side / 2]);
         }
-        if (!is_wall) content.add(facet.box);
+        if (!is_in_side) content.add(facet.box);
     });
     const Scene& lights = *assembly.static_geometry;
     for (const ScenePointLight& light : lights.points)
         is_lit_within |= length(box.nearest(light.position_m) - light.position_m) == 0;
     const bool is_lit_outside = !lights.suns.empty() || lights.environment.emits();
     if (!(inwards_m2 > 0.5 * all_m2) && !(is_lit_within && !is_lit_outside)) return;
+    constexpr std::array<Vec3d, 6> kNormals = {{{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}}};
+    const auto size = coordinates(box.size());
     for (std::size_t side = 0; side < 6; ++side) {
         const double whole_m2 = size[(side / 2 + 1) % 3] * size[(side / 2 + 2) % 3];
-        has_wall[side] = whole_m2 > 0 && covered_m2[side] >= 0.5 * whole_m2;
+        if (whole_m2 > 0 && covered_m2[side] >= 0.5 * whole_m2) walls.push_back(kNormals[side]);
     }
 }
 
-int Subject::count_walls() const {
-    return static_cast<int>(std::ranges::count(has_wall, true));
+bool Subject::has_wall(Vec3d direction) const {
+    return std::ranges::any_of(walls, [&](Vec3d normal) { return dot(normal, direction) > 0.8; });
 }
 
 }  // namespace realcam

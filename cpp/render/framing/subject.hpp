@@ -1,6 +1,5 @@
 #pragma once
-#include <array>
-#include <cstddef>
+#include <vector>
 
 #include "../../scene/geometry/bounding_box.hpp"
 
@@ -10,26 +9,27 @@ namespace REALCAM_NAMESPACE {
 ///
 /// A scene consists of parts: triangles that share vertices, or whole instances if there are too many triangles to test
 /// each (kMostTrianglesTested). Two rules remove parts until neither applies:
-/// - Parts that enclose or carry the others, such as a sky or a floor. Each must be four times as long as all the
-///   others together, and be flat, or have fewer triangles than they, or keep away from them.
-/// - Small parts that are farther away than eight times the length of the large parts.
+/// - If a part carries or encloses others, such as a floor, a table top, a wall or a sky, those are the subject. The
+///   carrier must be twice and the scene three and a half times as long as they are. Flat parts of half the length of
+///   the scene, lamps, and parts below a horizontal carrier are surroundings; other parts beside the carrier may have a
+///   quarter of the triangles of the subject. Carriers and skies that are not flat have fewer triangles than the
+///   subject, or keep away from it.
+/// - Small parts are removed if they are farther away than eight times the length of the large parts.
 struct Subject {
-    explicit Subject(const Assembly& assembly);
-
-    /// True for a room, which has at least five walls that are seen from inside.
-    bool is_room() const { return count_walls() >= 5; }
-    int count_walls() const;
+    /// `up`: unit.
+    Subject(const Assembly& assembly, Vec3d up);
 
     BoundingBox box;
-    /// True for the low and the high side of the box along each axis if it has a wall, which covers half of the side or
-    /// more. Walls face inwards, or the only light comes from within; a cube that is seen from outside has no wall.
-    std::array<bool, 6> has_wall{};
-    BoundingBox content;  ///< bounds of all facets that do not lie in a wall
-};
+    std::vector<BoundingBox> part_boxes;
+    BoundingBox content;  ///< bounds of all triangles that do not lie in a side of `box`
 
-/// Coordinates of a vector, indexed by axis.
-inline std::array<double, 3> coordinates(Vec3d v) {
-    return {v.x, v.y, v.z};
-}
+    /// Outward unit normals of the sides of the box that are walls: triangles cover at least half of the side, and face
+    /// inwards or enclose the only light. A cube that is seen from outside has no walls.
+    std::vector<Vec3d> walls;
+
+    /// True if the side towards `direction`, which is nearly along an axis, is a wall.
+    bool has_wall(Vec3d direction) const;
+    bool is_room() const { return walls.size() >= 5; }
+};
 
 }  // namespace REALCAM_NAMESPACE

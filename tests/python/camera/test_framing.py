@@ -31,14 +31,16 @@ def test_framing_puts_the_scene_into_the_picture() -> None:
     pupil, field = np.array(camera.entrance_pupil_position_m), camera.field_of_view_deg
     assert camera.iso == 800
     assert camera.look_at == pytest.approx((0, 0.5, 0))
-    # Slightly from above: half of the elevation of the diagonal from the lower front edge to the upper back edge.
-    elevation = 0.5 * math.atan2(1, 1)
-    view = np.array([0, -math.sin(elevation), -math.cos(elevation)])
+    # Slightly from above and aside: half of the angles of the diagonals of the box's sides.
+    elevation, azimuth = 0.5 * math.atan2(1, 1), 0.5 * math.atan2(1, 2)
+    right = np.array([math.cos(azimuth), 0, -math.sin(azimuth)])
+    backward = np.array([math.sin(azimuth), 0, math.cos(azimuth)])
+    view = -math.cos(elevation) * backward - math.sin(elevation) * np.array([0, 1, 0])
     assert np.subtract(camera.look_at, camera.position) / math.dist(camera.look_at, camera.position) == approx(view)
     box = np.array(list(itertools.product((-1, 1), (0, 1), (-0.5, 0.5))))
     away = box - pupil
-    depth, up = away @ view, away @ np.array([0, math.cos(elevation), -math.sin(elevation)])
-    across = np.degrees(np.arctan2(np.abs(away[:, 0]), depth)).max()
+    depth, up = away @ view, away @ np.cross(right, view)
+    across = np.degrees(np.arctan2(np.abs(away @ right), depth)).max()
     upward = np.degrees(np.arctan2(np.abs(up), depth)).max()
     assert max(across / (field.horizontal / 2), upward / (field.vertical / 2)) == pytest.approx(0.9, abs=0.02)
     assert math.isfinite(camera.lens.focus_distance_m)

@@ -7,8 +7,8 @@
 #include "camera/film/camera.hpp"
 #include "doctest/doctest.h"
 #include "io/lens/lens_file.hpp"
-#include "render/framing/axis_crossings.hpp"
 #include "render/framing/default_view.hpp"
+#include "render/framing/first_hit.hpp"
 #include "render/framing/subject.hpp"
 
 namespace {
@@ -19,7 +19,7 @@ using namespace realcam::test;
 constexpr Extent kObject = {{4, 0, -6}, {4.3, 0.3, -5.7}};
 
 void check_subject(const Assembly& scene, const Extent& wanted) {
-    const BoundingBox box = Subject(scene).box;
+    const BoundingBox box = Subject(scene, {0, 1, 0}).box;
     const double leave = 1e-9 * length(wanted.high - wanted.low);
     CHECK(length(box.low - wanted.low) <= leave);
     CHECK(length(box.high - wanted.high) <= leave);
@@ -46,6 +46,12 @@ double eye_z(const Camera& camera) {
     return camera.pose.position_m.z - (camera.lens.film_position() - data.entrance_pupil_position) / 1000;
 }
 
+void add_table(Scene& scene) {
+    add_box(scene, {{-1, 0.7, -0.5}, {1, 0.75, 0.5}});
+    for (const double x : {-0.9, 0.85})
+        for (const double z : {-0.4, 0.35}) add_box(scene, {{x, 0, z}, {x + 0.05, 0.7, z + 0.05}});
+}
+
 Scene object() {
     Scene scene = grey_scene();
     add_box(scene, kObject);
@@ -68,7 +74,7 @@ TEST_CASE("an object of 0.3 m on a floor of 30 m is the subject, however the flo
     const Camera camera = framed(Assembly(plain));
     CHECK(length(camera.pose.look_at_m - Vec3d{4.15, 0.15, -5.85}) < 1e-9);
     // It fills nine tenths of the picture's height, 24 mm at 50 mm: 0.3 m from 0.3 * 50.36 / (0.9 * 24) = 0.7 m, less
-    // what the field narrows near by, in front of its near side.
+    // what the field narrows near by, in front of its near side. Seen from aside it is wider.
     CHECK(eye_z(camera) > -5.7 + 0.6);
     CHECK(eye_z(camera) < -5.7 + 0.9);
 }
@@ -82,6 +88,33 @@ TEST_CASE("floors and objects may be instances") {
     scene.instances.push_back({floor, {{30, 0, 0}, {0, 1, 0}, {0, 0, 30}, {0, 0, 0}}, "floor"});
     scene.instances.push_back({cube, {{0.3, 0, 0}, {0, 0.3, 0}, {0, 0, 0.3}, kObject.low}, "cube"});
     check_subject(scene, kObject);
+}
+
+TEST_CASE("what stands on a table is the subject, wherever the table stands") {
+    const Extent cup = {{0.3, 0.75, 0.1}, {0.4, 0.85, 0.2}};
+    Scene table = grey_scene();
+    add_table(table);
+    add_box(table, cup);
+    Scene on_floor = table, in_room = table, with_lamp = table, furnished = table;
+    add_patch(on_floor, {-15, 0, -15}, {0, 0, 30}, {30, 0, 0});
+    const Extent walls = {{-3, 0, -3}, {3, 2.6, 3}};
+    for (Scene* scene : {&in_room, &with_lamp, &furnished}) add_box(*scene, walls, true);
+    with_lamp.materials.resize(2);
+    with_lamp.materials[1].emission = {1, 1, 1};
+    add_box(with_lamp, {{-0.9, 1.5, -0.4}, {0.9, 1.6, 0.4}});
+    for (std::size_t i = with_lamp.triangles.size() - 12; i < with_lamp.triangles.size(); ++i)
+        with_lamp.triangles[i].material = 1;
+    for (const Scene& scene : {table, on_floor, in_room, with_lamp}) check_subject(Assembly(scene), cup);
+    // Beside other furniture it is not.
+    add_box(furnished, {{-2.9, 0, -2.9}, {-2, 2, -2}});
+    check_whole(furnished);
+}
+
+TEST_CASE("a picture on a wall is the subject") {
+    Scene scene = grey_scene();
+    add_patch(scene, {-4, 0, 0}, {8, 0, 0}, {0, 3, 0});
+    add_patch(scene, {-0.4, 1.3, 0.02}, {0.8, 0, 0}, {0, 0.6, 0});
+    check_subject(Assembly(scene), {{-0.4, 1.3, 0.02}, {0.4, 1.9, 0.02}});
 }
 
 TEST_CASE("a sky around an object is not the subject") {
@@ -118,10 +151,9 @@ TEST_CASE("what is far away and little is not the subject") {
 TEST_CASE("ordinary objects are the subject as a whole") {
     Scene cube = object(), ball = grey_scene(), table = grey_scene(), stage = grey_scene(), globe = grey_scene();
     add_sphere(ball, {0, 0, 0}, 2, 16);
-    add_box(table, {{-1, 0.7, -0.5}, {1, 0.75, 0.5}});
-    for (const double x : {-0.9, 0.85})
-        for (const double z : {-0.4, 0.35}) add_box(table, {{x, 0, z}, {x + 0.05, 0.7, z + 0.05}});
-    add_sphere(table, {0.3, 0.85, 0.1}, 0.1, 8);
+    add_table(table);
+    // Three balls, spread over the table.
+    for (const double x : {-0.7, 0.0, 0.7}) add_sphere(table, {x, 0.85, 0.1}, 0.1, 8);
     // A pedestal under a statue: its base is three times as wide.
     add_box(stage, {{-3, 0, -3}, {3, 0.2, 3}});
     add_box(stage, {{-1, 0.2, -1}, {1, 3, 1}});
@@ -220,21 +252,22 @@ TEST_CASE("an open room fills the picture from its open side, whichever that is"
     }
 }
 
-TEST_CASE("an object is seen from slightly above, and no side of it edge on") {
+TEST_CASE("an object is seen from slightly above and aside, and no side of it edge on") {
     Scene crate = grey_scene(), floor = grey_scene(), poster = grey_scene();
     add_box(crate, {{-1, 0, -1}, {1, 2, 1}});
     add_patch(floor, {-1, 0, -1}, {0, 0, 2}, {2, 0, 0});
     add_patch(poster, {-1, 0, 0}, {2, 0, 0}, {0, 1, 0});
-    const auto elevation_deg = [](const Scene& scene) {
+    const auto check_view = [](const Scene& scene, double elevation_deg, double azimuth_deg) {
         const Pose pose = framed(Assembly(scene)).pose;
         const Vec3d view = pose.position_m - pose.look_at_m;
         CHECK(view.z > 0);
-        CHECK(view.x == doctest::Approx(0));
-        return std::atan2(view.y, view.z) * 180 / std::numbers::pi;
+        CHECK(std::atan2(view.y, std::hypot(view.x, view.z)) * 180 / std::numbers::pi ==
+              doctest::Approx(elevation_deg));
+        CHECK(std::atan2(view.x, view.z) * 180 / std::numbers::pi == doctest::Approx(azimuth_deg));
     };
-    CHECK(elevation_deg(crate) == doctest::Approx(22.5));  // half of 45 degrees
-    CHECK(elevation_deg(floor) == doctest::Approx(45));  // half of 90
-    CHECK(elevation_deg(poster) == doctest::Approx(0));
+    check_view(crate, 22.5, 22.5);  // half of 45 degrees
+    check_view(floor, 45, 22.5);  // half of 90
+    check_view(poster, 0, 0);
     for (const Scene& scene : {crate, floor, poster}) {
         const Camera camera = framed(Assembly(scene));
         const BoundingBox box = bounding_box(Assembly(scene));
@@ -269,9 +302,8 @@ TEST_CASE("many instances are framed by the boxes of their objects") {
     REQUIRE(!asks_every_triangle(scene));
     const double last = 3.0 * static_cast<double>(count - 1);
     check_subject(scene, {{-1, -1, -1}, {last + 1, 1, 1}});
-    const AxisCrossings axis(scene, {9, 0, 50}, {0, 0, -1});
-    REQUIRE(!axis.distances_m().empty());
-    CHECK(axis.first_beyond(0) == doctest::Approx(49));
-    CHECK(axis.distances_m().back() == doctest::Approx(51));
-    CHECK(AxisCrossings(scene, {10.5, 0, 50}, {0, 0, -1}).distances_m().empty());
+    CHECK(first_hit(scene, {9, 0, 50}, {0, 0, -1}) == doctest::Approx(49));
+    CHECK(first_hit(scene, {9, 0, 50}, {0, 0, -1}, 49.5) == doctest::Approx(51));
+    CHECK(std::isinf(first_hit(scene, {9, 0, 50}, {0, 0, -1}, 51.5)));
+    CHECK(std::isinf(first_hit(scene, {10.5, 0, 50}, {0, 0, -1})));
 }
