@@ -138,7 +138,7 @@ def test_no_object_without_a_value_can_be_made(kind: type) -> None:
 def docstrings() -> Iterator[tuple[str, str]]:
     for owner in [*classes(), _core, rc, rc.Image]:
         for name, thing in vars(owner).items():
-            text = inspect.getdoc(thing.fget if isinstance(thing, property) else getattr(owner, name))
+            text = inspect.getdoc(getattr(owner, name))
             inherited = name == "__init__" and text == inspect.getdoc(object.__init__)
             if (
                 text
