@@ -524,7 +524,7 @@ class Lens:
         iris_rotation_deg: float = 0.0,
         focus_group: tuple[int, int] | None = None,
         nearest_focus_m: float = 0.0,
-        allow_crossing: bool = False,
+        allow_overlap: bool = False,
         film_radius_of_curvature_mm: float = ...,
     ) -> None:
         """
@@ -533,7 +533,7 @@ class Lens:
         film_mm: (width, height) used where a Camera names no film.
         iris_blades: 0 for a round diaphragm, else 3 to 24; iris_rounding: 0 straight to 1 a circle.
         focus_group: (first, last) index of the surfaces that move to focus; None: the whole lens moves.
-        allow_crossing: for experiments, faces may cross inside their rims, and the film the last face.
+        allow_overlap: for experiments, faces may cross inside their rims, and the film the last face.
         film_radius_of_curvature_mm: below 0 the film is hollow towards the lens; inf: flat.
         Raises LensFileError, naming the surface (from 1), where the lens cannot be built.
         """
@@ -608,7 +608,7 @@ class Lens:
         film_mm: tuple[float, float] | None = None,
         wavelength_nm: float | None = None,
         film_distance_mm: float | None = None,
-        spokes: int = 64,
+        arms: int = 64,
         nodes: int = 6,
     ) -> RayBundle:
         """
@@ -620,13 +620,13 @@ class Lens:
         object_distance_m: object plane to front vertex, inf allowed; None is the plane in focus.
         wavelength_nm: None is the design wavelength.
         film_distance_mm: last vertex to the plane that points_mm lie in; None: the film.
-        spokes, nodes: lines from the middle of the light to its edge, which real rays find, and rays on each.
+        arms, nodes: lines from the middle of the light to its edge, which real rays find, and rays on each.
         Returns a RayBundle. Raises InputError where no light passes, or a glass is not known at the wavelength.
         """
-    def crossings(self) -> list[tuple[int, int, float, float]]:
+    def overlaps(self) -> list[tuple[int, int, float, float]]:
         """
         Pairs of faces that cross inside their rims, as (first, second, depth_mm, radius_mm): the indices of the
-        two, how far they reach into each other at most, and how far from the axis that is. Empty but with allow_crossing.
+        two, how far they reach into each other at most, and how far from the axis that is. Empty but with allow_overlap.
         """
     def draw(
         self,
@@ -1082,7 +1082,7 @@ class Lens:
         of the focal length, which is that of the lens at rest. Raises InputError.
         """
     @property
-    def allow_crossing(self) -> bool: ...
+    def allow_overlap(self) -> bool: ...
     @property
     def f_number(self) -> float:
         """
