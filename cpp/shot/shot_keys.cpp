@@ -49,7 +49,7 @@ template <auto... path>
 void to_text(Table t, Key key, Request r) {
     std::string& value = at<path...>(r);
     value = t.name(key.name);
-    if (value.empty()) t.fail(t.shown(key.name) + " is empty; " + key.wanted + " is wanted", t.find(key.name));
+    if (value.empty()) t.fail(t.shown(key.name) + " is empty; expected " + key.wanted, t.find(key.name));
 }
 
 template <auto... path>
@@ -154,8 +154,8 @@ Illuminant illuminant_of(const toml::node& node) {
         }
     }
     if (points.empty())
-        throw InputError(std::string("illuminant: ") + Illuminant::kWanted +
-                         " is wanted; in a shot file a table is [[400, 0.5], [550, 1], [700, 0.2]]");
+        throw InputError(std::string("illuminant: expected ") + Illuminant::kWanted +
+                         "; in a shot file a table is [[400, 0.5], [550, 1], [700, 0.2]]");
     return Illuminant::table(std::move(points));
 }
 

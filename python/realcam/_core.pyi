@@ -72,7 +72,7 @@ def one_line(message: str) -> str:
     """
 
 class RealcamError(Exception):
-    """Base of all errors of realcam. The message is one line: what, where, and what is wanted."""
+    """Base of all errors of realcam. The message is one line: what, where, and what is expected."""
 
 class InputError(RealcamError, ValueError):
     """A value that makes no sense. Also a ValueError."""
@@ -2512,7 +2512,7 @@ class RenderSettings:
     How a picture is taken; a value, as rc.render, rc.Session, rc.LiveView, rc.plan and rc.Shot take it.
 
     spp: samples per pixel, or "auto": as many as the noise needs, more where it is noisier, by tiles of 16 pixels
-    (docs/sampling.md). noise: what is wanted then, as a share of a tile's light (of a hundredth of white where that
+    (docs/sampling.md). noise: the noise goal then, as a share of a tile's light (of a hundredth of white where that
     is more), or noise_codes: in 8-bit codes of the developed picture; 1 code unless said. seconds, max_spp (4096):
     no more samples are taken after so long, and of a pixel no more than so many; warns where the noise is still
     larger then.

@@ -28,10 +28,10 @@ struct RestoredCheck<Affine<T>> : AnyMembers {};
 /// Parts that are checked together with the value that holds them: a glass by restored_glass, layers and metal by the
 /// coating, whose error names the layer, and a material by the scene.
 template <OneOf<Color, Glass::TablePoint, Glass::Parts, CoatingMaterial::Point, CoatingMaterial, SurfacePlacement,
-                XyTerm, SurfaceForm, Obscuration, ApertureShape, IrisShape, FocusingRule,
-                ZoomPosition, ZoomRange, FirstOrder, Meridian, Pose, PoseKey, Shutter, QuantumEfficiency, SensorPoint,
-                SensorConversion, SensorNoise, RenderStats, Triangle, VertexColor, TextureSampler, TextureReference,
-                Material, ScenePointLight, SunLight, Environment, Scene, Instance>
+                XyTerm, SurfaceForm, Obscuration, ApertureShape, IrisShape, FocusingRule, ZoomPosition, ZoomRange,
+                FirstOrder, Meridian, Pose, PoseKey, Shutter, QuantumEfficiency, SensorPoint, SensorConversion,
+                SensorNoise, RenderStats, Triangle, VertexColor, TextureSampler, TextureReference, Material,
+                ScenePointLight, SunLight, Environment, Scene, Instance>
               T>
 struct RestoredCheck<T> : AnyMembers {};
 
@@ -179,7 +179,7 @@ struct RestoredCheck<Assembly> {
             const std::ptrdiff_t whole = scene.instances[i].part_of;
             if (whole < Instance::kNoWhole || whole >= static_cast<std::ptrdiff_t>(i))
                 throw InputError(label(scene, i) + " is a part of instance " + std::to_string(whole) +
-                                 "; one that comes before it is wanted");
+                                 "; expected one that comes before it");
         }
     }
 };

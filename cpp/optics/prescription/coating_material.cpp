@@ -24,7 +24,7 @@ std::complex<double> CoatingMaterial::index(double wavelength_nm) const {
 
 void CoatingMaterial::fail(double wavelength_nm, double first, double last) const {
     throw InputError(subject() + " is known from " + nm(first) + " to " + nm(last) + "; " + nm(wavelength_nm) +
-                     " is wanted");
+                     " was requested");
 }
 
 CoatingMaterial aluminium() {

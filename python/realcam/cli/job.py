@@ -96,7 +96,7 @@ def make(
     ]
     asked = [(path, option, script) for path, option, script in scripts if path is not None]
     if len(files.check_targets([path for path, _, _ in asked])) < len(asked):
-        raise InputError(f"one file each is wanted for {' and '.join(option for _, option, _ in asked)}")
+        raise InputError(f"expected one file each for {' and '.join(option for _, option, _ in asked)}")
     written = {path: os.fsencode(script(output, tasks)) for path, _, script in asked}
     named = _named_shots(shots, changes, device)
     files.check_targets(written)
@@ -150,7 +150,7 @@ def work(
         raise InputError("--here and --part are for one process; --scheduler and --workers exclude them")
     logging.disable(logging.CRITICAL)  # Dask logs every closed connection; the job reports the errors that matter
     if device is not None and not is_single:
-        raise InputError("--device is for one process; --here is wanted with it")
+        raise InputError("--device is for one process; use it together with --here")
     numbers, job = _part(part), Job.load(folder)
     with progress_bar(f"{folder}", is_shown=not quiet) as bar:
         if is_single or not (has_dask() or scheduler or workers):
@@ -242,11 +242,11 @@ def _picture_files(job: Job, output: list[Path], format: str) -> dict[str, list[
     is_file = [path.suffix.lower() in (".exr", *DEVELOPED) for path in output]
     if all(is_file):
         if len(job.names) > 1:
-            raise InputError(f"the job has {len(job.names)} pictures; a folder is wanted for --output")
+            raise InputError(f"the job has {len(job.names)} pictures; --output must be a folder")
         targets = {job.names[0]: output}
     else:
         if len(output) > 1:
-            raise InputError("one folder is wanted for --output, or files .exr, .png, .jpg, .tif and .webp")
+            raise InputError("--output must be one folder, or files .exr, .png, .jpg, .tif and .webp")
         files.make_folder(output[0])
         targets = {name: [output[0] / f"{name}.{format}"] for name in job.names}
     files.check_targets([path for paths in targets.values() for path in paths], outside=job.path)
@@ -267,7 +267,7 @@ def _named_shots(paths: list[Path], changes: Any, device: str) -> dict[str, Shot
     shots: dict[str, Shot] = {}
     for path in paths:
         if path.stem in shots:
-            raise InputError(f"{path}: two shots are called {path.stem}; other names are wanted")
+            raise InputError(f"{path}: two shots are called {path.stem}; use other names")
         shots[path.stem] = load_shot(path, changes, device)
     return shots
 
@@ -284,7 +284,7 @@ def _part(text: str | None) -> tuple[int, int] | None:
         return None
     found = re.fullmatch(r"(\d{1,6})/(\d{1,6})", text)
     if not found or not 1 <= int(found[1]) <= int(found[2]):
-        raise InputError(f'--part: "{text:.40}": K/N is wanted, 1/8 to 8/8')
+        raise InputError(f'--part: "{text:.40}": expected K/N, 1/8 to 8/8')
     return int(found[1]), int(found[2])
 
 
@@ -294,5 +294,5 @@ def _tile(text: str | None) -> tuple[int, int] | None:
     across, _, down = text.partition("x")
     down = down or across
     if not (across.isdecimal() and down.isdecimal()):
-        raise InputError(f'--tile: "{text:.40}": pixels are wanted, 128 or 128x64')
+        raise InputError(f'--tile: "{text:.40}": expected pixels, 128 or 128x64')
     return int(across), int(down)

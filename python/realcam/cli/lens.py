@@ -70,7 +70,7 @@ def draw(
     from ..drawing.lens_drawings import save_cross_section, save_states, states_of
 
     if states not in ("one", "rows", "ghost"):
-        raise InputError(f'--states: "{states:.40}" is unknown; one, rows or ghost is wanted')
+        raise InputError(f'--states: "{states:.40}" is unknown; expected one, rows or ghost')
     if states == "rows" and (rings.focus is not None or fields_deg is not None):
         raise InputError(
             "--states rows shows focus states or zoom positions, by shares of the film: --focus and "
@@ -119,7 +119,7 @@ def photo(
     from ..photography import photographic_figures
 
     if not 0 < iso < math.inf:
-        raise InputError("--iso: a positive number is wanted")
+        raise InputError("--iso: expected a positive number")
     lens = rings.set(file.lens(name))
     figures = photographic_figures(
         lens,

@@ -98,5 +98,5 @@ def _whole_numbers(text: str, option: str, between: str, count: int) -> tuple[in
     """Raises InputError."""
     words = text.split(between)
     if len(words) != count or not all(word.strip().isdecimal() and len(word) < 9 for word in words):
-        raise InputError(f'{option}: "{text:.40}": {count} whole numbers with "{between}" between are wanted')
+        raise InputError(f'{option}: "{text:.40}": expected {count} whole numbers with "{between}" between')
     return tuple(map(int, words))

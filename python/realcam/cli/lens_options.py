@@ -192,7 +192,7 @@ def check_not_the_lens(target: Path, *names: str) -> None:
     """Raises InputError where what is written would go over the file of a lens that it is about."""
     for name in names:
         if Path(name).is_file() and target.exists() and target.samefile(name):
-            raise InputError(f"{target}: is the lens file itself; another name is wanted")
+            raise InputError(f"{target}: is the lens file itself; choose another name")
 
 
 def numbers(text: str | None, option: str) -> list[float] | None:

@@ -163,12 +163,12 @@ def _variables_of(text: str, lens: Lens, bounds: Bounds) -> list[Variable]:
         return [variable for i in range(len(lens.surfaces)) for variable in _of_surface(i, text, lens, bounds)]
     if len(numbers) != {"radius": 1, "thickness": 1, "conic": 1, "aspheric": 2}.get(kind):
         raise InputError(
-            f'--vary: "{text}": {", ".join(WAYS)}, radius:2, thickness:3, conic:2 or aspheric:2:4 is wanted'
+            f'--vary: "{text}": expected {", ".join(WAYS)}, radius:2, thickness:3, conic:2 or aspheric:2:4'
         )
     try:
         number, *power = [int(part) for part in numbers]
     except ValueError:
-        raise InputError(f'--vary: "{text}": whole numbers are wanted after the colon') from None
+        raise InputError(f'--vary: "{text}": expected whole numbers after the colon') from None
     if not 1 <= number <= len(lens.surfaces):
         raise InputError(f'--vary: "{text}": there is no surface {number}; the lens has {len(lens.surfaces)}')
     surface = number - 1

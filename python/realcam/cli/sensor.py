@@ -119,10 +119,10 @@ def expose(
         if path.exists() and path.samefile(film):
             raise InputError(f"{path}: is the film itself; the raw picture needs another name")
         if path.suffix.lower() not in (".dng", ".npy", *DEVELOPED):
-            raise InputError(f"{path}: .dng, .npy (raw) or .png, .jpg, .tif, .webp (developed) is wanted")
+            raise InputError(f"{path}: expected .dng, .npy (raw) or .png, .jpg, .tif, .webp (developed)")
     for option, word, known in (("--tone", tone, ("linear", "film")), ("--demosaic", demosaic, METHODS)):
         if word not in known:
-            raise InputError(f'{option}: "{word:.60}" is unknown; {", ".join(known)} is wanted')
+            raise InputError(f'{option}: "{word:.60}" is unknown; expected {", ".join(known)}')
     chosen = Sensor.load(sensor)
     pixels, entries = read_film(film)
     if chosen.angular_response:
@@ -171,7 +171,7 @@ def _film_of(path: Path, entries: dict[str, str], pixels: np.ndarray) -> Film:
     try:
         width, height = (float(word) for word in size)
     except ValueError:
-        raise InputError(f"{path}: does not say how large its film is; an .exr of `realcam render` is wanted") from None
+        raise InputError(f"{path}: does not say how large its film is; expected an .exr of `realcam render`") from None
     return Film(width, height, (pixels.shape[1], pixels.shape[0]))
 
 
@@ -180,7 +180,7 @@ def _number(path: Path, entries: dict[str, str], name: str) -> float:
     try:
         number = float(text)
     except ValueError:
-        raise InputError(f"{path}: has no {name}; an .exr of `realcam render` is wanted") from None
+        raise InputError(f"{path}: has no {name}; expected an .exr of `realcam render`") from None
     if not 0 < number < math.inf:
         raise InputError(f"{path}: {name} must be a positive number; it is {text!r:.60}")
     return number
