@@ -2518,7 +2518,7 @@ class RenderSettings:
     larger then.
     max_bounces: 0 for direct light only, 1 for one reflection more, up to 64; "auto": as many as the shot calls for,
     by threshold_codes (docs/plan.md).
-    transport: "paths" for all ways of light, "whitted" for direct light and what mirrors and smooth glass show.
+    transport: "paths" for all light paths, "whitted" for direct light and what mirrors and smooth glass show.
     clamp_cd_m2: radiance above which what comes by a bounce is cut off, for fewer bright dots and a picture that is
     too dark; 0: never. threads: 0 for all.
     layers: names of what else Image.layers is to hold, or "all" (docs/layers.md), which leaves dual_pixel out.

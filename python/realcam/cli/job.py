@@ -27,10 +27,10 @@ from .shot_options import load_shot, shot_options
 if TYPE_CHECKING:
     from ..job import Job
 
-app = typer.Typer(help="Take pictures on many machines, in a folder that all of them see.", no_args_is_help=True)
+app = typer.Typer(help="Take pictures on many machines, in a folder that all of them share.", no_args_is_help=True)
 
 Folder = Annotated[Path, typer.Argument(help="The job's folder, as `realcam job make` made it", metavar="FOLDER")]
-Threads = Annotated[int, typer.Option(metavar="N", help="Of each process; 0: all cores", min=0, max=4096)]
+Threads = Annotated[int, typer.Option(metavar="N", help="Threads of each process; 0: all cores", min=0, max=4096)]
 
 
 ShotOptions = shot_options("ShotOptions", without=("threads",))  # the number of threads is set for each process
@@ -42,7 +42,9 @@ def make(
     shots: Annotated[
         list[Path], typer.Argument(help="Shot files (.toml), scene files, or bundled shots", metavar="SCENE")
     ],
-    output: Annotated[Path, typer.Option("--output", "-o", metavar="FOLDER", help="Of the job; it must not be there")],
+    output: Annotated[
+        Path, typer.Option("--output", "-o", metavar="FOLDER", help="Folder of the job; it must not exist yet")
+    ],
     changes: ShotOptions,  # type: ignore[valid-type]
     device: Annotated[
         str,
@@ -54,13 +56,13 @@ def make(
     ] = "auto",
     frames: Annotated[
         str | None,
-        typer.Option("--frames", metavar="A-B", help="Of a film, 1-240 or 1-240x2: what moves is where it is then"),
+        typer.Option("--frames", metavar="A-B", help="Frames of a film, 1-240 or 1-240x2"),
     ] = None,
-    fps: Annotated[float, typer.Option("--fps", metavar="N", help="Frames in a second of the scene")] = 24.0,
+    fps: Annotated[float, typer.Option("--fps", metavar="N", help="Frames per second of the scene's time")] = 24.0,
     tile: Annotated[
         str | None,
         typer.Option(
-            "--tile", metavar="PIXELS", help="Of a unit: 128, or 128x64, in steps of 32 [a second of one core]"
+            "--tile", metavar="PIXELS", help="Pixels of a unit: 128, or 128x64, in steps of 32 [a second of one core]"
         ),
     ] = None,
     sbatch: Annotated[
@@ -129,11 +131,13 @@ def work(
     here: Annotated[bool, typer.Option("--here", help="In this process alone, without Dask")] = False,
     scheduler: Annotated[
         str | None,
-        typer.Option("--scheduler", metavar="ADDRESS", help="Of a Dask scheduler: tcp://head:8786, or its .json file"),
+        typer.Option(
+            "--scheduler", metavar="ADDRESS", help="Address of a Dask scheduler: tcp://head:8786, or its .json file"
+        ),
     ] = None,
     device: Annotated[
         str | None,
-        typer.Option("--device", metavar="DEVICE", help="cuda:1, say, where a job is for GPUs; wants --here"),
+        typer.Option("--device", metavar="DEVICE", help="For example cuda:1, if a job is for GPUs; requires --here"),
     ] = None,
     quiet: options.Quiet = False,
 ) -> None:
@@ -204,9 +208,9 @@ def finish(
         ),
     ],
     format: Annotated[
-        str, typer.Option("--format", metavar="NAME", help="Of pictures in a folder: exr, png, jpg, tif or webp")
+        str, typer.Option("--format", metavar="NAME", help="Format of pictures in a folder: exr, png, jpg, tif or webp")
     ] = "exr",
-    fps: Annotated[float, typer.Option("--fps", metavar="N", help="Frames in a second of a film")] = 24.0,
+    fps: Annotated[float, typer.Option("--fps", metavar="N", help="Frames per second of a film")] = 24.0,
     device: Annotated[
         str | None, typer.Option("--device", metavar="DEVICE", help="For layers of single rays [that of the job]")
     ] = None,

@@ -47,7 +47,7 @@ def draw(
     ] = None,
     rings: lens_options.Rings,
     plane: Annotated[
-        str, typer.Option(metavar="PLANE", help="yz or xz, in which lenses that are not of revolution are others")
+        str, typer.Option(metavar="PLANE", help="yz or xz, which differ for lenses that are not rotationally symmetric")
     ] = "yz",
     rays: lens_options.Rays = 7,
     rays_from: lens_options.RaysFrom = "object",
@@ -108,7 +108,11 @@ def photo(
     circle: Circle = None,
     exposure_time: Annotated[
         str | None,
-        typer.Option("--exposure-time", metavar="TIME", help="In seconds, 1/125 or 0.008: also print exposure values"),
+        typer.Option(
+            "--exposure-time",
+            metavar="TIME",
+            help="Exposure time in seconds, 1/125 or 0.008: also print exposure values",
+        ),
     ] = None,
     iso: Annotated[float, typer.Option("--iso", metavar="ISO", help="Sensitivity, for exposure values")] = 100.0,
     file: lens_options.File,
@@ -137,7 +141,7 @@ def photo(
 @grouped
 def compare(
     first: lens_options.LensName,
-    second: Annotated[str, typer.Argument(help="Another one", metavar="LENS", autocompletion=completion_of("LENS"))],
+    second: Annotated[str, typer.Argument(help="Another lens", metavar="LENS", autocompletion=completion_of("LENS"))],
     *,
     output: Annotated[
         Path | None,

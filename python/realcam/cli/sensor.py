@@ -95,11 +95,19 @@ def expose(
         ),
     ] = "ideal",
     iso: Annotated[float | None, typer.Option("--iso", metavar="ISO", help="Sensitivity [the picture's]")] = None,
-    seed: Annotated[int, typer.Option(metavar="N", help="Of the noise of this exposure", min=0, max=2**32 - 1)] = 0,
-    serial: Annotated[int, typer.Option(metavar="N", help="Of what a sensor has for ever", min=0, max=2**32 - 1)] = 0,
+    seed: Annotated[
+        int, typer.Option(metavar="N", help="Seed of the noise of this exposure", min=0, max=2**32 - 1)
+    ] = 0,
+    serial: Annotated[
+        int, typer.Option(metavar="N", help="Seed of the sensor's fixed pattern", min=0, max=2**32 - 1)
+    ] = 0,
     temperature: Annotated[
         float | None,
-        typer.Option("--temperature", metavar="CELSIUS", help="Degrees Celsius [that of the sensor's dark current]"),
+        typer.Option(
+            "--temperature",
+            metavar="CELSIUS",
+            help="Temperature in degrees Celsius [that of the sensor's dark current]",
+        ),
     ] = None,
     tone: Annotated[
         str, typer.Option(metavar="CURVE", help="Tone curve, developed: linear (clipped) or film")
