@@ -12,7 +12,7 @@ function(realcam_widest_instruction_set variable)
         return __builtin_cpu_supports("x86-64-v4") ? 4 : __builtin_cpu_supports("x86-64-v3") ? 3 : 2;
     }]])
   if(NOT compiles)
-    message(FATAL_ERROR "The compiler cannot ask for a processor's instruction set: gcc 12 or clang 18 is wanted.")
+    message(FATAL_ERROR "The compiler cannot ask for a processor's instruction set: gcc 12 or clang 18 is required.")
   endif()
   set(${variable} v${REALCAM_MACHINE_LEVEL} PARENT_SCOPE)
 endfunction()

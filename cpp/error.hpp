@@ -54,8 +54,7 @@ class DeviceError : public Error {
 /// The system has no more threads to give, or no memory for their stacks.
 class NoThread : public DeviceError {
 public:
-    NoThread()
-        : DeviceError("the system starts no thread; more memory (ulimit -v) or threads (ulimit -u) are wanted") {}
+    NoThread() : DeviceError("the system starts no thread; allow more memory (ulimit -v) or threads (ulimit -u)") {}
 };
 
 }  // namespace realcam

@@ -96,7 +96,7 @@ def _entry(line: str, place: str) -> Figure | Run:
     if m.section not in SECTIONS:
         raise MeasurementError(f'{place}: unknown section "{m.section}"; the page has {", ".join(SECTIONS)}')
     if kind not in ("held", "broken"):
-        raise MeasurementError(f'{place}: unknown kind "{kind}"; held, broken or run is wanted')
+        raise MeasurementError(f'{place}: unknown kind "{kind}"; expected held, broken or run')
     figure = Figure(m, kind == "broken")
     if figure.within == figure.broken:
         problem = "broken by intent, but within its limit" if figure.broken else "past its limit"

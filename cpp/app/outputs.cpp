@@ -94,7 +94,7 @@ std::vector<int> frame_numbers(const std::string& text) {
     }
     if (numbers.empty())
         throw InputError("--frames: \"" + text.substr(0, 40) +
-                         "\": a number, 1-240 or 1-240x2 is wanted, the smaller one first");
+                         "\": expected a number, 1-240 or 1-240x2, the smaller one first");
     return numbers;
 }
 

@@ -80,7 +80,7 @@ void check_memory(const Film& film, LayerSet layers) {
     if (wanted > free)
         throw Error("out of memory: a picture of " + std::to_string(film.width) + " x " + std::to_string(film.height) +
                     " pixels needs " + number_text(wanted / 1e9, 3) + " GB, and " + number_text(free / 1e9, 3) +
-                    " GB are free; a smaller --resolution is wanted");
+                    " GB are free; use a smaller --resolution");
 }
 
 bool is_file(const std::string& path) {
@@ -99,7 +99,7 @@ public:
         shot::ShotRequest request = understand(words_);
         const std::vector<int> frames = words_.frames ? frame_numbers(*words_.frames) : std::vector<int>();
         if (!(words_.frames_per_second > 0 && std::isfinite(words_.frames_per_second)))
-            throw InputError("--fps: more than 0 frames in a second are wanted");
+            throw InputError("--fps must be more than 0 frames per second");
         outputs_.check(frames);
         resolve_keys(request);
         Camera camera = camera_of(request);

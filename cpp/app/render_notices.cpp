@@ -141,9 +141,8 @@ std::string exposure_notice(const Image& image, const Camera& camera, ToneCurve 
                              number_text(std::fabs(stops), 2) + " stops " + (is_dark ? "below" : "above") +
                              " middle grey at " + exposure_text(camera.exposure_time_s) + ", ISO " +
                              number_text(camera.iso) + "; ";
-    return head + "--exposure-time auto or about " + time.substr(0, time.size() - 2) +
-           (is_dark ? ", a higher --iso or a smaller --f-number is wanted"
-                    : ", a lower --iso or a larger --f-number is wanted");
+    return head + "try --exposure-time auto or about " + time.substr(0, time.size() - 2) +
+           (is_dark ? ", a higher --iso or a smaller --f-number" : ", a lower --iso or a larger --f-number");
 }
 
 namespace {

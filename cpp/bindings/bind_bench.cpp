@@ -71,7 +71,7 @@ std::map<std::string, double> lens_ray_rates(const LensSystem& lens, double seco
 
 int gpu_for_bench(const std::string& device) {
     const std::optional<int> gpu = gpu_for_rays(device);
-    if (!gpu) throw InputError("this benchmark is for a GPU; device cuda is wanted");
+    if (!gpu) throw InputError("this benchmark is for a GPU; use device cuda");
     return *gpu;
 }
 

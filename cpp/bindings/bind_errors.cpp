@@ -81,7 +81,7 @@ void bind_errors(py::module_& m) {
         "one_line", [](const std::string& message) { return text_from(io::one_line(message)); }, "message"_a,
         "A message as one line: without control characters, and what is too long for a message without its middle.");
     define<Error>(m, "RealcamError", py::reinterpret_borrow<py::object>(PyExc_Exception),
-                  "Base of all errors of realcam. The message is one line: what, where, and what is wanted.");
+                  "Base of all errors of realcam. The message is one line: what, where, and what is expected.");
     const py::object base = type_of<Error>();
     const py::object value_error = py::make_tuple(base, py::reinterpret_borrow<py::object>(PyExc_ValueError));
     define<InputError>(m, "InputError", value_error, "A value that makes no sense. Also a ValueError.");

@@ -58,7 +58,7 @@ std::optional<int> gpu_of(const oidn::Library& library, const std::string& devic
     if (device.starts_with("cuda:")) std::from_chars(device.data() + 5, device.data() + device.size(), ordinal);
     if (library.is_cuda_device_supported(ordinal)) return ordinal;
     if (device == "auto") return std::nullopt;
-    throw DeviceError("Open Image Denoise cannot use the GPU " + std::to_string(ordinal) + "; device cpu is wanted");
+    throw DeviceError("Open Image Denoise cannot use the GPU " + std::to_string(ordinal) + "; use device cpu");
 }
 
 }  // namespace

@@ -15,7 +15,7 @@ namespace {
 
 [[noreturn]] void fail_unknown(const std::string& device) {
     throw InputError("there is no device \"" + device +
-                     "\"; auto, cpu, cuda (all GPUs), cuda:0 or cuda:0,1 is wanted (`realcam devices` lists them)");
+                     "\"; expected auto, cpu, cuda (all GPUs), cuda:0 or cuda:0,1 (`realcam devices` lists them)");
 }
 
 /// Returns the ordinals after "cuda:"; empty for "cuda".
@@ -55,7 +55,7 @@ std::unique_ptr<Session> make_gpu_session(std::vector<int> ordinals) {
 int one_gpu(const std::string& device, const std::string& what_happens) {
     if (device != "cuda" && !device.starts_with("cuda:")) fail_unknown(device);
     const std::vector<int> ordinals = ordinals_of(device);
-    if (ordinals.size() > 1) throw InputError(what_happens + " on one GPU; device=\"cuda:0\", say, is wanted");
+    if (ordinals.size() > 1) throw InputError(what_happens + " on one GPU; use one, such as device=\"cuda:0\"");
     return cuda_device(ordinals.empty() ? 0 : ordinals.front()).ordinal;
 }
 

@@ -51,7 +51,7 @@ private:
 Environment of_cube(const Environment& file, const KeepGoing& keep_going) {
     if (file.height != 6 * std::int64_t{file.width})
         throw Error("says that it is a cube map, and has " + std::to_string(file.width) + " x " +
-                    std::to_string(file.height) + " pixels; six squares below each other are wanted");
+                    std::to_string(file.height) + " pixels; expected six squares below each other");
     const CubeMap cube(file);
     Environment out;
     out.width = 4 * file.width;

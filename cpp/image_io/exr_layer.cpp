@@ -145,7 +145,7 @@ ExrLayer choose_layer(const std::vector<EncodedHeader>& parts, const std::string
     std::vector<int> channels = layer.picture();
     for (const int channel : channels)
         if (parts[layer.part].channel_names[static_cast<std::size_t>(channel)].is_number)
-            throw Error("has whole numbers (UINT) in its channels, which are no light; HALF or FLOAT is wanted");
+            throw Error("has whole numbers (UINT) in its channels, which are no light; expected HALF or FLOAT");
     return {layer.part, std::move(channels)};
 }
 

@@ -57,9 +57,10 @@ std::unique_ptr<OpenPicture> open_picture(const std::string& path, std::span<con
         beginning.resize(static_cast<std::size_t>(file.gcount()));
     }
     const std::string format = image_format(beginning, path);
-    if (format.empty()) throw Error(std::string("is no picture; ") + kReadFormats + " is wanted");
+    if (format.empty()) throw Error(std::string("is no picture; expected ") + kReadFormats);
     if (!layer.empty() && format != "openexr")
-        throw Error("has no layers, and layer " + io::in_quotes(layer) + " is wanted; only OpenEXR files have them");
+        throw Error("has no layers, and layer " + io::in_quotes(layer) +
+                    " was requested; only OpenEXR files have layers");
     auto picture = format == "png"   ? open_png(path, bytes)
                    : format == "hdr" ? open_radiance(path, bytes)
                                      : open_with_openimageio(format, path, bytes, layer);

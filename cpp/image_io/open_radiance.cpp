@@ -125,7 +125,7 @@ private:
         is_xyz_ = format == "32-bit_rle_xyze";
         if (!is_xyz_ && format != "32-bit_rle_rgbe")
             throw Error("is a Radiance picture of the format " + io::in_quotes(format) +
-                        "; 32-bit_rle_rgbe or 32-bit_rle_xyze is wanted");
+                        "; expected 32-bit_rle_rgbe or 32-bit_rle_xyze");
     }
 
     template <std::size_t N>

@@ -146,12 +146,12 @@ void settle_light(Environment& environment, const std::string& path, const WarnO
     }
     if (wrong.count > 0)
         throw ImageFileError(path + ": " + pixels_are(wrong.count) + " no light" + wrong.text(environment) +
-                             "; numbers from 0 to 1e20 cd/m^2 are wanted");
+                             "; expected numbers from 0 to 1e20 cd/m^2");
     if (negative.count == 0) return;
     const std::string text = pixels_are(negative.count) + " negative" + negative.text(environment);
     if (missing > kMostNegative * light)
         throw ImageFileError(path + ": " + text +
-                             "; numbers from 0 to 1e20 cd/m^2 are wanted, and these are more than roundings");
+                             "; expected numbers from 0 to 1e20 cd/m^2, and these are more than rounding errors");
     for (Color& p : environment.pixels) p = {std::max(p.r, 0.0f), std::max(p.g, 0.0f), std::max(p.b, 0.0f)};
     if (warn) warn(path + ": " + text + "; 0 is taken for negative numbers");
 }
@@ -171,7 +171,7 @@ Environment read_environment(const std::string& path, const std::string& layer, 
     } catch (const Cancelled&) {
         throw;
     } catch (const Error& error) {
-        throw ImageFileError(path + ": " + error.what() + "; a latitude-longitude picture was wanted");
+        throw ImageFileError(path + ": " + error.what() + "; expected a latitude-longitude picture");
     }
     settle_light(environment, path, warn);
     return environment;
@@ -218,7 +218,7 @@ FilmFile read_film(const std::string& path, const KeepGoing& keep_going) {
     try {
         const auto picture = open_picture(path, {});
         if (!picture->is_linear || picture->channels < 3)
-            throw Error("holds no exposure; an .exr that realcam has written is wanted");
+            throw Error("holds no exposure; expected an .exr that realcam has written");
         check_size(*picture, io::kMostTexturePixels, 3 * sizeof(float));
         for (const auto& [name, value] : picture->entries)
             if (!io::is_utf8(name) || !io::is_utf8(value))

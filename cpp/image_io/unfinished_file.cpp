@@ -86,7 +86,7 @@ void check_no_input(const std::string& output) {
     for (const std::string& input : io::recorded_inputs())
         if (fs::equivalent(output, input, error))
             throw InputError(io::in_quotes(output) + " is a file that the output is made from (" +
-                             io::printable(input) + "); another name is wanted");
+                             io::printable(input) + "); choose another name");
 }
 
 void UnfinishedFile::check_target() const {
@@ -95,8 +95,8 @@ void UnfinishedFile::check_target() const {
         if (errno != ENOENT) fail(errno);
         return;
     }
-    if (S_ISDIR(status.st_mode)) throw ImageFileError(path_ + ": is a folder; the name of a file is wanted");
-    if (!S_ISREG(status.st_mode)) throw ImageFileError(path_ + ": is a pipe or a device; the name of a file is wanted");
+    if (S_ISDIR(status.st_mode)) throw ImageFileError(path_ + ": is a folder; expected the name of a file");
+    if (!S_ISREG(status.st_mode)) throw ImageFileError(path_ + ": is a pipe or a device; expected the name of a file");
     if (access(target_.c_str(), W_OK) != 0) fail(errno);
     check_no_input(path_);
 }

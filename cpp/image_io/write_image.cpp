@@ -36,7 +36,7 @@ const WrittenFormat& format_of(const std::string& path) {
     for (const WrittenFormat& format : kDeveloped)
         if (suffix == format.suffix) return format;
     throw ImageFileError(path + ": " + (suffix.empty() ? "there is no suffix" : "\"" + suffix + "\" is not written") +
-                         "; .png, .jpg, .tif, .webp (developed) or .exr (exposure and depth) is wanted");
+                         "; expected .png, .jpg, .tif, .webp (developed) or .exr (exposure and depth)");
 }
 
 /// Throws ImageFileError for errors that UnfinishedFile could report only in the system's words.

@@ -28,7 +28,7 @@ namespace {
 /// all formats need.
 void check_file(const std::string& path) {
     const std::uint64_t size = RegularFile(path).size();
-    if (size == 0) throw SceneFileError(path + ": is empty; a scene with triangles is wanted");
+    if (size == 0) throw SceneFileError(path + ": is empty; expected a scene with triangles");
     if (const std::string why = too_much_memory(size); !why.empty()) throw SceneFileError(path + ": holds " + why);
 }
 

@@ -88,7 +88,7 @@ void validate_transforms(const Assembly& assembly) {
 
 void validate(const Assembly& assembly) {
     if (!assembly.static_geometry || assembly.triangle_count() == 0)
-        throw InputError("the scene is empty; at least one triangle is wanted");
+        throw InputError("the scene is empty; expected at least one triangle");
     constexpr std::size_t kMostInstances = std::size_t{1} << 28;
     if (assembly.instances.size() > kMostInstances)
         throw InputError("a scene holds at most " + std::to_string(kMostInstances) + " instances");

@@ -81,7 +81,7 @@ private:
         const auto one_each = [&](std::size_t size, const char* what) {
             if (size != 0 && size != count) {
                 fail(std::to_string(size) + " " + what + " for " + std::to_string(count) +
-                     " vertices; none or one for each is wanted");
+                     " vertices; expected none or one for each");
             }
         };
         one_each(scene_.normals.size(), "normals");
@@ -124,7 +124,7 @@ private:
         const auto textures = static_cast<std::int64_t>(scene_.textures.size());
         if (!scene_.material_names.empty() && scene_.material_names.size() != scene_.materials.size())
             fail(std::to_string(scene_.material_names.size()) + " names for " +
-                 std::to_string(scene_.materials.size()) + " materials; none or one for each is wanted");
+                 std::to_string(scene_.materials.size()) + " materials; expected none or one for each");
         for (std::size_t i = 0; i < scene_.materials.size(); ++i) {
             const Material& m = scene_.materials[i];
             require(is_reflectance(m.diffuse), "material", i, "diffuse reflectance must be finite and not negative");
@@ -169,7 +169,7 @@ private:
             const std::size_t texels =
                 static_cast<std::size_t>(std::max(t.width, 0)) * static_cast<std::size_t>(std::max(t.height, 0));
             require(texels > 0 && (t.rgba.empty() ? t.linear_rgba.size() : t.rgba.size()) == 4 * texels, "texture", i,
-                    "width x height x 4 numbers are wanted");
+                    "expected width x height x 4 numbers");
             checkpoint_.pass(t.linear_rgba.size());
             for (const float v : t.linear_rgba)
                 require(v >= 0 && std::isfinite(v), "texture", i, "must hold finite numbers, none below 0");
@@ -201,7 +201,7 @@ private:
         if (e.pixels.empty()) return;
         if (e.width <= 0 || e.height <= 0 ||
             e.pixels.size() != static_cast<std::size_t>(e.width) * static_cast<std::size_t>(e.height)) {
-            fail("environment: width x height pixels are wanted");
+            fail("environment: expected width x height pixels");
         }
         if (!std::all_of(e.pixels.begin(), e.pixels.end(), [](Color c) { return is_light(c, brightest); })) {
             fail("environment: radiance must lie between 0 and 1e20 cd/m^2 in every pixel");
@@ -227,7 +227,7 @@ void validate(const Scene& scene, const std::string& file, bool may_be_empty) {
 void SceneChecks::check(const Assembly& scene, const std::string& file, const KeepGoing& keep_going) {
     Checkpoint checkpoint(keep_going);
     try {
-        if (!scene.static_geometry) throw InputError("the scene is empty; at least one triangle is wanted");
+        if (!scene.static_geometry) throw InputError("the scene is empty; expected at least one triangle");
         if (!same_parts(last_, scene)) {
             check_parts(scene, file, checkpoint);
             validate(scene);

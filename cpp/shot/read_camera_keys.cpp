@@ -80,7 +80,7 @@ void read_keys(const ShotTable& shot, ShotRequest& request) {
 void read_shake(const ShotTable& shot, Shake& shake) {
     const toml::node* node = shot.find("shake");
     if (!node) return;
-    if (!node->is_table()) shot.fail("a table [shake] is wanted", node);
+    if (!node->is_table()) shot.fail("expected a table [shake]", node);
     const ShotTable table(*node->as_table(), shot.file());
     table.allow({"file", "rms_deg", "rms_mm", "corner_hz", "seed"});
     if (const std::string file = table.path("file"); !file.empty()) shake.curve = read_shake_curve(file);

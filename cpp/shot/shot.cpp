@@ -45,8 +45,8 @@ std::string film_notice(const LensSystem& lens, const Film& film) {
     if (made_for >= 0.99 * hypotenuse(film.width_mm, film.height_mm)) return "";
     char text[160];
     std::snprintf(text, sizeof text,
-                  "the lens is made for a film of %.4g x %.4g mm, and the shot has %.4g x %.4g mm; film_mm says which "
-                  "is wanted",
+                  "the lens is made for a film of %.4g x %.4g mm, and the shot has %.4g x %.4g mm; film_mm sets "
+                  "the film size",
                   lens.film_width, lens.film_height, film.width_mm, film.height_mm);
     return text;
 }

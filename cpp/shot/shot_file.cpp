@@ -99,7 +99,7 @@ public:
         : table_(table, path, &changes) {}
 
     ShotRequest read() const {
-        if (table_.number("format") != kFormat) table_.fail("format = " + std::to_string(kFormat) + " is wanted");
+        if (table_.number("format") != kFormat) table_.fail("expected format = " + std::to_string(kFormat));
         ShotRequest shot;
         shot.scene = table_.path("scene");
         if (shot.scene.empty()) table_.fail("scene is missing: the file to photograph");

@@ -51,7 +51,7 @@ public:
         std::vector<ShotTable> all;
         const toml::node* node = find(key);
         if (!node) return all;
-        if (!node->is_array_of_tables()) fail("tables [[" + std::string(key) + "]] are wanted", node);
+        if (!node->is_array_of_tables()) fail("expected tables [[" + std::string(key) + "]]", node);
         for (const toml::node& item : *node->as_array()) all.push_back(ShotTable(*item.as_table(), file()));
         return all;
     }
@@ -61,9 +61,9 @@ public:
         std::vector<std::pair<std::string, ShotTable>> all;
         const toml::node* node = find(key);
         if (!node) return all;
-        if (!node->is_table()) fail("tables [" + std::string(key) + ".NAME] are wanted", node);
+        if (!node->is_table()) fail("expected tables [" + std::string(key) + ".NAME]", node);
         for (const auto& [name, item] : *node->as_table()) {
-            if (!item.is_table()) fail("tables [" + std::string(key) + ".NAME] are wanted", &item);
+            if (!item.is_table()) fail("expected tables [" + std::string(key) + ".NAME]", &item);
             all.emplace_back(std::string(name.str()), ShotTable(*item.as_table(), file()));
         }
         return all;

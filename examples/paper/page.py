@@ -39,7 +39,7 @@ def save_page(
     """
     target = Path(path)
     if target.suffix.lower() != ".html":
-        raise ImageFileError(f"{target}: unknown suffix; .html is wanted")
+        raise ImageFileError(f"{target}: unknown suffix; expected .html")
     unknown = [name for name in only if name not in EXPERIMENTS]
     if unknown:
         raise InputError(f'unknown experiment "{unknown[0]}"; {", ".join(EXPERIMENTS)} are known')

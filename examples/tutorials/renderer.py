@@ -10,7 +10,7 @@ your program is thirty lines of numpy that see spheres on a floor.
 # A renderer
 # ----------
 #
-# All that is wanted of it is one function: the radiance along rays. Origins are in metres and directions have length 1,
+# Only one function of it is needed: the radiance along rays. Origins are in metres and directions have length 1,
 # both as arrays of shape (N, 3). The floor is y = 0, and the spheres stand on it.
 
 import matplotlib.pyplot as plt

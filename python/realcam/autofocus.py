@@ -79,8 +79,8 @@ def autofocus(
             return Autofocus(camera, tuple(distances), tuple(disparities))
         if len(disparities) == MOST_STEPS:
             raise InputError(
-                f"no focus was found in {MOST_STEPS} steps; the disparity is still {disparity:.3g} pixels (a window "
-                "with one depth in it, or more samples are wanted)"
+                f"no focus was found in {MOST_STEPS} steps; the disparity is still {disparity:.3g} pixels (use a "
+                "window with one depth in it, or more samples)"
             )
         if len(disparities) > 1 and disparity != disparities[-2]:
             # Secant slope of the last step, clamped because the first images may be matched wrongly.
@@ -118,9 +118,7 @@ def _disparity_px(session: Session, region: tuple[int, int, int, int], spp: int)
     )
     best = int(matches.argmax())
     if matches[best] < LEAST_CORRELATION:
-        raise InputError(
-            "the window has too little contrast across its columns to be focused on; another place is wanted"
-        )
+        raise InputError("the window has too little contrast across its columns to be focused on; choose another place")
     if best in (0, 2 * most):
         return float(shifts[best])
     before, here, after = matches[best - 1 : best + 2]

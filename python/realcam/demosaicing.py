@@ -18,9 +18,9 @@ MARGIN = 8
 def demosaiced(mosaic: np.ndarray, pattern: str, method: str) -> np.ndarray:
     """Demosaics a (H, W) mosaic, best white-balanced beforehand, to (H, W, 3) float32. Raises InputError."""
     if method not in METHODS:
-        raise InputError(f"unknown demosaicing {method!r:.60}; {', '.join(METHODS)} is wanted")
+        raise InputError(f"unknown demosaicing {method!r:.60}; expected one of {', '.join(METHODS)}")
     if min(mosaic.shape) < 2:
-        raise InputError("a mosaic of at least 2 x 2 pixels is wanted")
+        raise InputError("the mosaic must have at least 2 x 2 pixels")
     functions = _functions()
     continued = np.pad(mosaic, MARGIN, mode="reflect")
     colors = functions[method](continued, pattern)[MARGIN:-MARGIN, MARGIN:-MARGIN]

@@ -48,7 +48,7 @@ def fields_at(lens: Lens, shares: Sequence[float], object_distance_m: float | No
     Raises InputError if no light passes the lens, or if a fraction does not lie between -1 and 1.
     """
     if not all(-1 <= share <= 1 for share in shares):
-        raise InputError("fields are shares of the film's corner: numbers from -1 to 1 are wanted")
+        raise InputError("fields are shares of the film's corner: they must be numbers from -1 to 1")
     corner = 0.5 * math.hypot(*lens.film_mm)
     edge = angle_of_height(lens, corner, object_distance_m)
     fields = []
@@ -70,7 +70,7 @@ def fields_along(lens: Lens, shares: Sequence[float], axis: int) -> tuple[Field,
     InputError if no light passes the lens.
     """
     if not all(-1 <= share <= 1 for share in shares):
-        raise InputError("fields are shares of the film's side: numbers from -1 to 1 are wanted")
+        raise InputError("fields are shares of the film's side: they must be numbers from -1 to 1")
     probes = _PROBES if axis == 1 else _PROBES[:, ::-1]
     from_middle = np.abs(probes[:, axis])
     fields = []

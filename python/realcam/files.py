@@ -29,7 +29,7 @@ def check_target(path: str | os.PathLike[str], suffixes: Sequence[str] = ()) -> 
     system_name(path)
     if suffixes and Path(path).suffix.lower() not in suffixes:
         known = ", ".join(suffixes[:-1]) + (" or " if suffixes[1:] else "") + suffixes[-1]
-        raise ImageFileError(f"{os.fspath(path)}: unknown suffix; {known} is wanted")
+        raise ImageFileError(f"{os.fspath(path)}: unknown suffix; expected {known}")
     with _errors_named(path):
         why = _why_no_file(_followed(path))
     if why:
@@ -44,7 +44,7 @@ def check_targets(paths: Iterable[Path], *, outside: Path | None = None) -> set[
     followed = {check_target(path).resolve() for path in paths}
     for path in followed:
         if outside is not None and path.is_relative_to(outside.resolve()):
-            raise InputError(f"{path}: lies in the folder {outside}, which the output is made from; another is wanted")
+            raise InputError(f"{path}: lies in the folder {outside}, which the output is made from; choose another")
     return followed
 
 
@@ -136,9 +136,9 @@ def _why_no_file(target: Path) -> str:
     if not target.exists():
         return ""
     if target.is_dir():
-        return "is a folder; the name of a file is wanted"
+        return "is a folder; expected the name of a file"
     if not target.is_file():
-        return "is a pipe or a device; the name of a file is wanted"
+        return "is a pipe or a device; expected the name of a file"
     return "" if os.access(target, os.W_OK) else "cannot be written: Permission denied"
 
 

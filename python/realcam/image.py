@@ -127,7 +127,7 @@ class Image:
         no half-written file is left. Existing files are replaced, even those that the scene was read from.
         """
         if tone not in ("film", "linear"):
-            raise InputError(f'unknown tone curve "{tone}"; film or linear is wanted')
+            raise InputError(f'unknown tone curve "{tone}"; expected film or linear')
         _core._write_picture(system_name(path), self, tone == "film")
 
     def metadata(self) -> dict[str, str]:

@@ -164,7 +164,7 @@ class RawImage:
             )
         else:
             raise InputError(
-                f"{os.fsdecode(path)}: .dng, .npy (the mosaic) or .png, .jpg, .tif, .webp (developed) is wanted"
+                f"{os.fsdecode(path)}: expected .dng, .npy (the mosaic) or .png, .jpg, .tif, .webp (developed)"
             )
 
     def _negative(self) -> dng.Negative:

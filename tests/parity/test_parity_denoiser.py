@@ -50,7 +50,7 @@ def test_auto_takes_the_gpu(noisy: rc.Image) -> None:
 
 
 def test_a_gpu_that_is_not_there_is_told(noisy: rc.Image) -> None:
-    with pytest.raises(rc.DeviceError, match="cannot use the GPU 99; device cpu is wanted"):
+    with pytest.raises(rc.DeviceError, match="cannot use the GPU 99; use device cpu"):
         noisy.denoised(device="cuda:99")
 
 

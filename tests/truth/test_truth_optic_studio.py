@@ -93,5 +93,5 @@ def test_reference_sphere_through_the_paraxial_exit_pupil() -> None:
         difference = theirs.opd_waves - ours.opd_waves
         np.testing.assert_allclose(difference[good], wanted[good], rtol=2e-5, atol=1e-8)
         assert np.abs(wanted[good]).max() > 1e-6
-    with pytest.raises(rc.InputError, match='unknown exit_pupil "entrance"; real or paraxial'):
+    with pytest.raises(rc.InputError, match='unknown exit_pupil "entrance"; expected real or paraxial'):
         lens.wavefront(exit_pupil="entrance")

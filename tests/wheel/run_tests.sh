@@ -9,7 +9,7 @@ shift
 tag=$("$python" -c 'import sys; print("cp%d%d" % sys.version_info[:2])')
 mapfile -t wheels < <(compgen -G "dist/realcam-*-$tag-$tag-*.whl")
 if ((${#wheels[@]} != 1)); then
-    echo "realcam: one wheel for $tag is wanted in dist, and there are ${#wheels[@]}; ./run wheel makes one" >&2
+    echo "realcam: expected one wheel for $tag in dist, found ${#wheels[@]}; ./run wheel makes one" >&2
     exit 2
 fi
 mapfile -t -O 1 wheels < <(compgen -G "dist/realcam_cuda13-*.whl")

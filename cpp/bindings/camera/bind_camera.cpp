@@ -29,7 +29,7 @@ std::tuple<double, double, double> triple_of(Vec3d v) {
 
 CameraModel model_from(const std::string& name) {
     if (const auto model = shot::model_named(name)) return *model;
-    throw InputError("unknown camera model \"" + name + "\"; pinhole, thin, mapped, thick or full is wanted");
+    throw InputError("unknown camera model \"" + name + "\"; expected pinhole, thin, mapped, thick or full");
 }
 
 Film make_film(double width_mm, double height_mm, std::pair<int, int> resolution, std::pair<double, double> shift_mm) {

@@ -23,7 +23,7 @@ using Doubles = InputArray<double>;
 ProjectionRay projection_ray_from(const std::string& name) {
     if (name == "light") return ProjectionRay::light;
     if (name == "chief") return ProjectionRay::chief;
-    throw InputError("unknown ray \"" + name + "\"; light or chief is wanted");
+    throw InputError("unknown ray \"" + name + "\"; expected light or chief");
 }
 
 /// Returns the projection rays of a camera; caches the last result, because most programs use the same lens and film

@@ -111,9 +111,9 @@ py::array_t<std::uint16_t> expose(const Sensor& sensor, const InputArray<float>&
                                   double iso, const std::string& illuminant, std::optional<double> temperature_c,
                                   std::int64_t seed, std::int64_t serial, int threads) {
     if (exposure.ndim() != 3 || exposure.shape(2) != 3 || exposure.size() == 0)
-        throw InputError("an exposure of the shape (H, W, 3) is wanted");
+        throw InputError("expected an exposure of shape (H, W, 3)");
     if (exposure.shape(0) * exposure.shape(1) > std::int64_t{0xffffffff})
-        throw InputError("a picture of less than 2^32 pixels is wanted");
+        throw InputError("expected a picture of fewer than 2^32 pixels");
     const auto height = static_cast<int>(exposure.shape(0));
     py::array_t<std::uint16_t> raw({exposure.shape(0), exposure.shape(1)});
     SensorRequest request{};

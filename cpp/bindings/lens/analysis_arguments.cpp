@@ -30,7 +30,7 @@ std::vector<PupilPoint> pattern_from(const std::string& pattern, int samples,
     if (pattern == "grid") return square_grid(samples, loop);
     if (pattern == "rings") return gauss_rings(samples, loop);
     if (pattern == "hexapolar") return hexapolar(samples, loop);
-    throw InputError("unknown pattern \"" + pattern + "\"; grid, rings or hexapolar is wanted");
+    throw InputError("unknown pattern \"" + pattern + "\"; expected grid, rings or hexapolar");
 }
 
 }  // namespace realcam::bindings

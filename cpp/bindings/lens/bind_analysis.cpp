@@ -99,11 +99,11 @@ PythonWavefront make_wavefront(const LensSystem& lens, double field_deg, std::op
     const FieldPoint field = field_from(field_deg, object_distance_m, film_mm);
     std::vector<PupilPoint> points = pattern_from(pattern, samples, pupil);
     if (reference != "chief" && reference != "centroid")
-        throw InputError("unknown reference \"" + reference + "\"; chief or centroid is wanted");
+        throw InputError("unknown reference \"" + reference + "\"; expected chief or centroid");
     if (exit_pupil != "real" && exit_pupil != "paraxial")
-        throw InputError("unknown exit_pupil \"" + exit_pupil + "\"; real or paraxial is wanted");
+        throw InputError("unknown exit_pupil \"" + exit_pupil + "\"; expected real or paraxial");
     if (remove && *remove != "tilt" && *remove != "focus")
-        throw InputError("cannot remove \"" + *remove + "\"; tilt, focus or None is wanted");
+        throw InputError("cannot remove \"" + *remove + "\"; expected tilt, focus or None");
     const Unlocked unlocked;
     const RayLoop loop = parallel_ray_loop(heed_signals);
     return {wavefront_of(lens, wavelength, field_rays(lens, wavelength, field, std::move(points), loop), distance,

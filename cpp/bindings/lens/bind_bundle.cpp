@@ -98,7 +98,7 @@ Typed<"NDArray[float32]", py::array> make_film_points(const LensSystem& lens, do
         throw InputError("film_distance_mm must be a finite length, or None for the film");
     if (!(count >= 1 && count <= (std::int64_t{1} << 31))) throw InputError("count must lie between 1 and 2147483648");
     if (pattern != "even" && pattern != "grid")
-        throw InputError("unknown pattern \"" + pattern + "\"; even or grid is wanted");
+        throw InputError("unknown pattern \"" + pattern + "\"; expected even or grid");
     const py::dtype type = py::dtype::from_args(dtype);
     if (type.kind() != 'f' || (type.itemsize() != 4 && type.itemsize() != 8))
         throw InputError("dtype must be \"float64\" or \"float32\"");

@@ -68,7 +68,7 @@ CoatingLayer make_layer(const CoatingMaterialLike& material, std::optional<doubl
     if (thickness_nm.has_value() == waves.has_value())
         throw InputError("a layer needs exactly one of thickness_nm and thickness_waves");
     if (waves.has_value() != design_wavelength_nm.has_value())
-        throw InputError("thickness_waves and design_wavelength_nm are wanted together");
+        throw InputError("thickness_waves and design_wavelength_nm must be given together");
     if (design_wavelength_nm && !(*design_wavelength_nm >= 100 && *design_wavelength_nm <= 20000))
         throw InputError("the design wavelength must lie between 100 and 20000 nm");
     layer.thickness_nm = waves ? thickness_of_waves(layer.material, *waves, *design_wavelength_nm) : *thickness_nm;
@@ -102,7 +102,7 @@ CoatingResponse response(const Coating& coating, const ArrayLike& angle_deg, con
     if (coating.kind == CoatingKind::unknown) throw InputError("of an unknown coating nothing can be said");
     const bool mirror = coating.is_for_mirrors();
     if (!mirror && inside.is_none())
-        throw InputError("inside, the material under the coating, is wanted; only a mirror has its own");
+        throw InputError("inside, the material under the coating, is required; only a mirror has its own");
     if (mirror && from_inside) throw InputError("no light comes from inside a mirror");
     const Glass out = glass_from(outside), in = mirror ? out : glass_from(inside);
     const py::tuple both = py::module_::import("numpy").attr("broadcast_arrays")(angle_deg, wavelength_nm);

@@ -56,8 +56,7 @@ std::vector<LensVariable> variables_from(const Variables& variables) {
             std::string all;
             for (const auto& [known, quantity] : quantities()) all += known + ", ";
             for (const FormWords& words : kFormWords) all += words.key + std::string(", ");
-            throw InputError("unknown quantity \"" + name + "\"; one of " + all.substr(0, all.size() - 2) +
-                             " is wanted");
+            throw InputError("unknown quantity \"" + name + "\"; expected one of " + all.substr(0, all.size() - 2));
         }
         list.push_back({found->second, surface, number, number_y});
     }

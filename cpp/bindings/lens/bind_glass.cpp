@@ -49,7 +49,7 @@ void bind_glass(py::module_& m) {
             "constant",
             [](double index) {
                 if (!(index >= 1) || !std::isfinite(index))
-                    throw InputError("a refractive index of at least 1 is wanted");
+                    throw InputError("expected a refractive index of at least 1");
                 return Glass::constant(index);
             },
             "index"_a, "The same index at every wavelength.")

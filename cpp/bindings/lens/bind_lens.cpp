@@ -23,7 +23,7 @@ FieldPoint field_from(double field_deg, std::optional<double> object_distance_m,
     FieldPoint field{field_deg * std::numbers::pi / 180};
     if (object_distance_m) field.object_distance = 1000 * *object_distance_m;
     if (!film_mm) return field;
-    if (field_deg != 0) throw InputError("field_deg and film_mm both name a field; one of them is wanted");
+    if (field_deg != 0) throw InputError("field_deg and film_mm both name a field; specify only one of them");
     if (!std::isfinite(film_mm->first) || !std::isfinite(film_mm->second))
         throw InputError("film_mm must be a point of the film, (x, y) in mm from its middle");
     field.film = Vec2<double>{film_mm->first, film_mm->second};
@@ -69,7 +69,7 @@ LensSystem make_lens(std::vector<Surface> surfaces, const std::string& name, std
     if (!film_distance) film_distance = film_distance_at_infinity(lens);
     if (!film_distance)
         throw LensFileError(
-            "the lens makes no real image of infinity behind its last surface; film_distance_mm is wanted");
+            "the lens makes no real image of infinity behind its last surface; film_distance_mm is required");
     lens.film_distance = *film_distance;
     if (const std::string why = film_distance_error(lens); !why.empty()) throw LensFileError(why);
     return lens;

@@ -53,7 +53,7 @@ PsfMethod method_from(const std::string& name) {
     if (name == "direct") return PsfMethod::direct;
     if (name == "fft") return PsfMethod::fft;
     if (name == "geometric") return PsfMethod::geometric;
-    throw InputError("unknown method \"" + name + "\"; direct, fft or geometric is wanted");
+    throw InputError("unknown method \"" + name + "\"; expected direct, fft or geometric");
 }
 
 /// Computes the PSF with numpy's FFT.
@@ -93,7 +93,7 @@ Psf make_psf(const LensSystem& lens, double field_deg, const std::optional<Wavel
              const std::string& centre, std::optional<std::int64_t> rays,
              const std::optional<std::vector<double>>& weights) {
     if (centre != "chief" && centre != "centroid")
-        throw InputError("unknown centre \"" + centre + "\"; chief or centroid is wanted");
+        throw InputError("unknown centre \"" + centre + "\"; expected chief or centroid");
     if (pitch_um && !(*pitch_um > 0)) throw InputError("psf: pitch_um must be a positive length");
     if (rays && *rays <= 0) throw InputError("psf: rays must be a positive number");
     if (film_distance_mm && !std::isfinite(*film_distance_mm))
@@ -213,7 +213,7 @@ double transmission(const LensSystem& lens, double field_deg, std::optional<doub
                     std::optional<double> object_distance_m, const std::string& polarisation,
                     const std::string& pattern, int samples, const std::optional<InputArray<double>>& pupil) {
     if (polarisation != "traced" && polarisation != "averaged")
-        throw InputError("unknown polarisation \"" + polarisation + "\"; traced or averaged is wanted");
+        throw InputError("unknown polarisation \"" + polarisation + "\"; expected traced or averaged");
     const double wavelength = wavelength_or_design(lens, wavelength_nm);
     std::vector<PupilPoint> points = pattern_from(pattern, samples, pupil);
     const Unlocked unlocked;

@@ -14,7 +14,7 @@ constexpr const char* kTypeNames[] = {"refracting", "mirror", "stop", "aperture"
 SurfaceType type_from(const std::string& name) {
     for (int i = 0; i < 4; ++i)
         if (name == kTypeNames[i]) return static_cast<SurfaceType>(i);
-    throw InputError("unknown surface type \"" + name + "\"; refracting, mirror, stop or aperture is wanted");
+    throw InputError("unknown surface type \"" + name + "\"; expected refracting, mirror, stop or aperture");
 }
 
 std::vector<double> aspheric_from(const std::map<int, double>& coefficients) {

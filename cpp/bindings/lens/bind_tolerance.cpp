@@ -61,7 +61,7 @@ ToleranceEvaluator make_judge(const LensSystem& lens, const Numbers& fields_rad,
 
 void check_sizes(const Numbers& sizes, int dimension, std::size_t errors) {
     if (sizes.ndim() != dimension || sizes.shape(dimension - 1) != static_cast<py::ssize_t>(errors))
-        throw InputError("as many sizes as errors are wanted, " + std::to_string(errors));
+        throw InputError("expected one size for each error, " + std::to_string(errors));
 }
 
 Typed<"dict[str, NDArray[float64]]", py::dict> judge(const ToleranceEvaluator& judge, const ErrorNames& names,

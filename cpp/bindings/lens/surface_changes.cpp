@@ -21,7 +21,7 @@ void allow(const py::dict& given, const std::string& what, const std::vector<std
             known |= name == allowed;
             list += (list.empty() ? "" : ", ") + allowed;
         }
-        if (!known) throw InputError(what + " has no key \"" + name + "\"; wanted are " + list);
+        if (!known) throw InputError(what + " has no key \"" + name + "\"; expected one of " + list);
     }
 }
 
@@ -146,7 +146,7 @@ void change_form(Surface& surface, const FormChanges& to) {
     SurfaceForm& form = surface.form;
     if (to.form) {
         if (*to.form != "conic" && *to.form != "biconic" && *to.form != "toroid")
-            throw InputError("unknown form \"" + *to.form + "\"; conic, biconic or toroid is wanted");
+            throw InputError("unknown form \"" + *to.form + "\"; expected conic, biconic or toroid");
         form.base = *to.form == "toroid"    ? BaseForm::toroid
                     : *to.form == "biconic" ? BaseForm::biconic
                                             : BaseForm::conic;

@@ -37,7 +37,7 @@ SplatFilm splat_film_from(const py::dict& splats) {
     film.height = static_cast<int>(sums.shape(1));
     film.width = static_cast<int>(sums.shape(2));
     if (film.blocks.size() != static_cast<std::size_t>(sums.shape(0)))
-        throw InputError("a number of blocks is wanted for each film");
+        throw InputError("expected a number of blocks for each film");
     film.sums.resize(static_cast<std::size_t>(sums.size()) / 3);
     for (std::size_t i = 0; i < film.sums.size(); ++i)
         for (std::size_t c = 0; c < 3; ++c) film.sums[i].units[c] = sums.data()[3 * i + c];

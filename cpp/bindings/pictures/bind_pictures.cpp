@@ -110,7 +110,7 @@ Typed<"tuple[NDArray[float32], list[tuple[str, str]]]", py::tuple> read_film(con
 
 void write_codes(const py::bytes& path, const py::array_t<std::uint8_t, py::array::c_style>& codes,
                  const Entries& entries) {
-    if (codes.ndim() != 3 || codes.shape(2) != 3) throw InputError("codes of the shape (H, W, 3) are wanted");
+    if (codes.ndim() != 3 || codes.shape(2) != 3) throw InputError("expected codes of shape (H, W, 3)");
     const std::string file = path;
     const Unlocked unlocked;
     image_io::write_codes(file, static_cast<int>(codes.shape(1)), static_cast<int>(codes.shape(0)), codes.data(),

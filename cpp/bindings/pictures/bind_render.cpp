@@ -30,7 +30,7 @@ void warn(const std::string& text) {
 
 ToneCurve tone_curve_from(const std::string& name) {
     if (const auto tone = shot::tone_named(name)) return *tone;
-    throw InputError("unknown tone curve \"" + name + "\"; film or linear is wanted");
+    throw InputError("unknown tone curve \"" + name + "\"; expected film or linear");
 }
 
 std::uint32_t seed_from(std::int64_t seed, const char* what) {

@@ -160,7 +160,7 @@ void set_named(Draft& d, Word word, const char* what, const Find& find, const ch
     const auto name = word.cast<std::string>();
     const auto found = find(name);
     if (!found)
-        throw InputError("unknown " + std::string(what) + " \"" + name.substr(0, 60) + "\"; " + wanted + " is wanted");
+        throw InputError("unknown " + std::string(what) + " \"" + name.substr(0, 60) + "\"; expected " + wanted);
     d.settings.*member = *found;
 }
 
@@ -299,13 +299,13 @@ constexpr const char* kDoc =
     R"(How a picture is taken; a value, as rc.render, rc.Session, rc.LiveView, rc.plan and rc.Shot take it.
 
 spp: samples per pixel, or "auto": as many as the noise needs, more where it is noisier, by tiles of 16 pixels
-(docs/sampling.md). noise: what is wanted then, as a share of a tile's light (of a hundredth of white where that
+(docs/sampling.md). noise: the noise goal then, as a share of a tile's light (of a hundredth of white where that
 is more), or noise_codes: in 8-bit codes of the developed picture; 1 code unless said. seconds, max_spp (4096):
 no more samples are taken after so long, and of a pixel no more than so many; warns where the noise is still
 larger then.
 max_bounces: 0 for direct light only, 1 for one reflection more, up to 64; "auto": as many as the shot calls for,
 by threshold_codes (docs/plan.md).
-transport: "paths" for all ways of light, "whitted" for direct light and what mirrors and smooth glass show.
+transport: "paths" for all light paths, "whitted" for direct light and what mirrors and smooth glass show.
 clamp_cd_m2: radiance above which what comes by a bounce is cut off, for fewer bright dots and a picture that is
 too dark; 0: never. threads: 0 for all.
 layers: names of what else Image.layers is to hold, or "all" (docs/layers.md), which leaves dual_pixel out.

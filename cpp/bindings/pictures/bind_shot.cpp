@@ -46,7 +46,7 @@ constexpr const char* kInterpolations[] = {"linear", "smooth", "step"};
 CameraKeyInterpolation camera_key_interpolation_from(const std::string& name) {
     for (std::size_t i = 0; i < std::size(kInterpolations); ++i)
         if (name == kInterpolations[i]) return static_cast<CameraKeyInterpolation>(i);
-    throw InputError("interpolation: \"" + name + "\": linear, smooth or step is wanted");
+    throw InputError("interpolation: \"" + name + "\": expected linear, smooth or step");
 }
 
 CameraKey make_key(double time_s, std::optional<LensSystem> lens, Number focus_m, Number focal_length_mm,

@@ -35,7 +35,7 @@ Transforms transforms_from(const py::object& matrices) {
         throw InputError("scene_from_object must be an array of numbers of shape (4, 4) or (3, 4), or several of them");
     const py::ssize_t count = axes == 3 ? m.shape(0) : 1, rows = m.shape(axes - 2);
     std::vector<Affine<double>> transforms;
-    if (count == 0) throw InputError("scene_from_object holds no matrix; one for each instance is wanted");
+    if (count == 0) throw InputError("scene_from_object holds no matrix; expected one for each instance");
     for (py::ssize_t i = 0; i < count; ++i) transforms.push_back(affine_from(m.data() + 4 * rows * i, rows == 4));
     return {transforms, axes == 3};
 }
@@ -77,7 +77,7 @@ std::size_t find_instance(const Assembly& scene, const std::variant<py::ssize_t,
     if (found.size() == 1) return found.front();
     throw InputError(found.empty() ? "there is no instance \"" + name + '"'
                                    : "there are " + std::to_string(found.size()) + " instances \"" + name +
-                                         "\"; the number of one of them is wanted");
+                                         "\"; specify one of them by its index");
 }
 
 Assembly moved(Assembly scene, const std::variant<py::ssize_t, std::string>& which, const ArrayLike& matrices,
@@ -93,7 +93,7 @@ Assembly moved(Assembly scene, const std::variant<py::ssize_t, std::string>& whi
         if (transforms.several)
             throw InputError(
                 "an instance that stays where it is has one transform; for one that moves, times_s is "
-                "wanted: the time of each");
+                "required: the time of each");
         move(scene, instance, transforms.list.front());
     }
     validate(scene);

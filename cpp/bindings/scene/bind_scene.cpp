@@ -93,7 +93,7 @@ Assembly with_spot_light(const Assembly& scene, const Triple& position, const Tr
     constexpr double kDegree = 0.017453292519943295;
     const Vec3d axis = unit_vector("the spot's direction", direction);
     if (!(inner_cone_deg >= 0 && inner_cone_deg <= outer_cone_deg && outer_cone_deg <= 90))
-        throw InputError("0 <= inner_cone_deg <= outer_cone_deg <= 90 is wanted");
+        throw InputError("expected 0 <= inner_cone_deg <= outer_cone_deg <= 90");
     return with_valid_static_geometry(scene, [&](Scene& changed) {
         changed.points.push_back(
             {vector_of(position), rgb(intensity), axis, kDegree * inner_cone_deg, kDegree * outer_cone_deg});

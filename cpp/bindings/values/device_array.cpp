@@ -115,7 +115,7 @@ struct Layout {
 };
 
 [[noreturn]] void refuse_type(const std::string& name, const std::string& type) {
-    throw InputError(name + " lies on a GPU and holds numbers of type " + type + "; float64 or float32 is wanted");
+    throw InputError(name + " lies on a GPU and holds numbers of type " + type + "; expected float64 or float32");
 }
 
 /// Returns the number of rows N of an array of shape (N, 3) in C order. Strides of extents of 0 or 1 are ignored.
@@ -181,7 +181,7 @@ std::pair<Layout, Readiness> read_interface(const py::dict& interface, const std
 
 /// https://numba.readthedocs.io/en/stable/cuda/cuda_array_interface.html
 DeviceInput from_interface(const py::object& array, const py::dict& interface, const std::string& name) {
-    if (given(interface, "mask")) throw InputError(name + " has a mask; an array without one is wanted");
+    if (given(interface, "mask")) throw InputError(name + " has a mask; expected an array without one");
     const auto [layout, ready] = read_interface(interface, name);
     DeviceInput input = input_of(layout, -1, name, array);
     if (input.count == 0) return input;

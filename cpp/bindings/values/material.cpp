@@ -47,8 +47,8 @@ void check_range(const py::array& pixels) {
     if (least >= 0 && most <= (are_fractions ? 1 : 255)) return;
     const auto text = [](double v) { return py::repr(py::float_(v)).cast<std::string>(); };
     throw InputError("the texture's numbers lie between " + text(least) + " and " + text(most) +
-                     (are_fractions ? "; fractions from 0 (black) to 1 (white)" : "; whole numbers from 0 to 255") +
-                     " are wanted");
+                     (are_fractions ? "; expected fractions from 0 (black) to 1 (white)"
+                                    : "; expected whole numbers from 0 to 255"));
 }
 
 /// Appends some rows of an array (H, W, C) as red, green, blue and alpha, each converted by `decode(value, channel)`.
@@ -106,7 +106,7 @@ std::shared_ptr<const Texture> texture_from(const py::object& object, io::Textur
         "a texture of " + std::to_string(pixels.shape(1)) + " x " + std::to_string(pixels.shape(0)) + " pixels ";
     if (texels > io::kMostTexturePixels)
         throw InputError(size + "is too large; at most " + std::to_string(io::kMostTexturePixels >> 20) +
-                         " million pixels are wanted");
+                         " million pixels are allowed");
     const std::size_t count = 4 * texels;
     if (const std::string why = io::too_much_memory(count * (is_float ? sizeof(float) : 1)); !why.empty())
         throw InputError(size + "takes " + why);

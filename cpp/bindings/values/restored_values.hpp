@@ -179,7 +179,7 @@ struct RestoredCheck<Assembly> {
             const std::ptrdiff_t whole = scene.instances[i].part_of;
             if (whole < Instance::kNoWhole || whole >= static_cast<std::ptrdiff_t>(i))
                 throw InputError(label(scene, i) + " is a part of instance " + std::to_string(whole) +
-                                 "; one that comes before it is wanted");
+                                 "; expected one that comes before it");
         }
     }
 };

@@ -39,7 +39,7 @@ void validate(const Film& film) {
     using namespace camera_detail;
     if (film.width < 1 || film.height < 1 || film.width > kMaxResolution || film.height > kMaxResolution)
         throw InputError("the resolution is " + std::to_string(film.width) + " x " + std::to_string(film.height) +
-                         " pixels; 1 to " + std::to_string(kMaxResolution) + " each way are wanted");
+                         " pixels; expected 1 to " + std::to_string(kMaxResolution) + " along each side");
     if (!lies_between(kSmallestFilm, film.width_mm, kLargestFilm) ||
         !lies_between(kSmallestFilm, film.height_mm, kLargestFilm))
         throw InputError("the film's width and height must be positive lengths, from 1e-6 to 1e9 mm");
@@ -71,7 +71,7 @@ void validate(const Camera& camera) {
         throw InputError("the exposure time must be a positive number of seconds, from 1e-37 to 1e38");
     if (!lies_between(kLeastDial, camera.iso, kMostDial))
         throw InputError("the ISO number must be positive, from 1e-37 to 1e38");
-    if (camera.lens.stop_index() < 0) throw InputError("the camera has no lens; one with a stop is wanted");
+    if (camera.lens.stop_index() < 0) throw InputError("the camera has no lens; expected a lens with a stop");
     if (const std::string why = film_distance_error(camera.lens); !why.empty()) throw InputError(why);
     check_film_reach(camera.lens, camera.film.radius_mm());
     if (!(camera.lens.stop_semi_diameter >= 0))
@@ -202,7 +202,29 @@ bool lies_near(const Camera& camera, Vec3d origin_m) {
 
 void validate_on_gpu(const Camera& camera) {
     if (camera.model == CameraModel::full_lens_double)
-        throw InputError("the camera model full_double is for the CPU; device cpu is wanted");
+        throw InputError("the camera model full_double is for the CPU; use device cpu");
+}
+
+Film default_film(const LensSystem& lens, std::optional<std::array<double, 2>> size_mm,
+                  std::optional<std::array<int, 2>> resolution) {
+    Film film;
+    film.width_mm = size_mm ? (*size_mm)[0] : lens.film_width;
+    film.height_mm = size_mm ? (*size_mm)[1] : lens.film_height;
+    if (!resolution) {
+        if (!(film.width_mm > 0) || !(film.height_mm > 0)) return film;
+        const double pixels_per_mm = kDefaultLongSide / std::max(film.width_mm, film.height_mm);
+        film.width = std::max(1, static_cast<int>(std::lround(film.width_mm * pixels_per_mm)));
+        film.height = std::max(1, static_cast<int>(std::lround(film.height_mm * pixels_per_mm)));
+        return film;
+    }
+    film.width = (*resolution)[0];
+    film.height = (*resolution)[1];
+    if (size_mm || film.width < 1 || film.height < 1) return film;
+    if ((film.width < film.height) != (film.width_mm < film.height_mm)) std::swap(film.width_mm, film.height_mm);
+    const double pitch = std::min(film.width_mm / film.width, film.height_mm / film.height);
+    film.width_mm = pitch * film.width;
+    film.height_mm = pitch * film.height;
+    return film;
 }
 
 Film default_film(const LensSystem& lens, std::optional<std::array<double, 2>> size_mm,

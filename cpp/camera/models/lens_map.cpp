@@ -30,8 +30,7 @@ LensMap::LensMap(const LensSystem& lens, double film_radius, double thin_image_d
     for (std::size_t k = 1; k < nodes_.size(); ++k) {
         if (behind[k])
             throw InputError("the camera model mapped has no place for lens \"" + lens.name +
-                             "\": its film sees 90 degrees to the side and more; a smaller film or the model full "
-                             "is wanted");
+                             "\": its film sees 90 degrees to the side and more; use a smaller film or the model full");
         if (!(nodes_[k].light > 0)) nodes_[k].scale = nodes_[k - 1].scale;
     }
 }

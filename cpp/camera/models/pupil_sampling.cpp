@@ -45,7 +45,7 @@ LensSystem exit_pupil_alone(const LensSystem& lens) {
 
 LensSystem sampled_lens(const LensSystem& lens, PupilSampling sampling) {
     if (sampling != PupilSampling::outline && lens.indices(lens.wavelength_nm).back() != Glass::air().index(kLineD_nm))
-        throw InputError("pupil_sampling: lens \"" + lens.name + "\" has its film in glass; outline is wanted");
+        throw InputError("pupil_sampling: lens \"" + lens.name + "\" has its film in glass; use outline");
     switch (sampling) {
         case PupilSampling::pixel:
         case PupilSampling::rear_element: return last_surface_alone(lens);

@@ -24,7 +24,7 @@ inline void check_cuda(cudaError_t code, const std::string& doing) {
         case cudaErrorInsufficientDriver:
             throw DeviceError("there is no NVIDIA driver, or it is older than the CUDA runtime " +
                               std::to_string(CUDART_VERSION / 1000) + "." + std::to_string(CUDART_VERSION % 1000 / 10) +
-                              " of this build; a newer one is wanted, or device=\"cpu\"");
+                              " of this build; use a newer one, or device=\"cpu\"");
         case cudaErrorMemoryAllocation: throw OutOfDeviceMemory("the GPU is out of memory while " + doing);
         case cudaErrorNoDevice: throw DeviceError("there is no NVIDIA GPU, or the driver is not running: " + cause);
         default: throw DeviceError("the GPU failed while " + doing + ": " + cause);

@@ -78,7 +78,7 @@ private:
         std::size_t free = 0, total = 0;
         cudaMemGetInfo(&free, &total);
         const auto mib = [](std::size_t bytes) { return std::to_string((bytes + (1 << 20) - 1) >> 20) + " MiB"; };
-        throw OutOfDeviceMemory("the GPU is out of memory: " + mib(wanted) + " more were wanted, and " + mib(free) +
+        throw OutOfDeviceMemory("the GPU is out of memory: " + mib(wanted) + " more were requested, and " + mib(free) +
                                 " of " + mib(total) + " are free");
     }
 

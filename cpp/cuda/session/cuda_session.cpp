@@ -156,7 +156,7 @@ private:
 
     std::shared_ptr<LiveFrame> start(const std::vector<SampleRange>& ranges, ToneCurve curve,
                                      std::shared_ptr<void>) override {
-        if (renderers_.size() > 1) throw InputError("frames are taken on one GPU; device=\"cuda:0\", say, is wanted");
+        if (renderers_.size() > 1) throw InputError("frames are taken on one GPU; use one, such as device=\"cuda:0\"");
         const CurrentDevice current(front().ordinal());
         if (rows_ == 0) {
             front().clear_film(static_cast<std::int64_t>(width()) * height());

@@ -52,7 +52,7 @@ std::string why_unreadable(const std::string& path) {
     struct stat status{};
     if (stat(path.c_str(), &status) != 0) return errno == ENOENT ? "no such file" : reason(errno);
     if (S_ISDIR(status.st_mode)) return "is a folder, not a file";
-    if (!S_ISREG(status.st_mode)) return "is a pipe or a device; an ordinary file is wanted";
+    if (!S_ISREG(status.st_mode)) return "is a pipe or a device; expected an ordinary file";
     if (access(path.c_str(), R_OK) != 0) return reason(errno);
     const std::lock_guard lock(inputs().mutex);
     if (inputs().is_on) inputs().paths.insert(path);

@@ -91,7 +91,7 @@ std::vector<Value> read_view(const GltfDocument& document, GltfBuffers& buffers,
                              bool normalised, const std::string& where) {
     const std::size_t type = component_type.index(0), size = size_of_component(type) * components;
     if (size == 0 || (type == 5126 && !std::is_same_v<Value, float>))
-        document.fail(where + ": its componentType is none that is wanted here");
+        document.fail(where + ": its componentType is not valid here");
     std::string_view bytes = buffers.view(from["bufferView"], where);
     const std::size_t offset = from["byteOffset"].index(0);
     const Json& view = document.root()["bufferViews"][from["bufferView"].index(0)];
@@ -138,7 +138,7 @@ std::vector<Value> GltfAccessors::read(const Json& reference, const std::string&
     if (!number) document_.fail(use + ": names no accessor");
     const std::string where = use + ": accessor " + std::to_string(*number);
     const Json& accessor = document_.root()["accessors"][*number];
-    if (accessor["type"].text() != type) document_.fail(where + ": elements of type " + type + " are wanted");
+    if (accessor["type"].text() != type) document_.fail(where + ": expected elements of type " + type);
     const std::size_t count = accessor["count"].index(0), components = components_of(type);
     std::vector<Value> values;
     if (!accessor["bufferView"].is_null())

@@ -117,7 +117,7 @@ private:
             keys->interpolation = KeyInterpolation::cubic_spline;
         } else if (!interpolation.empty() && interpolation != "LINEAR") {
             document_.fail(where + ": its interpolation is " + in_quotes(interpolation.substr(0, 60)) +
-                           "; LINEAR, STEP or CUBICSPLINE is wanted");
+                           "; expected LINEAR, STEP or CUBICSPLINE");
         }
         for (const float time : accessors_.numbers(sampler["input"], "SCALAR", where + ": its input")) {
             const auto seconds = static_cast<double>(time);
@@ -132,8 +132,8 @@ private:
         const std::size_t each = keys->interpolation == KeyInterpolation::cubic_spline ? 3 : 1;
         if (keys->times.empty() || keys->values.size() != keys->times.size() * each * components)
             document_.fail(where + ": has " + std::to_string(keys->times.size()) + " times and " +
-                           std::to_string(keys->values.size() / components) + " values; " + std::to_string(each) +
-                           " for each time are wanted");
+                           std::to_string(keys->values.size() / components) + " values; expected " +
+                           std::to_string(each) + " for each time");
         return keys;
     }
 

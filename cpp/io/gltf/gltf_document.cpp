@@ -51,9 +51,9 @@ std::string_view GltfDocument::json_text() {
             fail("is cut short: " + std::to_string(file.size()) + " of " + std::to_string(size) + " bytes");
     };
     if (file.size() < kGlbHeader + kChunkHeader) fail("ends inside the header of a GLB");
-    if (word_at(file, 4) != 2) fail("is glTF " + std::to_string(word_at(file, 4)) + "; glTF 2.0 is wanted");
+    if (word_at(file, 4) != 2) fail("is glTF " + std::to_string(word_at(file, 4)) + "; expected glTF 2.0");
     room(word_at(file, 8));
-    if (file.substr(kGlbHeader + 4, 4) != "JSON") fail("a JSON chunk is wanted first");
+    if (file.substr(kGlbHeader + 4, 4) != "JSON") fail("the first chunk must be JSON");
     const std::size_t begin = kGlbHeader + kChunkHeader, size = word_at(file, kGlbHeader), end = begin + size;
     room(end);
     if (file.size() >= end + kChunkHeader && file.substr(end + 4, 4) == std::string_view("BIN\0", 4)) {
@@ -78,7 +78,7 @@ GltfDocument::GltfDocument(const std::string& path, Checkpoint& checkpoint)
     if (binary_size_ == 0) file_ = {};
     const std::string& version = root_["asset"]["version"].text();
     if (!version.starts_with('2'))
-        fail("is glTF " + (version.empty() ? "of no version" : in_quotes(version)) + "; glTF 2.0 is wanted");
+        fail("is glTF " + (version.empty() ? "of no version" : in_quotes(version)) + "; expected glTF 2.0");
     const Json& required = root_["extensionsRequired"];
     for (std::size_t i = 0; i < required.size(); ++i) {
         if (may_be_required(required[i].text())) continue;
@@ -91,7 +91,7 @@ std::optional<std::size_t> GltfDocument::find(const char* list, const Json& refe
     if (reference.is_null()) return std::nullopt;
     const std::size_t count = root_[list].size(), number = reference.index(count);
     if (number < count) return number;
-    fail(where + ": a number of \"" + list + "\" is wanted there, of which there are " + std::to_string(count));
+    fail(where + ": expected an index of \"" + list + "\", of which there are " + std::to_string(count));
 }
 
 }  // namespace realcam::io

@@ -139,7 +139,7 @@ std::uint32_t GltfMeshes::vertices_of(const Primitive& primitive) {
 void GltfMeshes::check_count(std::size_t count, std::size_t vertices, const std::string& where) const {
     if (count != vertices)
         document_.fail(where + ": has " + std::to_string(count) + " elements for " + std::to_string(vertices) +
-                       " vertices; one for each is wanted");
+                       " vertices; expected one for each");
 }
 
 FileVertices GltfMeshes::read_vertices(const Primitive& primitive, const Json& uvs, const Json& second_uvs) {

@@ -37,7 +37,7 @@ std::vector<Affine<double>> instances_of(const Json& node, GltfAccessors& access
         numbers = accessors.numbers(attributes[name], type, where);
         if (numbers.size() != components * count)
             document.fail(where + ": has " + std::to_string(numbers.size() / components) + " elements for " +
-                          std::to_string(count) + " instances; one for each is wanted");
+                          std::to_string(count) + " instances; expected one for each");
         return numbers;
     };
     const std::vector<float> translations = read("TRANSLATION", "VEC3", 3), rotations = read("ROTATION", "VEC4", 4),

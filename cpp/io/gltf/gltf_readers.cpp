@@ -46,8 +46,8 @@ void read_gltf_lights(FileScene& scene, const GltfDocument& document) {
     }
     if (bad_cones > 0)
         scene.warnings.push_back(std::to_string(bad_cones) +
-                                 " spots have angles that are none; 0 <= innerConeAngle < outerConeAngle <= pi / 2 is "
-                                 "wanted, and the nearest taken");
+                                 " spots have invalid angles; expected 0 <= innerConeAngle < outerConeAngle <= pi / 2, "
+                                 "and the nearest valid angles are used");
 }
 
 void read_gltf_cameras(FileScene& scene, const GltfDocument& document) {

@@ -114,7 +114,7 @@ Glass glass_from_table(const TomlTable& table) {
         }
         return Glass::table(std::move(list));
     }
-    if (!n_d || !v_d) table.fail("n_d and V_d are wanted together");
+    if (!n_d || !v_d) table.fail("n_d and V_d must be given together");
     if (!(*n_d >= 1)) table.fail("the index n_d must be at least 1", table.find("n_d"));
     if (!(*v_d > 0)) table.fail("the Abbe number V_d must be positive", table.find("V_d"));
     return Glass::from_abbe_number(*n_d, *v_d);
@@ -129,8 +129,7 @@ Glass catalogue_glass(const std::string& name) {
         if (std::next(first) != last) {
             std::string choices;
             for (auto it = first; it != last; ++it) choices += (choices.empty() ? "\"" : ", \"") + it->second + '"';
-            throw InputError("the glass name \"" + name + "\" stands in several catalogues; one of " + choices +
-                             " is wanted");
+            throw InputError("the glass name \"" + name + "\" stands in several catalogues; specify one of " + choices);
         }
         full = first->second;
     }

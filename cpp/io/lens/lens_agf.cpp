@@ -61,7 +61,7 @@ void read_glass_catalogue(const std::string& path, std::map<std::string, Glass>&
     std::string bytes;
     try {
         RegularFile file(path);
-        if (file.size() > kLargest) throw LensFileError("is larger than 16 MiB; a glass catalogue is wanted", path);
+        if (file.size() > kLargest) throw LensFileError("is larger than 16 MiB; expected a glass catalogue", path);
         bytes.resize(file.size());
         bytes.resize(file.read(bytes.data(), bytes.size()));
     } catch (const FileError& error) {
@@ -98,7 +98,7 @@ void read_glass_catalogue(const std::string& path, std::map<std::string, Glass>&
             name.clear();
         }
     }
-    if (count == 0) throw LensFileError("has no glass; lines NM and CD of a glass catalogue (.agf) are wanted", path);
+    if (count == 0) throw LensFileError("has no glass; expected lines NM and CD of a glass catalogue (.agf)", path);
 }
 
 }  // namespace realcam::io

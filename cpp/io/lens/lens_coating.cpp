@@ -23,7 +23,7 @@ CoatingMaterial read_metal(const TomlTable& table) {
     const std::string name = table.text("metal");
     if (auto metal = named_metal(name)) return *metal;
     table.fail("unknown metal " + in_quotes(name) + did_you_mean(name, metal_names()) +
-                   "; \"aluminium\", \"silver\", [n, k] or [[wavelength in nm, n, k], ...] is wanted",
+                   "; expected \"aluminium\", \"silver\", [n, k] or [[wavelength in nm, n, k], ...]",
                node);
 }
 
@@ -114,7 +114,7 @@ LensCoatings::LensCoatings(const TomlTable& file, const std::optional<TomlTable>
             const std::string name(key.str());
             tables->check_name(name, node);
             if (named_coating(name))
-                tables->fail(in_quotes(name) + " is a coating that all lens files know; another name is wanted", &node);
+                tables->fail(in_quotes(name) + " is a coating that all lens files know; choose another name", &node);
             own_[name] = read_coating(*tables->table(name), name, glasses);
         }
     }
@@ -132,8 +132,8 @@ Coating LensCoatings::named(const TomlTable& table, std::string_view key) const 
     std::vector<std::string> all = named_coatings();
     for (const auto& [own, coating] : own_) all.push_back(own);
     table.fail("unknown coating " + in_quotes(name) + did_you_mean(name, all) +
-                   "; the name of a table [coating.NAME], "
-                   "\"bare\", \"quarter_wave\", \"aluminium\", \"silver\" or \"unknown\" is wanted",
+                   "; expected the name of a table [coating.NAME], "
+                   "\"bare\", \"quarter_wave\", \"aluminium\", \"silver\" or \"unknown\"",
                table.find(key));
 }
 

@@ -78,9 +78,9 @@ LensSystem read_toml(std::string_view bytes, const std::string& file, const Lens
         if (suffix == ".toml") throw;
         const std::string why = suffix.empty() ? "it has no ending"
                                                : "its ending is " + in_quotes(file.substr(file.size() - suffix.size()));
-        throw LensFileError("is no lens file that is read: " + why + ", and its text is no TOML; " +
-                                lens_suffixes(false) + " is wanted",
-                            file);
+        throw LensFileError(
+            "is no lens file that is read: " + why + ", and its text is no TOML; expected " + lens_suffixes(false),
+            file);
     }
     LensSystem lens = lens_from_table(table, file, options.keep_going);
     LensGlasses(options).check_all_used();  // reports that this file defines its own glasses
@@ -92,7 +92,7 @@ std::string text_of_file(const std::string& path) {
     constexpr std::size_t kLargest = 16 << 20;  // bytes; the bundled lenses have some thousand
     try {
         RegularFile file(path);
-        if (file.size() > kLargest) throw LensFileError("is larger than 16 MiB; a lens file is wanted", path);
+        if (file.size() > kLargest) throw LensFileError("is larger than 16 MiB; expected a lens file", path);
         std::string text(file.size(), '\0');
         text.resize(file.read(text.data(), text.size()));
         return text;
@@ -136,7 +136,7 @@ std::string_view bundled_lens_text(const std::string& name) {
     std::vector<std::string> known = lens_names();
     for (const auto& [found, path] : lens_files_on_path()) known.push_back(found);
     throw LensFileError("unknown lens " + in_quotes(name) + did_you_mean(name, known) +
-                        "; a bundled lens or the path of a lens file is wanted");
+                        "; expected a bundled lens or the path of a lens file");
 }
 
 bool is_lens_path(const std::string& name, const std::string& path) {
@@ -166,7 +166,7 @@ LensText lens_text_for(const LensSystem& lens, const std::string& path) {
     validate(lens);
     // Requires the suffix, because without it the file could not be read by its name.
     const LensFormat* format = format_of(path);
-    if (!format || !format->write) throw InputError(path + ": the suffix " + lens_suffixes(true) + " is wanted");
+    if (!format || !format->write) throw InputError(path + ": expected the suffix " + lens_suffixes(true));
     return format->write(lens);
 }
 

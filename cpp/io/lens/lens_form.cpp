@@ -156,7 +156,7 @@ SurfaceForm read_form(const TomlTable& table) {
         table.fail("a radius of curvature of 0 is no surface; leave it out for none",
                    table.find("radius_of_curvature_x_mm"));
     if (radius && curvature)
-        table.fail("\"radius_of_curvature_x_mm\" and \"curvature_x_per_mm\" say the same; one of them is wanted",
+        table.fail("\"radius_of_curvature_x_mm\" and \"curvature_x_per_mm\" say the same; specify only one of them",
                    table.find("curvature_x_per_mm"));
     form.curvature_x = radius ? 1 / *radius : curvature.value_or(0);
     form.conic_x = table.number("conic_x").value_or(0);

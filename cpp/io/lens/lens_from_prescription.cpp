@@ -65,7 +65,7 @@ public:
         if (lens_.name.empty()) lens_.name = "lens";
         lens_.wavelength_nm = p_.wavelength_nm;
         if (!(lens_.wavelength_nm >= 100 && lens_.wavelength_nm <= 20000))
-            fail("the wavelength is " + std::to_string(lens_.wavelength_nm) + " nm; 100 to 20000 nm is wanted");
+            fail("the wavelength is " + std::to_string(lens_.wavelength_nm) + " nm; expected 100 to 20000 nm");
         check_materials();
         const std::size_t count = std::max<std::size_t>(1, p_.zoom_names.size());
         for (std::size_t k = 0; k < count; ++k) states_.push_back(lens_state(p_, kept_, lens_, k));
@@ -112,7 +112,7 @@ private:
         const auto bends = [](const KeptRow& k) {
             return k.type == SurfaceType::refracting || k.type == SurfaceType::mirror;
         };
-        if (std::none_of(kept_.begin(), kept_.end(), bends)) fail("no surface bends light; a lens is wanted");
+        if (std::none_of(kept_.begin(), kept_.end(), bends)) fail("no surface bends light; expected a lens");
         if (kept_.size() > static_cast<std::size_t>(kMaxSurfaces))
             fail("the lens has " + std::to_string(kept_.size()) + " surfaces; at most " + std::to_string(kMaxSurfaces) +
                  " are supported");
@@ -262,7 +262,8 @@ private:
             lens_.surfaces[i].aperture_shape = row_of(i).aperture_shape;
             if (lens_.surfaces[i].bends_light()) lens_.surfaces[i].form = forms_[i];
         }
-        if (moves && !p_.zoom_names.empty()) fail("zooms with surfaces that are tilted or decentred; none is wanted");
+        if (moves && !p_.zoom_names.empty())
+            fail("zooms with surfaces that are tilted or decentred, which is not supported");
         if (moves) set_placements(p_, kept_, lens_);
         if (p_.zoom_names.empty()) set_film(p_, lens_);
         if (!lens_.is_rotational())

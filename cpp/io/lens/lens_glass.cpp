@@ -103,7 +103,7 @@ Glass LensGlasses::find(const std::string& name, const std::vector<std::string>&
         Glass first = catalogued(found.front());
         if (all_alike(found, first)) return first;
         throw UnknownGlass("the glass name " + quoted + " stands for several glasses: " + listed(names_of(found)) +
-                               "; one of them is wanted",
+                               "; specify one of them",
                            name, found.front().full());
     }
     std::string message = "unknown glass " + quoted;
@@ -113,7 +113,7 @@ Glass LensGlasses::find(const std::string& name, const std::vector<std::string>&
         message += ", which other catalogues have: " + listed(names_of(all));
     else
         message += did_you_mean(name, catalogue_plain_names());
-    throw UnknownGlass(message + (hint.empty() ? "" : "; the file says of it " + hint) + "; its n_d and V_d are wanted",
+    throw UnknownGlass(message + (hint.empty() ? "" : "; the file says of it " + hint) + "; specify its n_d and V_d",
                        name);
 }
 
@@ -146,8 +146,8 @@ Glass LensGlasses::substance(const std::string& book, const std::string& page, s
         if (upper_case(one.book) == upper_case(book) && (!found || upper_case(one.page) == upper_case(page)))
             found = &one;
     if (!found)
-        throw UnknownGlass(
-            "unknown substance " + in_quotes(book) + " of refractiveindex.info; its n_d and V_d are wanted", book);
+        throw UnknownGlass("unknown substance " + in_quotes(book) + " of refractiveindex.info; specify its n_d and V_d",
+                           book);
     if (upper_case(found->page) != upper_case(page)) {
         char n_d[32];
         std::snprintf(n_d, sizeof n_d, "%.5f", catalogue_glass("misc:" + std::string(found->name)).index(kLineD_nm));
@@ -224,7 +224,7 @@ std::pair<std::string, Glass> named_glass(const std::string& text) {
     const std::size_t equals = text.find('=');
     const std::string name = text.substr(0, equals);
     if (equals == text.npos || name.empty())
-        throw InputError(in_quotes(text) + ": NAME=n_d,V_d or NAME=MAKER:GLASS is wanted");
+        throw InputError(in_quotes(text) + ": expected NAME=n_d,V_d or NAME=MAKER:GLASS");
     std::string_view rest = std::string_view(text).substr(equals + 1);
     const std::optional<double> n_d = take_number(rest);
     if (!n_d) return {name, catalogue_glass(std::string(rest))};
@@ -237,7 +237,7 @@ std::pair<std::string, Glass> named_glass(const std::string& text) {
     }
     if (!rest.empty() || !std::isfinite(*n_d) || !std::isfinite(v_d))
         throw InputError(in_quotes(text) +
-                         ": NAME=n_d,V_d is wanted, as in CAF2=1.4338,95.1, or NAME=n where it has no dispersion");
+                         ": expected NAME=n_d,V_d, as in CAF2=1.4338,95.1, or NAME=n where it has no dispersion");
     return {name, glass_of_pair(*n_d, v_d)};
 }
 

@@ -58,8 +58,8 @@ void set_stop(const Prescription& p, const std::vector<KeptRow>& kept, LensSyste
     }
     if (!(radius > 0) || !std::isfinite(radius))
         fail(p,
-             "the size of the aperture stop follows from nothing that the file says; "
-             "an entrance pupil diameter, an f-number or the stop's semi-diameter is wanted",
+             "the size of the aperture stop follows from nothing that the file says; expected "
+             "an entrance pupil diameter, an f-number or the stop's semi-diameter",
              &p.surfaces[kept[static_cast<std::size_t>(stop)].row]);
     // The stop's own aperture limits it if it is smaller.
     const KeptRow& own = kept[static_cast<std::size_t>(stop)];
@@ -103,7 +103,8 @@ LensState lens_state(const Prescription& p, const std::vector<KeptRow>& kept, Le
     lens.film_distance = last + p.defocus;
     last = 0;
     if (std::isfinite(object) && object <= 0)
-        fail(p, "the object lies " + std::to_string(-object) + " mm behind the first surface; one in front is wanted");
+        fail(p, "the object lies " + std::to_string(-object) +
+                    " mm behind the first surface; expected an object in front");
     set_stop(p, kept, lens, object, state);
     if (p.paraxial_image && lens.film_distance == p.defocus)
         lens.film_distance = p.defocus + paraxial_image_distance(lens, lens.wavelength_nm, object);

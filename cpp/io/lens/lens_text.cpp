@@ -60,7 +60,7 @@ std::string decoded_lens_text(std::string_view bytes, const std::string& file) {
         text = is_utf8(bytes) ? std::string(bytes) : from_latin1(bytes);
     if (const std::size_t null = text.find('\0'); null != std::string::npos) {
         const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(null), '\n');
-        throw LensFileError("holds a null character; a text is wanted", file, static_cast<int>(line));
+        throw LensFileError("holds a null character; expected text", file, static_cast<int>(line));
     }
     return text;
 }

@@ -21,7 +21,7 @@ SurfaceType read_type(const TomlTable& table) {
     if (type == "mirror") return SurfaceType::mirror;
     if (type == "stop") return SurfaceType::stop;
     if (type == "aperture") return SurfaceType::aperture;
-    table.fail("unknown type \"" + type + "\"; refracting, mirror, stop or aperture is wanted", table.find("type"));
+    table.fail("unknown type \"" + type + "\"; expected refracting, mirror, stop or aperture", table.find("type"));
 }
 
 std::vector<double> read_aspheric_coefficients(const TomlTable& table) {
@@ -97,7 +97,7 @@ Surface read_surface(const TomlTable& table, const std::optional<TomlTable>& gla
     }
     if (const auto curvature = table.number("curvature_per_mm")) {
         if (table.find("radius_of_curvature_mm"))
-            table.fail("\"radius_of_curvature_mm\" and \"curvature_per_mm\" say the same; one of them is wanted",
+            table.fail("\"radius_of_curvature_mm\" and \"curvature_per_mm\" say the same; specify only one of them",
                        table.find("curvature_per_mm"));
         surface.curvature = *curvature;
     }
@@ -138,7 +138,7 @@ void read_iris(const TomlTable& file, LensSystem& lens) {
     lens.iris.rotation_rad = iris->number("rotation_deg").value_or(0) * std::numbers::pi / 180;
     if (const auto radians = iris->number("rotation_rad")) {
         if (iris->find("rotation_deg"))
-            iris->fail("\"rotation_deg\" and \"rotation_rad\" say the same; one of them is wanted",
+            iris->fail("\"rotation_deg\" and \"rotation_rad\" say the same; specify only one of them",
                        iris->find("rotation_rad"));
         lens.iris.rotation_rad = *radians;
     }
@@ -150,7 +150,8 @@ void read_focusing(const TomlTable& file, LensSystem& lens) {
     focus->allow({"nearest_m", "nearest_mm", "group"});
     const auto nearest = focus->number("nearest_m"), nearest_mm = focus->number("nearest_mm");
     if (nearest && nearest_mm)
-        focus->fail("\"nearest_m\" and \"nearest_mm\" say the same; one of them is wanted", focus->find("nearest_mm"));
+        focus->fail("\"nearest_m\" and \"nearest_mm\" say the same; specify only one of them",
+                    focus->find("nearest_mm"));
     if (nearest && !(*nearest > 0)) focus->fail("\"nearest_m\" must be a positive distance", focus->find("nearest_m"));
     if (nearest_mm && !(*nearest_mm > 0))
         focus->fail("\"nearest_mm\" must be a positive distance", focus->find("nearest_mm"));
@@ -210,7 +211,7 @@ void set_film_distance(const TomlTable& file, LensSystem& lens) {
         const std::optional<double> found = film_distance_at_infinity(lens);
         if (!found)
             file.fail(
-                "the lens makes no real image of infinity behind its last surface; \"film_distance_mm\" is wanted");
+                "the lens makes no real image of infinity behind its last surface; \"film_distance_mm\" is required");
         lens.film_distance = *found;
     }
     if (const std::string why = film_distance_error(lens); !why.empty()) file.fail(why, file.find("film_distance_mm"));
@@ -282,8 +283,7 @@ LensSystem lens_from_table(const toml::table& root, const std::string& file, con
     const auto glasses = top.table("glass");
     const LensCoatings coatings(top, glasses);
     const toml::array* surfaces = root["surface"].as_array();
-    if (!surfaces || !surfaces->is_array_of_tables())
-        top.fail("the lens has no surfaces; tables [[surface]] are wanted");
+    if (!surfaces || !surfaces->is_array_of_tables()) top.fail("the lens has no surfaces; expected tables [[surface]]");
     // A limit, because each may contain a long table of a glass, which is copied.
     if (surfaces->size() > static_cast<std::size_t>(kMaxSurfaces))
         top.fail("the lens has " + std::to_string(surfaces->size()) + " surfaces; at most " +

@@ -142,7 +142,7 @@ void LensZoom::apply(LensSystem& lens, const std::vector<bool>& given, const Kee
         if (!(position.film_distance > 0))
             table.fail(
                 "the lens makes no real image of infinity behind its last surface; \"film_distance_mm\" is "
-                "wanted");
+                "required");
     }
 }
 

@@ -100,12 +100,12 @@ private:
             const std::optional<double> value = take_number(rest);
             if (!value || !(rest.empty() || rest[0] == ' ' || rest[0] == '\t')) {
                 std::string_view shown = word;
-                fail("a number is wanted, not " + in_quotes(take_word(shown)));
+                fail("expected a number, not " + in_quotes(take_word(shown)));
             }
             numbers[count++] = *value;
             rest = trimmed(rest);
         }
-        if (count < least) fail(std::to_string(least) + " numbers are wanted, not " + std::to_string(count));
+        if (count < least) fail("expected " + std::to_string(least) + " numbers, not " + std::to_string(count));
         return count;
     }
 

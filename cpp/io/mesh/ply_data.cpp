@@ -54,7 +54,7 @@ PlyHeader parse_ply_header(std::string_view text, const std::string& path) {
         std::string name;
         words >> name;
         const std::optional<PlyType> type = type_of(name);
-        if (!type) fail("a type such as float or uchar is wanted, not " + in_quotes(name));
+        if (!type) fail("expected a type such as float or uchar, not " + in_quotes(name));
         return *type;
     };
     bool has_format = false;
@@ -65,7 +65,7 @@ PlyHeader parse_ply_header(std::string_view text, const std::string& path) {
         std::string word, what;
         words >> word;
         if (++line == 1) {
-            if (word != "ply") fail("\"ply\" is wanted");
+            if (word != "ply") fail("expected \"ply\"");
         } else if (word == "format") {
             words >> what;
             has_format = true;
@@ -74,7 +74,7 @@ PlyHeader parse_ply_header(std::string_view text, const std::string& path) {
             else if (what == "binary_big_endian")
                 header.format = PlyHeader::Format::big_endian;
             else if (what != "ascii")
-                fail("ascii, binary_little_endian or binary_big_endian is wanted");
+                fail("expected ascii, binary_little_endian or binary_big_endian");
         } else if (word == "comment") {
             if (!(words >> what) || what != "TextureFile") continue;
             std::string& texture = header.textures.emplace_back();
@@ -87,10 +87,10 @@ PlyHeader parse_ply_header(std::string_view text, const std::string& path) {
             std::string_view number = what;
             const std::optional<std::int64_t> count = take_integer(number);
             if (!count || !number.empty() || *count < 0)
-                fail("\"element\", a name and a number of at least 0 are wanted");
+                fail("expected \"element\", a name and a number of at least 0");
             element.count = static_cast<std::uint64_t>(*count);
         } else if (word == "property") {
-            if (header.elements.empty()) fail("an element is wanted before its properties");
+            if (header.elements.empty()) fail("expected an element before its properties");
             PlyProperty property{{}, {}, std::nullopt};
             const auto start = words.tellg();
             if (words >> what; what == "list")
@@ -98,16 +98,16 @@ PlyHeader parse_ply_header(std::string_view text, const std::string& path) {
             else
                 words.seekg(start);
             property.type = next_type(words);
-            if (!(words >> property.name)) fail("the property's name is wanted");
+            if (!(words >> property.name)) fail("expected the property's name");
             header.elements.back().properties.push_back(property);
         } else if (word == "end_header") {
-            if (!has_format) fail("a line \"format\" is wanted before");
+            if (!has_format) fail("expected a line \"format\" before this one");
             return header;
         } else if (!word.empty() && word != "obj_info") {
-            fail("\"element\", \"property\" or \"end_header\" is wanted");
+            fail("expected \"element\", \"property\" or \"end_header\"");
         }
     }
-    fail("the header has no end; a line \"end_header\" is wanted");
+    fail("the header has no end; expected a line \"end_header\"");
     return header;
 }
 

@@ -68,7 +68,7 @@ private:
 
     double number(const PlyElement& element, std::uint64_t i, PlyType type) {
         if (const std::optional<double> value = data_.next(type)) return *value;
-        if (data_.bytes_left() > 8) fail(element, i, "a number is wanted");
+        if (data_.bytes_left() > 8) fail(element, i, "expected a number");
         fail_short(element, "it ends in number " + std::to_string(i));
     }
 

@@ -199,7 +199,7 @@ void add_light(Scene& scene, const FileLight& light, const Affine<double>& trans
             scene.points.push_back({scale * transform.origin, color_of(light.strength), normalized(axis),
                                     light.inner_cone_angle, light.outer_cone_angle});
     } else {
-        scene.warnings.push_back(label + ": point, directional or spot is wanted, not " + in_quotes(light.type));
+        scene.warnings.push_back(label + ": expected point, directional or spot, not " + in_quotes(light.type));
     }
 }
 

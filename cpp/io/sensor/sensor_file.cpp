@@ -119,7 +119,7 @@ Sensor sensor_from_table(const toml::table& root, const std::string& file) {
                  "hot_pixel_share",
                  "hot_pixel_current_e_per_s"});
     if (table.number("format") != kFormat)
-        table.fail("format = " + std::to_string(kFormat) + " is wanted", table.find("format"));
+        table.fail("expected format = " + std::to_string(kFormat), table.find("format"));
     Sensor sensor;
     sensor.name = table.text("name");
     if (sensor.name.empty()) table.fail("\"name\" is missing");
@@ -142,7 +142,7 @@ std::string text_of_file(const std::string& path) {
     constexpr std::uint64_t kLargest = 16 << 20;  // bytes; the bundled sensors have some thousand
     try {
         RegularFile file(path);
-        if (file.size() > kLargest) throw InputError(path + ": is larger than 16 MiB; a sensor file (.toml) is wanted");
+        if (file.size() > kLargest) throw InputError(path + ": is larger than 16 MiB; expected a sensor file (.toml)");
         std::string text(file.size(), '\0');
         text.resize(file.read(text.data(), text.size()));
         return text;
@@ -155,7 +155,7 @@ std::string_view bundled_text(const std::string& name) {
     for (const BundledFile& file : bundled_sensor_files())
         if (file.name == name) return file.text;
     throw InputError("unknown sensor " + in_quotes(name) + did_you_mean(name, sensor_names()) +
-                     "; a bundled sensor or the path of a .toml file is wanted");
+                     "; expected a bundled sensor or the path of a .toml file");
 }
 
 }  // namespace

@@ -34,8 +34,8 @@ private:
         const auto line = 1 + std::ranges::count(before, '\n');
         const std::size_t column = at_ - (before.rfind('\n') + 1) + 1;  // npos + 1 is 0
         const std::string found = at_ < text_.size() ? in_quotes(std::string(text_.substr(at_, 1))) : "the end";
-        throw std::runtime_error("line " + std::to_string(line) + ", column " + std::to_string(column) + ": " + wanted +
-                                 " is wanted, and there is " + found);
+        throw std::runtime_error("line " + std::to_string(line) + ", column " + std::to_string(column) + ": expected " +
+                                 wanted + ", found " + found);
     }
 
     void skip_space() { at_ = std::min(text_.find_first_not_of(" \t\r\n", at_), text_.size()); }

@@ -54,7 +54,7 @@ bool TextLines::next_physical(std::string_view& line) {
             ++at;
         if (at < end_ && buffer_[at] == '\0')
             throw SceneFileError(path_ + ": line " + std::to_string(count_ + 1) +
-                                 ": holds a null character; a text is wanted");
+                                 ": holds a null character; expected text");
         if (at == end_) {
             searched = at - begin_;
             check_length(searched);

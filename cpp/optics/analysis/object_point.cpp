@@ -42,10 +42,10 @@ double object_distance_of(const LensSystem& lens, const FieldPoint& field) {
     if (!(distance > 0)) throw InputError("the object distance must be a positive length, or inf");
     if (!(std::fabs(degrees) < (finite ? 90 : 180)))
         throw InputError("the field angle is " + object_point_detail::degrees(field.angle_rad) +
-                         (!finite ? "; less than 180 deg is wanted"
+                         (!finite ? "; expected less than 180 deg"
                           : field.object_distance
-                              ? "; less than 90 deg is wanted for an object at a finite distance"
-                              : "; less than 90 deg is wanted for the plane in focus, at a finite distance"));
+                              ? "; expected less than 90 deg for an object at a finite distance"
+                              : "; expected less than 90 deg for the plane in focus, at a finite distance"));
     return distance;
 }
 

@@ -114,8 +114,8 @@ BundleSampling checked_sampling(const Part& part, const Psf& psf, std::int64_t r
     if (static_cast<double>(rays) < least)
         throw InputError("psf: " + std::to_string(rays) +
                          " rays cannot follow the wavefront over the array: at least " +
-                         std::to_string(static_cast<std::int64_t>(least) + 1) + " are wanted, " +
-                         std::to_string(static_cast<std::int64_t>(count(sampling))) + " are good");
+                         std::to_string(static_cast<std::int64_t>(least) + 1) + " are required, " +
+                         std::to_string(static_cast<std::int64_t>(count(sampling))) + " are recommended");
     const double more = std::sqrt(static_cast<double>(rays) / count(sampling));
     return {static_cast<int>(std::ceil(more * sampling.arms)), static_cast<int>(std::ceil(more * sampling.nodes))};
 }

@@ -7,8 +7,8 @@ GhostPath ghost_path(const LensSystem& lens, double wavelength_nm, GhostPair pai
     const int count = static_cast<int>(lens.surfaces.size());
     if (!(0 <= pair.second && pair.second < pair.first && pair.first <= count))
         throw InputError(
-            "a ghost is reflected by two surfaces, the first time by the one nearer to the film: wanted are "
-            "numbers with 0 <= second < first <= " +
+            "a ghost is reflected by two surfaces, the first time by the one nearer to the film: expected "
+            "indices with 0 <= second < first <= " +
             std::to_string(count) + ", the last of which is the film's");
     for (const int i : {pair.first, pair.second})
         if (!is_film(lens, i) && lens.surfaces[static_cast<std::size_t>(i)].type != SurfaceType::refracting)

@@ -181,7 +181,7 @@ LensSystem moved_by_group(const LensSystem& lens, double focus_distance) {
 
 LensSystem focused(const LensSystem& lens, double focus_distance) {
     if (!(focus_distance > 0))
-        throw InputError("the focus distance is " + metres(focus_distance) + "; a positive distance or inf is wanted");
+        throw InputError("the focus distance is " + metres(focus_distance) + "; expected a positive distance or inf");
     if (focus_distance < lens.focusing.nearest_mm)
         throw InputError("cannot focus at " + metres(focus_distance, lens.focusing.nearest_mm) +
                          ": the nearest focus of lens \"" + lens.name + "\" is " +
@@ -233,7 +233,7 @@ LensSystem stopped_down(LensSystem lens, double f_number) {
     lens.stop_semi_diameter = full;
     const double fastest = f_number_at_infinity(lens);
     if (!(f_number > 0) || !std::isfinite(f_number))
-        throw InputError("the f-number is " + std::to_string(f_number) + "; a positive number is wanted");
+        throw InputError("the f-number is " + std::to_string(f_number) + "; expected a positive number");
     if (!(fastest > 0) || !std::isfinite(fastest))
         throw InputError("lens \"" + lens.name + "\" has no f-number: " +
                          (first_order(lens, lens.wavelength_nm).is_afocal()

@@ -98,7 +98,7 @@ LensSystem reversed(const LensSystem& lens, std::optional<double> film_distance)
         if (!film_distance && !(turned.film_distance > 0))
             throw LensFileError(
                 "turned round, the lens makes no real image of infinity behind its last surface; a film distance is "
-                "wanted");
+                "required");
         return turned;
     });
 }
@@ -110,7 +110,7 @@ LensSystem inserted(const LensSystem& lens, int index, const std::vector<Surface
         throw InputError("surfaces are put in front of surface 0 to " + std::to_string(n - 1) +
                          ", or behind the last (" + std::to_string(n) + "); " + std::to_string(index) + " is neither");
     if (surfaces.empty()) throw InputError("there are no surfaces to insert");
-    if (index == n && !gap) throw InputError("behind the last surface the distance from it is wanted, too");
+    if (index == n && !gap) throw InputError("behind the last surface, the distance from it is required as well");
     if (index == 0 && gap) throw InputError("in front of the first surface there is nothing to have a distance from");
     return lens_edits_detail::edited_in_all_states(lens, [&](LensSystem l) {
         const auto position = static_cast<std::size_t>(index);

@@ -108,7 +108,7 @@ struct ForbesTerms {
     template <class Surface>
     std::string error(const Surface& surface) const {
         if (kind == ForbesKind::con || (surface.conic == 0 && surface.form.has_conic_base())) return "";
-        return "Forbes terms of the kind \"bfs\" depart from a sphere, so that no conic is wanted";
+        return "Forbes terms of the kind \"bfs\" depart from a sphere, so the conic must be 0";
     }
     void negate() { form_detail::negate_all(coefficients); }
     /// The factor of w, w = (r / radius)^2, as a polynomial in 2 w - 1.

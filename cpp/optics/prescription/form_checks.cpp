@@ -63,8 +63,8 @@ std::string aperture_error(const Surface& s) {
     const ApertureShape& shape = s.aperture_shape;
     if (shape.kind == ApertureOutline::polygon) {
         if (shape.corners.size() < 3 || shape.corners.size() > static_cast<std::size_t>(kMaxApertureCorners))
-            return "its aperture has " + std::to_string(shape.corners.size()) + " corners; 3 to " +
-                   std::to_string(kMaxApertureCorners) + " are wanted";
+            return "its aperture has " + std::to_string(shape.corners.size()) + " corners; expected 3 to " +
+                   std::to_string(kMaxApertureCorners);
         for (const Vec2d& corner : shape.corners)
             if (!is_short(corner)) return "a corner of its aperture is no point";
     } else if (shape.kind != ApertureOutline::circle || shape.half != Vec2d{0, 0}) {

@@ -32,7 +32,7 @@ void check_wavelength_in_glasses(const LensSystem& lens, double wavelength_nm, c
                          (wavelength_nm <= range.first
                               ? " lets no light pass below its resonance at " + nm_text(range.first)
                               : " lets no light pass above its resonance at " + nm_text(range.last)) +
-                         " nm; " + nm_text(wavelength_nm) + " nm is wanted");
+                         " nm; " + nm_text(wavelength_nm) + " nm was requested");
     }
 }
 

@@ -38,7 +38,7 @@ void check_glasses_known(const LensSystem& lens, WavelengthRange range, const st
         // Tolerance of 0.05 nm: a table that ends at 656.3 is meant for the line at 656.27.
         if (range.first < first_known - 0.05 || range.last > last_known + 0.05)
             throw InputError(purpose + ": " + glass_text(lens, i) + " is known from " + nm_text(first_known) + " to " +
-                             nm_text(last_known) + " nm; " + range_text(range) + " wanted");
+                             nm_text(last_known) + " nm; " + range_text(range) + " requested");
     }
 }
 

@@ -36,7 +36,7 @@ void check_figure(const Surface& s, std::size_t i) {
 
 void check_rim(const Surface& s, std::size_t i) {
     if (!(s.clear_semi_diameter > 0) || !std::isfinite(s.clear_semi_diameter))
-        fail(i, "the clear semi-diameter is " + mm(s.clear_semi_diameter) + "; a positive length is wanted");
+        fail(i, "the clear semi-diameter is " + mm(s.clear_semi_diameter) + "; expected a positive length");
     if (s.clear_semi_diameter < kShortestRadius || s.clear_semi_diameter > kLongest)
         fail(i, "the clear semi-diameter must lie between 1e-6 and 1e9 mm");
     double power = s.clear_semi_diameter * s.clear_semi_diameter;
@@ -61,8 +61,8 @@ void check_thickness(const Surface& s, std::size_t i, double direction) {
     if (std::fabs(s.thickness) > kLongest) fail(i, "the thickness is more than 1e9 mm");
     if (s.thickness * direction < 0)
         fail(i, direction > 0
-                    ? "the thickness is negative; light travels to the film here, so 0 or more is wanted"
-                    : "the thickness is positive; light travels back behind a mirror, so 0 or less is wanted");
+                    ? "the thickness is negative; light travels to the film here, so it must be 0 or more"
+                    : "the thickness is positive; light travels back behind a mirror, so it must be 0 or less");
 }
 
 /// Returns the reason why a placement is invalid; empty if it is valid.
@@ -80,7 +80,7 @@ void check_material(const Surface& s, std::size_t i, double design_wavelength_nm
         const double n = s.material.index(wavelength);
         if (!(n >= 1) || !(n < 10))
             fail(i, "the refractive index of its material at " + std::to_string(static_cast<int>(wavelength)) +
-                        " nm is " + std::to_string(n) + "; 1 to 10 is wanted");
+                        " nm is " + std::to_string(n) + "; expected 1 to 10");
     }
 }
 
@@ -95,10 +95,10 @@ void check_surface_coating(const Surface& s, std::size_t i) {
 
 void check_stop(const LensSystem& lens) {
     const int first = lens.stop_index();
-    if (first < 0) throw LensFileError("the lens has no surface of type \"stop\"; exactly one is wanted");
+    if (first < 0) throw LensFileError("the lens has no surface of type \"stop\"; expected exactly one");
     for (std::size_t i = static_cast<std::size_t>(first) + 1; i < lens.surfaces.size(); ++i)
         if (lens.surfaces[i].type == SurfaceType::stop)
-            fail(i, "is a second \"stop\", after surface " + std::to_string(first + 1) + "; exactly one is wanted");
+            fail(i, "is a second \"stop\", after surface " + std::to_string(first + 1) + "; expected exactly one");
 }
 
 }  // namespace
@@ -113,7 +113,7 @@ std::string short_mm(double v) {
 
 void check_surfaces(const LensSystem& lens) {
     using namespace lens_checks_detail;
-    if (lens.surfaces.empty()) throw LensFileError("the lens has no surfaces; at least one and a stop are wanted");
+    if (lens.surfaces.empty()) throw LensFileError("the lens has no surfaces; expected at least one and a stop");
     if (lens.surfaces.size() > kMaxSurfaces)
         throw LensFileError("the lens has " + std::to_string(lens.surfaces.size()) + " surfaces; at most " +
                             std::to_string(kMaxSurfaces) + " are supported");
@@ -133,20 +133,20 @@ void check_surfaces(const LensSystem& lens) {
     check_stop(lens);
     if (is_on_axis && direction < 0 && !(lens.film_distance < 0))
         fail(last_mirror,
-             "the lens has an odd number of mirrors, so its light never reaches a film behind it; a film before it, at "
-             "a film_distance_mm below 0, is wanted");
+             "the lens has an odd number of mirrors, so its light never reaches a film behind it; the film must lie "
+             "before it, at a film_distance_mm below 0");
     if (lens.allow_overlap) return;
     if (const auto overlap = find_overlap(lens))
         fail(static_cast<std::size_t>(overlap->first),
              "crosses surface " + std::to_string(overlap->second + 1) + ", by " + short_mm(overlap->depth) + " at " +
                  short_mm(overlap->radius) +
-                 " from the axis; faces that keep apart up to their rims are wanted (allow_overlap admits it)");
+                 " from the axis; faces must stay apart up to their rims (allow_overlap admits it)");
 }
 
 void check_iris(const IrisShape& iris) {
     if (iris.blades != 0 && (iris.blades < 3 || iris.blades > kMaxIrisBlades))
-        throw LensFileError("the iris has " + std::to_string(iris.blades) + " blades; 0 (round) or 3 to " +
-                            std::to_string(kMaxIrisBlades) + " are wanted");
+        throw LensFileError("the iris has " + std::to_string(iris.blades) + " blades; expected 0 (round) or 3 to " +
+                            std::to_string(kMaxIrisBlades));
     if (!(iris.rounding >= 0 && iris.rounding <= 1))
         throw LensFileError("the rounding of the iris must lie between 0 (straight blades) and 1 (a circle)");
     if (!std::isfinite(iris.rotation_rad)) throw LensFileError("the rotation of the iris is not a finite number");
@@ -223,8 +223,8 @@ std::string film_distance_error(const LensSystem& lens) {
         return "the film must lie behind the last surface of the lens, at most 1e9 mm away";
     if (!lens.allow_overlap && film_crosses_lens(lens))
         return "the film, " + lens_checks_detail::short_mm(lens.film_distance) +
-               " behind the last vertex of the lens, cuts through its last face; a plane behind that face's rim is "
-               "wanted (allow_overlap admits it)";
+               " behind the last vertex of the lens, cuts through its last face; it must lie behind that face's rim "
+               "(allow_overlap admits it)";
     return "";
 }
 

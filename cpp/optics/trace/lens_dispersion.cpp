@@ -26,7 +26,7 @@ void check_dispersion(const LensSystem& lens, WavelengthRange range) {
         if (surface.type == SurfaceType::refracting) last = &surface.material;
     if (last && !last->has_one_index())
         throw InputError("dispersion: the film of " + lens.name +
-                         " lies in glass; a lens with air behind its last surface is wanted");
+                         " lies in glass; expected a lens with air behind its last surface");
 }
 
 std::vector<IndexCubic> index_cubics(const LensSystem& lens, const std::vector<Crossing>& crossings,

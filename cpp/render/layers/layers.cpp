@@ -25,8 +25,7 @@ LayerSet layers_named(const std::vector<std::string>& names) {
         std::size_t i = 0;
         while (i < kLayers.size() && name != kLayers[i].name) ++i;
         if (i == kLayers.size())
-            throw InputError("unknown layer \"" + name.substr(0, 60) + "\"; all, or some of " + layer_names() +
-                             " are wanted");
+            throw InputError("unknown layer \"" + name.substr(0, 60) + "\"; expected all, or some of " + layer_names());
         set.add(static_cast<Layer>(i));
     }
     return set;

@@ -50,7 +50,7 @@ double metered_exposure_time(Session& session, const Assembly& scene, Camera cam
     }
     const double per_second = metered_exposure(take_picture(session, scene, camera, settings, progress));
     if (!(per_second > 0) || !std::isfinite(per_second))
-        throw InputError("no light reaches the film, so that no exposure can be metered; an exposure time is wanted");
+        throw InputError("no light reaches the film, so that no exposure can be metered; specify an exposure time");
     return 10 / (camera.iso * per_second);
 }
 

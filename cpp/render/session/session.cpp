@@ -133,7 +133,7 @@ void Session::take_part(std::int64_t first, int count, const Progress& progress,
 RegionSums Session::expose_region(const FilmRegion& region, std::int64_t first, int count,
                                   const std::vector<std::uint32_t>& counts, const Progress& progress) {
     if (!counts.empty() && counts.size() != region.pixels())
-        throw InputError("a sample count is wanted for each pixel of the region");
+        throw InputError("expected a sample count for each pixel of the region");
     RegionSums sums;
     std::atomic<std::int64_t> done{0};
     take_part(first, count, progress, done, region.pixels(), [&](const SampleRange& range, OwnStop& stop) {

@@ -82,8 +82,7 @@ EffectChoice effects_named(const std::vector<std::string>& names) {
         const std::string plain = effect_of(name);
         const EffectInfo* found = find_effect(plain);
         if (!found)
-            throw InputError("unknown effect \"" + name.substr(0, 60) + "\"; some of " + effect_names() +
-                             " are wanted");
+            throw InputError("unknown effect \"" + name.substr(0, 60) + "\"; expected some of " + effect_names());
         for (const std::string& other : names)
             if (other != name && effect_of(other) == plain)
                 throw InputError(
@@ -96,7 +95,7 @@ EffectChoice effects_named(const std::vector<std::string>& names) {
         const std::optional<double> value = share_from(name.substr(equals + 1));
         if (!found->parameter || !on || !value)
             throw InputError("\"" + name.substr(0, 60) + "\" is no effect; " +
-                             (found->parameter ? "after the equals sign a share from 0 to 1 is wanted"
+                             (found->parameter ? "expected a number from 0 to 1 after the equals sign"
                                                : "the effect " + plain + " has no parameter"));
         effects.*found->parameter = *value;
     }

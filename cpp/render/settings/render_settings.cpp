@@ -44,7 +44,7 @@ void validate(const RenderSettings& settings) {
 
 void validate_effects(const RenderSettings& settings, const Camera& camera) {
     if (settings.effects.is_automatic)
-        throw InputError("effects: \"auto\" is for pictures that are planned first; names of effects are wanted");
+        throw InputError("effects: \"auto\" is for pictures that are planned first; specify effects by their names");
     const EffectChoice& effects = settings.effects;
     if (settings.pupil_sampling != PupilSampling::outline && camera.model != CameraModel::full_lens)
         throw InputError("pupil_sampling: the camera's model must be full");
@@ -52,7 +52,7 @@ void validate_effects(const RenderSettings& settings, const Camera& camera) {
         throw InputError("pupil_sampling: pixels learn where light passes only without " +
                          effects_that(&EffectInfo::is_compiled));
     if (settings.layers.has_any(kHalfLayers) && camera.model == CameraModel::pinhole)
-        throw InputError("layers: the pupil of a pinhole has no halves for dual pixels; another model is wanted");
+        throw InputError("layers: the pupil of a pinhole has no halves for dual pixels; choose another model");
     if (settings.layers.has_any(kHalfLayers) && settings.pupil_sampling == PupilSampling::pixel)
         throw InputError("pupil_sampling: pixels that learn where light passes have no halves of dual pixels");
     if (const EffectInfo* effect = first_that(effects, &EffectInfo::needs_round_lens))

@@ -65,9 +65,9 @@ def distortion(
     nm = lens.wavelength_nm if wavelength_nm is None else wavelength_nm
     way = projection or ("tangent" if float(np.abs(fields).max()) <= 60 else "angle")
     if way not in PROJECTIONS:
-        raise InputError(f'unknown projection "{way}"; tangent or angle is wanted')
+        raise InputError(f'unknown projection "{way}"; expected tangent or angle')
     if way == "tangent" and float(np.abs(fields).max()) >= 90:
-        raise InputError('the projection "tangent" has no picture at 90 deg and beyond; "angle" is wanted')
+        raise InputError('the projection "tangent" has no picture at 90 deg and beyond; use "angle"')
     plane = lens.film_distance_mm if film_distance_mm is None else film_distance_mm
     real = np.array([_height_at(source, float(field), nm, plane) for field in fields])
     angle = np.radians(fields)

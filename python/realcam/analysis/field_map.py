@@ -95,7 +95,7 @@ def field_map(
     directions; for an anamorphic lens that picture is squeezed. Raises InputError.
     """
     if quantity not in QUANTITIES:
-        raise InputError(f'unknown quantity "{quantity}"; one of {", ".join(QUANTITIES)} is wanted')
+        raise InputError(f'unknown quantity "{quantity}"; expected one of {", ".join(QUANTITIES)}')
     if min(points) < 2:
         raise InputError("points must be at least 2 along x and along y")
     source = bundles_of(lens, object_distance_m, bundles)

@@ -141,7 +141,7 @@ def image_simulation(
     """
     source = _linear(picture)
     if flip not in FLIPS:
-        raise InputError(f'unknown flip "{flip}"; one of {", ".join(FLIPS)} is wanted')
+        raise InputError(f'unknown flip "{flip}"; expected one of {", ".join(FLIPS)}')
     if len(psf_grid) != 2 or min(psf_grid) < 2:
         raise InputError("psf_grid must be at least 2 along x and along y")
     film = _film_of(lens, source, resolution, pixel_um)
@@ -467,7 +467,7 @@ class _Kernels:
             if most > radius:
                 raise InputError(
                     f"the blur at the film point ({point[0]:.4g}, {point[1]:.4g}) mm reaches {most:.0f} pixels from "
-                    f"the chief ray; at most {radius} can be simulated: larger pixels or a smaller stop are wanted"
+                    f"the chief ray; at most {radius} can be simulated: use larger pixels or a smaller stop"
                 )
         size, step = odd * (2 * radius + 1), self.pitch_um / odd
         fine = np.zeros((3, size, size))
@@ -647,7 +647,7 @@ def _film_of(lens: Lens, source: Floats, resolution: Sequence[int] | None, pixel
             resolution = (int(1e3 * lens.film_mm[0] / pixel_um + 1e-6), int(1e3 * lens.film_mm[1] / pixel_um + 1e-6))
     width, height = (int(n) for n in resolution)
     if not (1 <= width <= 100000 and 1 <= height <= 100000):
-        raise InputError(f"the film would have {width} x {height} pixels; 1 to 100000 along each side are wanted")
+        raise InputError(f"the film would have {width} x {height} pixels; expected 1 to 100000 along each side")
     pitch = min(lens.film_mm[0] / width, lens.film_mm[1] / height) if pixel_um is None else 1e-3 * pixel_um
     return _Film(width, height, float(pitch))
 
@@ -689,18 +689,18 @@ def _projection(projection: str | None, light: _FieldLight, height_m: float | No
     corner = light.corner_deg
     kind = projection or ("tangent" if corner <= _WIDEST_TANGENT_DEG or height_m is not None else "angle")
     if kind not in PROJECTIONS:
-        raise InputError(f'unknown projection "{kind}"; tangent or angle is wanted')
+        raise InputError(f'unknown projection "{kind}"; expected tangent or angle')
     if height_m is not None and corner >= 90:
         raise InputError(
             f"height_m: the film looks {corner:.3g} deg away from the axis, where a flat object has no height; "
-            'height_deg with the projection "angle" is wanted'
+            'use height_deg with the projection "angle"'
         )
     if height_m is not None and kind == "angle":
-        raise InputError('height_m goes with the projection "tangent" alone; height_deg is wanted')
+        raise InputError('height_m goes with the projection "tangent" alone; use height_deg')
     if kind == "angle" and corner >= 90 and math.isfinite(light.distance_m):
         raise InputError(
             f"the film looks {corner:.3g} deg away from the axis, and an object at a finite distance ends before 90 "
-            "deg; an object distance of inf is wanted"
+            "deg; use an object distance of inf"
         )
     return kind
 
@@ -713,7 +713,7 @@ def _object_height(light: _FieldLight, kind: str, height_deg: float | None, heig
         if not 0 < height_m < math.inf:
             raise InputError("height_m must be a positive number")
         if math.isinf(light.distance_m):
-            raise InputError("height_m: the object is at infinity; height_deg, or a finite object distance is wanted")
+            raise InputError("height_m: the object is at infinity; use height_deg, or a finite object distance")
         return height_m / light.from_pupil_m
     if height_deg is None:
         return None

@@ -286,7 +286,7 @@ KINDS: dict[str, Kind] = {
 def compute(kind: str, asked: Asked) -> Any:
     """The data of a plot. Raises InputError for an unknown kind."""
     if kind not in KINDS:
-        raise InputError(f'unknown plot "{kind}"; one of {", ".join(KINDS)} is wanted')
+        raise InputError(f'unknown plot "{kind}"; expected one of {", ".join(KINDS)}')
     if asked.method is not None and kind not in KINDS_WITH_METHODS:
         raise InputError(f"--method goes with {', '.join(KINDS_WITH_METHODS)}; {kind} has one way alone")
     return KINDS[kind].compute(asked)
@@ -297,7 +297,7 @@ def plot_figure(
 ) -> matplotlib.figure.Figure:
     """A figure of the data. size: "small" or "large", by the inches of `style.SIZES_IN`."""
     if size not in style.SIZES_IN:
-        raise InputError(f'unknown size "{size}"; small or large is wanted')
+        raise InputError(f'unknown size "{size}"; expected small or large')
     width, height = style.SIZES_IN[size]
     height *= KINDS[kind].height
     rows, columns = KINDS[kind].shape(data)

@@ -72,7 +72,7 @@ def mtf(
     Raises InputError if no light passes.
     """
     if method not in METHODS:
-        raise InputError(f'unknown method "{method}"; diffraction or geometric is wanted')
+        raise InputError(f'unknown method "{method}"; expected diffraction or geometric')
     source, fields, colours = light_of(lens, fields_deg, wavelengths_nm, object_distance_m, bundles)
     frequencies = (
         default_frequencies_per_mm(lens)

@@ -105,7 +105,7 @@ def fit_zernike(
     Raises InputError for an unknown order, if there are fewer points than terms, or if terms are linearly dependent.
     """
     if order not in ORDERS:
-        raise InputError(f'unknown order "{order}"; noll or fringe is wanted')
+        raise InputError(f'unknown order "{order}"; expected noll or fringe')
     if not 1 <= terms <= 231:
         raise InputError("terms must lie between 1 and 231")
     points, values = np.asarray(pupil, dtype=float), np.asarray(opd_waves, dtype=float)
@@ -115,13 +115,13 @@ def fit_zernike(
     nm = tuple((noll if order == "noll" else fringe)(j) for j in range(1, terms + 1))
     there = np.isfinite(values)
     if there.sum() < terms:
-        raise InputError(f"{terms} terms are to be fitted to {there.sum()} rays; more rays, or fewer terms, are wanted")
+        raise InputError(f"{terms} terms are to be fitted to {there.sum()} rays; use more rays, or fewer terms")
     x, y = points[there].T
     basis = np.column_stack([term(n, m, x, y) for n, m in nm])
     root = np.sqrt(share[there])
     coefficients, _, rank, _ = np.linalg.lstsq(root[:, None] * basis, root * values[there], rcond=None)
     if rank < terms:
-        raise InputError(f"{terms} terms cannot be told apart on this pupil; fewer are wanted")
+        raise InputError(f"{terms} terms cannot be told apart on this pupil; use fewer")
     residuals = np.full(len(values), np.nan)
     residuals[there] = values[there] - basis @ coefficients
     left = float(np.sqrt(np.sum(share[there] * residuals[there] ** 2) / np.sum(share[there])))

@@ -68,7 +68,7 @@ def run() -> None:
     except OSError as error:
         _fail(f"{error.filename or 'file'}: {error.strerror or error}")
     except MemoryError:
-        _fail("out of memory; fewer pixels or a smaller scene are wanted")
+        _fail("out of memory; use fewer pixels or a smaller scene")
     except (KeyboardInterrupt, typer.Abort):
         print("realcam: stopped", file=sys.stderr)
         sys.exit(130)

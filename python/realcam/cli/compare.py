@@ -64,7 +64,7 @@ def compare(
     theme_named(theme)
     name, equals, values = vary.partition("=")
     if not equals or not all(values.split(",")):
-        raise InputError(f'--vary: "{vary:.60}": NAME=VALUE,... is wanted, as f_number=2,4,8')
+        raise InputError(f'--vary: "{vary:.60}": expected NAME=VALUE,..., as f_number=2,4,8')
     name = name.replace("-", "_")
     if f_number is not None and name == "f_number":
         raise InputError("--f-number: the f-number is what --vary names")

@@ -20,11 +20,11 @@ from .completions import completion_of
 def dataset(
     recipe: Annotated[Path, typer.Argument(help="What to make, .toml (docs/datasets.md)", metavar="RECIPE")],
     output: Annotated[
-        Path, typer.Option("--output", "-o", metavar="FOLDER", help="Of the shards; what is there already is kept")
+        Path, typer.Option("--output", "-o", metavar="FOLDER", help="Folder of the shards; existing ones are kept")
     ],
     count: Annotated[
         Optional[int],  # noqa: UP045
-        typer.Option("--count", metavar="N", help="Of pictures [the recipe's]", min=1),
+        typer.Option("--count", metavar="N", help="Number of pictures [the recipe's]", min=1),
     ] = None,
     workers: Annotated[
         Optional[int],  # noqa: UP045

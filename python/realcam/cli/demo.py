@@ -22,7 +22,7 @@ from . import options
 def demo(
     output: Annotated[
         Path,
-        typer.Option("--output", "-o", metavar="FOLDER", help="Folder for the pictures; made where it is missing"),
+        typer.Option("--output", "-o", metavar="FOLDER", help="Folder for the pictures; created if it is missing"),
     ] = Path("realcam-demo"),
     spp: Annotated[
         int | None,
@@ -30,7 +30,7 @@ def demo(
     ] = None,
     denoise: Annotated[
         bool | None,
-        typer.Option(help="Take the noise from the pictures; done where realcam[denoise] is installed"),
+        typer.Option(help="Denoise the pictures; the default if realcam[denoise] is installed"),
     ] = None,
     quiet: options.Quiet = False,
 ) -> None:

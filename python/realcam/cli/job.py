@@ -27,10 +27,10 @@ from .shot_options import load_shot, shot_options
 if TYPE_CHECKING:
     from ..job import Job
 
-app = typer.Typer(help="Take pictures on many machines, in a folder that all of them see.", no_args_is_help=True)
+app = typer.Typer(help="Take pictures on many machines, in a folder that all of them share.", no_args_is_help=True)
 
 Folder = Annotated[Path, typer.Argument(help="The job's folder, as `realcam job make` made it", metavar="FOLDER")]
-Threads = Annotated[int, typer.Option(metavar="N", help="Of each process; 0: all cores", min=0, max=4096)]
+Threads = Annotated[int, typer.Option(metavar="N", help="Threads of each process; 0: all cores", min=0, max=4096)]
 
 
 ShotOptions = shot_options("ShotOptions", without=("threads",))  # the number of threads is set for each process
@@ -42,7 +42,9 @@ def make(
     shots: Annotated[
         list[Path], typer.Argument(help="Shot files (.toml), scene files, or bundled shots", metavar="SCENE")
     ],
-    output: Annotated[Path, typer.Option("--output", "-o", metavar="FOLDER", help="Of the job; it must not be there")],
+    output: Annotated[
+        Path, typer.Option("--output", "-o", metavar="FOLDER", help="Folder of the job; it must not exist yet")
+    ],
     changes: ShotOptions,  # type: ignore[valid-type]
     device: Annotated[
         str,
@@ -54,13 +56,13 @@ def make(
     ] = "auto",
     frames: Annotated[
         str | None,
-        typer.Option("--frames", metavar="A-B", help="Of a film, 1-240 or 1-240x2: what moves is where it is then"),
+        typer.Option("--frames", metavar="A-B", help="Frames of a film, 1-240 or 1-240x2"),
     ] = None,
-    fps: Annotated[float, typer.Option("--fps", metavar="N", help="Frames in a second of the scene")] = 24.0,
+    fps: Annotated[float, typer.Option("--fps", metavar="N", help="Frames per second of the scene's time")] = 24.0,
     tile: Annotated[
         str | None,
         typer.Option(
-            "--tile", metavar="PIXELS", help="Of a unit: 128, or 128x64, in steps of 32 [a second of one core]"
+            "--tile", metavar="PIXELS", help="Pixels of a unit: 128, or 128x64, in steps of 32 [a second of one core]"
         ),
     ] = None,
     sbatch: Annotated[
@@ -96,7 +98,7 @@ def make(
     ]
     asked = [(path, option, script) for path, option, script in scripts if path is not None]
     if len(files.check_targets([path for path, _, _ in asked])) < len(asked):
-        raise InputError(f"one file each is wanted for {' and '.join(option for _, option, _ in asked)}")
+        raise InputError(f"expected one file each for {' and '.join(option for _, option, _ in asked)}")
     written = {path: os.fsencode(script(output, tasks)) for path, _, script in asked}
     named = _named_shots(shots, changes, device)
     files.check_targets(written)
@@ -129,11 +131,13 @@ def work(
     here: Annotated[bool, typer.Option("--here", help="In this process alone, without Dask")] = False,
     scheduler: Annotated[
         str | None,
-        typer.Option("--scheduler", metavar="ADDRESS", help="Of a Dask scheduler: tcp://head:8786, or its .json file"),
+        typer.Option(
+            "--scheduler", metavar="ADDRESS", help="Address of a Dask scheduler: tcp://head:8786, or its .json file"
+        ),
     ] = None,
     device: Annotated[
         str | None,
-        typer.Option("--device", metavar="DEVICE", help="cuda:1, say, where a job is for GPUs; wants --here"),
+        typer.Option("--device", metavar="DEVICE", help="For example cuda:1, if a job is for GPUs; requires --here"),
     ] = None,
     quiet: options.Quiet = False,
 ) -> None:
@@ -150,7 +154,7 @@ def work(
         raise InputError("--here and --part are for one process; --scheduler and --workers exclude them")
     logging.disable(logging.CRITICAL)  # Dask logs every closed connection; the job reports the errors that matter
     if device is not None and not is_single:
-        raise InputError("--device is for one process; --here is wanted with it")
+        raise InputError("--device is for one process; use it together with --here")
     numbers, job = _part(part), Job.load(folder)
     with progress_bar(f"{folder}", is_shown=not quiet) as bar:
         if is_single or not (has_dask() or scheduler or workers):
@@ -204,9 +208,9 @@ def finish(
         ),
     ],
     format: Annotated[
-        str, typer.Option("--format", metavar="NAME", help="Of pictures in a folder: exr, png, jpg, tif or webp")
+        str, typer.Option("--format", metavar="NAME", help="Format of pictures in a folder: exr, png, jpg, tif or webp")
     ] = "exr",
-    fps: Annotated[float, typer.Option("--fps", metavar="N", help="Frames in a second of a film")] = 24.0,
+    fps: Annotated[float, typer.Option("--fps", metavar="N", help="Frames per second of a film")] = 24.0,
     device: Annotated[
         str | None, typer.Option("--device", metavar="DEVICE", help="For layers of single rays [that of the job]")
     ] = None,
@@ -242,11 +246,11 @@ def _picture_files(job: Job, output: list[Path], format: str) -> dict[str, list[
     is_file = [path.suffix.lower() in (".exr", *DEVELOPED) for path in output]
     if all(is_file):
         if len(job.names) > 1:
-            raise InputError(f"the job has {len(job.names)} pictures; a folder is wanted for --output")
+            raise InputError(f"the job has {len(job.names)} pictures; --output must be a folder")
         targets = {job.names[0]: output}
     else:
         if len(output) > 1:
-            raise InputError("one folder is wanted for --output, or files .exr, .png, .jpg, .tif and .webp")
+            raise InputError("--output must be one folder, or files .exr, .png, .jpg, .tif and .webp")
         files.make_folder(output[0])
         targets = {name: [output[0] / f"{name}.{format}"] for name in job.names}
     files.check_targets([path for paths in targets.values() for path in paths], outside=job.path)
@@ -267,7 +271,7 @@ def _named_shots(paths: list[Path], changes: Any, device: str) -> dict[str, Shot
     shots: dict[str, Shot] = {}
     for path in paths:
         if path.stem in shots:
-            raise InputError(f"{path}: two shots are called {path.stem}; other names are wanted")
+            raise InputError(f"{path}: two shots are called {path.stem}; use other names")
         shots[path.stem] = load_shot(path, changes, device)
     return shots
 
@@ -284,7 +288,7 @@ def _part(text: str | None) -> tuple[int, int] | None:
         return None
     found = re.fullmatch(r"(\d{1,6})/(\d{1,6})", text)
     if not found or not 1 <= int(found[1]) <= int(found[2]):
-        raise InputError(f'--part: "{text:.40}": K/N is wanted, 1/8 to 8/8')
+        raise InputError(f'--part: "{text:.40}": expected K/N, 1/8 to 8/8')
     return int(found[1]), int(found[2])
 
 
@@ -294,5 +298,5 @@ def _tile(text: str | None) -> tuple[int, int] | None:
     across, _, down = text.partition("x")
     down = down or across
     if not (across.isdecimal() and down.isdecimal()):
-        raise InputError(f'--tile: "{text:.40}": pixels are wanted, 128 or 128x64')
+        raise InputError(f'--tile: "{text:.40}": expected pixels, 128 or 128x64')
     return int(across), int(down)

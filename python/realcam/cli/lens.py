@@ -47,7 +47,7 @@ def draw(
     ] = None,
     rings: lens_options.Rings,
     plane: Annotated[
-        str, typer.Option(metavar="PLANE", help="yz or xz, in which lenses that are not of revolution are others")
+        str, typer.Option(metavar="PLANE", help="yz or xz, which differ for lenses that are not rotationally symmetric")
     ] = "yz",
     rays: lens_options.Rays = 7,
     rays_from: lens_options.RaysFrom = "object",
@@ -70,7 +70,7 @@ def draw(
     from ..drawing.lens_drawings import save_cross_section, save_states, states_of
 
     if states not in ("one", "rows", "ghost"):
-        raise InputError(f'--states: "{states:.40}" is unknown; one, rows or ghost is wanted')
+        raise InputError(f'--states: "{states:.40}" is unknown; expected one, rows or ghost')
     if states == "rows" and (rings.focus is not None or fields_deg is not None):
         raise InputError(
             "--states rows shows focus states or zoom positions, by shares of the film: --focus and "
@@ -108,7 +108,11 @@ def photo(
     circle: Circle = None,
     exposure_time: Annotated[
         str | None,
-        typer.Option("--exposure-time", metavar="TIME", help="In seconds, 1/125 or 0.008: also print exposure values"),
+        typer.Option(
+            "--exposure-time",
+            metavar="TIME",
+            help="Exposure time in seconds, 1/125 or 0.008: also print exposure values",
+        ),
     ] = None,
     iso: Annotated[float, typer.Option("--iso", metavar="ISO", help="Sensitivity, for exposure values")] = 100.0,
     file: lens_options.File,
@@ -119,7 +123,7 @@ def photo(
     from ..photography import photographic_figures
 
     if not 0 < iso < math.inf:
-        raise InputError("--iso: a positive number is wanted")
+        raise InputError("--iso: expected a positive number")
     lens = rings.set(file.lens(name))
     figures = photographic_figures(
         lens,
@@ -137,7 +141,7 @@ def photo(
 @grouped
 def compare(
     first: lens_options.LensName,
-    second: Annotated[str, typer.Argument(help="Another one", metavar="LENS", autocompletion=completion_of("LENS"))],
+    second: Annotated[str, typer.Argument(help="Another lens", metavar="LENS", autocompletion=completion_of("LENS"))],
     *,
     output: Annotated[
         Path | None,

@@ -54,15 +54,16 @@ def image(
     flip: Annotated[
         str, typer.Option("--flip", metavar="NAME", help="none, horizontal, vertical, or both: as it lies on the film")
     ] = "none",
-    falloff: Annotated[bool, typer.Option(help="With relative illumination")] = True,
+    falloff: Annotated[bool, typer.Option(help="Include relative illumination")] = True,
     psfs: Annotated[
         bool, typer.Option("--psfs", help="Put a grid of point spread functions to the right of the picture")
     ] = False,
     psf_grid: Annotated[
-        str, typer.Option("--psf-grid", metavar="XxY", help="How many are computed over the film")
+        str, typer.Option("--psf-grid", metavar="XxY", help="Number of point spread functions computed over the film")
     ] = "7x5",
     wavelengths: Annotated[
-        str | None, typer.Option("--wavelengths", metavar="NM", help="In nm, with commas between [440 to 640]")
+        str | None,
+        typer.Option("--wavelengths", metavar="NM", help="Wavelengths in nm, separated by commas [440 to 640]"),
     ] = None,
     file: lens_options.File,
     quiet: options.Quiet = False,
@@ -98,5 +99,5 @@ def _whole_numbers(text: str, option: str, between: str, count: int) -> tuple[in
     """Raises InputError."""
     words = text.split(between)
     if len(words) != count or not all(word.strip().isdecimal() and len(word) < 9 for word in words):
-        raise InputError(f'{option}: "{text:.40}": {count} whole numbers with "{between}" between are wanted')
+        raise InputError(f'{option}: "{text:.40}": expected {count} whole numbers with "{between}" between')
     return tuple(map(int, words))

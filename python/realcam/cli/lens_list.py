@@ -106,7 +106,7 @@ def _range(text: str | None, option: str) -> tuple[float, float] | None:
     shortest = options.number(first, option, "a number or two with a minus between, 35-70")
     longest = options.number(last, option) if last else shortest
     if not 0 < shortest <= longest:
-        raise InputError(f'{option}: "{text:.40}": positive numbers are wanted, the smaller one first')
+        raise InputError(f'{option}: "{text:.40}": expected positive numbers, the smaller one first')
     return shortest, longest
 
 

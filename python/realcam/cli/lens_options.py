@@ -37,14 +37,12 @@ RaysFrom = Annotated[
 ]
 Fields = Annotated[
     str,
-    typer.Option(
-        "--fields", metavar="SHARES", help="Places in the field, as shares of the height of the film's corner"
-    ),
+    typer.Option("--fields", metavar="SHARES", help="Field points, relative to the height of the film's corner"),
 ]
 FieldsDeg = Annotated[
     str | None,
     typer.Option(
-        "--fields-deg", metavar="DEGREES", help="Places in the field as angles before the lens, in degrees, instead"
+        "--fields-deg", metavar="DEGREES", help="Field points as angles in front of the lens, in degrees, instead"
     ),
 ]
 ThemeName = Annotated[str, typer.Option("--theme", metavar="NAME", help="light or dark")]
@@ -134,17 +132,21 @@ class Look:
     """How lenses are drawn."""
 
     wavelengths: Annotated[
-        str | None, typer.Option("--wavelengths", metavar="NM", help="Of the rays, in nm: 486,588,656 [the lens's]")
+        str | None,
+        typer.Option("--wavelengths", metavar="NM", help="Wavelengths of the rays in nm: 486,588,656 [the lens's]"),
     ] = None
     radius_colours: Annotated[
-        bool, typer.Option("--radius-colours", help="Faces by the sign of their radius: blue positive, red negative")
+        bool,
+        typer.Option(
+            "--radius-colours", help="Colour surfaces by the sign of their radius: blue positive, red negative"
+        ),
     ] = False
     marks: Annotated[
         bool, typer.Option("--marks", help="Mark pupils (EP, XP), principal planes (H, H') and focal points (F, F')")
     ] = False
     theme: ThemeName = "light"
     width: Annotated[
-        int, typer.Option("--width", metavar="PIXELS", help="Of the picture, in pixels", min=200, max=20000)
+        int, typer.Option("--width", metavar="PIXELS", help="Width of the picture in pixels", min=200, max=20000)
     ] = 1600
 
     def arguments(self) -> dict[str, Any]:
@@ -192,7 +194,7 @@ def check_not_the_lens(target: Path, *names: str) -> None:
     """Raises InputError where what is written would go over the file of a lens that it is about."""
     for name in names:
         if Path(name).is_file() and target.exists() and target.samefile(name):
-            raise InputError(f"{target}: is the lens file itself; another name is wanted")
+            raise InputError(f"{target}: is the lens file itself; choose another name")
 
 
 def numbers(text: str | None, option: str) -> list[float] | None:

@@ -25,13 +25,15 @@ ObjectDistance = Annotated[
 Fields = Annotated[
     str | None,
     typer.Option(
-        "--fields-deg", metavar="DEGREES", help="Field angles in degrees, with commas between [up to the film's corner]"
+        "--fields-deg", metavar="DEGREES", help="Field angles in degrees, separated by commas [up to the film's corner]"
     ),
 ]
 Wavelengths = Annotated[
     str | None,
     typer.Option(
-        "--wavelengths", metavar="NM", help="In nm, with commas between [F line, the design wavelength, C line]"
+        "--wavelengths",
+        metavar="NM",
+        help="Wavelengths in nm, separated by commas [F line, the design wavelength, C line]",
     ),
 ]
 

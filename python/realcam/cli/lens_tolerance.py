@@ -22,26 +22,32 @@ def tolerance(
     name: lens_options.LensName,
     *,
     grade: Annotated[
-        str, typer.Option("--grade", metavar="NAME", help="Of all tolerances: commercial, precision or high")
+        str, typer.Option("--grade", metavar="NAME", help="Grade of all tolerances: commercial, precision or high")
     ] = "commercial",
     output: Annotated[Path | None, typer.Option("--output", "-o", metavar="FILE", help="A report, .html")] = None,
-    copies: Annotated[int, typer.Option("--copies", metavar="N", help="How many lenses are made")] = 1000,
-    seed: Annotated[int, typer.Option("--seed", metavar="N", help="The same one makes the same copies")] = 0,
+    copies: Annotated[int, typer.Option("--copies", metavar="N", help="Number of copies")] = 1000,
+    seed: Annotated[int, typer.Option("--seed", metavar="N", help="Seed; the same seed makes the same copies")] = 0,
     compensate: Annotated[
         str,
-        typer.Option("--compensate", metavar="WHAT", help="refocus, film_tilt, both with a comma between, or nothing"),
+        typer.Option("--compensate", metavar="WHAT", help="refocus, film_tilt, both separated by a comma, or nothing"),
     ] = "refocus",
     distribution: Annotated[
         str,
-        typer.Option("--distribution", metavar="NAME", help="Of errors: uniform, or normal with the limit at 2 sigma"),
+        typer.Option(
+            "--distribution",
+            metavar="NAME",
+            help="Distribution of errors: uniform, or normal with the limit at 2 sigma",
+        ),
     ] = "uniform",
     frequency: Annotated[
         float | None,
-        typer.Option("--frequency", metavar="PER_MM", help="At which MTF counts [20 on a film of 36 x 24 mm]"),
+        typer.Option("--frequency", metavar="PER_MM", help="Spatial frequency of the MTF [20 on a film of 36 x 24 mm]"),
     ] = None,
     at_least: Annotated[
         float | None,
-        typer.Option("--at-least", metavar="MTF", help="Of the worst field, for the yield [half of that as drawn]"),
+        typer.Option(
+            "--at-least", metavar="MTF", help="Least MTF of the worst field, for the yield [half of that as drawn]"
+        ),
     ] = None,
     rings: lens_options.Rings,
     file: lens_options.File,

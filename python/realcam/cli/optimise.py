@@ -32,16 +32,16 @@ COLOURS_NM = (486.1327, 587.5618, 656.2725)
 class Bounds:
     """Bounds of the variables, mm."""
 
-    least_radius: Annotated[float, typer.Option(metavar="MM", help="No radius becomes smaller", min=0)] = 0.0
-    least_thickness: Annotated[float, typer.Option(metavar="MM", help="No thickness of air becomes smaller")] = 0.1
+    least_radius: Annotated[float, typer.Option(metavar="MM", help="Smallest radius", min=0)] = 0.0
+    least_thickness: Annotated[float, typer.Option(metavar="MM", help="Smallest air thickness")] = 0.1
     least_glass: Annotated[
-        float, typer.Option(metavar="MM", help="No thickness of glass becomes smaller, unless it is thinner already")
+        float, typer.Option(metavar="MM", help="Smallest glass thickness, unless it is thinner already")
     ] = 1.0
     most_thickness: Annotated[
-        float | None, typer.Option(metavar="MM", help="No thickness becomes larger [three times the largest]")
+        float | None, typer.Option(metavar="MM", help="Largest thickness [three times the largest]")
     ] = None
     least_edge: Annotated[
-        float | None, typer.Option(metavar="MM", help="No glass becomes thinner at its edge [0.5, or as it is]")
+        float | None, typer.Option(metavar="MM", help="Smallest edge thickness of glass [0.5, or as it is]")
     ] = None
 
     def least_thickness_of(self, lens: Lens, surface: int) -> float:
@@ -75,20 +75,26 @@ def optimise(
         typer.Option(
             "--fields-deg",
             metavar="DEGREES",
-            help="Angles whose spots are to be small, with commas between [those of the lens's file; the film's]",
+            help="Field angles whose spots are minimised, separated by commas [those of the lens's file; the film's]",
         ),
     ] = None,
     focal_length: Annotated[
-        float | None, typer.Option("--focal-length", metavar="MM", help="What it is to be [as it is]")
+        float | None, typer.Option("--focal-length", metavar="MM", help="Target focal length [as it is]")
     ] = None,
     bounds: Bounds,
     most_distortion: Annotated[
         float | None,
-        typer.Option("--most-distortion", metavar="PERCENT", help="At the outermost field, of either sign", min=0),
+        typer.Option(
+            "--most-distortion",
+            metavar="PERCENT",
+            help="Largest distortion at the outermost field, of either sign",
+            min=0,
+        ),
     ] = None,
     glasses: Annotated[bool, typer.Option("--glasses", help="Look for better glasses in the catalogue, too")] = False,
     global_looks: Annotated[
-        int, typer.Option("--global", metavar="N", help="Looks all over the bounds before the search", min=0)
+        int,
+        typer.Option("--global", metavar="N", help="Number of lenses sampled over the bounds before the search", min=0),
     ] = 0,
     steps: Annotated[int, typer.Option(metavar="N", help="Steps of the search", min=1, max=10000)] = 50,
     rings: lens_options.Rings,
@@ -163,12 +169,12 @@ def _variables_of(text: str, lens: Lens, bounds: Bounds) -> list[Variable]:
         return [variable for i in range(len(lens.surfaces)) for variable in _of_surface(i, text, lens, bounds)]
     if len(numbers) != {"radius": 1, "thickness": 1, "conic": 1, "aspheric": 2}.get(kind):
         raise InputError(
-            f'--vary: "{text}": {", ".join(WAYS)}, radius:2, thickness:3, conic:2 or aspheric:2:4 is wanted'
+            f'--vary: "{text}": expected {", ".join(WAYS)}, radius:2, thickness:3, conic:2 or aspheric:2:4'
         )
     try:
         number, *power = [int(part) for part in numbers]
     except ValueError:
-        raise InputError(f'--vary: "{text}": whole numbers are wanted after the colon') from None
+        raise InputError(f'--vary: "{text}": expected whole numbers after the colon') from None
     if not 1 <= number <= len(lens.surfaces):
         raise InputError(f'--vary: "{text}": there is no surface {number}; the lens has {len(lens.surfaces)}')
     surface = number - 1

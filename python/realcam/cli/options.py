@@ -53,7 +53,7 @@ def frame_numbers(text: str) -> range:
     step = int(found[3] or 1) if found else 0
     numbers = range(int(found[1]), int(found[2] or found[1]) + 1, step) if found and step else None
     if not numbers:
-        raise InputError(f'--frames: "{text:.40}": a number, 1-240 or 1-240x2 is wanted, the smaller one first')
+        raise InputError(f'--frames: "{text:.40}": expected a number, 1-240 or 1-240x2, the smaller one first')
     return numbers
 
 
@@ -65,7 +65,7 @@ def known_word(word: str, known: Iterable[str], what: str) -> str:
     names = list(known)
     if (listed := spelled(word, names)) in names:
         return listed
-    raise InputError(f'unknown {what} "{word:.40}"{_did_you_mean(word, names)}; one of {", ".join(names)} is wanted')
+    raise InputError(f'unknown {what} "{word:.40}"{_did_you_mean(word, names)}; expected one of {", ".join(names)}')
 
 
 def glasses(texts: Sequence[str]) -> dict[str, tuple[float, float] | float | str]:
@@ -74,7 +74,7 @@ def glasses(texts: Sequence[str]) -> dict[str, tuple[float, float] | float | str
     for text in texts:
         name, equals, glass = text.partition("=")
         if not (name and equals and glass):
-            raise InputError(f'--glass: "{text}": NAME=n_d,V_d or NAME=MAKER:GLASS is wanted')
+            raise InputError(f'--glass: "{text}": expected NAME=n_d,V_d or NAME=MAKER:GLASS')
         if name in result:
             raise InputError(f'--glass: the glass "{name}" is given twice')
         n_d, comma, v_d = glass.partition(",")

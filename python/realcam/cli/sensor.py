@@ -95,11 +95,19 @@ def expose(
         ),
     ] = "ideal",
     iso: Annotated[float | None, typer.Option("--iso", metavar="ISO", help="Sensitivity [the picture's]")] = None,
-    seed: Annotated[int, typer.Option(metavar="N", help="Of the noise of this exposure", min=0, max=2**32 - 1)] = 0,
-    serial: Annotated[int, typer.Option(metavar="N", help="Of what a sensor has for ever", min=0, max=2**32 - 1)] = 0,
+    seed: Annotated[
+        int, typer.Option(metavar="N", help="Seed of the noise of this exposure", min=0, max=2**32 - 1)
+    ] = 0,
+    serial: Annotated[
+        int, typer.Option(metavar="N", help="Seed of the sensor's fixed pattern", min=0, max=2**32 - 1)
+    ] = 0,
     temperature: Annotated[
         float | None,
-        typer.Option("--temperature", metavar="CELSIUS", help="Degrees Celsius [that of the sensor's dark current]"),
+        typer.Option(
+            "--temperature",
+            metavar="CELSIUS",
+            help="Temperature in degrees Celsius [that of the sensor's dark current]",
+        ),
     ] = None,
     tone: Annotated[
         str, typer.Option(metavar="CURVE", help="Tone curve, developed: linear (clipped) or film")
@@ -119,10 +127,10 @@ def expose(
         if path.exists() and path.samefile(film):
             raise InputError(f"{path}: is the film itself; the raw picture needs another name")
         if path.suffix.lower() not in (".dng", ".npy", *DEVELOPED):
-            raise InputError(f"{path}: .dng, .npy (raw) or .png, .jpg, .tif, .webp (developed) is wanted")
+            raise InputError(f"{path}: expected .dng, .npy (raw) or .png, .jpg, .tif, .webp (developed)")
     for option, word, known in (("--tone", tone, ("linear", "film")), ("--demosaic", demosaic, METHODS)):
         if word not in known:
-            raise InputError(f'{option}: "{word:.60}" is unknown; {", ".join(known)} is wanted')
+            raise InputError(f'{option}: "{word:.60}" is unknown; expected {", ".join(known)}')
     chosen = Sensor.load(sensor)
     pixels, entries = read_film(film)
     if chosen.angular_response:
@@ -171,7 +179,7 @@ def _film_of(path: Path, entries: dict[str, str], pixels: np.ndarray) -> Film:
     try:
         width, height = (float(word) for word in size)
     except ValueError:
-        raise InputError(f"{path}: does not say how large its film is; an .exr of `realcam render` is wanted") from None
+        raise InputError(f"{path}: does not say how large its film is; expected an .exr of `realcam render`") from None
     return Film(width, height, (pixels.shape[1], pixels.shape[0]))
 
 
@@ -180,7 +188,7 @@ def _number(path: Path, entries: dict[str, str], name: str) -> float:
     try:
         number = float(text)
     except ValueError:
-        raise InputError(f"{path}: has no {name}; an .exr of `realcam render` is wanted") from None
+        raise InputError(f"{path}: has no {name}; expected an .exr of `realcam render`") from None
     if not 0 < number < math.inf:
         raise InputError(f"{path}: {name} must be a positive number; it is {text!r:.60}")
     return number

@@ -31,7 +31,7 @@ def variations(shot: Shot, name: str, values: Sequence[str]) -> list[Variation]:
     shot's f-number, or are wide open if that is slower. Raises InputError and what Lens.load raises.
     """
     if name not in NAMES:
-        raise InputError(f'"{name:.40}" cannot be varied; {", ".join(NAMES[:-1])} or {NAMES[-1]} is wanted')
+        raise InputError(f'"{name:.40}" cannot be varied; expected {", ".join(NAMES[:-1])} or {NAMES[-1]}')
     make = {"f_number": _at_f_number, "lens": _with_lens, "zoom": _zoomed}[name]
     result = []
     for value in values:
@@ -48,7 +48,7 @@ def _at_f_number(camera: Camera, value: str) -> Camera:
     except ValueError:
         f_number = math.nan
     if not (f_number > 0 and math.isfinite(f_number)):
-        raise InputError(f'"{value:.40}" is no f-number; a number such as 2.8 is wanted')
+        raise InputError(f'"{value:.40}" is no f-number; expected a number such as 2.8')
     return camera.replace(lens=camera.lens.stopped_down(f_number))
 
 
@@ -64,7 +64,9 @@ def _zoomed(camera: Camera, value: str) -> Camera:
 def _framed_alike(camera: Camera, lens: Lens) -> Camera:
     focus_m = camera.lens.focus_distance_m
     if not math.isfinite(focus_m):
-        raise InputError("the shot is focused at infinity; focus_m of its subject is wanted, to frame that alike")
+        raise InputError(
+            "the shot is focused at infinity; specify focus_m of its subject, so that it can be framed alike"
+        )
     eye = np.array(camera.position)
     ahead = np.array(camera.look_at) - eye
     ahead /= np.linalg.norm(ahead)

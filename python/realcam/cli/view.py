@@ -28,9 +28,9 @@ def view(
     host: Annotated[str, typer.Option(help="Address to serve at")] = "127.0.0.1",
     port: Annotated[int, typer.Option(help="Port to serve at", min=1, max=65535)] = 8080,
     allow_network: Annotated[
-        bool, typer.Option("--allow-network", help="Serve at an address that other machines reach; makes a token")
+        bool, typer.Option("--allow-network", help="Serve at an address that other machines can reach; creates a token")
     ] = False,
-    token: Annotated[str, typer.Option(help="The token that pages have to give", show_default=False)] = "",
+    token: Annotated[str, typer.Option(help="Token that pages must present", show_default=False)] = "",
     device: options.Device = "auto",
     browser: Annotated[bool, typer.Option(help="Open the browser")] = True,
     quiet: options.Quiet = False,

@@ -78,7 +78,7 @@ class Recipe:
             raise InputError("board must be [columns, rows] of squares, 2 or more each")
         for label in self.labels:
             if label not in LABELS:
-                raise InputError(f'labels: "{label:.40}" is unknown; {", ".join(LABELS)} are wanted')
+                raise InputError(f'labels: "{label:.40}" is unknown; expected {", ".join(LABELS)}')
         Sensor.load(self.sensor)
 
     @classmethod
@@ -91,7 +91,7 @@ class Recipe:
             raise InputError(f"{name}: this cannot be read: {getattr(error, 'strerror', None) or error}") from None
         values, lines = _read_toml(text, name)
         if values.pop("format", None) != 1:
-            raise InputError(f"{name}: format = 1 is wanted, the version of this description")
+            raise InputError(f"{name}: expected format = 1, the version of this description")
         for key in values:
             if key not in _KINDS:
                 raise InputError(f'{name}:{lines[key]}: unknown key "{key:.40}"{_did_you_mean(key, list(_KINDS))}')

@@ -39,19 +39,17 @@ class DatasetFolder:
             before = json.loads(file.read_bytes()) if file.exists() else None
             foreign = folder._first_file(RECIPE_FILE, INDEX_FILE, *_PICTURES) if before is None else None
         except OSError as error:
-            raise InputError(f"{error.filename}: {error.strerror}; a folder that can be written to is wanted") from None
+            raise InputError(f"{error.filename}: {error.strerror}; choose a folder that can be written to") from None
         except ValueError as error:
-            raise InputError(one_line(f"{file}: this is damaged ({error}); another folder is wanted")) from None
+            raise InputError(one_line(f"{file}: this is damaged ({error}); choose another folder")) from None
         if foreign:
-            raise InputError(
-                f"{foreign}: is not of this data set, as {RECIPE_FILE} is missing; another folder is wanted"
-            )
+            raise InputError(f"{foreign}: is not of this data set, as {RECIPE_FILE} is missing; choose another folder")
         before = about if before is None else before
         if not isinstance(before, dict) or "realcam" not in before or type(before.get("count")) is not int:
-            raise InputError(f"{file}: is not of a data set of realcam; another folder is wanted")
+            raise InputError(f"{file}: is not of a data set of realcam; choose another folder")
         changed = [key for key in about if key != "count" and before.get(key) != about[key]]
         if changed and folder._first_file(*_PICTURES):  # a recipe without pictures yet may be corrected
-            raise InputError(f"{folder.path}: made by another recipe ({', '.join(changed)}); another folder is wanted")
+            raise InputError(f"{folder.path}: made by another recipe ({', '.join(changed)}); choose another folder")
         if before["count"] > recipe.count:
             raise InputError(
                 f"{folder.path}: the data set was made with {before['count']} pictures; the count may not be smaller"
@@ -145,9 +143,7 @@ class DatasetFolder:
         samples: dict[int, dict[str, bytes]] = {}
         for key, files in read_samples(path):
             if key not in keys or not {"png", "json"} <= files.keys():
-                raise InputError(
-                    f"{path}: holds {key!a:.40}, and no picture of this data set; another folder is wanted"
-                )
+                raise InputError(f"{path}: holds {key!a:.40}, and no picture of this data set; choose another folder")
             samples[keys[key]] = files
         return samples
 

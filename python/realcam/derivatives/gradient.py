@@ -95,7 +95,7 @@ def gradient(
     have.
     """
     if quantity not in QUANTITIES:
-        raise InputError(f'unknown quantity "{quantity}"; one of {", ".join(QUANTITIES)} is wanted')
+        raise InputError(f'unknown quantity "{quantity}"; expected one of {", ".join(QUANTITIES)}')
     listed = checked(self, variables)
     nm = self.wavelength_nm if wavelength_nm is None else wavelength_nm
     if quantity in (*FIRST_ORDER, "length_mm"):
@@ -143,7 +143,7 @@ def _of_light(
         return spot_rms(light, at)
     if quantity in ("mtf_tangential", "mtf_sagittal"):
         if frequency_per_mm is None or not frequency_per_mm >= 0:
-            raise InputError("an MTF is that of a frequency: frequency_per_mm is wanted")
+            raise InputError("an MTF is that of a frequency: frequency_per_mm is required")
         x, y = tangential if quantity == "mtf_tangential" else (tangential[1], -tangential[0])
         return transfer(light, x * at[:, 0] + y * at[:, 1], frequency_per_mm)
     if quantity == "chief_ray_angle_deg":
@@ -193,7 +193,7 @@ def chief_ray_angle_deg(light: FieldLight) -> DualArray:
 def wavefront_rms(light: FieldLight, wavelength_nm: float, remove: str | None) -> DualArray:
     """RMS wavefront error in waves, as by Lens.wavefront with the reference sphere about the chief ray's film point."""
     if remove not in (None, "tilt", "focus"):
-        raise InputError(f'cannot remove "{remove}"; tilt, focus or None is wanted')
+        raise InputError(f'cannot remove "{remove}"; expected tilt, focus or None')
     share, waves = of_passing(light, opd_waves(light, wavelength_nm))
     x, y = light.pupil[:-1][light.passes[:-1]].T
     basis = [np.ones_like(x)]

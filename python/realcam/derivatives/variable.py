@@ -153,7 +153,7 @@ class Variable:
 
 def _axis(name: str) -> int:
     if name not in ("x", "y", "z"):
-        raise InputError(f'unknown axis "{name}"; x, y or z is wanted')
+        raise InputError(f'unknown axis "{name}"; expected x, y or z')
     return "xyz".index(name)
 
 
@@ -166,10 +166,10 @@ def check_surface_exists(lens: Lens, surface: int) -> None:
 def checked(lens: Lens, variables: Sequence[Variable]) -> list[Variable]:
     """Returns the variables. Raises InputError if there are none, or for duplicates and unknown quantities."""
     if not variables:
-        raise InputError("there is nothing to change: at least one Variable is wanted")
+        raise InputError("there is nothing to change: expected at least one Variable")
     if len({v.as_tuple() for v in variables}) < len(variables):
         raise InputError("a variable is named twice")
     for variable in variables:
         if variable.quantity not in QUANTITIES:
-            raise InputError(f'unknown quantity "{variable.quantity}"; one of {", ".join(QUANTITIES)} is wanted')
+            raise InputError(f'unknown quantity "{variable.quantity}"; expected one of {", ".join(QUANTITIES)}')
     return list(variables)

@@ -39,7 +39,7 @@ def save_gallery(
     style = Style(theme_named(theme))
     target = check_figure_target(path)
     if columns < 1:
-        raise InputError(f"columns: {columns} is too few; 1 or more is wanted")
+        raise InputError(f"columns: {columns} is too few; expected 1 or more")
     if lenses is None:
         lenses = [Lens.load(name) for name in lens_names()]
     if not lenses:

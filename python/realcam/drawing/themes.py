@@ -58,7 +58,7 @@ THEMES = {"light": LIGHT, "dark": DARK}
 def theme_named(name: str) -> Theme:
     """Returns the theme of a name. Raises InputError if it is unknown."""
     if name not in THEMES:
-        raise InputError(f'theme "{name:.40}" is unknown; {" or ".join(THEMES)} is wanted')
+        raise InputError(f'theme "{name:.40}" is unknown; expected {" or ".join(THEMES)}')
     return THEMES[name]
 
 

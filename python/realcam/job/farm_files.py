@@ -39,8 +39,8 @@ def openjd_template(folder: Path, tasks: int) -> str:
     path = str(folder.absolute())
     if "{{" in path or "}}" in path or not path.isprintable():
         raise InputError(
-            f"{path!a:.100}: Open Job Description takes no path with double braces or control characters; another "
-            "folder is wanted"
+            f"{path!a:.100}: Open Job Description takes no path with double braces or control characters; "
+            "choose another folder"
         )
     output = {
         "name": "Output",

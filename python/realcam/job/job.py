@@ -136,7 +136,7 @@ class Job:
         if name is None and len(self.names) == 1:
             return 0
         if name not in self.names:
-            raise InputError(f"{self.path}: the job has {len(self.names)} shots; the name of one is wanted")
+            raise InputError(f"{self.path}: the job has {len(self.names)} shots; specify the name of one")
         return self.names.index(name)
 
     def _work_with(self, executor: concurrent.futures.Executor, threads: int, report: _Report) -> None:

@@ -44,7 +44,7 @@ def check_is_new(path: Path) -> None:
     system_name(path)
     if os.path.lexists(path):
         why = "this job is there already" if (path / JOB_FILE).exists() else "this is there already"
-        raise InputError(f"{path}: {why}; another name is wanted for a new job")
+        raise InputError(f"{path}: {why}; choose another name for a new job")
 
 
 def _written(path: Path, shots: Mapping[str, Shot], device: str, tile: tuple[int, int] | None) -> JobFolder:

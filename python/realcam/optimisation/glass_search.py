@@ -56,7 +56,7 @@ def nearest_glasses(glass: Glass | str, count: int = 5, *, makers: Sequence[str]
     """
     n, v, p = _numbers(Glass.named(glass) if isinstance(glass, str) else glass)
     if not math.isfinite(v):
-        raise InputError("a glass of one index has no dispersion to match; an index and an Abbe number are wanted")
+        raise InputError("a glass of one index has no dispersion to match; specify an index and an Abbe number")
     matches = [
         GlassMatch(name, *numbers, math.hypot((numbers[0] - n) / 0.01, numbers[1] - v, (numbers[2] - p) / 0.005))
         for name, numbers in _catalogue()

@@ -40,9 +40,9 @@ class Operand:
     def checked(self, lens: Lens) -> Operand:
         """Returns the operand. Raises InputError if it is invalid for the lens."""
         if self.quantity not in (*OF_RAYS, *OF_GLASS):
-            raise InputError(f'unknown operand "{self.quantity}"; one of {", ".join((*OF_RAYS, *OF_GLASS))} is wanted')
+            raise InputError(f'unknown operand "{self.quantity}"; expected one of {", ".join((*OF_RAYS, *OF_GLASS))}')
         if self.bound not in BOUNDS:
-            raise InputError(f'unknown bound "{self.bound}"; equal, least or most is wanted')
+            raise InputError(f'unknown bound "{self.bound}"; expected equal, least or most')
         if not (math.isfinite(self.target) and math.isfinite(self.weight) and self.weight > 0):
             raise InputError(f"the operand {self.quantity} wants a finite target and a positive weight")
         if self.quantity in OF_GLASS:

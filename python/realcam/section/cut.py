@@ -22,7 +22,7 @@ class Cut:
 
     def __init__(self, lens: Lens, plane: str = "yz") -> None:
         if plane not in PLANES:
-            raise InputError(f'the plane of a drawing is "{plane}"; yz or xz is wanted')
+            raise InputError(f'the plane of a drawing is "{plane}"; expected yz or xz')
         self.lens, self.plane = lens, plane
         self.axis = PLANES[plane]
 

@@ -79,7 +79,7 @@ def cross_section(
     """
     cut = Cut(lens, plane)
     if rays_from not in ("object", "film"):
-        raise InputError(f'rays_from is "{rays_from}"; object or film is wanted')
+        raise InputError(f'rays_from is "{rays_from}"; expected object or film')
     if rays < 0:
         raise InputError("the number of rays must be 0 or more")
     if rays_from == "film" and fields_deg is not None:
@@ -92,8 +92,8 @@ def cross_section(
         if not lens.is_rotational or plane == "xz":
             if rays_from == "film" or fields_deg is not None:
                 raise InputError(
-                    "rays from the film and field angles are drawn of a centred lens of revolution, in the plane yz; "
-                    "rays from the object to shares of the film's corner are wanted"
+                    "rays from the film and field angles are drawn only of rotationally symmetric lenses, in the plane "
+                    "yz; use rays from the object, with fields relative to the film's corner"
                 )
             field_points = fields_along(lens, fields, cut.axis)
         elif fields_deg is not None:

@@ -48,11 +48,11 @@ def chosen(lens: Lens, compensators: Sequence[Compensator], fields_deg: NDArray[
     shifts = [c for c in compensators if not isinstance(c, str)]
     for name in names:
         if name not in NAMES:
-            raise InputError(f'unknown compensator "{name:.40}"; refocus, film_tilt or an ElementShift is wanted')
+            raise InputError(f'unknown compensator "{name:.40}"; expected refocus, film_tilt or an ElementShift')
     if len(shifts) > 1:
-        raise InputError("at most one ElementShift is wanted")
+        raise InputError("expected at most one ElementShift")
     if "film_tilt" in names and np.linalg.matrix_rank(fields_deg - fields_deg.mean(0), tol=1e-6) < 2:
-        raise InputError("film_tilt cannot compensate: the fields lie on one line; three that do not are wanted")
+        raise InputError("film_tilt cannot compensate: the fields lie on one line; expected three that do not")
     if names and math.isinf(lens.first_order().effective_focal_length_mm):
         raise InputError(f"{names[0]} cannot compensate: the lens is afocal, and no film is its picture's place")
     for shift in shifts:
@@ -62,12 +62,12 @@ def chosen(lens: Lens, compensators: Sequence[Compensator], fields_deg: NDArray[
 
 def _check_shift(lens: Lens, shift: ElementShift) -> None:
     if not isinstance(shift, ElementShift):
-        raise InputError(f"{shift!r:.40} is no compensator; refocus, film_tilt or an ElementShift is wanted")
+        raise InputError(f"{shift!r:.40} is no compensator; expected refocus, film_tilt or an ElementShift")
     check_element(lens, shift.first, shift.last)
     if shift.direction not in ("along", "across"):
-        raise InputError(f'ElementShift: unknown direction "{shift.direction!s:.40}"; along or across is wanted')
+        raise InputError(f'ElementShift: unknown direction "{shift.direction!s:.40}"; expected along or across')
     if not (0 < shift.range_mm < math.inf):
-        raise InputError(f"ElementShift: range_mm is {shift.range_mm!r:.40}; a positive length is wanted")
+        raise InputError(f"ElementShift: range_mm is {shift.range_mm!r:.40}; expected a positive length")
     if all(s.curvature_per_mm == 0 for s in lens.surfaces[shift.first : shift.last + 1]):
         raise InputError(
             f"surfaces {shift.first + 1} to {shift.last + 1} cannot compensate: they are planes, which do nothing "

@@ -27,7 +27,7 @@ def elements_of(lens: Lens) -> list[tuple[int, int]]:
 def check_surface(lens: Lens, surface: int) -> None:
     """Raises InputError if the surface does not exist."""
     if not isinstance(surface, int) or isinstance(surface, bool):
-        raise InputError(f"{surface!r:.40} is no surface; a number from 0 is wanted")
+        raise InputError(f"{surface!r:.40} is no surface; expected a number from 0")
     check_surface_exists(lens, surface)
 
 
@@ -37,6 +37,6 @@ def check_element(lens: Lens, first: int, last: int) -> None:
     check_surface(lens, last)
     if last <= first:
         raise InputError(
-            f"surface {first + 1} alone is no element; the numbers of its first and last face are wanted, or a "
+            f"surface {first + 1} alone is no element; specify the numbers of its first and last face, or a "
             "tolerance of the surface"
         )

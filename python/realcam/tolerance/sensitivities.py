@@ -75,7 +75,7 @@ def inverse_sensitivities(
     before = float(nominal.mean_mtf(frequency)[0])
     if not 0 < loss < before:
         raise InputError(
-            f"loss is {loss!r:.40}; more than 0 and less than the mean MTF as drawn, {before:.3g}, is wanted"
+            f"loss is {loss!r:.40}; expected more than 0 and less than the mean MTF as drawn, {before:.3g}"
         )
 
     def excess(which: NDArray[np.intp], limits: Doubles) -> Doubles:

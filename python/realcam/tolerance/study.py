@@ -110,7 +110,7 @@ class ToleranceStudy:
         for name, limit in limits.items():
             values = self.measure(name)
             if not isinstance(limit, int | float) or math.isnan(limit):
-                raise InputError(f"{name}: {limit!r:.40} is no limit; a number is wanted")
+                raise InputError(f"{name}: {limit!r:.40} is no limit; expected a number")
             if name.endswith("mtf"):
                 good &= values >= limit
             elif name == "focal_length_mm":
@@ -172,7 +172,7 @@ def measured(figures: CopyFigures, name: str, frequency: int) -> Doubles:
         worst = np.abs(figures.distortion).argmax(1)
         distortion: Doubles = figures.distortion[np.arange(len(worst)), worst]
         return distortion
-    raise InputError(f'unknown measure "{name:.40}"; mtf, lowest_mtf, spot_mm, focal_length_mm or distortion is wanted')
+    raise InputError(f'unknown measure "{name:.40}"; expected mtf, lowest_mtf, spot_mm, focal_length_mm or distortion')
 
 
 def tolerance_study(
@@ -208,13 +208,13 @@ def tolerance_study(
     if not isinstance(drawing, Tolerances):
         raise InputError("tolerances must be a realcam.Tolerances, or the name of a grade")
     if isinstance(copies, bool) or not isinstance(copies, int) or not 1 <= copies <= MOST_COPIES:
-        raise InputError(f"copies is {copies!r:.40}; a whole number from 1 to {MOST_COPIES} is wanted")
+        raise InputError(f"copies is {copies!r:.40}; expected a whole number from 1 to {MOST_COPIES}")
     if isinstance(seed, bool) or not isinstance(seed, int) or seed < 0:
-        raise InputError(f"seed is {seed!r:.40}; a whole number of 0 or more is wanted")
+        raise InputError(f"seed is {seed!r:.40}; expected a whole number of 0 or more")
     if sharpest_by not in ("mtf", "spot"):
-        raise InputError(f'sharpest_by: "{sharpest_by!s:.40}" is unknown; mtf or spot is wanted')
+        raise InputError(f'sharpest_by: "{sharpest_by!s:.40}" is unknown; expected mtf or spot')
     if not 2 <= rings <= 100:
-        raise InputError(f"rings is {rings!r:.40}; 2 to 100 are wanted")
+        raise InputError(f"rings is {rings!r:.40}; expected 2 to 100")
     if not lens.is_rotational:
         raise InputError(f'tolerances are of lenses of revolution, with a flat film; lens "{lens.name}" is none')
     items = drawing.of(lens)

@@ -112,7 +112,7 @@ class Tolerances:
         their sources. Raises InputError."""
         if name not in GRADES:
             raise InputError(
-                f'unknown grade "{name!s:.40}"; {", ".join(list(GRADES)[:-1])} or {list(GRADES)[-1]} is wanted'
+                f'unknown grade "{name!s:.40}"; expected {", ".join(list(GRADES)[:-1])} or {list(GRADES)[-1]}'
             )
         return Tolerances(**GRADES[name], distribution=distribution)
 
@@ -135,7 +135,7 @@ class Tolerances:
                 given = dict.fromkeys(self._surfaces(lens, field.name), limits)
             found += [Tolerance(field.name, *surfaces, float(limit)) for surfaces, limit in given.items() if limit > 0]
         if not found:
-            raise InputError("there is no tolerance: at least one above 0 is wanted")
+            raise InputError("there is no tolerance; at least one must be above 0")
         return found
 
     def _surfaces(self, lens: Lens, kind: str) -> Iterator[tuple[int, int]]:
@@ -167,7 +167,7 @@ class Tolerances:
 
 def check_distribution(name: str) -> None:
     if name not in ("uniform", "normal"):
-        raise InputError(f'unknown distribution "{name!s:.40}"; uniform or normal is wanted')
+        raise InputError(f'unknown distribution "{name!s:.40}"; expected uniform or normal')
 
 
 def errors_of(tolerances: list[Tolerance]) -> list[tuple[str, int, int]]:
@@ -205,7 +205,7 @@ def drawn(tolerances: list[Tolerance], distribution: str, copies: int, seed: int
 def _key(key: int | tuple[int, int]) -> tuple[int, int]:
     if isinstance(key, tuple):
         if len(key) != 2:
-            raise InputError(f"{key!r:.40} is no element; the numbers of its first and last surface are wanted")
+            raise InputError(f"{key!r:.40} is no element; expected the numbers of its first and last surface")
         return key
     return key, key
 
@@ -216,7 +216,7 @@ def _check_place(lens: Lens, kind: str, first: int, last: int) -> None:
         return
     check_surface(lens, first)
     if first != last:
-        raise InputError(f"{kind}: ({first}, {last}) is no surface; a number from 0 is wanted")
+        raise InputError(f"{kind}: ({first}, {last}) is no surface; expected a number from 0")
     if why := _why_not(lens, kind, first):
         raise InputError(f"{kind}: {why}")
 
@@ -227,10 +227,10 @@ def _check_limit(kind: str, limit: float, where: str) -> None:
     except (TypeError, ValueError):
         value = math.nan
     if not (value >= 0 and math.isfinite(value)):
-        raise InputError(f"{kind}{where} is {limit!r:.40}; a number of 0 or more is wanted")
+        raise InputError(f"{kind}{where} is {limit!r:.40}; expected a number of 0 or more")
     most = TILTS_MOST_ARCMIN if kind.endswith("arcmin") else MOST.get(kind, math.inf)
     if value > most:
-        raise InputError(f"{kind}{where} is {value:g}; at most {most:g} is wanted")
+        raise InputError(f"{kind}{where} is {value:g}; expected at most {most:g}")
 
 
 def _is_plane(lens: Lens, surface: int) -> bool:
@@ -248,12 +248,12 @@ def _why_not(lens: Lens, kind: str, surface: int) -> str:
     if s.type in ("stop", "aperture"):
         return f"surface {surface + 1} is a {s.type}, which bends no light"
     if kind in ("radius_mm", "radius_percent") and s.curvature_per_mm == 0:
-        return f"surface {surface + 1} is a plane and has no radius; radius_fringes is wanted"
+        return f"surface {surface + 1} is a plane and has no radius; use radius_fringes"
     if kind in ("index", "abbe_percent"):
         if not has_glass_behind(lens, surface):
             return f"there is no glass behind surface {surface + 1}"
         if kind == "abbe_percent" and not s.material.index(486.1327) > s.material.index(656.2725):
             return f"the dispersion of the glass behind surface {surface + 1} is not known"
     if kind == "wedge_arcmin" and (surface == 0 or not has_glass_behind(lens, surface - 1)):
-        return f"there is no glass in front of surface {surface + 1}, and no wedge; surface_tilt_arcmin is wanted"
+        return f"there is no glass in front of surface {surface + 1}, and no wedge; use surface_tilt_arcmin"
     return ""

@@ -297,7 +297,7 @@ class LensBench:
         samples = f"{counted(frame.samples, 'sample')} per pixel"
         if frame.noise_codes is None:
             return samples
-        return f"{samples}, noise {frame.noise_codes:.1f} of 255 grey levels where {self.noise_codes:g} is wanted"
+        return f"{samples}, noise {frame.noise_codes:.1f} of 255 grey levels with a goal of {self.noise_codes:g}"
 
     @property
     def time_left(self) -> str:

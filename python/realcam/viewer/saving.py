@@ -27,7 +27,7 @@ def check_suffix(what: str, name: str) -> None:
     if Path(name).suffix.lower() not in SUFFIXES[what]:
         *others, last = SUFFIXES[what]
         wanted = f"{', '.join(others)} or {last}" if others else last
-        raise InputError(f'"{name:.80}": a {what} is a file whose name ends in {wanted}; one of these is wanted')
+        raise InputError(f'"{name:.80}": expected a {what} file whose name ends in {wanted}')
 
 
 def picture_content(image: Image, name: str, tone: str) -> bytes:

@@ -87,7 +87,7 @@ class _Fits:
     def __init__(self, model: str) -> None:
         if model not in NAMES:
             model_named(model)  # raises for an unknown name
-            raise InputError(f"COLMAP has no camera model {model}; one of {', '.join(NAMES)} is wanted")
+            raise InputError(f"COLMAP has no camera model {model}; expected one of {', '.join(NAMES)}")
         self._model = model
         self.lines: dict[_Kind, str] = {}
 

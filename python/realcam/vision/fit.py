@@ -199,7 +199,7 @@ def _fitted(camera: Camera, from_model: RadialModel, distance_m: float | None, t
     if np.isnan(s).any():
         raise InputError(
             f'the camera model {from_model.name} has no place for lens "{camera.lens.name}": its film sees 90 degrees '
-            "to the side and more; fisheye, f_theta or a smaller film is wanted"
+            "to the side and more; use fisheye, f_theta or a smaller film"
         )
     r = np.hypot(*((pixels - start[:2, 2]) / np.diag(start)[:2]).T)
 
@@ -297,7 +297,7 @@ def calibration_points(
     along = np.sum(apart * directions, axis=1)
     rest = along**2 - np.sum(apart**2, axis=1) + distance_m**2
     if (rest < 0).any() or (np.sqrt(rest) < along).any():
-        raise InputError(f"distance_m is {distance_m}, which lies inside the lens; a larger one is wanted")
+        raise InputError(f"distance_m is {distance_m}, which lies inside the lens; use a larger one")
     return apart + (np.sqrt(rest) - along)[:, None] * directions, pixels
 
 

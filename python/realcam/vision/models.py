@@ -91,7 +91,7 @@ MODELS = {
 def model_named(name: str) -> RadialModel:
     """Returns the model of a name. Raises InputError if it is unknown."""
     if name not in MODELS:
-        raise InputError(f'unknown camera model "{name}"; one of {", ".join(MODELS)} is wanted')
+        raise InputError(f'unknown camera model "{name}"; expected one of {", ".join(MODELS)}')
     return MODELS[name]
 
 

@@ -228,7 +228,7 @@ class Rig:
 
     def _member(self, name: str) -> RigCamera:
         if name not in self.members:
-            raise InputError(f"the rig has no camera {name!r:.40}; one of {', '.join(self.members):.200} is wanted")
+            raise InputError(f"the rig has no camera {name!r:.40}; expected one of {', '.join(self.members):.200}")
         return self.members[name]
 
     def calibration(self, fits: Iterable[CameraModelFit] = ()) -> dict[str, Any]:

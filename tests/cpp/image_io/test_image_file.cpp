@@ -202,8 +202,8 @@ TEST_CASE("PNG is developed and says how it was taken") {
 
 TEST_CASE("What cannot be written says why and leaves nothing") {
     const Folder folder;
-    CHECK(
-        contains(message_of(folder / "a.bmp"), "\".bmp\" is not written; .png, .jpg, .tif, .webp (developed) or .exr"));
+    CHECK(contains(message_of(folder / "a.bmp"),
+                   "\".bmp\" is not written; expected .png, .jpg, .tif, .webp (developed) or .exr"));
     CHECK(contains(message_of(folder / "a"), "there is no suffix"));
     CHECK(contains(message_of(folder / "gone/a.png"), "does not exist"));
     CHECK(folder.file_count() == 0);

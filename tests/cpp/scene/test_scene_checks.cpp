@@ -49,11 +49,11 @@ TEST_CASE("validate: a scene from arrays") {
     CHECK(says(message([](Scene& s) { s.materials[0].emission.b = -1; }), "material 0: emission"));
     CHECK(says(message([](Scene& s) { s.materials[0].diffuse_texture.texture = 0; }), "texture 0 does not exist"));
     CHECK(says(message([](Scene& s) { s.textures = {{"t", 2, 2, {1, 2, 3}, {}, TextureEncoding::srgb}}; }),
-               "texture 0: width x height"));
+               "texture 0: expected width x height"));
     CHECK(says(message([](Scene& s) { s.points = {{{0, 0, 0}, {-1, 0, 0}}}; }), "point light 0"));
     CHECK(says(message([](Scene& s) { s.suns = {{{0, 0, 0}, {1, 1, 1}}}; }), "sun 0: its direction"));
     CHECK(says(message([](Scene& s) { s.environment.constant.g = nan; }), "environment"));
-    CHECK(says(message([](Scene& s) { s.environment.pixels.resize(3); }), "environment: width x height"));
+    CHECK(says(message([](Scene& s) { s.environment.pixels.resize(3); }), "environment: expected width x height"));
 
     // The ends of the range, at which pictures are still finite.
     CHECK(says(message([](Scene& s) { s.positions_m[0].z = -1.1e12; }), "at most 1e12 m"));
@@ -99,7 +99,7 @@ TEST_CASE("SceneChecks: what was checked with the last scene is not checked agai
                          InputError);
     other.instances.back().object = nullptr;
     CHECK_THROWS_WITH_AS(checks.check(other), "instance 2 (\"table\") has no object", InputError);
-    CHECK_THROWS_WITH_AS(checks.check(Assembly()), "the scene is empty; at least one triangle is wanted", InputError);
+    CHECK_THROWS_WITH_AS(checks.check(Assembly()), "the scene is empty; expected at least one triangle", InputError);
     CHECK_NOTHROW(checks.check(room));
 }
 

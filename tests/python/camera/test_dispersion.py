@@ -347,7 +347,7 @@ def test_what_makes_no_picture_is_an_error() -> None:
 
     with pytest.raises(
         rc.InputError,
-        match='unknown effect "glare"; some of auto, none, dispersion, coatings, ghosts, film_reflection, diffraction',
+        match='unknown effect "glare"; expected some of auto, none, dispersion, coatings, ghosts, film_reflection',
     ):
         taken(effects=["glare"])
     with pytest.raises(rc.InputError, match="illuminant belongs to the effects dispersion and diffraction"):

@@ -100,8 +100,8 @@ def test_what_is_left_out_is_told() -> None:
     [
         (
             ["motion"],
-            'unknown effect "motion"; some of auto, none, dispersion, coatings, ghosts, film_reflection, diffraction, '
-            "-motion_blur, -rolling_shutter are wanted",
+            'unknown effect "motion"; expected some of auto, none, dispersion, coatings, ghosts, film_reflection, '
+            "diffraction, -motion_blur, -rolling_shutter",
         ),
         (["--motion_blur"], 'unknown effect "--motion_blur"'),
         (["dispersion", "-dispersion"], "dispersion is both named and left out"),

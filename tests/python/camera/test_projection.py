@@ -237,7 +237,7 @@ def test_a_hundred_thousand_points_take_well_under_a_second() -> None:
     [
         (lambda c: c.project([(0, 0)]), r"points_m must be an array of shape \(N, 3\)"),
         (lambda c: c.ray([(0, 0, 0)]), r"pixels must be an array of shape \(N, 2\)"),
-        (lambda c: c.project([(0, 0, 1)], through="rim"), 'unknown ray "rim"; light or chief is wanted'),
+        (lambda c: c.project([(0, 0, 1)], through="rim"), 'unknown ray "rim"; expected light or chief'),
     ],
 )
 def test_mistakes_are_explained(call: object, says: str) -> None:

@@ -70,9 +70,9 @@ def test_apertures_keep_place_and_light() -> None:
 @pytest.mark.parametrize(
     ("name", "value", "words"),
     [
-        ("shutter", "1", "f_number, lens or zoom is wanted"),
-        ("f_number", "x", "2.8 is wanted"),
-        ("f_number", "nan", "2.8 is wanted"),
+        ("shutter", "1", "expected f_number, lens or zoom"),
+        ("f_number", "x", "expected a number such as 2.8"),
+        ("f_number", "nan", "expected a number such as 2.8"),
         ("f_number", "0.5", "opens to"),
         ("lens", "no-such", "unknown lens"),
         ("lens", "fisheye-6mm-220deg", "too wide"),

@@ -205,7 +205,10 @@ def test_layers_are_channels_of_the_file(folder: Path, program: str) -> None:
     ("words", "says"),
     [
         (["--layers", "all", "-o", "a.png"], "--layers: layers are written to .exr, and no --output is one"),
-        (["--layers", "colour", "-o", "a.exr"], '--layers: unknown layer "colour"; all, or some of depth, normal'),
+        (
+            ["--layers", "colour", "-o", "a.exr"],
+            '--layers: unknown layer "colour"; expected all, or some of depth, normal',
+        ),
         (["--layers", "depth,,normal", "-o", "a.exr"], '--layers: unknown layer ""'),
     ],
 )

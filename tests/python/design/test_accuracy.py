@@ -127,7 +127,7 @@ def test_the_figure_is_one_file(cost: AccuracyCost, tmp_path: Path) -> None:
     assert "http" not in page.replace("http://www.w3.org", "").replace("http://purl.org", "").replace(
         "http://creativecommons.org", ""
     ).replace("https://matplotlib.org", "")
-    with pytest.raises(rc.ImageFileError, match=r"unknown suffix; \.svg or \.html is wanted"):
+    with pytest.raises(rc.ImageFileError, match=r"unknown suffix; expected \.svg or \.html"):
         cost.figure(tmp_path / "a.png")
 
 

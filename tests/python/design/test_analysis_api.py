@@ -184,16 +184,16 @@ TELECENTRIC = rc.Lens(
     [
         (lambda: LENS.wavefront(60.0), "no ray at a field angle of 60 deg reaches the middle of the stop"),
         (lambda: LENS.spot(30.0), "none of 127 rays at a field angle of 30 deg passes lens"),
-        (lambda: LENS.spot(200.0), "field angle is 200 deg; less than 180 deg"),
+        (lambda: LENS.spot(200.0), "field angle is 200 deg; expected less than 180 deg"),
         (lambda: LENS.spot(95.0, object_distance_m=2.0), "less than 90 deg"),
         (lambda: LENS.spot(math.nan), "field angle is nan"),
         (lambda: LENS.spot(0.0, object_distance_m=0.0), "object distance must be a positive"),
         (lambda: LENS.spot(0.0, film_distance_mm=math.inf), "film_distance_mm must be a finite length"),
         (lambda: LENS.spot(0.0, wavelength_nm=5.0), "wavelength must lie between"),
-        (lambda: LENS.wavefront(0.0, pattern="spiral"), 'unknown pattern "spiral"; grid, rings or hexapolar'),
+        (lambda: LENS.wavefront(0.0, pattern="spiral"), 'unknown pattern "spiral"; expected grid, rings or hexapolar'),
         (lambda: LENS.wavefront(0.0, samples=0), "samples must lie between 1 and 2048"),
-        (lambda: LENS.wavefront(0.0, reference="film"), 'unknown reference "film"; chief or centroid'),
-        (lambda: LENS.wavefront(0.0, remove="coma"), 'cannot remove "coma"; tilt, focus or None'),
+        (lambda: LENS.wavefront(0.0, reference="film"), 'unknown reference "film"; expected chief or centroid'),
+        (lambda: LENS.wavefront(0.0, remove="coma"), 'cannot remove "coma"; expected tilt, focus or None'),
         (lambda: LENS.wavefront(0.0, remove="focus", pupil=[[0, 0]]), "too few, or too close together"),
         (lambda: LENS.wavefront(0.0, pupil=np.zeros((0, 2))), r"pupil must be an array of shape \(N, 2\)"),
         (lambda: LENS.wavefront(0.0, pupil=[[50, 0]]), "units of the stop's radius"),
@@ -253,7 +253,7 @@ def test_the_plane_in_focus_is_the_object_where_none_is_given() -> None:
     # Of a lens focused at infinity that is infinity, also past 90 degrees.
     fisheye = rc.Lens.load("fisheye-6mm-220deg")
     assert fisheye.spot(100.0).rms_radius_mm == fisheye.spot(100.0, object_distance_m=math.inf).rms_radius_mm
-    with pytest.raises(rc.InputError, match="less than 90 deg is wanted for the plane in focus"):
+    with pytest.raises(rc.InputError, match="expected less than 90 deg for the plane in focus"):
         fisheye.focused(1.0).spot(100.0)
 
 

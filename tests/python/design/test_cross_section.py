@@ -344,7 +344,7 @@ def test_the_other_plane_of_an_anamorphic_lens() -> None:
     assert (upright.faces[0].radius_sign, across.faces[0].radius_sign) == (0, 1)
     bundle = cross_section(lens, plane="xz", rays=3, fields=[0]).bundles[0]
     assert np.abs(bundle.paths_mm[:, :, 1]).max() < 1e-12  # rays stay in the plane
-    with pytest.raises(rc.InputError, match="yz or xz is wanted"):
+    with pytest.raises(rc.InputError, match="expected yz or xz"):
         cross_section(lens, plane="xy")
 
 

@@ -259,20 +259,23 @@ def test_a_function_of_rays_has_the_gradient_of_its_central_differences() -> Non
 @pytest.mark.parametrize(
     ("call", "message"),
     [
-        (lambda lens: lens.gradient("blur", [rc.Variable.radius(0)]), 'unknown quantity "blur"; one of spot_mm'),
+        (
+            lambda lens: lens.gradient("blur", [rc.Variable.radius(0)]),
+            'unknown quantity "blur"; expected one of spot_mm',
+        ),
         (lambda lens: lens.gradient("spot_mm", []), "at least one Variable"),
         (lambda lens: lens.gradient("spot_mm", [rc.Variable("colour", 0)]), 'unknown quantity "colour"'),
         (lambda lens: lens.gradient("spot_mm", [rc.Variable.radius(7)]), "there is no surface 7; the lens has 3"),
         (lambda lens: lens.gradient("f_number", [rc.Variable.radius(7)]), "there is no surface 7; the lens has 3"),
         (lambda lens: lens.gradient("spot_mm", [rc.Variable.radius(2)]), "only blocks light"),
         (lambda lens: lens.gradient("spot_mm", [rc.Variable.radius(0)] * 2), "named twice"),
-        (lambda lens: lens.gradient("mtf_tangential", [rc.Variable.radius(0)]), "frequency_per_mm is wanted"),
+        (lambda lens: lens.gradient("mtf_tangential", [rc.Variable.radius(0)]), "frequency_per_mm is required"),
         (lambda lens: lens.gradient("distortion_percent", [rc.Variable.radius(0)]), "no distortion on the axis"),
         (
             lambda lens: lens.gradient("wavefront_waves", [rc.Variable.radius(0)], remove="coma"),
             "tilt, focus or None",
         ),
-        (lambda lens: rc.Variable.tilt(0, "w"), "x, y or z is wanted"),
+        (lambda lens: rc.Variable.tilt(0, "w"), "expected x, y or z"),
         (
             lambda lens: lens.with_surface(1, radius_of_curvature_mm=np.inf).gradient(
                 "spot_mm", [rc.Variable.conic(1)]

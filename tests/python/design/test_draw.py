@@ -156,7 +156,7 @@ def test_a_lens_file_is_not_drawn_over(tmp_path: Path) -> None:
     for *command, output in commands:
         result = CliRunner().invoke(cli.app, ["lens", *map(str, command), "-o", str(output)])
         assert isinstance(result.exception, rc.InputError), command
-        assert str(result.exception) == f"{output}: is the lens file itself; another name is wanted"
+        assert str(result.exception) == f"{output}: is the lens file itself; choose another name"
     assert file.read_text() == before
 
 
@@ -186,7 +186,7 @@ def test_every_format_is_written_in_its_size(tmp_path: Path) -> None:
         assert ImageStat.Stat(difference).rms <= [most_codes] * 3, suffix
     # Text that stays text can be searched and is small.
     assert "Double Gauss 50 mm f/2 (Tronnier)" in words_in(tmp_path / "a.svg")
-    with pytest.raises(rc.ImageFileError, match=r"\.svg, \.png, \.pdf, .* or \.tiff is wanted"):
+    with pytest.raises(rc.ImageFileError, match=r"expected \.svg, \.png, \.pdf, .* or \.tiff"):
         save_cross_section(GAUSS, tmp_path / "a.gif")
     with pytest.raises(rc.InputError, match="200 to 20000"):
         save_cross_section(GAUSS, tmp_path / "a.png", width_px=10)
@@ -346,8 +346,8 @@ def test_the_command_takes_options(tmp_path: Path, options: list[str]) -> None:
 @pytest.mark.parametrize(
     ("options", "why"),
     [
-        (["--theme", "pink"], 'theme "pink" is unknown; light or dark is wanted'),
-        (["--states", "all"], "one, rows or ghost is wanted"),
+        (["--theme", "pink"], 'theme "pink" is unknown; expected light or dark'),
+        (["--states", "all"], "expected one, rows or ghost"),
         (["--fields", "0,x"], '--fields: "x" is not a number'),
         (["--states", "ghost"], "names no nearest focus"),
         (["--states", "rows", "--focus", "2"], "do not go with it"),

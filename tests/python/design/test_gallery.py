@@ -48,7 +48,7 @@ def test_the_suffix_chooses_the_format(tmp_path: Path, suffix: str, magic: bytes
 
 def test_mistakes_are_named_and_write_nothing(tmp_path: Path) -> None:
     lens = rc.Lens.load("singlet-100mm")
-    with pytest.raises(rc.ImageFileError, match=r"unknown suffix; \.svg, \.png, \.pdf, .* or \.tiff is wanted"):
+    with pytest.raises(rc.ImageFileError, match=r"unknown suffix; expected \.svg, \.png, \.pdf, .* or \.tiff"):
         save_gallery(tmp_path / "sheet.bmp", [lens])
     with pytest.raises(rc.InputError, match="at least one lens"):
         save_gallery(tmp_path / "sheet.png", [])

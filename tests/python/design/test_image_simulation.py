@@ -221,7 +221,7 @@ def test_fisheyes_see_pictures_by_angle() -> None:
     assert row[int(np.argmin(np.abs(seen.x_mm - height)))] == pytest.approx(1, abs=0.05)
     with pytest.raises(rc.InputError, match=r"height_m.*deg away from the axis.*height_deg"):
         rc.image_simulation(lens, picture, height_m=1.0)
-    with pytest.raises(rc.InputError, match=r"ends before 90 deg; an object distance of inf is wanted"):
+    with pytest.raises(rc.InputError, match=r"ends before 90 deg; use an object distance of inf"):
         rc.image_simulation(lens, picture, object_distance_m=1.0)
 
 
@@ -250,12 +250,12 @@ def test_lenses_that_are_not_of_revolution(name: str) -> None:
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        ({"flip": "up"}, 'unknown flip "up"; one of none, horizontal, vertical, both is wanted'),
+        ({"flip": "up"}, 'unknown flip "up"; expected one of none, horizontal, vertical, both'),
         ({"crop": (5, 5, 90, 5)}, r"crop: 90 x 5 pixels from \(5, 5\) do not lie on the film's 30 x 20 pixels"),
-        ({"height_m": 1.0, "object_distance_m": math.inf}, "the object is at infinity; height_deg"),
+        ({"height_m": 1.0, "object_distance_m": math.inf}, "the object is at infinity; use height_deg"),
         ({"height_m": 1.0, "height_deg": 5.0, "object_distance_m": 2.0}, "exclude each other"),
         ({"height_deg": 180.0}, "height_deg must lie between 0 and 180"),
-        ({"projection": "globe"}, 'unknown projection "globe"; tangent or angle is wanted'),
+        ({"projection": "globe"}, 'unknown projection "globe"; expected tangent or angle'),
         ({"object_distance_m": -1.0}, "object_distance_m must be positive"),
         ({"psf_grid": (1, 5)}, "psf_grid must be at least 2"),
         ({"pixel_um": 0.0}, "pixel_um must be a positive number"),
@@ -307,11 +307,11 @@ def test_the_command(command: Command, tmp_path: Path) -> None:
     for name, words, message in (
         ("none.png", (), "no such file"),
         ("text.png", (), "is no picture"),
-        ("chart.png", ("--crop", "1,2,3"), '--crop: "1,2,3": 4 whole numbers with "," between are wanted'),
+        ("chart.png", ("--crop", "1,2,3"), '--crop: "1,2,3": expected 4 whole numbers with "," between'),
         ("chart.png", ("--resolution", "4by3"), "--resolution"),
     ):
         done = command("lens", "image", "double-gauss-50mm", tmp_path / name, "-o", target, *words)
         assert done.returncode == 2 and done.stderr.count("\n") == 1 and message in done.stderr, done.stderr
         assert "latitude" not in done.stderr
     done = command("lens", "image", "double-gauss-50mm", chart, "-o", tmp_path / "seen.gif")
-    assert done.returncode == 2 and ".tiff or .webp is wanted" in done.stderr
+    assert done.returncode == 2 and ".tiff or .webp" in done.stderr

@@ -55,7 +55,7 @@ def test_all_lenses_with_their_figures(command: Command) -> None:
     [
         ("--kind telee", 'unknown kind "telee"'),
         ("--focal wide", '--focal-length: "wide" is not a number or two with a minus between, 35-70'),
-        ("--focal 70-35", '--focal-length: "70-35": positive numbers are wanted, the smaller one first'),
+        ("--focal 70-35", '--focal-length: "70-35": expected positive numbers, the smaller one first'),
         ("--f-number 0", "--f-number: "),
         ("no-such-lens", "no lens is like this; realcam lens list shows all"),
         ("--lens-path nowhere", "--lens-path: nowhere is no folder"),

@@ -259,7 +259,7 @@ def test_an_interruption_is_answered_where_that_is_asked_for() -> None:
         (rc.Operand("length_mm", weight=0), "positive weight"),
         (rc.Operand("edge_thickness_mm", surface=6), "edge_thickness_mm: surface 7 is the last; the film follows it"),
         (rc.Operand("centre_thickness_mm", surface=99), "there is no surface 99; the lens has 7, counted from 0"),
-        (rc.Operand("mtf_sagittal"), "frequency_per_mm is wanted"),
+        (rc.Operand("mtf_sagittal"), "frequency_per_mm is required"),
     ],
 )
 def test_operands_that_make_no_sense_are_refused(operand: rc.Operand, message: str) -> None:

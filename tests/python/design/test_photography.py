@@ -265,7 +265,7 @@ def test_depth_of_field_over_distance_asks_for_a_lens_that_focuses() -> None:
         (["--exposure-time", "1/0"], "divides by 0"),
         (["--exposure-time", "x"], '--exposure-time: "x" is not a number'),
         (["--exposure-time", "-1"], "positive number of seconds"),
-        (["--exposure-time", "1", "--iso", "0"], "--iso: a positive number is wanted"),
+        (["--exposure-time", "1", "--iso", "0"], "--iso: expected a positive number"),
         (["--circle-of-confusion", "0"], "circle of confusion must be a positive length"),
     ],
 )

@@ -54,7 +54,7 @@ def test_the_command(tmp_path: Path) -> None:
     result = CliRunner().invoke(cli.app, ["lens", "blender", "singlet-100mm", "-o", str(target)])
     assert result.exit_code == 0, result.output
     assert zipfile.is_zipfile(target)
-    with pytest.raises(rc.ImageFileError, match=r"\.zip is wanted"):
+    with pytest.raises(rc.ImageFileError, match=r"expected \.zip"):
         write_extension(tmp_path / "lenses.tar", [rc.Lens.load("singlet-100mm")])
     with pytest.raises(rc.InputError, match="none of the lenses"):
         write_extension(target, [rc.Lens.load("singlet-100mm").tilted(x_deg=1.0)])

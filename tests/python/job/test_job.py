@@ -410,7 +410,7 @@ def test_what_is_no_job_is_refused(tmp_path: Path) -> None:
     job = made(folder, one=shot(4), two=shot(4, seed=1))
     with pytest.raises(rc.InputError, match="this job is there already"):
         made(folder)
-    with pytest.raises(rc.InputError, match="the job has 2 shots; the name of one is wanted"):
+    with pytest.raises(rc.InputError, match="the job has 2 shots; specify the name of one"):
         job.image()
     with pytest.raises(rc.InputError, match="10 of 10 units are missing"):
         job.image("two")
@@ -484,15 +484,15 @@ def contents(folder: Path) -> dict[Path, bytes]:
 @pytest.mark.parametrize(
     ("words", "why"),
     [
-        (("finish", "JOB", "-o", "one.exr"), "the job has 2 pictures; a folder is wanted for --output"),
+        (("finish", "JOB", "-o", "one.exr"), "the job has 2 pictures; --output must be a folder"),
         (("finish", "JOB", "-o", "x", "--format", "gif"), 'unknown format "gif"'),
         (("work", "JOB", "--here", "--scheduler", "x"), "--scheduler and --workers exclude them"),
-        (("work", "JOB", "--part", "9/8"), "K/N is wanted, 1/8 to 8/8"),
-        (("work", "JOB", "--device", "cuda:1"), "--here is wanted with it"),
+        (("work", "JOB", "--part", "9/8"), "expected K/N, 1/8 to 8/8"),
+        (("work", "JOB", "--device", "cuda:1"), "use it together with --here"),
         (("work", "nowhere"), "nowhere: this is no job's folder: there is no such folder"),
         (("make", "nowhere.toml", "-o", "new"), "nowhere.toml"),
         (("make", "nowhere.toml", "-o", "JOB"), "this job is there already"),
-        (("make", "nowhere.toml", "-o", "new", "--tile", "8y8"), "pixels are wanted, 128 or 128x64"),
+        (("make", "nowhere.toml", "-o", "new", "--tile", "8y8"), "expected pixels, 128 or 128x64"),
     ],
 )
 def test_a_mistake_on_the_command_line_is_told_in_one_line(

@@ -55,7 +55,7 @@ def test_what_an_afocal_lens_cannot_do_is_refused_with_the_reason() -> None:
         lens.stopped_down(8)
     with pytest.raises(rc.InputError, match="no best focus"):
         lens.best_focus_mm()
-    with pytest.raises(rc.LensFileError, match="film_distance_mm is wanted"):
+    with pytest.raises(rc.LensFileError, match="film_distance_mm is required"):
         galilean(film_distance_mm=None)
 
 

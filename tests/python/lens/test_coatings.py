@@ -281,7 +281,7 @@ def test_a_stated_reflectance_holds_everywhere() -> None:
     ("make", "message"),
     [
         (lambda: rc.CoatingLayer(1.38), "exactly one of thickness_nm and thickness_waves"),
-        (lambda: rc.CoatingLayer(1.38, thickness_waves=0.25), "wanted together"),
+        (lambda: rc.CoatingLayer(1.38, thickness_waves=0.25), "must be given together"),
         (lambda: rc.CoatingLayer(1.38, thickness_nm=-1), "thickness of layer 1 must lie between 0 and 1e6 nm"),
         (lambda: rc.CoatingLayer(1.38, thickness_nm=float("nan")), "thickness of layer 1"),
         (lambda: rc.CoatingLayer(0.5, thickness_nm=1), "index of layer 1 must lie between 1 and 10; it is 0.5"),
@@ -294,7 +294,7 @@ def test_a_stated_reflectance_holds_everywhere() -> None:
         (lambda: rc.Coating(reflectance=1.5), "reflectance of a mirror must lie between 0 and 1"),
         (lambda: rc.Coating(reflectance=0.5, metal="silver"), "leaves nothing to calculate"),
         (lambda: rc.Coating.named("sliver"), 'one of "unknown", "bare"'),
-        (lambda: rc.Coating().response(0, 550), "inside, the material under the coating, is wanted"),
+        (lambda: rc.Coating().response(0, 550), "inside, the material under the coating, is required"),
         (lambda: rc.Coating().response(91, 550, inside=1.5), "between 0 and 90 degrees"),
         (lambda: rc.Coating().response(0, float("nan"), inside=1.5), "between 100 and 20000 nm"),
         (lambda: rc.Coating.named("unknown").response(0, 550, inside=1.5), "nothing can be said"),

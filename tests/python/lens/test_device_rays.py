@@ -32,8 +32,8 @@ from ..device_memory import (
     [
         (Claimed(shape=(2, 4)), r"origins_mm lies on a GPU, and must be of shape \(N, 3\)"),
         (Claimed(shape=(6,)), r"\(N, 3\)"),
-        (Claimed(typestr="<i4"), 'type "<i4"; float64 or float32'),
-        (Claimed(typestr=">f8"), 'type ">f8"; float64 or float32'),
+        (Claimed(typestr="<i4"), 'type "<i4"; expected float64 or float32'),
+        (Claimed(typestr=">f8"), 'type ">f8"; expected float64 or float32'),
         (Claimed(strides=(8, 16)), "contiguous copy"),
         (Claimed(strides=(48, 8)), "contiguous copy"),
         (Claimed(data=(4100, False)), "address that is no multiple"),
@@ -41,8 +41,8 @@ from ..device_memory import (
         (Claimed(shape="x"), "wrong type"),
         (Claimed(mask=Claimed()), "mask"),
         (ClaimedByDLPack(np.zeros((2, 4))), r"\(N, 3\)"),
-        (ClaimedByDLPack(np.zeros((2, 3), np.int64)), "type int64; float64 or float32"),
-        (ClaimedByDLPack(np.zeros((2, 3), np.float16)), "type float16; float64 or float32"),
+        (ClaimedByDLPack(np.zeros((2, 3), np.int64)), "type int64; expected float64 or float32"),
+        (ClaimedByDLPack(np.zeros((2, 3), np.float16)), "type float16; expected float64 or float32"),
         (ClaimedByDLPack(np.zeros((4, 3))[::2]), "contiguous copy"),
         (ClaimedByDLPack(np.zeros((3, 2)).T), "contiguous copy"),
         (ClaimedByDLPack(capsule=7), "gives no capsule"),
@@ -145,7 +145,7 @@ def test_results_go_in_again() -> None:
     back = LENS.trace(out.origins_mm, pytest.importorskip("torch").from_dlpack(out.directions).neg(), start="scene")
     expected = LENS.trace(out.origins_mm.numpy(), -out.directions.numpy(), start="scene", device="cuda")
     np.testing.assert_array_equal(back.origins_mm.numpy(), expected.origins_mm)
-    with pytest.raises(rc.InputError, match="type int32; float64 or float32"):
+    with pytest.raises(rc.InputError, match="type int32; expected float64 or float32"):
         LENS.trace(rays.pixels, rays.pixels)
 
 

@@ -86,7 +86,7 @@ def test_turning_round_keeps_the_focus_group_and_wants_an_image() -> None:
         ],
         film_distance_mm=30,
     )
-    with pytest.raises(rc.LensFileError, match="film distance is wanted"):
+    with pytest.raises(rc.LensFileError, match="film distance is required"):
         negative.reversed()
 
 
@@ -149,7 +149,7 @@ def test_several_surfaces_change_at_once() -> None:
         (lambda lens: lens.scaled(0), "positive, finite factor"),
         (lambda lens: lens.scaled(math.nan), "positive, finite factor"),
         (lambda lens: lens.inserted(99, plate()), "99 is neither"),
-        (lambda lens: lens.inserted(11, plate()), "distance from it is wanted"),
+        (lambda lens: lens.inserted(11, plate()), "distance from it is required"),
         (lambda lens: lens.inserted(0, plate(), gap_mm=1), "nothing to have a distance from"),
         (lambda lens: lens.inserted(3, []), "no surfaces to insert"),
         (lambda lens: lens.inserted(11, plate(), gap_mm=60), "film"),

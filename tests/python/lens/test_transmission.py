@@ -264,7 +264,7 @@ def test_coatings_are_part_of_the_value_and_stay_with_the_lens() -> None:
         (lambda lens: lens.with_coating("silver", [0]), rc.LensFileError, "surface 1: a metal or a reflectance"),
         (lambda lens: lens.with_coating("bare", [5]), rc.LensFileError, "surface 6: a stop or an aperture"),
         (lambda lens: lens.with_coating("shiny"), rc.InputError, "a coating must be one of"),
-        (lambda lens: lens.transmission(0, polarisation="s"), rc.InputError, "traced or averaged is wanted"),
+        (lambda lens: lens.transmission(0, polarisation="s"), rc.InputError, "expected traced or averaged"),
         (lambda lens: lens.transmission(80), rc.InputError, "80 deg"),
         (lambda lens: lens.transmission(0, 50), rc.InputError, "between 100 and 20000 nm"),
     ],
@@ -290,7 +290,7 @@ def test_a_wavelength_outside_a_glass_is_an_error_that_names_it() -> None:
         lambda: lens.trace([(0, 0, 0)], [(0, 0, 1)], start="scene", wavelength_nm=700, transmission=True),
     ):
         with pytest.raises(
-            rc.InputError, match="the glass of surface 2 of tabulated is known from 450 to 650 nm; 700 nm is wanted"
+            rc.InputError, match="the glass of surface 2 of tabulated is known from 450 to 650 nm; 700 nm was requested"
         ):
             ask()
     achromat = rc.Lens.load("achromat-75mm")

@@ -125,7 +125,7 @@ def test_no_page_where_a_figure_does_not_hold(tmp_path: Path) -> None:
     [
         ({"worst": float("nan")}, "past its limit"),
         ({"kind": "broken"}, "broken by intent, but within its limit"),
-        ({"kind": "seen"}, 'unknown kind "seen"; held, broken or run is wanted'),
+        ({"kind": "seen"}, 'unknown kind "seen"; expected held, broken or run'),
         ({"section": "Surface"}, 'unknown section "Surface"; the page has Surfaces, Rays,'),
         ({"worst": "0.5"}, "worst cannot be '0.5'"),
         ({"unit": None}, "unit cannot be None"),

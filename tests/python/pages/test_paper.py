@@ -74,7 +74,7 @@ def test_the_page_has_numbers_beside_numbers(tmp_path: Path) -> None:
 
 
 def test_mistakes_are_said(tmp_path: Path) -> None:
-    with pytest.raises(rc.ImageFileError, match="html is wanted"):
+    with pytest.raises(rc.ImageFileError, match=r"expected \.html"):
         save_page(tmp_path / "paper.pdf")
     with pytest.raises(rc.InputError, match="unknown experiment"):
         save_page(tmp_path / "paper.html", only=["figure-1"])

@@ -162,7 +162,7 @@ except ImportError:
 @needs_gpu
 def test_out_of_device_memory() -> None:
     large = rc.Camera(LENS, film=rc.Film(36, 24, (32768, 32768)), model="thin")
-    for spp, says in ((256, r"out of memory: \d+ MiB more were wanted, and \d+ MiB"), (2**31 - 1, "fewer spp")):
+    for spp, says in ((256, r"out of memory: \d+ MiB more were requested, and \d+ MiB"), (2**31 - 1, "fewer spp")):
         with pytest.raises(rc.DeviceError, match=says):
             large.generate_rays(spp=spp, device="cuda")
     assert small_camera().generate_rays(device="cuda").weights.numpy().max() > 0  # and it works on

@@ -108,7 +108,7 @@ def test_what_is_no_part_of_the_picture_is_refused(tmp_path: Path) -> None:
         session.expose((50, 0, 4, 1))
     with pytest.raises(rc.InputError, match="0 to 256 samples"):
         session.expose((0, 0, 1, 1), 0, 257)
-    with pytest.raises(rc.InputError, match="a sample count is wanted for each pixel"):
+    with pytest.raises(rc.InputError, match="expected a sample count for each pixel"):
         session.expose((0, 0, 2, 2), 0, 4, np.zeros(3, np.uint32))
     with pytest.raises(rc.InputError, match="does not lie on the film"):
         rc.Session(room(), camera(20, 20), settings(), device="cpu").image_of([session.expose((40, 30, 2, 2), 0, 1)])

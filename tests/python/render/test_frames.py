@@ -189,10 +189,10 @@ def test_the_executable_says_what_makes_films(folder: Path) -> None:
 @pytest.mark.parametrize(
     ("words", "wanted"),
     [
-        (["-o", "a.png", "--frames", "9-1"], '--frames: "9-1": a number, 1-240 or 1-240x2 is wanted'),
-        (["-o", "a.png", "--frames", "1-9x0"], '--frames: "1-9x0": a number, 1-240 or 1-240x2 is wanted'),
-        (["-o", "a.png", "--frames", ""], '--frames: "": a number, 1-240 or 1-240x2 is wanted'),
-        (["-o", "a.png", "--frames", "1-2", "--fps", "0"], "--fps: more than 0 frames in a second are wanted"),
+        (["-o", "a.png", "--frames", "9-1"], '--frames: "9-1": expected a number, 1-240 or 1-240x2'),
+        (["-o", "a.png", "--frames", "1-9x0"], '--frames: "1-9x0": expected a number, 1-240 or 1-240x2'),
+        (["-o", "a.png", "--frames", ""], '--frames: "": expected a number, 1-240 or 1-240x2'),
+        (["-o", "a.png", "--frames", "1-2", "--fps", "0"], "--fps must be more than 0 frames per second"),
         (["-o", "nowhere/a.png", "--frames", "1-2"], "nowhere"),
         (["-o", "a.mp4", "-oa.mp4", "--frames", "1-2"], '"a.mp4" is given twice'),
         (["-o", "a.mp4"], "--frames is missing: a film, .mp4, is made of frames, as of 1-240"),
@@ -276,7 +276,7 @@ def test_frames_that_are_no_range_are_refused(
     with pytest.raises(SystemExit, match="2"):
         cli.run()
     assert capsys.readouterr().err == (
-        f'realcam: error: --frames: "{frames}": a number, 1-240 or 1-240x2 is wanted, the smaller one first\n'
+        f'realcam: error: --frames: "{frames}": expected a number, 1-240 or 1-240x2, the smaller one first\n'
     )
     with pytest.raises(rc.InputError, match="a film wants frames with numbers from 0 on"):
         rc.Shot.load("pan.toml", device="cpu").frames([-1])

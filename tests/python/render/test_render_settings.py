@@ -111,7 +111,7 @@ def test_a_word_that_is_none_is_told(words: dict[str, Any], sentence: str) -> No
         ({"clamp_cd_m2": float("nan")}, "clamp must be 0"),
         ({"threshold_px": 0}, "must be above 0"),
         ({"effects": "sharpness"}, 'unknown effect "sharpness"'),
-        ({"pupil_sampling": "iris"}, 'unknown pupil_sampling "iris"; outline, rear_element'),
+        ({"pupil_sampling": "iris"}, 'unknown pupil_sampling "iris"; expected outline, rear_element'),
     ],
 )
 def test_what_makes_no_sense_is_refused(words: dict[str, Any], sentence: str) -> None:

@@ -120,7 +120,7 @@ def test_blades(tmp_path: Path) -> None:
     assert lens.first_order().f_number == pytest.approx(8)
     assert rc.render(shot.scene, shot.camera, effects=(), spp=1).metadata()["realcam:blades"] == "7"
     for line, wanted in (
-        ("blades = 2", r"shot\.toml:5: the iris has 2 blades; 0 \(round\) or 3 to 24 are wanted"),
+        ("blades = 2", r"shot\.toml:5: the iris has 2 blades; expected 0 \(round\) or 3 to 24"),
         ("blades = 5.5", r"shot\.toml:5: .*whole numbers"),
         ("blade_rounding = 1.5", r"shot\.toml:5: the rounding of the iris"),
         ("blade_rotation_deg = 10", "the diaphragm of double-gauss-50mm is round"),
@@ -249,8 +249,8 @@ WRONG_ADDITIONS = [
     ),
     ("[[object]]\nfile = 'quad.obj'\nstretch = 0", r":3: a transform must keep three directions"),
     ("[[object]]\nfile = 'quad.obj'\nmaterial = 'bras'\n[material.brass]", r":3: there is no table \[material\.bras\]"),
-    ("[object]\nfile = 'quad.obj'", r":3: tables \[\[object\]\] are wanted"),
-    ("material = 3", r":3: tables \[material\.NAME\] are wanted"),
+    ("[object]\nfile = 'quad.obj'", r":3: expected tables \[\[object\]\]"),
+    ("material = 3", r":3: expected tables \[material\.NAME\]"),
     ("[material.brass]\nmodel = 'phong'", r':3: the scene has no material "brass"'),
     ("[material.a]\nmodel = 'disney'", r':4: "model" must be phong or metallic_roughness'),
     ("[material.a]\nrougness = 1", r':4: unknown key "rougness"'),
@@ -279,8 +279,8 @@ def test_what_is_wrong_with_an_addition_is_told_with_its_line(text: str, says: s
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("", "format = 1 is wanted"),
-        ("format = 2", "format = 1 is wanted"),
+        ("", "expected format = 1"),
+        ("format = 2", "expected format = 1"),
         ("format = 1", "scene is missing"),
         ("format = 1\nscene = 3", r"shot\.toml:2: \"scene\" must be a text"),
         ("format = 1\nscene = ''", r":2: \"scene\" is empty"),

@@ -164,7 +164,7 @@ def test_what_is_not_played_is_said(tmp_path: Path) -> None:
         ([0, 1], [[0, 0, 0]] * 3, "LINEAR", "has 2 times and 3 values; 1 for each"),
         ([0, 1], [[0, 0, 0]] * 2, "CUBICSPLINE", "has 2 times and 2 values; 3 for each"),
         ([0, 1], [[0, np.inf, 0]] * 2, "LINEAR", "not finite"),
-        ([0, 1], [[0, 0, 0]] * 2, "SWING", 'its interpolation is "SWING"; LINEAR, STEP or CUBICSPLINE'),
+        ([0, 1], [[0, 0, 0]] * 2, "SWING", 'its interpolation is "SWING"; expected LINEAR, STEP or CUBICSPLINE'),
         ([], [], "LINEAR", "has 0 times"),
     ],
 )

@@ -101,7 +101,7 @@ def test_what_is_no_radiance_picture(tmp_path: Path) -> None:
         good.replace(b"-Y 8", b"-Y x"): "size",
         good.replace(b"+X 16", b"+Y 16"): "one axis twice",
         good.replace(b"-Y 8", b"-Y 99999999"): "size",
-        good.replace(b"rle_rgbe", b"rle_cmyk"): "32-bit_rle_xyze is wanted",
+        good.replace(b"rle_rgbe", b"rle_cmyk"): "expected 32-bit_rle_rgbe or 32-bit_rle_xyze",
         good.replace(b"+X 16", b"+X 17"): "another length",
     }.items():
         (tmp_path / "wrong.hdr").write_bytes(wrong)

@@ -23,7 +23,7 @@ def test_pipes_and_devices_are_refused_at_once(tmp_path: Path, suffix: str) -> N
     os.mkfifo(pipe)
     device.symlink_to("/dev/zero")
     for path in (pipe, device):
-        with pytest.raises(rc.SceneFileError, match="an ordinary file is wanted"):
+        with pytest.raises(rc.SceneFileError, match="expected an ordinary file"):
             rc.Scene.load(path)
 
 

@@ -147,9 +147,9 @@ def test_colours_stay_as_given_whatever_alpha_says() -> None:
 @pytest.mark.parametrize(
     ("pixels", "complaint"),
     [
-        ([[0, 300]], r"between 0.0 and 300.0; whole numbers from 0 to 255"),
-        ([[-1, 0]], r"between -1.0 and 0.0; whole numbers"),
-        ([[0.5, 1.01]], r"between 0.5 and 1.01; fractions from 0 \(black\) to 1 \(white\)"),
+        ([[0, 300]], r"between 0.0 and 300.0; expected whole numbers from 0 to 255"),
+        ([[-1, 0]], r"between -1.0 and 0.0; expected whole numbers"),
+        ([[0.5, 1.01]], r"between 0.5 and 1.01; expected fractions from 0 \(black\) to 1 \(white\)"),
         ([[0.5, np.nan]], "fractions from 0"),
         ([[0.5, np.inf]], "fractions from 0"),
         ([[True]], "must hold numbers"),

@@ -284,7 +284,7 @@ def test_the_command_takes_a_film_to_raw(
         (["film.exr", "-o", "x.dng", "--sensor", "idael"], 'unknown sensor "idael"'),
         (["film.exr", "-o", "x.dng", "--sensor", "sony-imx174-mono"], "the lowest ISO of this sensor is"),
         (["a.png", "-o", "x.dng"], "holds no exposure"),
-        (["film.exr", "-o", "x.dng", "-o", "x.png", "--tone", "magic"], '"magic" is unknown; linear, film is wanted'),
+        (["film.exr", "-o", "x.dng", "-o", "x.png", "--tone", "magic"], '"magic" is unknown; expected linear, film'),
         (["film.exr", "-o", "film.exr"], "is the film itself"),
     ):
         code, _, errors = realcam("expose", *words)

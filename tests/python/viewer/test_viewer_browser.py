@@ -594,9 +594,9 @@ def test_saving(bench: BenchPage, server: Server) -> None:
     assert shot.camera.lens.first_order().f_number == pytest.approx(4, rel=0.05)
     for name, why in (
         ("../outside.png", "outside the folders"),
-        ("saved.gif", "wanted"),
+        ("saved.gif", "expected"),
         ("/tmp/outside.png", "outside the folders"),
-        ("", "wanted"),
+        ("", "expected"),
     ):
         bench.choose_what_to_save("picture", name)
 
@@ -644,7 +644,7 @@ def test_the_button_asks_for_a_lens_file(bench: BenchPage, tmp_path: Path) -> No
             bench.button("Open a lens file").click()
         asked.value.set_files(tmp_path / name)
         if name == "mine.jpg":
-            bench.page.get_by_text("Not opened: a lens file").wait_for()
+            bench.page.get_by_text("Not opened: expected a lens file").wait_for()
     bench.until_text("said", lambda text: text == "Opened mine.toml")
 
 

@@ -185,7 +185,7 @@ def test_a_shot_is_downloaded_with_its_lens(bench: BenchPage, server: Server) ->
 def test_an_unknown_ending_is_told_where_one_looks(bench: BenchPage, folder: Path) -> None:
     for what, name in (("picture", "x.gif"), ("shot", "x.png"), ("lens", "x.txt")):
         ask_to_save(bench, what, f"{folder.name}/{name}")
-        bench.until_text("said", lambda text, name=name: name in text and "wanted" in text)
+        bench.until_text("said", lambda text, name=name: name in text and "expected" in text)
         said = bench.test_id("said")
         assert said.is_visible()
         assert "rc-problem" in (said.get_attribute("class") or "")

@@ -210,7 +210,7 @@ def test_run_lengths_begin_with_what_the_object_is_not() -> None:
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("count = 3", "format = 1 is wanted"),
+        ("count = 3", "expected format = 1"),
         ("format = 1\ncout = 3", r"recipe.toml:2: unknown key \"cout\""),
         ("format = 1\n\ncount = 'many'", "recipe.toml:3: count must be a whole number; it is 'many'"),
         ("format = 1\nsize = [3]", "recipe.toml:2: size must be two whole numbers"),
@@ -267,7 +267,7 @@ def test_files_of_other_programs_stay(tmp_path: Path, name: str, content: bytes 
         file.write_bytes(content)
     before = file.read_bytes()
     made_one = {"png": b"", "json": b"{}"}
-    with pytest.raises(rc.InputError, match="another folder is wanted") as error:
+    with pytest.raises(rc.InputError, match="choose another folder") as error:
         folder = DatasetFolder.open(tmp_path, SMALL)
         for number in folder.missing():
             folder.write_sample(number, made_one)

@@ -177,5 +177,5 @@ def test_opencv_reads_a_flow(tmp_path: Path) -> None:
     assert (theirs[1, 2] > 1e9).all()  # Middlebury's mark of what is unknown
     known = ~np.isnan(pixels)
     assert np.array_equal(theirs[known], pixels[known])
-    with pytest.raises(rc.ImageFileError, match=r"unknown suffix; \.flo is wanted"):
+    with pytest.raises(rc.ImageFileError, match=r"unknown suffix; expected \.flo"):
         rc.OpticalFlow(pixels, np.ones((4, 6), bool)).save(tmp_path / "a.png")

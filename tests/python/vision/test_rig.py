@@ -246,7 +246,7 @@ def test_colmap_itself_reads_the_model_of_a_rig(tmp_path: Path) -> None:
         (lambda: rc.Rig({"a": camera()}, np.diag([-1, 1, 1, 1])), "neither scaled nor mirrored"),
         (lambda: rc.Rig({"a": camera()}, np.eye(3)), r"a \(4, 4\) matrix"),
         (lambda: rc.Rig({"a": camera()}, np.eye(4), (0, 1)), "2 matrices"),
-        (lambda: rc.Rig({"a": camera()}).relative_pose("a", "b"), "no camera 'b'; one of a is wanted"),
+        (lambda: rc.Rig({"a": camera()}).relative_pose("a", "b"), "no camera 'b'; expected one of a"),
         (lambda: rc.Rig.stereo(camera(), baseline_m=0), "baseline_m must be a positive number"),
         (lambda: rc.RigCamera(camera(), None, ((500, 1),)), "has no sensor"),
         (lambda: rc.RigCamera(camera(), rc.Sensor.load(), (5,)), "pairs of a wavelength"),  # type: ignore[arg-type]

@@ -217,7 +217,7 @@ def test_opencv_projects_what_the_fit_does() -> None:
     [
         (
             lambda: rc.fit_camera_model(camera_of("tessar-50mm"), "brown"),
-            'unknown camera model "brown"; one of pinhole',
+            'unknown camera model "brown"; expected one of pinhole',
         ),
         (lambda: rc.fit_camera_model(camera_of("fisheye-6mm-220deg"), "opencv5"), "sees 90 degrees to the side"),
         (lambda: rc.fit_camera_model(camera_of("tessar-50mm"), distance_m=0), "distance_m must be a positive number"),

@@ -15,7 +15,7 @@ Illuminant Illuminant::named(std::string_view name) {
             illuminant.name_ = known.name;
             return illuminant;
         }
-    fail("\"" + std::string(name.substr(0, 60)) + "\" is unknown; " + kWanted + " is wanted");
+    fail("\"" + std::string(name.substr(0, 60)) + "\" is unknown; expected " + kWanted);
 }
 
 Illuminant Illuminant::line(double wavelength_nm) {
@@ -32,7 +32,7 @@ Illuminant Illuminant::table(std::vector<SpectrumPoint> points) {
     for (std::size_t i = 0; i < points.size(); ++i) {
         if (!(points[i].wavelength_nm > 0) || !(points[i].wavelength_nm < 1e6) || !(points[i].power >= 0) ||
             !(points[i].power < 1e30))
-            fail("wavelengths in nm and powers of at least 0 are wanted in a table");
+            fail("a table must have wavelengths in nm and powers of at least 0");
         if (i > 0 && !(points[i].wavelength_nm > points[i - 1].wavelength_nm))
             fail("the wavelengths of a table must rise");
     }

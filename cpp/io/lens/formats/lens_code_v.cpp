@@ -222,7 +222,7 @@ private:
             return read_row(c);
         }
         if (command.size() > 1 && command[0] == 'S' && number.find_first_not_of("0123456789.AIO") == number.npos)
-            lines_.fail("a range of surfaces (" + in_quotes(command) + "); one surface is wanted");
+            lines_.fail("a range of surfaces (" + in_quotes(command) + "); expected one surface");
         if (changes_lens(command, c) || commands().read(*this, c)) return;
         // An unknown command that names surfaces changes them.
         const std::string name = printable(command.substr(0, 20));
@@ -274,7 +274,7 @@ private:
     }
 
     void set_unit(const std::string& unit) {
-        if (unit != "M" && unit != "C" && unit != "I") lines_.fail("DIM: M (mm), C (cm) or I (inches) is wanted");
+        if (unit != "M" && unit != "C" && unit != "I") lines_.fail("DIM: expected M (mm), C (cm) or I (inches)");
         const double millimetres = unit == "M" ? 1 : unit == "C" ? 10 : 25.4;
         if (!surfaces_.empty() && millimetres != unit_) lines_.fail("DIM has to stand in front of the surfaces");
         unit_ = millimetres;
@@ -335,7 +335,7 @@ private:
         if (!radius_mode_)
             lines_.fail("neither RDM (radii) nor RDM N (curvatures) stands in front of the first surface");
         if (is_object != surfaces_.empty())
-            lines_.fail(is_object ? "a second object surface (SO)" : "SO, the object, is wanted first");
+            lines_.fail(is_object ? "a second object surface (SO)" : "expected SO, the object, first");
         if (has_image_) lines_.fail("a surface follows the image (SI)");
         check_count(surfaces_.size());
         surfaces_.emplace_back();
@@ -378,7 +378,7 @@ private:
         if (!word.starts_with('S') || word.size() == 1) return surfaces_[current_];
         const std::string which = word.substr(1);
         if (which.find("..") != which.npos || which == "A")
-            lines_.fail("a range of surfaces (" + in_quotes(word) + "); one surface is wanted");
+            lines_.fail("a range of surfaces (" + in_quotes(word) + "); expected one surface");
         if (which != "O" && which != "I" && !is_digits(which)) return surfaces_[current_];
         select(which == "O"   ? 0
                : which == "I" ? static_cast<int>(surfaces_.size()) - 1
@@ -443,7 +443,7 @@ private:
             else if (qualifier == "CLR" || qualifier == "OBS" || qualifier == "EDG" || qualifier == "HOL")
                 kind = qualifier;
             else
-                lines_.fail(c.word + ": " + in_quotes(c[i].text) + ": CLR, EDG, OBS or HOL is wanted");
+                lines_.fail(c.word + ": " + in_quotes(c[i].text) + ": expected CLR, EDG, OBS or HOL");
         }
         const double value = c.number(c.size() > 0 ? c.size() - 1 : 0, "the aperture");
         if (kind == "EDG") return;  // the edge of the glass does not limit the light
@@ -504,7 +504,7 @@ private:
         if (!formula.empty() && formula[0] >= 'A' && formula[0] <= 'Z') {
             if (formula != "LAU")
                 throw InputError(what + " is given by the formula " + in_quotes(c[0].text) +
-                                 ", which is not known; LAU (Laurent) or an index for each wavelength is wanted");
+                                 ", which is not known; expected LAU (Laurent) or an index for each wavelength");
             // n^2 = A0 + A1 l^2 + A2 / l^2 + A3 / l^4 + ..., l in um.
             const std::vector<double> a = values(c, 1, what);
             return glass_of_formula(

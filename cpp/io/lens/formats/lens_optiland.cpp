@@ -202,7 +202,7 @@ private:
         } catch (const InputError& error) {
             fail(error);
         }
-        fail("its material is of the type " + in_quotes(type) + "; IdealMaterial, AbbeMaterial or Material is wanted");
+        fail("its material is of the type " + in_quotes(type) + "; expected IdealMaterial, AbbeMaterial or Material");
     }
 
     /// Finds a glass. Its file is in the folder of its maker, or in that of another substance. Optiland looks for a
@@ -257,12 +257,12 @@ private:
         }
         if (formula != "formula 5" || c.size() % 2 != 1)
             throw InputError("its dispersion is " + in_quotes(short_name(formula)) +
-                             "; a table, formula 2 or formula 5 is wanted");
+                             "; expected a table, formula 2 or formula 5");
         std::vector<double> cauchy{c[0]};
         for (std::size_t i = 1; i < c.size(); i += 2) {
             const double term = -0.5 * c[i + 1];
             if (!(term >= 1 && term <= 20 && term == std::floor(term)))
-                throw InputError("its formula 5 has the power " + number_label(c[i + 1]) + "; -2, -4, ... are wanted");
+                throw InputError("its formula 5 has the power " + number_label(c[i + 1]) + "; expected -2, -4, ...");
             cauchy.resize(std::max(cauchy.size(), static_cast<std::size_t>(term) + 1), 0.0);
             cauchy[static_cast<std::size_t>(term)] += c[i];
         }
@@ -382,7 +382,7 @@ private:
         for (std::size_t i = 0; i < list.size(); ++i) {
             const std::string& unit = list[i]["unit"].text();
             const double scale = unit == "nm" ? 1 : unit == "um" || unit.empty() ? 1000 : unit == "mm" ? 1e6 : 0;
-            if (scale == 0) fail("the wavelength's unit is " + in_quotes(unit) + "; nm or um is wanted");
+            if (scale == 0) fail("the wavelength's unit is " + in_quotes(unit) + "; expected nm or um");
             wavelengths_nm.push_back(scale * number(list[i]["value"], "the wavelength"));
             if (list[i]["is_primary"].is_true()) main = i;
         }

@@ -55,7 +55,7 @@ public:
         std::string_view line;
         while (lines_.next(line)) read_line(line);
         if (surfaces_.empty()) fail_at("begins no lens (LEN NEW)");
-        if (!has_ended_) fail_at("the file ends too early: END is wanted");
+        if (!has_ended_) fail_at("the file ends too early: expected END");
         finish();
         return std::move(p_);
     }
@@ -234,8 +234,8 @@ private:
     }
 
     void begin_lens(const C& c) {
-        if (!surfaces_.empty()) lines_.fail("a second lens (LEN); one is wanted");
-        if (c.capital(0) != "NEW") lines_.fail("LEN NEW is wanted, which begins a lens");
+        if (!surfaces_.empty()) lines_.fail("a second lens (LEN); expected only one");
+        if (c.capital(0) != "NEW") lines_.fail("expected LEN NEW, which begins a lens");
         if (c.size() > 1) p_.title = std::string(c[1].text);
         if (c.size() > 3) stated_last_ = c.whole(3, "the number of surfaces", 2, 1 << 20);
         surfaces_.emplace_back().row.line = lines_.number();
@@ -320,7 +320,8 @@ private:
         // A negative number is relative to this surface.
         const int from = stated < 0 ? row().number + stated : stated;
         if (from < 0 || from >= row().number)
-            lines_.fail("PK " + what + " picks up from surface " + std::to_string(from) + "; one in front is wanted");
+            lines_.fail("PK " + what + " picks up from surface " + std::to_string(from) +
+                        "; expected a surface in front");
         const double added = c.size() > 2 ? c.number(2, "what is added") : 0;
         surface().pickups.push_back({what, from, added, lines_.number()});
     }
@@ -386,7 +387,7 @@ private:
         const auto refuse_solve = [&](const std::string& what, const std::optional<double>& solve) {
             if (solve)
                 fail("picks up the " + what + " of surface " + std::to_string(from.row.number) +
-                     ", which a solve has; a stated one is wanted");
+                     ", which is set by a solve; expected a stated value");
         };
         const double sign = pickup.what.ends_with('M') ? -1 : 1;
         if (pickup.what.starts_with("CV")) {  // the complete shape

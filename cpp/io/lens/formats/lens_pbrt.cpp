@@ -47,7 +47,7 @@ Prescription read_pbrt(std::string_view text, const std::string& file, LensGlass
         lines.set_surface(number);
         if (words.size() != 4)
             lines.fail("has " + std::to_string(words.size()) +
-                       " columns; radius, thickness, index and diameter are wanted");
+                       " columns; expected radius, thickness, index and diameter");
         const auto value = [&](std::size_t i, const char* what) { return lines.number_of(words[i].text, what); };
         const bool is_plane = is_infinity(words[0].text);
         PrescriptionSurface row;
@@ -66,7 +66,7 @@ Prescription read_pbrt(std::string_view text, const std::string& file, LensGlass
         if (!(row.clear_semi_diameter > 0)) lines.fail("the diameter must be positive");
         p.surfaces.push_back(std::move(row));
     }
-    if (p.surfaces.empty()) throw LensFileError("has no rows; radius, thickness, index and diameter are wanted", file);
+    if (p.surfaces.empty()) throw LensFileError("has no rows; expected radius, thickness, index and diameter", file);
     const bool before = thickness == PbrtThickness::before ||
                         (thickness == PbrtThickness::by_first_row && p.surfaces.front().thickness == 0);
     if (before) {

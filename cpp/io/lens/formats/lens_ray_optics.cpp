@@ -63,7 +63,7 @@ public:
 private:
     void set_unit(const std::string& unit) {
         const std::optional<double> known = millimetres_of(unit.empty() ? "MM" : upper_case(unit));
-        if (!known) fail("the unit is " + in_quotes(upper_case(unit)) + "; mm, cm, meters or inches is wanted");
+        if (!known) fail("the unit is " + in_quotes(upper_case(unit)) + "; expected mm, cm, meters or inches");
         unit_ = *known;
     }
 

@@ -59,7 +59,7 @@ public:
         const bool begins_with_face = has_faces_alone_ || (!surfaces_.empty() && !surfaces_.front().glass.empty());
         if (surfaces_.size() < (begins_with_face ? 2 : 3))
             fail_at("has " + std::to_string(surfaces_.size()) +
-                    " surfaces (SURF); an object, a lens and an image are wanted");
+                    " surfaces (SURF); expected an object, a lens and an image");
         complete_ends();
         glasses_are_stated_ = find_out_whether_glasses_are_stated();
         for (std::size_t i = 0; i < surfaces_.size(); ++i) convert(surfaces_[i], i);
@@ -153,7 +153,7 @@ private:
             {"MODE",
              [](R& r, C& c) {
                  if (c.size() > 0 && c.capital(0) != "SEQ")
-                     r.lines_.fail("the mode is " + in_quotes(c[0].text) + "; a sequential lens (MODE SEQ) is wanted");
+                     r.lines_.fail("the mode is " + in_quotes(c[0].text) + "; expected a sequential lens (MODE SEQ)");
              }},
             {"UNIT", [](R& r, C& c) { r.set_unit(c.size() == 0 ? "MM" : c.capital(0)); }},
             {"ENPD",
@@ -170,8 +170,8 @@ private:
              [](R& r, C& c) {
                  if (c.number_or(1, "the kind of aperture", 0) != 0)
                      r.lines_.fail(
-                         "the aperture is a cone angle; "
-                         "an entrance pupil diameter, an f-number or a numerical aperture is wanted");
+                         "the aperture is a cone angle; expected "
+                         "an entrance pupil diameter, an f-number or a numerical aperture");
                  r.set_aperture(ApertureKind::object_aperture, c.number(0, "the numerical aperture"));
              }},
             {"FLOA", [](R& r, C&) { r.p_.aperture_kind = ApertureKind::stop_size; }},
@@ -277,10 +277,9 @@ private:
         const int expected = surfaces_.empty() ? 0 : row().number + (is_between ? 0 : 1);
         if (number != expected)
             lines_.fail("surface " + std::to_string(number) + " follows " +
-                        (surfaces_.empty()
-                             ? std::string("nothing; surface 0, the object,")
-                             : "surface " + std::to_string(row().number) + "; surface " + std::to_string(expected)) +
-                        " is wanted");
+                        (surfaces_.empty() ? std::string("nothing; expected surface 0, the object")
+                                           : "surface " + std::to_string(row().number) + "; expected surface " +
+                                                 std::to_string(expected)));
         surfaces_.emplace_back();
         row().number = number;
         row().line = lines_.number();
@@ -341,7 +340,7 @@ private:
     void set_unit(const std::string& unit) {
         if (!surfaces_.empty()) lines_.fail("UNIT has to stand in front of the surfaces");
         const std::optional<double> known = millimetres_of(unit);
-        if (!known) lines_.fail("the unit is " + in_quotes(unit) + "; MM, CM, IN or METER is wanted");
+        if (!known) lines_.fail("the unit is " + in_quotes(unit) + "; expected MM, CM, IN or METER");
         unit_ = *known;
     }
 
@@ -522,7 +521,7 @@ private:
         if (!source || source->glass.empty()) {
             if (is_named) return false;
             fail_at("picks up the glass of surface " + std::to_string(from) +
-                        (source ? ", which has none" : "; a surface of the lens in front of this one is wanted"),
+                        (source ? ", which has none" : "; expected a surface of the lens in front of this one"),
                     s.glass_line, s.row.number);
         }
         s.row.is_mirror = source->row.is_mirror;

@@ -38,7 +38,7 @@ bool PrescriptionJson::is_infinite(const Json& value) {
 }
 
 void PrescriptionJson::check_count(std::size_t surfaces, const std::string& what) const {
-    if (surfaces < 3) fail(what + " with an object, a lens and an image is wanted");
+    if (surfaces < 3) fail("expected " + what + " with an object, a lens and an image");
     if (surfaces > kMostFileSurfaces) fail("the file has more than " + std::to_string(kMostFileSurfaces) + " surfaces");
 }
 

@@ -54,7 +54,7 @@ class LensPanel:
                 max_file_size=MOST_UPLOADED,
                 auto_upload=True,
                 on_upload=self._upload,
-                on_rejected=lambda: ui.notify(f"Not opened: {_WANTED} is wanted", type="negative"),
+                on_rejected=lambda: ui.notify(f"Not opened: expected {_WANTED}", type="negative"),
             )
             self._files.classes("hidden").props(f'accept="{",".join(LENS_SUFFIXES)}" data-testid="upload"')
             opens = ui.button("Open a lens file", color=None).props("no-caps outline").classes("rc-flat")
@@ -90,7 +90,7 @@ class LensPanel:
         self._files.reset()
         suffix = Path(event.file.name).suffix.lower()
         if suffix not in LENS_SUFFIXES:
-            self._say(f'"{event.file.name}" is not opened: {_WANTED} is wanted', True)
+            self._say(f'"{event.file.name}" is not opened: expected {_WANTED}', True)
             return
         name, content = event.file.name, await event.file.read()
         try:

@@ -63,7 +63,7 @@ class SavePanel:
         name, what = self._name.value, self._what.value
         try:
             if not isinstance(name, str) or what not in _PROPOSED:
-                raise InputError("the name of a file is wanted")
+                raise InputError("expected the name of a file")
             check_suffix(what, name)
             await action(what, name)
         except (RealcamError, OSError) as error:

@@ -303,7 +303,7 @@ class PictureLoop:
         while picture.size != picture.whole or not picture.samples:
             self._refine(picture)
             if self._pending:
-                raise Cancelled("another picture is wanted")
+                raise Cancelled("another picture was requested")
         return self._taker.image(picture, is_denoised=self._is_denoised(picture))
 
     def _point(self, u: float, v: float) -> Point:

@@ -55,7 +55,7 @@ class PreviewDenoiser:
         """Returns the denoised image. take: returns an image with the layers GUIDES. is_wanted: polled during the work.
         Raises Cancelled if it returns False."""
         if not is_wanted():
-            raise Cancelled("another picture is wanted")
+            raise Cancelled("another picture was requested")
         self._began = time.perf_counter()
         image = take()
         guides = (image.layers[name] for name in GUIDES)

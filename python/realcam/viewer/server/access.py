@@ -91,7 +91,7 @@ async def _refuse(scope: Scope, receive: Receive, send: Send) -> None:
     if scope["type"] == "websocket":
         await send({"type": "websocket.close", "code": 1008})
         return
-    text = "realcam: the address with the token that the server has printed is wanted\n"
+    text = "realcam: use the address with the token that the server has printed\n"
     await PlainTextResponse(text, status_code=403)(scope, receive, send)
 
 
@@ -153,7 +153,7 @@ class Folders:
         Raises InputError for a path outside of them, also if it is reached by a link.
         """
         if not name or "\0" in name:
-            raise InputError("a file name is wanted")
+            raise InputError("expected a file name")
         try:
             path = (self.first / name).resolve()
         except (OSError, RuntimeError, ValueError):  # a link to itself; an invalid file name

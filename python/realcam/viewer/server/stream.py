@@ -89,7 +89,7 @@ class PictureStream:
                 return
             text = event.get("text")
             if text is None:
-                raise BadMessage("texts are wanted")
+                raise BadMessage("expected text messages")
             if text.startswith("ack "):
                 self._acknowledge(text[4:])
             else:

@@ -79,7 +79,7 @@ TEST_CASE("glTF: a node has its mesh as often as EXT_mesh_gpu_instancing says, e
     const Scene moved = read(instanced(folder, R"("TRANSLATION":4)", {1, 0, 0, 0, 2, 0}, {}, {}, 2));
     check_point(corner(moved, 1, 0), 10, 2, 0);
     CHECK(has(error_of(instanced(folder, R"("TRANSLATION":4,"SCALE":0)", {1, 0, 0, 0, 2, 0}, {}, {}, 2)),
-              "one for each is wanted"));
+              "expected one for each"));
     CHECK(has(error_of(instanced(folder, R"("TRANSLATION":99)", {}, {}, {}, 2)), "there are 7"));
     // Below a node that becomes an object they move with it.
     const Assembly object = read_assembly(

@@ -181,7 +181,7 @@ TEST_CASE("bad glTF: the mesh and the vertex are named") {
     CHECK(has(error_of(folder.write("a.gltf", gltf(nodes, "[0]"))), "mesh 0 \"tri\": vertex 1: coordinates must be"));
     CHECK(has(error_of(folder.write("b.gltf", gltf(R"([{"name":"x"}])", "[0]"))), "holds no triangles"));
     CHECK(has(error_of(folder.write("c.gltf", "{\n\"asset\": {\n")), "line 3"));
-    CHECK(has(error_of(folder.write("d.gltf", R"({"asset":{"version":"1.0"}})")), "glTF 2.0 is wanted"));
+    CHECK(has(error_of(folder.write("d.gltf", R"({"asset":{"version":"1.0"}})")), "expected glTF 2.0"));
     CHECK(has(
         error_of(folder.write("e.gltf", gltf(nodes, "[0]", R"(,"extensionsRequired":["KHR_draco_mesh_compression"])"))),
         "needs the glTF extension KHR_draco_mesh_compression"));

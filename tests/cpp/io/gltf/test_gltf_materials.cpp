@@ -351,10 +351,10 @@ TEST_CASE("glTF: cones of spots") {
     const io::FileLight wide = light(R"("type":"spot","spot":{"innerConeAngle":-1,"outerConeAngle":1e300})");
     CHECK(wide.inner_cone_angle == 0.0);
     CHECK(wide.outer_cone_angle == doctest::Approx(M_PI / 2));
-    CHECK(file.warned("1 spots have angles that are none"));
+    CHECK(file.warned("1 spots have invalid angles"));
     const io::FileLight crossed = light(R"("type":"spot","spot":{"innerConeAngle":1,"outerConeAngle":0.5})");
     CHECK(crossed.inner_cone_angle == 0.5);
-    CHECK(file.warned("0 <= innerConeAngle < outerConeAngle <= pi / 2 is wanted"));
+    CHECK(file.warned("expected 0 <= innerConeAngle < outerConeAngle <= pi / 2"));
 }
 
 TEST_CASE("glTF: pictures inside the file are fetched for every texture that counts, and for no other") {

@@ -102,9 +102,9 @@ TEST_CASE("the lens that the bad ones are made from is good") {
 
 TEST_CASE("bad numbers of a surface are named with file, line and surface") {
     check_complaint(with_line(9, "clear_semi_diameter_mm = -8.0"), "probe.toml:5: surface 1",
-                    "a positive length is wanted");
+                    "expected a positive length");
     check_complaint(with_line(9, "clear_semi_diameter_mm = 0.0"), "probe.toml:5: surface 1",
-                    "is 0 mm; a positive length is wanted");
+                    "is 0 mm; expected a positive length");
     check_complaint(with_line(14, "clear_semi_diameter_mm = nan"), "probe.toml:14: surface 2",
                     "must be a finite number");
     check_complaint(with_line(18, "clear_semi_diameter_mm = 61.0"), "probe.toml:16: surface 3",
@@ -140,7 +140,7 @@ TEST_CASE("bad materials are named with file, line and surface") {
     check_complaint(with_line(8, "material = -1.5"), "probe.toml:8: surface 1", "less than 1");
     check_complaint(with_line(8, "material = 0"), "probe.toml:8: surface 1", "less than 1");
     check_complaint(with_line(8, "material = nan"), "probe.toml:8: surface 1", "must be a finite number");
-    check_complaint(with_line(8, "material = 150"), "probe.toml:5: surface 1", "1 to 10 is wanted");
+    check_complaint(with_line(8, "material = 150"), "probe.toml:5: surface 1", "expected 1 to 10");
     check_complaint(with_line(8, "material = [1.5, -60.0]"), "probe.toml:8: surface 1", "a positive V_d");
     check_complaint(with_line(8, "material = [1.5]"), "probe.toml:8: surface 1", "an array of 2 numbers");
     check_complaint(with_line(8, "material = \"N-BK77\""), "probe.toml:8: surface 1", "\"N-BK7\"");
@@ -152,7 +152,8 @@ TEST_CASE("bad materials are named with file, line and surface") {
     check_complaint(with_line(19, "type = \"mirror\"\nmaterial = 1.5"), "probe.toml:20: surface 3",
                     "a mirror has no material");
     const std::string own = "[glass.OWN]\n";
-    check_complaint(with_line(8, "material = \"OWN\"") + own + "n_d = 1.5\n", "probe.toml:20", "wanted together");
+    check_complaint(with_line(8, "material = \"OWN\"") + own + "n_d = 1.5\n", "probe.toml:20",
+                    "must be given together");
     check_complaint(with_line(8, "material = \"OWN\"") + own + "n_d = 1.5\nV_d = 0.0\n", "probe.toml:22",
                     "must be positive");
     check_complaint(with_line(8, "material = \"OWN\"") + own + "index = 1.5\ncauchy = [1.5]\n", "probe.toml:20",
@@ -169,7 +170,8 @@ TEST_CASE("bad lenses are named with their file") {
     std::vector<std::string> two = kGoodLines;
     two.insert(two.begin() + 14,
                {"[[surface]]", "type = \"stop\"", "thickness_mm = 1.0", "clear_semi_diameter_mm = 6.0"});
-    check_complaint(joined(two), "probe.toml:15: surface 3", "a second \"stop\", after surface 2; exactly one");
+    check_complaint(joined(two), "probe.toml:15: surface 3",
+                    "a second \"stop\", after surface 2; expected exactly one");
     check_complaint(with_line(3, "film_distance_mm = -5.0"), "probe.toml:3", "the film lies behind the last surface");
     // The film of an eye, or on a cover glass, touches the last surface.
     CHECK(complaint(with_line(3, "film_distance_mm = 0.0")) == "(no error)");

@@ -102,8 +102,8 @@ TEST_CASE("OBJ: references that are wrong name their line") {
     CHECK(has(error("f 1 2 4294967296\n"), "line 4: vertex 4294967296 does not exist; there are 3"));
     CHECK(has(error("f 1/7 2/1 3/1\nvt 0 0\n"), "line 4: texture coordinate 7 does not exist; there are 1"));
     CHECK(has(error("f 1//1 2//1 3//1\n"), "line 4: normal 1 does not exist; there are 0"));
-    CHECK(has(error("v 1 2\nf 1 2 3\n"), "line 4: 3 numbers are wanted, not 2"));
-    CHECK(has(error("v 1 2,0 3\nf 1 2 3\n"), "line 4: a number is wanted, not \"2,0\""));
+    CHECK(has(error("v 1 2\nf 1 2 3\n"), "line 4: expected 3 numbers, not 2"));
+    CHECK(has(error("v 1 2,0 3\nf 1 2 3\n"), "line 4: expected a number, not \"2,0\""));
     CHECK(error("f 1/ 2// 3\n") == "no error");
     const Scene later = read(folder.write("later.obj", "f 1 2 3\nf 1 2\np 1\n" + kThree));
     CHECK(later.triangles.size() == 1);
@@ -189,14 +189,14 @@ TEST_CASE("PLY: elements that promise what is not there") {
             "vertex 0: coordinates must be finite numbers of at most 1e12 m, not (0, 0, 2e+12)"));
 }
 
-TEST_CASE("an ordinary file is wanted") {
+TEST_CASE("only ordinary files are read") {
     const Folder folder;
     for (const char* suffix : {".obj", ".ply", ".gltf", ".glb"}) {
         const std::string pipe = folder.path(std::string("pipe") + suffix);
         REQUIRE(mkfifo(pipe.c_str(), 0600) == 0);
-        CHECK(has(error_of(pipe), "is a pipe or a device; an ordinary file is wanted"));
+        CHECK(has(error_of(pipe), "is a pipe or a device; expected an ordinary file"));
         fs::create_symlink("/dev/zero", folder.path(std::string("zero") + suffix));
-        CHECK(has(error_of(folder.path(std::string("zero") + suffix)), "an ordinary file is wanted"));
+        CHECK(has(error_of(folder.path(std::string("zero") + suffix)), "expected an ordinary file"));
     }
     REQUIRE(mkfifo(folder.path("pipe.mtl").c_str(), 0600) == 0);
     REQUIRE(mkfifo(folder.path("pipe.png").c_str(), 0600) == 0);

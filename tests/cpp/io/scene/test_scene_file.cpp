@@ -169,7 +169,7 @@ TEST_CASE("what can be put up with is a warning") {
     CHECK(warns(read(folder.write("b.obj", "mtllib none.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")), "none.mtl"));
 }
 
-TEST_CASE("bad files: one line that names the file and what is wanted") {
+TEST_CASE("bad files: one line that names the file and what is expected") {
     const Folder folder;
     CHECK(has(error_of(folder.path("a.stl")), "ends in .glb, .gltf, .obj or .ply, not in .stl"));
     CHECK(has(error_of(folder.path("a")), "ends in .glb, .gltf, .obj or .ply"));
@@ -179,8 +179,7 @@ TEST_CASE("bad files: one line that names the file and what is wanted") {
     CHECK(has(error_of(folder.path("folder.obj")), "is a folder"));
     CHECK(has(error_of(folder.write("tiny.obj", "hello\n")), "holds no triangles"));
     CHECK(has(error_of(folder.write("text.obj", "this is a text, and no scene at all\n")), "holds no triangles"));
-    CHECK(
-        has(error_of(folder.write("text.ply", "this is a text, and no scene at all\n")), "line 1: \"ply\" is wanted"));
+    CHECK(has(error_of(folder.write("text.ply", "this is a text, and no scene at all\n")), "line 1: expected \"ply\""));
     CHECK(has(error_of(folder.write("text.glb", "this is a text, and no scene at all\n")), "is no valid glTF: line 1"));
     CHECK(has(error_of(folder.write("points.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n")), "no triangles"));
     CHECK(has(error_of(folder.write("flat.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n")), "without area"));

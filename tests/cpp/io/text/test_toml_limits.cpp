@@ -222,7 +222,7 @@ TEST_CASE("long tables of a lens file are refused before they are copied to each
 TEST_CASE("an ending that no lens file has is told, with those that are read") {
     for (const char* file : {"a.zar", "a.zos", "a.lens", "a.txt", "a"}) {
         const Reading reading = read("// OSLO 7.0\nLEN NEW\n", file);
-        CHECK(reading.says(".toml, .zmx, .seq, .len, .dat, .json or .roa is wanted"));
+        CHECK(reading.says("expected .toml, .zmx, .seq, .len, .dat, .json or .roa"));
         CHECK(read(kZoom, file).error == "");  // TOML by whatever name
     }
     CHECK(read("// OSLO\n", "a.toml").says("a.toml:1: not valid TOML"));

@@ -139,7 +139,7 @@ TEST_CASE("focus that a lens cannot reach is refused with its reason") {
     free.focusing.nearest_mm = 0;
     CHECK(contains(message_of([&] { focused(free, 400); }), "surfaces 11 to 13"));
     for (const double wrong : {0.0, -1000.0, std::numeric_limits<double>::quiet_NaN(), -kInfinity})
-        CHECK(contains(message_of([&] { focused(thin, wrong); }), "a positive distance or inf is wanted"));
+        CHECK(contains(message_of([&] { focused(thin, wrong); }), "expected a positive distance or inf"));
     const LensSystem diverging =
         lens_of({stop_plane(0, 2), refracting(-50, 1, Glass::constant(1.5), 5), refracting(50, 0, Glass::air(), 5)});
     CHECK(contains(message_of([&] { focused(diverging, kInfinity); }), "no real image"));
@@ -181,5 +181,5 @@ TEST_CASE("an f-number faster than the lens, or none at all, is refused") {
     CHECK(contains(fast, "f/2.03"));
     CHECK(stopped_down(lens, 2.03).is_wide_open());  // as engraved, of 2.0316...
     for (const double wrong : {0.0, -5.6, kInfinity, std::numeric_limits<double>::quiet_NaN()})
-        CHECK(contains(message_of([&] { stopped_down(lens, wrong); }), "a positive number is wanted"));
+        CHECK(contains(message_of([&] { stopped_down(lens, wrong); }), "expected a positive number"));
 }
