@@ -121,7 +121,6 @@ def test_a_sheet_has_every_pixel_of_its_pictures(tmp_path: Path) -> None:
     [
         (["--vary", "f_number"], "NAME=VALUE"),
         (["--vary", "f_number=2,,4"], "NAME=VALUE"),
-        (["--vary", "zip=2"], "f_number, lens or zoom"),
         (["--vary", "f_number=4", "--theme", "pink"], "theme"),
     ],
 )

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 import realcam as rc
 
-from ..programs import EXECUTABLE, PROGRAM, PYTHON, wants_executable
+from ..programs import EXECUTABLE, PYTHON, wants_executable
 
 oiio = pytest.importorskip("OpenImageIO")
 
@@ -198,20 +198,6 @@ def test_layers_are_channels_of_the_file(folder: Path, program: str) -> None:
     assert json.loads(spec.getattribute("realcam:objects")) == {"1": "static geometry"}
     assert json.loads(spec.getattribute("realcam:materials")) == {"1": "m"}
     assert "CircleOfConfusion: mm on the film" in spec.getattribute("realcam:unit")
-
-
-@pytest.mark.parametrize(
-    ("words", "says"),
-    [
-        (["--layers", "all", "-o", "a.png"], "--layers: layers are written to .exr, and no --output is one"),
-        (["--layers", "colour", "-o", "a.exr"], '--layers: unknown layer "colour"; all, or some of depth, normal'),
-        (["--layers", "depth,,normal", "-o", "a.exr"], '--layers: unknown layer ""'),
-    ],
-)
-def test_layers_that_cannot_be_written_are_refused(folder: Path, words: list[str], says: str) -> None:
-    made = run(PROGRAM, "render", "card.obj", *words, folder=folder)
-    assert made.returncode == 2
-    assert says in made.stderr.decode()
 
 
 @wants_executable
