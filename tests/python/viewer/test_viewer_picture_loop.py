@@ -61,15 +61,12 @@ def test_the_time_that_is_left_is_told_truly(watched: Watched) -> None:
 
 def test_a_goal_beyond_the_most_samples_is_told(watched: Watched) -> None:
     """The noise of the end, from a quarter of the samples on: two estimates of a noise, each right within a third."""
-    told: list[tuple[int, float | None]] = []
-    take = watched._take
-    watched.loop._encoder._on_frame = lambda frame: (told.append((frame.samples, frame.final_noise_codes)), take(frame))
     last = watched.photograph(PictureRequest(camera(), noise_codes=0.01, max_spp=256))
     assert last.samples == 256
     assert last.noise_codes is not None and last.noise_codes > 0.01
-    for samples, noise in told:
-        if samples >= 64:
-            assert noise == pytest.approx(last.noise_codes, rel=0.5)
+    for frame in watched.frames:
+        if frame.samples >= 64:
+            assert frame.final_noise_codes == pytest.approx(last.noise_codes, rel=0.5)
 
 
 def test_the_noise_that_is_told_is_the_error(watched: Watched) -> None:
