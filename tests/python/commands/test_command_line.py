@@ -145,7 +145,7 @@ def test_examples_are_command_lines(name: str, example: str) -> None:
         ("lens photo tessar-50mm --exposur-time 1/50", 'did you mean "--exposure-time"'),
         ("cost shot.toml --devise cpu", 'did you mean "--device"'),
         ("lens", "a command is missing; .*draw, photo.* are known"),
-        ("lens draw tessar-50mm --rays 0", "--rays"),
+        ("sensor", "a command is missing; list, info are known"),
         ("lens draw", r"LENS is required \(realcam lens draw --help lists the options"),
         ("bench --threads many", '--threads: "many" is not a whole number'),
         ("lens plot mtf-feild tessar-50mm", r'unknown plot "mtf-feild" \(did you mean "mtf" or "mtf-field"'),
