@@ -4,6 +4,7 @@
 #include "bvh_scene.hpp"
 #include "lanes_per_pixel.hpp"
 #include "layer_kernels.hpp"
+#include "lanes_per_pixel.hpp"
 #include "warp_tiles.hpp"
 
 namespace realcam {

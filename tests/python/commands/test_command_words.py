@@ -11,6 +11,7 @@ import realcam as rc
 from realcam.cli.command_words import Grammar, plain_number, spelled, understood
 
 from ..programs import Command
+from .test_command_line import QUAD
 
 pictures = pytest.mark.picture_files
 RENDER = Grammar(
@@ -18,6 +19,13 @@ RENDER = Grammar(
     {"--focus": "METRES", "--f-number": "N", "--json": "", "-o": "FILE", "--output": "FILE"},
     ["SCENE"],
 )
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The current folder, which is empty."""
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
 
 
 @pytest.mark.parametrize(
@@ -114,14 +122,11 @@ def test_spelling() -> None:
     [
         ("render demo y.png", 'unexpected argument "y.png" (did you mean "-o y.png"?) (realcam render --help'),
         ("job make demo y.job", 'unexpected argument "y.job" (did you mean "-o y.job"?) (realcam job make --help'),
-        ("lens draw tessar-50mm a.svg", '(did you mean "-o a.svg"?) (realcam lens draw --help'),
         ("render y.png -o scene.glb", 'SCENE and --output are swapped (did you mean "scene.glb -o y.png"?)'),
         ("lens draw a.svg -o tessar-50mm", 'LENS and --output are swapped (did you mean "tessar-50mm -o a.svg"?)'),
-        ("expose raw.dng -o film.exr", 'FILM and --output are swapped (did you mean "film.exr -o raw.dng"?)'),
         ("lens plot tessar-50mm mtf", 'KIND and LENS are swapped (did you mean "mtf tessar-50mm"?)'),
         ("render tessar-50mm -o a.png", 'SCENE: "tessar-50mm" is a lens (did you mean "--lens tessar-50mm"?)'),
         ("devices x.png", 'unexpected argument "x.png" (realcam devices --help'),
-        ("demo x.png", 'unexpected argument "x.png" (realcam demo --help'),
         ("render a.glb b.glb", 'unexpected argument "b.glb" (realcam render --help'),
         ("render a.glb tessar-50mm -o a.png", 'unexpected argument "tessar-50mm" (did you mean "--lens tessar-50mm"?)'),
         ("render demo -o a.png --aperture 4", 'unknown option --aperture (did you mean "--f-number"?)'),
@@ -129,7 +134,6 @@ def test_spelling() -> None:
         ("render demo -o a.png --samples 4", 'unknown option --samples (did you mean "--spp"?)'),
         ("lens tolerance tessar-50mm --samples 4", 'unknown option --samples (did you mean "--copies"?)'),
         ("plan demo --shutter 1/125", 'unknown option --shutter (did you mean "--exposure-time"?)'),
-        ("lens photo tessar-50mm --shutter 1/125", 'unknown option --shutter (did you mean "--exposure-time"?)'),
         ("lens info tessar-50mm --shutter 1/125", "unknown option --shutter (realcam lens info --help"),
         ("render demo --outptu y.png", 'unknown option --outptu (did you mean "--output"?)'),
         ("render demo \udcff.png", 'unexpected argument "?.png" (did you mean "-o ?.png"?)'),
@@ -137,20 +141,16 @@ def test_spelling() -> None:
         ("render demo -o a.png --focus 2s", '--focus must be a number of metres, inf or auto; it is "2s"'),
     ],
 )
-def test_mistakes_have_a_hint_in_one_line(
-    words: str, told: str, command: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.chdir(tmp_path)
+def test_mistakes_have_a_hint_in_one_line(words: str, told: str, command: Command, folder: Path) -> None:
     done = command(*words.split())
     assert (done.returncode, done.stdout, done.stderr.count("\n")) == (2, "", 1)
     assert told in done.stderr
-    assert not list(tmp_path.iterdir())
+    assert not list(folder.iterdir())
 
 
 @pictures
-def test_units_reach_all_commands(command: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_units_reach_all_commands(command: Command) -> None:
     """Those in C++ and in Python, by the figures that they print."""
-    monkeypatch.chdir(tmp_path)
     info = command("lens", "info", "tessar-50mm", "--f-number", "f/4", "--focus", "50cm").stdout
     assert info == command("lens", "info", "tessar-50mm", "--f-number", "4", "--focus", "0.5").stdout
     photo = ("lens", "photo", "tessar-50mm", "--f-number")
@@ -160,8 +160,7 @@ def test_units_reach_all_commands(command: Command, tmp_path: Path, monkeypatch:
 
 
 @pictures
-def test_us_spellings(command: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
+def test_us_spellings(command: Command) -> None:
     assert command("lens", "plot", "lateral-color", "tessar-50mm", "-o", "a.csv").returncode == 0
     assert command("lens", "draw", "tessar-50mm", "--radius-colors", "-o", "a.svg").returncode == 0
     catalog = command("lens", "info", "tessar-50mm", "--glass-catalog", "gone.agf")  # of a command in C++
@@ -173,11 +172,10 @@ SMALL = ("--resolution", "48x32", "--spp", "1", "--effects=none", "--device", "c
 
 
 @pictures
-def test_a_bundled_shot_has_a_name(command: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
+def test_a_bundled_shot_has_a_name(command: Command, folder: Path) -> None:
     done = command("render", "demo", "-o", "a.png", *SMALL, "--quiet")
     assert (done.returncode, done.stderr) == (0, "")
-    assert (tmp_path / "a.png").is_file()
+    assert (folder / "a.png").is_file()
     plan = command("plan", "demo", "--resolution", "48x32", "--effects=none", "--device", "cpu", "--json")
     assert plan.returncode == 0, plan.stderr
     shot = rc.Shot.load("demo", device="cpu")
@@ -186,7 +184,7 @@ def test_a_bundled_shot_has_a_name(command: Command, tmp_path: Path, monkeypatch
     with pytest.raises(rc.ArgumentError, match="load\\(\\) has no argument scal; is scale meant"):
         rc.Scene.load("demo", scal=2)  # type: ignore[call-arg]
     # What lies here under this name comes first, for all of them.
-    (tmp_path / "demo").mkdir()
+    (folder / "demo").mkdir()
     for refused in (rc.Shot.load, rc.Scene.load):
         with pytest.raises(rc.RealcamError, match="demo"):
             refused("demo")
@@ -195,15 +193,11 @@ def test_a_bundled_shot_has_a_name(command: Command, tmp_path: Path, monkeypatch
         rc.Scene.load("dem")
 
 
-QUAD = "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nf 1 2 3 4\n"
-
-
 @pictures
-def test_scenes_stand_where_shots_do(command: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_scenes_stand_where_shots_do(command: Command, folder: Path) -> None:
     """A scene file alone is what a shot file is that names it and nothing else."""
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "a quad.obj").write_text(QUAD)
-    (tmp_path / "shot.toml").write_text('format = 1\nscene = "a quad.obj"\n')
+    (folder / "a quad.obj").write_text(QUAD)
+    (folder / "shot.toml").write_text('format = 1\nscene = "a quad.obj"\n')
     alone, shot = rc.Shot.load("a quad.obj", device="cpu"), rc.Shot.load("shot.toml", device="cpu")
     assert (alone.camera, alone.settings, alone.tone) == (shot.camera, shot.settings, shot.tone)
     assert alone.scene.triangle_count == shot.scene.triangle_count
@@ -217,10 +211,7 @@ def test_scenes_stand_where_shots_do(command: Command, tmp_path: Path, monkeypat
 
 
 @pictures
-def test_all_pictures_of_a_comparison_have_an_f_number(
-    command: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.chdir(tmp_path)
+def test_all_pictures_of_a_comparison_have_an_f_number(command: Command) -> None:
     sheet = ("compare", "demo", "--size", "48", "--seconds", "1", "--device", "cpu", "-o", "a.png", "--f-number", "f/4")
     done = command(*sheet, "--vary", "lens=tessar-50mm,heliar-100mm")
     assert done.returncode == 0, done.stderr
@@ -233,20 +224,17 @@ def test_all_pictures_of_a_comparison_have_an_f_number(
 
 
 @pictures
-def test_commands_that_take_a_shot_share_its_options(
-    command: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "quad.obj").write_text("v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nf 1 2 3 4\n")
+def test_commands_that_take_a_shot_share_its_options(command: Command, folder: Path) -> None:
+    (folder / "quad.obj").write_text(QUAD)
     values = {"lens": "tessar-50mm", "focus_m": 2.5, "exposure_time_s": 1 / 60, "spp": 2, "environment_cd_m2": 100}
     words = ["--lens", "tessar-50mm", "--focus", "250cm", "--exposure-time", "1/60s", "--spp", "2"]
     words += ["--environment", "100cd/m2", "--device", "cpu"]
     made = command("job", "make", "quad.obj", "-o", "a.job", *words, "--resolution", "20x10")
     assert made.returncode == 0, made.stderr
-    job = rc.Job.load(tmp_path / "a.job")
+    job = rc.Job.load(folder / "a.job")
     job.work()
     image = job.image()
-    shot = rc.Shot.load(tmp_path / "quad.obj", resolution=(20, 10), device="cpu", **values)
+    shot = rc.Shot.load(folder / "quad.obj", resolution=(20, 10), device="cpu", **values)
     assert (image.camera.replace(model=shot.camera.model), image.spp) == (shot.camera, 2)
     compared = command(
         *("compare", "quad.obj", "--vary", "f_number=8", "--size", "20", "--json", "-o", "a.png"), *words

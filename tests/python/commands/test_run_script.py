@@ -48,15 +48,12 @@ def is_set_up(folder: Path) -> bool:
 
 
 def test_a_folder_that_stayed_keeps_its_build(built: Path) -> None:
-    assert forget_what_was_moved(built) == ""
-    assert is_set_up(built)
-
-
-def test_a_folder_is_known_by_a_link(built: Path) -> None:
+    """By its own path and by a link."""
     link = built.with_name("link")
     link.symlink_to(built)
-    assert forget_what_was_moved(link) == ""
-    assert is_set_up(built)
+    for path in (built, link):
+        assert forget_what_was_moved(path) == ""
+        assert is_set_up(built)
 
 
 def test_a_folder_that_was_moved_is_set_up_anew(built: Path) -> None:

@@ -95,21 +95,8 @@ def test_paper_page_is_made_by_one_command(tmp_path: Path) -> None:
 
 def test_copies_writes_a_sheet(tmp_path: Path) -> None:
     sheet = tmp_path / "copies.png"
-    words = [
-        "--copies",
-        "2",
-        "--columns",
-        "2",
-        "--pixels",
-        "8",
-        "--spp",
-        "1",
-        "--device",
-        "cpu",
-        "--grade",
-        "precision",
-    ]
-    command = [sys.executable, str(EXAMPLES / "copies.py"), str(sheet), *words]
+    words = f"{sheet} --copies 2 --columns 2 --pixels 8 --spp 1 --device cpu --grade precision"
+    command = [sys.executable, str(EXAMPLES / "copies.py"), *words.split()]
     told = subprocess.run(command, check=True, capture_output=True, text=True, timeout=300).stdout
     assert "has the softest corner" in told
     assert sheet.stat().st_size > 1000

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from html.parser import HTMLParser
+import re
 from pathlib import Path
 
 import numpy as np
@@ -45,30 +45,15 @@ def test_blur_in_the_picture_is_that_of_the_thin_lens() -> None:
     np.testing.assert_allclose(diameters[far], expected[far], rtol=0.06)
 
 
-class Tables(HTMLParser):
-    def __init__(self) -> None:
-        super().__init__()
-        self.cells: list[str] = []
-        self.is_cell = False
-
-    def handle_starttag(self, tag: str, attrs: object) -> None:
-        self.is_cell = tag in ("td", "th")
-
-    def handle_data(self, data: str) -> None:
-        if self.is_cell:
-            self.cells.append(data)
-
-
 def test_the_page_has_numbers_beside_numbers(tmp_path: Path) -> None:
     names: list[str] = []
     save_page(tmp_path / "paper.html", device="cpu", only=["lens-table", "snell"], progress=names.append)
     assert names == ["lens-table", "snell"]
     text = (tmp_path / "paper.html").read_text(encoding="utf-8")
-    tables = Tables()
-    tables.feed(text)
-    assert "paper" in tables.cells
-    assert any("50.358 mm, f/2.03" in cell for cell in tables.cells)
-    assert any("degrees traced" in cell for cell in tables.cells)
+    cells = re.findall(r"<t[dh][^>]*>([^<]*)", text)
+    assert "paper" in cells
+    assert any("50.358 mm, f/2.03" in cell for cell in cells)
+    assert any("degrees traced" in cell for cell in cells)
     assert "<svg" in text
     assert "src=" not in text.replace('src="data:', "")
 

@@ -414,9 +414,9 @@ class BenchPage:
         self.page.evaluate("m => [...window.realcamStreams.values()][0].send(m)", message)
 
 
-def served_panels(folder: Path, *, width: int = WIDTH) -> Iterator[Server]:
+def served_panels(folder: Path, *, width: int = WIDTH, **settings: float) -> Iterator[Server]:
     """A server of the shot of three panels, as long as a fixture lasts; nothing may have gone wrong in it."""
-    started = Server(write_panels_shot(folder, width=width))
+    started = Server(write_panels_shot(folder, width=width), **settings)
     yield started
     started.stop()
     assert started.complaints() == [], started.complaints()

@@ -13,7 +13,7 @@ WIDTH, HEIGHT = 120, 80
 # A film of 36 mm behind a lens of about 50 mm sees 0.72 of the distance.
 _SHOT = """format = 1
 scene = "panels.obj"
-lens = "double-gauss-50mm"
+lens = "{lens}"
 position_m = [0.0, 0.0, 0.0]  # the middle of the film
 look_at_m = [0.0, 0.0, -{middle}]
 film_mm = [36.0, 24.0]
@@ -26,7 +26,7 @@ effects = []
 """
 
 
-def write_panels_shot(folder: Path, *, width: int = WIDTH, more: str = "") -> Path:
+def write_panels_shot(folder: Path, *, width: int = WIDTH, lens: str = "double-gauss-50mm", more: str = "") -> Path:
     """Writes panels.toml and what it needs. `more`: further lines of it."""
     lines, count = ["mtllib panels.mtl"], 0
     for third, distance in ((-1, NEAR_M), (0, MIDDLE_M), (1, FAR_M)):
@@ -47,7 +47,7 @@ def write_panels_shot(folder: Path, *, width: int = WIDTH, more: str = "") -> Pa
     (folder / "panels.obj").write_text("\n".join(lines) + "\n")
     (folder / "panels.mtl").write_text("newmtl white\nKd 0.8 0.8 0.8\nnewmtl black\nKd 0.04 0.04 0.04\n")
     height = round(width * HEIGHT / WIDTH)
-    text = _SHOT.format(middle=MIDDLE_M, width=width, height=height) + more
+    text = _SHOT.format(middle=MIDDLE_M, width=width, height=height, lens=lens) + more
     path = folder / "panels.toml"
     path.write_text(text)
     return path

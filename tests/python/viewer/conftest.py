@@ -5,14 +5,43 @@ Servers, browsers and their first pages take seconds to begin.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, closing
 from typing import TYPE_CHECKING, Any
 
 import pytest
 import realcam as rc
 
 if TYPE_CHECKING:
+    from realcam.viewer.lens_bench import LensBench
+
     from .bench_pages import BenchPage, Server
+    from .watched_loop import Watched
+
+
+@pytest.fixture
+def bench_of() -> Iterator[Callable[..., LensBench]]:
+    """Benches of shots, which are closed when the test ends."""
+    from realcam.viewer.lens_bench import LensBench
+
+    with ExitStack() as made:
+        yield lambda shot, **options: made.enter_context(closing(LensBench(shot, device="cpu", **options)))
+
+
+@pytest.fixture(scope="session")
+def spheres() -> rc.Scene:
+    from frame_scene import frame_scene
+
+    return frame_scene(spheres=5, boxes=5)
+
+
+@pytest.fixture
+def watched(spheres: rc.Scene) -> Iterator[Watched]:
+    from .watched_loop import Watched
+
+    made = Watched(spheres)
+    yield made
+    made.loop.close()
 
 
 @pytest.fixture(scope="session")

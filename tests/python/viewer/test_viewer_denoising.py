@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 import realcam as rc
-from frame_scene import frame_scene
 
 pytest.importorskip("simplejpeg")
 
@@ -21,27 +20,16 @@ from realcam.viewer.pictures.preview_denoiser import PreviewDenoiser, why_missin
 
 from . import bench_shots
 from .bench_pages import until
-from .test_viewer_picture_loop import Watched, camera, codes_of
+from .watched_loop import Watched, camera, codes_of
 
+BenchOf = Callable[..., LensBench]
 wants_it = pytest.mark.skipif(why_missing("cpu") != "", reason="the extra realcam[denoise] is not installed")
 
 
-@pytest.fixture(scope="module")
-def scene() -> rc.Scene:
-    return frame_scene(spheres=5, boxes=5)
-
-
-@pytest.fixture
-def watched(scene: rc.Scene) -> Iterator[Watched]:
-    made = Watched(scene)
-    yield made
-    made.loop.close()
-
-
 @wants_it
-def test_a_frame_is_nearer_to_the_picture_that_it_becomes(scene: rc.Scene) -> None:
-    noisy = rc.render(scene, camera(), effects=(), spp=2, layers=GUIDES, device="cpu")
-    truth = rc.render(scene, camera(), effects=(), spp=512, seed=5, device="cpu").developed().astype(float)
+def test_a_frame_is_nearer_to_the_picture_that_it_becomes(spheres: rc.Scene) -> None:
+    noisy = rc.render(spheres, camera(), effects=(), spp=2, layers=GUIDES, device="cpu")
+    truth = rc.render(spheres, camera(), effects=(), spp=512, seed=5, device="cpu").developed().astype(float)
 
     def error(image: rc.Image) -> float:
         return float(np.sqrt(((image.developed() - truth) ** 2).mean()))
@@ -53,8 +41,8 @@ def test_a_frame_is_nearer_to_the_picture_that_it_becomes(scene: rc.Scene) -> No
 
 
 @wants_it
-def test_a_picture_that_is_not_wanted_any_more_is_given_up(scene: rc.Scene) -> None:
-    noisy = rc.render(scene, camera(), effects=(), spp=1, layers=GUIDES, device="cpu")
+def test_a_picture_that_is_not_wanted_any_more_is_given_up(spheres: rc.Scene) -> None:
+    noisy = rc.render(spheres, camera(), effects=(), spp=1, layers=GUIDES, device="cpu")
     with pytest.raises(rc.Cancelled):
         PreviewDenoiser("cpu").denoised(lambda: noisy, is_wanted=lambda: False)
 
@@ -144,56 +132,52 @@ def test_previews_have_no_wavelengths(watched: Watched) -> None:
     assert {size for size, _ in asked} > {(900, 600)}
 
 
-def test_without_a_denoiser_the_bench_says_what_to_install(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.fixture
+def no_denoiser(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     monkeypatch.setenv("REALCAM_OIDN", "/nowhere/libOpenImageDenoise.so")
     why_missing.cache_clear()
-    try:
-        bench = LensBench(rc.Shot.load(bench_shots.write_panels_shot(tmp_path)), device="cpu")
-        try:
-            assert not bench.denoises
-            assert "pip install realcam[denoise] brings it" in bench.why_no_denoiser
-            with pytest.raises(rc.InputError, match="pip install realcam"):
-                bench.set_denoising(True)
-            bench.set_denoising(False)
-            bench.show()
-            assert bench.image().pixels.mean() > 0
-        finally:
-            bench.close()
-    finally:
-        why_missing.cache_clear()
+    yield
+    why_missing.cache_clear()
+
+
+@pytest.mark.usefixtures("no_denoiser")
+def test_without_a_denoiser_the_bench_says_what_to_install(bench_of: BenchOf, tmp_path: Path) -> None:
+    bench = bench_of(rc.Shot.load(bench_shots.write_panels_shot(tmp_path)))
+    assert not bench.denoises
+    assert "pip install realcam[denoise] brings it" in bench.why_no_denoiser
+    with pytest.raises(rc.InputError, match="pip install realcam"):
+        bench.set_denoising(True)
+    bench.set_denoising(False)
+    bench.show()
+    assert bench.image().pixels.mean() > 0
 
 
 @wants_it
 @pytest.mark.picture_files
-def test_a_picture_is_saved_as_it_is_seen(tmp_path: Path) -> None:
+def test_a_picture_is_saved_as_it_is_seen(bench_of: BenchOf, tmp_path: Path) -> None:
     """Denoised with its name in the file, or as it is; each within what JPEG leaves of the frame."""
     oiio = pytest.importorskip("OpenImageIO")
     shot = rc.Shot.load(bench_shots.write_panels_shot(tmp_path, width=600))
-    bench, frames = LensBench(shot, device="cpu", noise_codes=0.01), []
+    bench, frames = bench_of(shot, noise_codes=0.01), []
     bench.listeners.frame = lambda slot, frame: frames.append(frame)
     bench.set_jpeg_quality(95)
     names = []
-    try:
-        for denoises in (True, False):
-            bench.set_denoising(denoises)
-            until(
-                lambda d=denoises: frames and frames[-1].is_denoised == d and not frames[-1].is_preview, bool, "shown"
-            )
-            image = bench.image()
-            seen = codes_of(frames[-1]).astype(float)
-            assert image.developed("film").shape == seen.shape
-            # The noise of a frame of few samples is 20 grey levels and more, and the frame may be one older.
-            assert np.abs(image.developed("film") - seen).mean() < (3 if denoises else 10)
-            names.append(image.denoiser)
-            for suffix in (".png", ".exr", ".jpg", ".dng"):
-                if suffix == ".dng":
-                    pytest.importorskip("tifffile")
-                path = tmp_path / f"picture{suffix}"
-                path.write_bytes(saving.picture_content(image, path.name, "film"))
-                assert (b"Open Image Denoise" in path.read_bytes()) == denoises
-                if suffix != ".dng":
-                    read = oiio.ImageBuf(str(path))
-                    assert (read.spec().width, read.spec().height) == (600, 400)
-    finally:
-        bench.close()
+    for denoises in (True, False):
+        bench.set_denoising(denoises)
+        until(lambda d=denoises: frames and frames[-1].is_denoised == d and not frames[-1].is_preview, bool, "shown")
+        image = bench.image()
+        seen = codes_of(frames[-1]).astype(float)
+        assert image.developed("film").shape == seen.shape
+        # The noise of a frame of few samples is 20 grey levels and more, and the frame may be one older.
+        assert np.abs(image.developed("film") - seen).mean() < (3 if denoises else 10)
+        names.append(image.denoiser)
+        for suffix in (".png", ".exr", ".jpg", ".dng"):
+            if suffix == ".dng":
+                pytest.importorskip("tifffile")
+            path = tmp_path / f"picture{suffix}"
+            path.write_bytes(saving.picture_content(image, path.name, "film"))
+            assert (b"Open Image Denoise" in path.read_bytes()) == denoises
+            if suffix != ".dng":
+                read = oiio.ImageBuf(str(path))
+                assert (read.spec().width, read.spec().height) == (600, 400)
     assert names[0].startswith("Open Image Denoise 2.") and names[1] == ""

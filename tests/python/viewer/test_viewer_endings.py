@@ -8,6 +8,7 @@ import socket
 import subprocess
 import sys
 import time
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -16,16 +17,10 @@ pytest.importorskip("nicegui")
 playwright = pytest.importorskip("playwright.sync_api")
 
 from . import bench_shots  # noqa: E402
-from .bench_pages import CHROMIUM, BenchPage, Server, fetch, until  # noqa: E402
+from .bench_pages import CHROMIUM, BenchPage, Server, fetch, served_panels, until  # noqa: E402
+from .processes import is_there  # noqa: E402
 
 pytestmark = [pytest.mark.picture_files, pytest.mark.skipif(CHROMIUM is None, reason="no chromium")]
-
-
-def is_there(pid: int) -> bool:
-    try:
-        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
-    except OSError:
-        return False
 
 
 def workers(server: Server) -> list[int]:
@@ -46,20 +41,14 @@ def has_plot(bench: BenchPage) -> bool:
 
 
 @pytest.fixture
-def own(tmp_path: Path) -> Server:
-    server = Server(bench_shots.write_panels_shot(tmp_path, width=240))
-    yield server
-    server.stop()
-    assert server.complaints() == [], server.complaints()
+def own(tmp_path: Path) -> Iterator[Server]:
+    yield from served_panels(tmp_path, width=240)
 
 
 @pytest.fixture
-def forgetful(tmp_path: Path) -> Server:
+def forgetful(tmp_path: Path) -> Iterator[Server]:
     """Keeps a window whose page has gone for three seconds only."""
-    server = Server(bench_shots.write_panels_shot(tmp_path), reconnect_s=3)
-    yield server
-    server.stop()
-    assert server.complaints() == [], server.complaints()
+    yield from served_panels(tmp_path, reconnect_s=3)
 
 
 @pytest.mark.parametrize("end", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
@@ -149,16 +138,6 @@ def test_a_port_in_use_is_told_in_one_line(tmp_path: Path) -> None:
     assert len(ended.stderr.splitlines()) == 1
     assert f"127.0.0.1:{port}" in ended.stderr
     assert "in use" in ended.stderr
-
-
-def test_as_many_windows_as_may_be_however_fast_they_are_asked_for(server: Server) -> None:
-    from concurrent.futures import ThreadPoolExecutor
-
-    before = threads(server)
-    with ThreadPoolExecutor(60) as pool:
-        list(pool.map(lambda _: fetch(server.url, 120), range(60)))
-    # A window has ten and the backend's; 60 of them had 600 more.
-    assert threads(server) - before < 16 * 16
 
 
 def test_what_is_no_event_of_a_page_is_one_line_of_the_log(server: Server) -> None:

@@ -10,7 +10,7 @@ pytest.importorskip("starlette")
 
 from realcam.viewer.server.left_requests import LeftRequests
 
-from .event_loops import run_apart
+from .processes import run_apart
 
 
 async def fails(scope: Any, receive: Any, send: Any) -> None:

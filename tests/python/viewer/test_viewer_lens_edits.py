@@ -119,15 +119,10 @@ def test_a_plate_is_a_plate(place: int) -> None:
     plate = plated.surfaces[place]
     assert math.isinf(plate.radius_of_curvature_mm)
     assert plate.material.label.endswith("N-BK7")
-    assert plated.first_order().effective_focal_length_mm == pytest.approx(focal, rel=1e-9)
-
-
-def test_a_plate_is_removed_again() -> None:
-    back = lens_edits.without(lens_edits.without(with_plate(LENS, 0), 0), 0)
+    back = lens_edits.without(lens_edits.without(plated, place), place)
     assert [s.radius_of_curvature_mm for s in back.surfaces] == [s.radius_of_curvature_mm for s in LENS.surfaces]
-    assert back.first_order().effective_focal_length_mm == pytest.approx(
-        LENS.first_order().effective_focal_length_mm, rel=1e-9
-    )
+    for lens in (plated, back):
+        assert lens.first_order().effective_focal_length_mm == pytest.approx(focal, rel=1e-9)
 
 
 @pytest.mark.parametrize("name", CENTRED)
@@ -201,17 +196,8 @@ def test_a_drag_is_undone_in_one_step() -> None:
     assert history.undo() == LENS
     assert history.redo() == drag[4]
     history.push(drag[7], 2)  # the mouse is still down, but what it did was taken back: another step
-    assert history.undo() == drag[4]
-
-
-def test_a_drag_after_an_undo_forgets_what_was_undone() -> None:
-    history = History(LENS)
-    a, b, c = lenses(3)
-    history.push(a, 1)
-    history.push(b, 2)
-    history.undo()
-    history.push(c, 3)
     assert not history.can_redo
+    assert history.undo() == drag[4]
 
 
 def test_the_history_has_an_end() -> None:

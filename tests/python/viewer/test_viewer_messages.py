@@ -118,10 +118,17 @@ def test_what_the_user_cannot_have_is_no_bad_message() -> None:
     lens = rc.Lens.load("tessar-50mm")
     made.edit.side_effect = lambda edited, gesture=None: edited(lens)
     made.edit_value.side_effect = lambda *edit: LensBench.edit_value(made, *edit)
-    with pytest.raises(rc.RealcamError):
-        perform({"type": "remove", "surface": 99}, made)
-    with pytest.raises(rc.RealcamError):
-        perform({"type": "edit", "surface": 0, "field": "glass", "value": "no such glass"}, made)
+    edit = {"type": "edit", "surface": 0, "field": "glass"}
+    for message in (
+        {"type": "remove", "surface": 99},
+        {"type": "insert", "surface": -5},
+        {"type": "swap", "surface": 0, "other": 10**9},
+        {**edit, "value": "no such glass"},
+        {**edit, "value": "\ud800"},
+    ):
+        with pytest.raises(rc.RealcamError) as refused:
+            perform(parsed(json.dumps(message)), made)
+        assert not isinstance(refused.value, BadMessage), message
 
 
 def test_the_browser_gets_json_whatever_the_numbers() -> None:

@@ -5,74 +5,20 @@ from __future__ import annotations
 import math
 import threading
 import time
-from collections.abc import Callable, Iterator
 from dataclasses import replace
 
 import numpy as np
 import pytest
 import realcam as rc
-from frame_scene import frame_scene
+
+pytest.importorskip("simplejpeg")
+
 from realcam.viewer.pictures.noise_measurement import NoiseMeasurement
 from realcam.viewer.pictures.pace import Pace
 from realcam.viewer.pictures.picture_loop import PictureLoop
 from realcam.viewer.pictures.picture_request import Frame, PictureRequest
 
-simplejpeg = pytest.importorskip("simplejpeg")
-
-LENS = rc.Lens.load("double-gauss-50mm").focused(5.0)
-FILM = rc.Film(36, 24, (120, 80))
-
-
-def camera(x: float = 0.0, **options: object) -> rc.Camera:
-    options = {"film": FILM, "exposure_time_s": 0.01} | options
-    return rc.Camera(LENS, position=(x, 1, 3), look_at=(0, 0.4, -3), **options)
-
-
-class Watched:
-    """A loop with what it has told."""
-
-    def __init__(self, scene: rc.Scene) -> None:
-        self.scene = scene
-        self.frames: list[Frame] = []
-        self.errors: list[tuple[int, str]] = []
-        self._news = threading.Condition()
-        self.loop = PictureLoop(scene, self._take, self._fail, device="cpu")
-
-    def _take(self, frame: Frame) -> None:
-        with self._news:
-            self.frames.append(frame)
-            self._news.notify_all()
-
-    def _fail(self, serial: int, message: str) -> None:
-        with self._news:
-            self.errors.append((serial, message))
-            self._news.notify_all()
-
-    def until(self, has_come: Callable[[], object], seconds: float = 120.0) -> None:
-        with self._news:
-            assert self._news.wait_for(has_come, seconds), (self.frames[-1:], self.errors)
-
-    def photograph(self, request: PictureRequest) -> Frame:
-        """The final frame of it."""
-        serial = self.loop.submit(request)
-        self.until(lambda: self.frames and self.frames[-1].serial == serial and self.frames[-1].is_final)
-        return self.frames[-1]
-
-
-@pytest.fixture(scope="module")
-def scene() -> rc.Scene:
-    return frame_scene(spheres=5, boxes=5)
-
-
-@pytest.fixture
-def watched(scene: rc.Scene) -> Iterator[Watched]:
-    made = Watched(scene)
-    yield made
-    made.loop.close()
-
-
-def codes_of(frame: Frame) -> np.ndarray:
-    return simplejpeg.decode_jpeg(frame.jpeg)
+from .watched_loop import FILM, Watched, camera, codes_of
 
 
 def test_a_picture_is_refined_to_the_noise_that_is_asked_for(watched: Watched) -> None:
@@ -113,48 +59,34 @@ def test_the_time_that_is_left_is_told_truly(watched: Watched) -> None:
     assert 0.5 < np.median([left / truth for truth, left in late]) < 2, told
 
 
-def test_no_more_samples_than_wanted(watched: Watched) -> None:
-    last = watched.photograph(PictureRequest(camera(), noise_codes=0.0, max_spp=40))
-    assert last.samples == 40
-
-
 def test_a_goal_beyond_the_most_samples_is_told(watched: Watched) -> None:
     """The noise of the end, from a quarter of the samples on: two estimates of a noise, each right within a third."""
-    told: list[tuple[int, float | None]] = []
-    take = watched._take
-    watched.loop._encoder._on_frame = lambda frame: (told.append((frame.samples, frame.final_noise_codes)), take(frame))
     last = watched.photograph(PictureRequest(camera(), noise_codes=0.01, max_spp=256))
+    assert last.samples == 256
     assert last.noise_codes is not None and last.noise_codes > 0.01
-    for samples, noise in told:
-        if samples >= 64:
-            assert noise == pytest.approx(last.noise_codes, rel=0.5)
+    for frame in watched.frames:
+        if frame.samples >= 64:
+            assert frame.final_noise_codes == pytest.approx(last.noise_codes, rel=0.5)
 
 
-def test_the_noise_that_is_told_is_the_error(scene: rc.Scene) -> None:
+def test_the_noise_that_is_told_is_the_error(watched: Watched) -> None:
     """Against a picture of so many samples that its own noise does not count."""
     small = camera(film=rc.Film(36, 24, (60, 40)))
-    reference = rc.render(scene, small, effects=(), spp=4096, seed=99, max_bounces=1, device="cpu")
+    reference = rc.render(watched.scene, small, effects=(), spp=4096, seed=99, max_bounces=1, device="cpu")
     truth = rc._core.develop(reference.pixels, 100).astype(float)
     for asked in (3.0, 1.0):
-        compare_noise(scene, small, asked, truth)
-
-
-def compare_noise(scene: rc.Scene, small: rc.Camera, asked: float, truth: np.ndarray) -> None:
-    told, true = [], []
-    for seed in range(4):
-        watched, settings = Watched(scene), rc.RenderSettings(seed=seed, effects=(), max_bounces=1)
-        try:
+        told, true = [], []
+        for seed in range(4):
+            settings = rc.RenderSettings(seed=seed, effects=(), max_bounces=1)
             told.append(watched.photograph(PictureRequest(small, settings, noise_codes=asked)).noise_codes)
-            image = watched.loop.image().result(60)
-        finally:
-            watched.loop.close()
-        error = rc._core.develop(image.pixels, 100) - truth
-        # Two roundings to codes have a variance of 1/12 each.
-        true.append(math.sqrt(max(0.0, float(np.mean(error * error)) - 1 / 6)))
-    # The picture has the samples of the estimate at most, and those of one frame more; samples that are spread evenly
-    # have a little less noise than the root of their count says, and the estimate, which believes that law, is high.
-    ratio = np.array(told) / np.array(true)
-    assert 0.8 < ratio.mean() < 1.8, (told, true)
+            error = rc._core.develop(watched.loop.image().result(60).pixels, 100) - truth
+            # Two roundings to codes have a variance of 1/12 each.
+            true.append(math.sqrt(max(0.0, float(np.mean(error * error)) - 1 / 6)))
+        # The picture has the samples of the estimate at most, and those of one frame more; samples that are spread
+        # evenly have a little less noise than the root of their count says, and the estimate, which believes that law,
+        # is high.
+        ratio = np.array(told) / np.array(true)
+        assert 0.8 < ratio.mean() < 1.8, (told, true)
 
 
 def test_the_newest_request_wins(watched: Watched) -> None:
@@ -177,20 +109,16 @@ def test_every_request_that_is_begun_gets_its_first_frame(watched: Watched) -> N
     assert gaps.max() < count / 2
 
 
-def test_a_frame_that_refines_is_given_up_for_a_change(scene: rc.Scene) -> None:
+def test_a_frame_that_refines_is_given_up_for_a_change(watched: Watched) -> None:
     big = rc.Film(36, 24, (1200, 800))
-    watched = Watched(scene)
-    try:
-        watched.loop.submit(PictureRequest(camera(film=big), noise_codes=0.01))
-        watched.until(lambda: len([f for f in watched.frames if not f.is_preview]) >= 2)
-        # A frame of that size takes some tenths of a second; the change is shown as soon as ever.
-        for k in range(1, 4):
-            serial = watched.loop.submit(PictureRequest(camera(0.1 * k, film=big), noise_codes=0.01))
-            watched.until(lambda serial=serial: watched.frames[-1].serial == serial)
-            time.sleep(0.2)
-        assert watched.errors == []
-    finally:
-        watched.loop.close()
+    watched.loop.submit(PictureRequest(camera(film=big), noise_codes=0.01))
+    watched.until(lambda: len([f for f in watched.frames if not f.is_preview]) >= 2)
+    # A frame of that size takes some tenths of a second; the change is shown as soon as ever.
+    for k in range(1, 4):
+        serial = watched.loop.submit(PictureRequest(camera(0.1 * k, film=big), noise_codes=0.01))
+        watched.until(lambda serial=serial: watched.frames[-1].serial == serial)
+        time.sleep(0.2)
+    assert watched.errors == []
 
 
 def test_another_exposure_needs_no_new_samples(watched: Watched) -> None:
@@ -256,27 +184,23 @@ def test_it_sleeps_when_the_picture_is_done(watched: Watched) -> None:
     assert len(watched.frames) == count
 
 
-def test_the_picture_that_is_saved_is_the_one_asked_for_last(scene: rc.Scene) -> None:
+def test_the_picture_that_is_saved_is_the_one_asked_for_last(watched: Watched) -> None:
     big = rc.Film(36, 24, (900, 600))
-    watched = Watched(scene)
-    try:
-        for k in range(1, 6):
-            watched.loop.submit(PictureRequest(camera(film=big), noise_codes=0.01))
-            if k % 2:
-                watched.until(lambda k=k: len(watched.frames) > 2 * k)
-            watched.loop.submit(PictureRequest(camera(0.1 * k, film=big), noise_codes=0.01))
-            asked = watched.loop.image()
-            time.sleep(0.05 * k)
-            watched.loop.submit(PictureRequest(camera(0.2 * k, film=big), noise_codes=0.01))
-            image = asked.result(60)
-            assert image.pixels.shape == (600, 900, 3)
-            assert image.camera.film.resolution == (900, 600)
-            assert image.camera.position[0] in (0.1 * k, 0.2 * k)
-            assert image.pixels.min() >= 0
-            assert np.median(image.pixels) > 0
-        assert watched.errors == []
-    finally:
-        watched.loop.close()
+    for k in range(1, 6):
+        watched.loop.submit(PictureRequest(camera(film=big), noise_codes=0.01))
+        if k % 2:
+            watched.until(lambda k=k: len(watched.frames) > 2 * k)
+        watched.loop.submit(PictureRequest(camera(0.1 * k, film=big), noise_codes=0.01))
+        asked = watched.loop.image()
+        time.sleep(0.05 * k)
+        watched.loop.submit(PictureRequest(camera(0.2 * k, film=big), noise_codes=0.01))
+        image = asked.result(60)
+        assert image.pixels.shape == (600, 900, 3)
+        assert image.camera.film.resolution == (900, 600)
+        assert image.camera.position[0] in (0.1 * k, 0.2 * k)
+        assert image.pixels.min() >= 0
+        assert np.median(image.pixels) > 0
+    assert watched.errors == []
 
 
 def test_what_a_pixel_shows(watched: Watched) -> None:
@@ -352,7 +276,7 @@ def test_an_error_is_told_and_the_next_request_is_photographed(watched: Watched)
     assert len(watched.errors) == 1
 
 
-def test_a_listener_that_fails_does_not_end_the_loop(scene: rc.Scene) -> None:
+def test_a_listener_that_fails_does_not_end_the_loop(spheres: rc.Scene) -> None:
     calls, came = [], threading.Event()
 
     def take(frame: Frame) -> None:
@@ -362,7 +286,7 @@ def test_a_listener_that_fails_does_not_end_the_loop(scene: rc.Scene) -> None:
         came.set()
 
     errors: list[str] = []
-    loop = PictureLoop(scene, take, lambda serial, message: errors.append(message), device="cpu")
+    loop = PictureLoop(spheres, take, lambda serial, message: errors.append(message), device="cpu")
     try:
         loop.submit(PictureRequest(camera(), noise_codes=8.0))
         deadline = time.monotonic() + 60
@@ -375,9 +299,9 @@ def test_a_listener_that_fails_does_not_end_the_loop(scene: rc.Scene) -> None:
         loop.close()
 
 
-def test_closing_ends_it_in_the_middle_of_everything(scene: rc.Scene) -> None:
+def test_closing_ends_it_in_the_middle_of_everything(spheres: rc.Scene) -> None:
     for pause in (0.0, 0.05, 0.3):
-        watched = Watched(scene)
+        watched = Watched(spheres)
         watched.loop.submit(PictureRequest(camera(film=rc.Film(36, 24, (1200, 800))), noise_codes=0.01))
         time.sleep(pause)
         asked = watched.loop.image()
@@ -389,13 +313,21 @@ def test_closing_ends_it_in_the_middle_of_everything(scene: rc.Scene) -> None:
             watched.loop.point(0.5, 0.5).result(1)
 
 
+GREY_LX = 0.1 / 0.01  # exposed to middle grey in 0.01 s at ISO 100
+
+
+def codes_per_share() -> float:
+    """The slope of the linear tone at middle grey: codes by the share of the light, over the curve of sRGB."""
+    codes = [rc._core.develop(np.full((1, 1, 3), 0.1 * f, np.float32), 100, "linear")[0, 0, 0] for f in (0.8, 1.2)]
+    return (float(codes[1]) - float(codes[0])) / 0.4
+
+
 def test_the_noise_of_parts_is_where_it_is() -> None:
     """Of a picture whose right half is noisy: each part tells that of the mean of all its samples."""
     random = np.random.default_rng(3)
-    grey = 0.1 / 0.01  # lx, which 0.01 s at ISO 100 expose to middle grey
     deviation = np.zeros((160, 320, 1), np.float32)
-    deviation[:, 160:] = 0.1 * grey
-    first, second = (grey + deviation * random.standard_normal((160, 320, 3)).astype(np.float32) for _ in range(2))
+    deviation[:, 160:] = 0.1 * GREY_LX
+    first, second = (GREY_LX + deviation * random.standard_normal((160, 320, 3)).astype(np.float32) for _ in range(2))
     measured = NoiseMeasurement()
     assert measured.tiles(0.01, 100, "linear") is None
     measured.add(8, first)
@@ -404,9 +336,7 @@ def test_the_noise_of_parts_is_where_it_is() -> None:
     assert tiles.shape == (16, 16)
     assert tiles[:, :8].max() < 0.3
     # The mean of two has the deviation of one over the root of two; 118 codes per middle grey, at the slope of sRGB.
-    codes = [rc._core.develop(np.full((1, 1, 3), 0.1 * f, np.float32), 100, "linear")[0, 0, 0] for f in (0.8, 1.2)]
-    slope = (float(codes[1]) - float(codes[0])) / 0.4
-    expected = 0.1 * slope / math.sqrt(2)
+    expected = 0.1 * codes_per_share() / math.sqrt(2)
     # 600 numbers a part: within 3% of it in the mean of all, and four of their own deviations each.
     assert tiles[:, 8:].mean() == pytest.approx(expected, rel=0.1)
     assert measured.codes(0.01, 100, "linear") == pytest.approx(math.sqrt(np.mean(tiles**2)), rel=0.05)
@@ -415,10 +345,7 @@ def test_the_noise_of_parts_is_where_it_is() -> None:
 def test_noise_is_measured_between_doublings_too() -> None:
     """The mean of n samples has the deviation of one over the root of n, whenever the next doubling is."""
     random = np.random.default_rng(4)
-    grey = 0.1 / 0.01  # lx, which 0.01 s at ISO 100 expose to middle grey
-    samples = (grey * (1 + 0.2 * random.standard_normal((13, 160, 160, 3)))).astype(np.float32)
-    codes = [rc._core.develop(np.full((1, 1, 3), 0.1 * f, np.float32), 100, "linear")[0, 0, 0] for f in (0.8, 1.2)]
-    slope = (float(codes[1]) - float(codes[0])) / 0.4
+    samples = (GREY_LX * (1 + 0.2 * random.standard_normal((13, 160, 160, 3)))).astype(np.float32)
     measured = NoiseMeasurement()
     for n in (2, 4, 5, 7, 8, 9, 13):
         assert measured.is_doubled(n) == (n in (2, 4, 8))
@@ -426,7 +353,9 @@ def test_noise_is_measured_between_doublings_too() -> None:
         assert measured.samples == n
         if n > 2:
             # 76 800 numbers: within 0.4% but for the curve of sRGB.
-            assert measured.codes(0.01, 100, "linear") == pytest.approx(0.2 * slope / math.sqrt(n), rel=0.05)
+            assert measured.codes(0.01, 100, "linear") == pytest.approx(
+                0.2 * codes_per_share() / math.sqrt(n), rel=0.05
+            )
 
 
 def test_a_picture_ends_with_about_the_samples_that_its_noise_takes(

@@ -68,14 +68,9 @@ def test_two_windows_do_not_disturb_each_other(browser: playwright.Browser, serv
     assert bench.picture().mean() > 1.1 * before
 
 
-MALFORMED = [
+MALFORMED = [  # test_viewer_messages.py has more
     "nonsense",
-    '{"type": "quit"}',
-    '{"type": []}',
-    '{"type": "orbit", "x": "far", "y": 0}',
     '{"type": "orbit", "x": NaN, "y": 0}',
-    '{"type": "focus", "u": 2, "v": 0}',
-    '{"type": "edit", "surface": 1.5, "field": "radius_mm", "value": 1}',
     '{"type": "turn", "ring": "barrel", "steps": 1}',
     b"\x00\x01\x02",
     "[" * 60_000,
@@ -101,29 +96,6 @@ def test_malformed_messages_end_the_connection_and_no_more(bench: BenchPage, ser
     assert server.process.poll() is None
 
 
-IMPOSSIBLE = [
-    {"type": "edit", "surface": 0, "field": "glass", "value": "\ud800"},
-    {"type": "edit", "surface": 0, "field": "a\u00b2", "value": 1},
-    {"type": "edit", "surface": 10**9, "field": "radius_mm", "value": 1},
-    {"type": "edit", "surface": 0, "field": "thickness_mm", "value": 1e300},
-    {"type": "insert", "surface": -5},
-    {"type": "swap", "surface": 0, "other": 10**9},
-    {"type": "remove", "surface": 5},
-]
-
-
-def test_no_message_is_lost_however_many_come(bench: BenchPage) -> None:
-    """More than are kept waiting, of a kind of which each one counts."""
-    bench.page.evaluate(
-        """() => {
-            const stream = [...window.realcamStreams.values()][0];
-            for (let k = 0; k < 300; ++k) stream.send({ type: "turn", ring: "shutter", steps: k % 2 ? -1 : 1 });
-            stream.send({ type: "turn", ring: "iso", steps: 3 });
-        }"""
-    )
-    bench.until_text("iso-text", lambda text: text == "ISO 200")
-
-
 def test_a_page_can_be_loaded_again_and_again(bench: BenchPage, server: Server) -> None:
     """Oftener than windows are kept at once: those whose page has gone make room."""
     for _ in range(5):  # of which the server keeps four, and one is there before
@@ -131,15 +103,6 @@ def test_a_page_can_be_loaded_again_and_again(bench: BenchPage, server: Server) 
         assert not bench.page.get_by_text("Too many windows").is_visible()
     bench.until_there()
     bench.picture()
-
-
-def test_what_cannot_be_is_told_on_the_page(bench: BenchPage) -> None:
-    for k, message in enumerate(IMPOSSIBLE):
-        bench.send(message)
-        until(bench.test_id("problem").count, lambda count: count == 1, f"{message} is told")
-
-        bench.edit(0, "thickness_mm", f"{3.8 + 0.01 * k:.2f}")
-        until(bench.test_id("problem").count, lambda count: count == 0, f"{message} is over")
 
 
 def test_addresses_that_lead_elsewhere(server: Server) -> None:

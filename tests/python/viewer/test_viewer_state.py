@@ -29,7 +29,7 @@ def test_all_that_was_set_comes_back(focus_m: float, zoom: str | float) -> None:
         f_number=5.6,
         focus_m=focus_m,
         pose=Pose((1, 2, 3), (0, 0.5, 0), (0, 0, 1)),
-        film=rc.Film(20, 10, (100, 50), shift_mm=(1.5, -2.0)),
+        film=rc.Film(20, 10, (6000, 3000), shift_mm=(1.5, -2.0)),
         exposure_time_s=0.5,
         iso=400.0,
         compensation_ev=-1.0,
@@ -54,8 +54,10 @@ def test_all_that_was_set_comes_back(focus_m: float, zoom: str | float) -> None:
         ("name", None),
         ("pose", [0.0] * 8),
         ("pose", [math.inf] * 9),
-        ("film", [36, 24, 1e9, 1]),
-        ("film", [36, 24, 10, 0.5]),
+        ("film", [36, 24, 32769, 10]),
+        ("film", [36, 24, 0, 10]),
+        ("film", [36, 24, 1e300, 10]),
+        ("film", [36, 24, 10.5, 10]),
         ("f_number", "wide"),
         ("iso", True),
         ("zoom", [17]),
@@ -100,16 +102,6 @@ def test_a_model_without_surfaces_has_none_of_their_effects() -> None:
         assert of_model.named(None) == ("diffraction", "-motion_blur")
         assert not {"dispersion", "ghosts=1e-8", "auto"} & set(of_model.as_words())
     assert switches.named(None) == ("dispersion", "ghosts=1e-8", "diffraction", "-motion_blur")
-
-
-def test_a_film_of_any_resolution_comes_back() -> None:
-    film = rc.Film(36, 24, (6000, 4000))
-    controls = CameraControls.of(rc.Camera(rc.Lens.load("tessar-50mm"), film=film))
-    state = json.loads(json.dumps(state_of(controls, {})))
-    assert restored(controls, state).film == film
-    for resolution in ((32769, 10), (0, 10), (1e300, 10), (10.5, 10)):
-        with pytest.raises(rc.InputError):
-            restored(controls, {**state, "film": [36, 24, *resolution]})
 
 
 def test_a_zoom_ring_of_one_focal_length_is_none() -> None:

@@ -23,7 +23,7 @@ from realcam.viewer.listeners import Listeners, Problem
 from realcam.viewer.pictures.picture_request import Frame
 from realcam.viewer.server.stream import PictureStream
 
-from .event_loops import run_apart
+from .processes import run_apart
 
 WAIT_S = 30.0
 MOVES = [{"type": "turn", "ring": "iso", "steps": k % 5 - 2} for k in range(3000)]

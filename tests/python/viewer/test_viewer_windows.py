@@ -15,7 +15,7 @@ pytest.importorskip("nicegui")
 
 from realcam.viewer.server.windows import Windows
 
-from .event_loops import run_apart
+from .processes import run_apart
 
 WAIT_S = 30.0
 

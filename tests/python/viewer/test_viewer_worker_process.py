@@ -9,10 +9,13 @@ import sys
 import threading
 import time
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
 from realcam.viewer.worker_process import WorkerProcess, WorkError
+
+from .processes import is_there
 
 WAIT_S = 60.0  # for what takes a second on a quiet machine
 LONG = pow, 7, 10**9  # runs for minutes without letting any other thread of its process run
@@ -23,20 +26,6 @@ def worker() -> Iterator[WorkerProcess]:
     made = WorkerProcess()
     yield made
     made.end()
-
-
-def is_there(pid: int) -> bool:
-    try:
-        return " Z " not in Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2][:3]
-    except OSError:
-        return False
-
-
-def until_gone(pid: int) -> None:
-    deadline = time.monotonic() + WAIT_S
-    while is_there(pid):
-        assert time.monotonic() < deadline
-        time.sleep(0.02)
 
 
 def test_what_it_gives_and_what_it_raises(worker: WorkerProcess) -> None:
@@ -105,17 +94,9 @@ def test_work_that_takes_all_memory(worker: WorkerProcess) -> None:
 
 
 def test_threads_take_turns(worker: WorkerProcess) -> None:
-    answers: dict[int, int] = {}
-
-    def ask(k: int) -> None:
-        answers[k] = worker.call(pow, k, 2, seconds=WAIT_S)
-
-    threads = [threading.Thread(target=ask, args=(k,)) for k in range(20)]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join(WAIT_S)
-    assert answers == {k: k * k for k in range(20)}
+    with ThreadPoolExecutor(20) as threads:
+        answers = list(threads.map(lambda k: worker.call(pow, k, 2, seconds=WAIT_S), range(20)))
+    assert answers == [k * k for k in range(20)]
 
 
 PARENT = """
@@ -140,4 +121,7 @@ def test_it_ends_with_its_parent(tmp_path: Path, end: signal.Signals) -> None:
         assert is_there(pid)
         parent.send_signal(end)
         parent.wait(WAIT_S)
-    until_gone(pid)
+    deadline = time.monotonic() + WAIT_S
+    while is_there(pid):
+        assert time.monotonic() < deadline
+        time.sleep(0.02)
