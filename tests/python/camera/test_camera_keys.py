@@ -317,7 +317,6 @@ def test_an_f_number_of_the_file_is_that_of_all_focal_lengths(folder: Path) -> N
     ("text", "line", "wanted"),
     [
         ("[[key]]\ntime_s = 1\niso = 100\n[[key]]\ntime_s = 1\niso = 200\n", 12, "the times must rise"),
-        ("[[key]]\ntime_s = 1\niso = 100\n[[key]]\ntime_s = 0.5\niso = 200\n", 12, "the times must rise"),
         ("[[key]]\ntime_s = 1\nfocus = 2\n", 10, 'unknown key "focus" (did you mean "focus_m"?)'),
         ("[[key]]\niso = 100\n", 8, '"time_s" is missing: a number'),
         ("[[key]]\ntime_s = 1\n", 9, "a key of the camera has no value"),
@@ -326,7 +325,6 @@ def test_an_f_number_of_the_file_is_that_of_all_focal_lengths(folder: Path) -> N
         ("iso = 200\n[[key]]\ntime_s = 1\niso = 100\n", 8, '"iso" and "iso" of [[key]] exclude each other'),
         ('zoom = "35mm"\n[[key]]\ntime_s = 1\nfocal_length_mm = 30\n', 8, '"zoom" and "focal_length_mm" of [[key]]'),
         ("[[key]]\ntime_s = 1\nfocal_length_mm = 80\n", 8, "no focal length of 80 mm; it zooms from 25.499 to 48.801"),
-        ("[[key]]\ntime_s = 1\nf_number = 2\n", 8, "f/2 is faster than lens"),
         ("[[key]]\ntime_s = 1\nfocal_length_mm = 30\nf_number = 2\n", 8, "f/2 is faster than the lens at 30 mm"),
         ('[[key]]\ntime_s = 1\nlens = "phone-4mm"\n', 8, "the lens is made for a film of 4.8 x 3.6 mm"),
         ('[[key]]\ntime_s = 1\nlens = "tesar-50mm"\n', 8, '"tessar-50mm"'),
@@ -334,15 +332,12 @@ def test_an_f_number_of_the_file_is_that_of_all_focal_lengths(folder: Path) -> N
         ('f_number = 4.5\n[[key]]\ntime_s = 1\nlens = "mirror-telephoto-500mm"\n', 9, "f/4.5 is faster than lens"),
         ("blades = 7\n[[key]]\ntime_s = 1\nblades = 6\n", 8, '"blades" and "blades" of [[key]] exclude each other'),
         ("[[key]]\ntime_s = 1\nblades = 6.5\n", 10, '"blades" wants whole numbers'),
-        ("[[key]]\ntime_s = 1\nblades = 2\n", 9, "the iris has 2 blades"),
         ("film_shift_mm = [1, 0]\n[[key]]\ntime_s = 1\nfilm_shift_mm = [0, 0]\n", 8, '"film_shift_mm" of [[key]]'),
         ("[[key]]\ntime_s = 1\nfilm_shift_mm = 3\n", 10, '"film_shift_mm"'),
         ("[[key]]\ntime_s = 1\nfilm_mm = [36, 24]\n", 10, 'unknown key "film_mm"'),
         ("key = 3\n", 8, "tables [[key]] are wanted"),
-        ("iso_follows_s = -1\n", 8, '"iso_follows_s" must be a number of seconds, 0 or more'),
         ("[shake]\nrms_degrees = 1\n", 9, 'unknown key "rms_degrees"'),
         ("[shake]\nseed = 1\n", 8, '[shake] wants a "file", "rms_deg" or "rms_mm"'),
-        ("[shake]\nrms_deg = -1\n", 9, "must be an angle from 0 to 9 degrees"),
     ],
 )  # fmt: skip
 def test_mistakes_are_named_with_file_and_line(folder: Path, text: str, line: int, wanted: str) -> None:

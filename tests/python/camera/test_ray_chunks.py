@@ -17,7 +17,7 @@ FILM = rc.Film(36, 24, (31, 17))
 
 
 @pytest.mark.parametrize("model", ["full", "thin"])
-@pytest.mark.parametrize("max_rays", [1, 100, 527, 5 * 527, 10**9])
+@pytest.mark.parametrize("max_rays", [1, 100, 527, 10**9])
 def test_pieces_are_the_whole(model: str, max_rays: int, device: str) -> None:
     """Pieces of one ray, ones that end amid a pixel or at a frame's end, and one that holds all 2635."""
     camera = rc.Camera(rc.Lens.load("tessar-50mm"), film=FILM, position=(1e6, 2, 3), look_at=(0, 0, 0), model=model)

@@ -9,7 +9,7 @@ import realcam as rc
 from .sensors import counter, electron_film, film_of, log_factorials, photons_per_um2
 
 
-@pytest.mark.parametrize("mean", [0.02, 0.7, 3.0, 9.99, 10.01, 14.0, 60.0, 1000.0, 30000.0])
+@pytest.mark.parametrize("mean", [0.02, 0.7, 9.99, 10.01, 60.0, 1000.0, 30000.0])
 def test_electrons_are_poisson_distributed(mean: float) -> None:
     """Pearson's chi-square against the probabilities themselves. With D degrees of freedom it has the mean D and the
     variance 2 D; six deviations are one chance in 1e6 even for few bins, whose tail is longer.

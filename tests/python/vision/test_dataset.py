@@ -20,7 +20,6 @@ import pytest
 import realcam as rc
 from realcam.dataset import Recipe, make, samples
 from realcam.dataset.pictures import codes_of, png_bytes
-from realcam.dataset.sample import _run_lengths
 from realcam.dataset.scenes import random_camera, random_scene
 from realcam.dataset.shards import DatasetFolder
 
@@ -199,12 +198,6 @@ def test_models_of_files_are_bodies_of_their_category(tmp_path: Path) -> None:
 def test_pictures_come_back_from_their_bytes(shape: tuple[int, ...]) -> None:
     codes = np.random.default_rng(1).integers(0, 256, shape, dtype=np.uint8)
     assert np.array_equal(codes_of(png_bytes(codes)), codes)
-
-
-def test_run_lengths_begin_with_what_the_object_is_not() -> None:
-    # The example of a 2 x 3 mask, column by column: 1 0, 1 1, 0 0.
-    assert _run_lengths(np.array([[1, 1, 0], [0, 1, 0]], bool)) == [0, 1, 1, 2, 2]
-    assert _run_lengths(np.array([[0, 1, 0], [0, 1, 0]], bool)) == [2, 2, 2]
 
 
 @pytest.mark.parametrize(

@@ -269,7 +269,6 @@ def quaternion_matrix(w: float, x: float, y: float, z: float) -> np.ndarray:
     ("model", "kind", "numbers"),
     [
         ("pinhole", "PINHOLE", 4),
-        ("opencv4", "OPENCV", 8),
         ("opencv5", "FULL_OPENCV", 12),
         ("fisheye", "OPENCV_FISHEYE", 8),
     ],
