@@ -48,6 +48,13 @@ def scene_of(*quads: Quad, shift: Sequence[float] = (0, 0, 0), uvs: bool = False
     )
 
 
+def shifted(x: float = 0.0, y: float = 0.0, z: float = 0.0) -> np.ndarray:
+    """The transform of an instance that is moved alone."""
+    matrix = np.eye(4)
+    matrix[:3, 3] = x, y, z
+    return matrix
+
+
 def sky(radiance: float = 1.0) -> rc.Scene:
     """Constant radiance all around; the one triangle, which a scene must have, lies far behind the camera."""
     behind = np.array([[0.0, 0.0, 1e5], [1.0, 0.0, 1e5], [0.0, 1.0, 1e5]])

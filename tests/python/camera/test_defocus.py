@@ -66,7 +66,7 @@ def mark_at(film_to_mark_mm: float, scale: float, film_mm: tuple[float, float] =
 FOCUS_MM, IMAGE_MM = 1100.0, 110.0  # from the lens
 
 
-@pytest.mark.parametrize("distance_mm", [700.0, 900.0, 1400.0, 3000.0])
+@pytest.mark.parametrize("distance_mm", [700.0, 3000.0])
 @pytest.mark.parametrize("model", ["thin", "thick", "full"])
 def test_circle_of_confusion_of_a_thin_lens(model: str, distance_mm: float) -> None:
     f_number = 16.0
@@ -81,7 +81,7 @@ def test_circle_of_confusion_of_a_thin_lens(model: str, distance_mm: float) -> N
     assert blur_diameter(picture(lens, mark, model=model)) == pytest.approx(expected, rel=0.01)
 
 
-@pytest.mark.parametrize("distance_m", [0.8, 1.2, 5.0, 20.0])
+@pytest.mark.parametrize("distance_m", [0.8, 5.0])
 @pytest.mark.parametrize("name", ["double-gauss-50mm", "tessar-50mm", "double-gauss-100mm", "zoom-70-210mm"])
 def test_circle_of_confusion_of_a_full_lens(name: str, distance_m: float) -> None:
     lens = rc.Lens.load(name).focused(2.0).stopped_down(16)
@@ -117,7 +117,7 @@ def test_depth_of_field_in_a_picture(model: str) -> None:
     assert measured == pytest.approx(2 * f_number * c * (m + 1) / m**2, rel=0.02)
 
 
-@pytest.mark.parametrize("distance_mm", [400.0, 1100.0, 20000.0])
+@pytest.mark.parametrize("distance_mm", [400.0, 20000.0])
 def test_a_pinhole_is_sharp_everywhere(distance_mm: float) -> None:
     lens = thin_singlet(4.0).focused((FOCUS_MM + IMAGE_MM) / 1000)
     values = picture(lens, mark_at(distance_mm + IMAGE_MM, IMAGE_MM / distance_mm), model="pinhole")
@@ -130,17 +130,6 @@ def test_a_pinhole_is_sharp_everywhere(distance_mm: float) -> None:
     # pixel is good to one in 20 or better; the real film, at 109.88 mm, makes the image 0.1% smaller, 0.5% of
     # half a pixel.
     np.testing.assert_allclose(values / values[38:42, 38:42].mean(), expected, atol=0.05)
-
-
-@pytest.mark.parametrize("model", ["pinhole", "thin", "thick", "full"])
-@pytest.mark.parametrize("distance_mm", [800.0, 1100.0, 3000.0])
-def test_place_and_size_of_the_image(model: str, distance_mm: float) -> None:
-    lens = thin_singlet(16.0).focused((FOCUS_MM + IMAGE_MM) / 1000)
-    place = (0.1, -0.15)
-    centroid, _ = moments(picture(lens, mark_at(distance_mm + IMAGE_MM, IMAGE_MM / distance_mm, place), model=model))
-    # Image distance over object distance; the real film lies 0.1% nearer. A blur of at most 0.4 mm has 0.1 mm
-    # / sqrt( 10000) = 1 um of noise; four of them.
-    np.testing.assert_allclose(centroid, place, atol=0.004)
 
 
 @pytest.mark.parametrize(

@@ -163,7 +163,7 @@ def grey_card() -> tuple[rc.Camera, np.ndarray]:
     return camera, plain.mean(axis=(0, 1))
 
 
-@pytest.mark.parametrize("illuminant", [None, "D65", "A", "FL2", 546.1, [(400, 1.0), (500, 0.2), (700, 2.0)]])
+@pytest.mark.parametrize("illuminant", [None, "FL2", 546.1, [(400, 1.0), (500, 0.2), (700, 2.0)]])
 def test_a_grey_card_stays_grey(grey_card: tuple[rc.Camera, np.ndarray], illuminant: object) -> None:
     """Seven million samples, whose channels vary by as much as white itself, mean to 0.04%."""
     camera, plain = grey_card
@@ -171,9 +171,8 @@ def test_a_grey_card_stays_grey(grey_card: tuple[rc.Camera, np.ndarray], illumin
     assert seen / plain == pytest.approx(1.0, abs=1e-3)
 
 
-def test_colours_of_the_scene_stay_under_d65() -> None:
-    lens = rc.Lens.load("singlet-100mm").stopped_down(32)
-    camera = rc.Camera(lens, film=rc.Film(3.6, 2.4, (36, 24)), exposure_time_s=1)
+def test_colours_of_the_scene_stay_under_d65(grey_card: tuple[rc.Camera, np.ndarray]) -> None:
+    camera, _ = grey_card
     for color in ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0), (0.7, 0.2, 0.05)):
         scene = scenes.sky().with_environment(color)
         plain = rc.render(scene, camera, effects=(), spp=1024).pixels.astype(np.float64).mean(axis=(0, 1))
@@ -181,16 +180,9 @@ def test_colours_of_the_scene_stay_under_d65() -> None:
         assert seen == pytest.approx(plain, abs=2e-3 * plain.max())
 
 
-@pytest.mark.parametrize("spp", [2, 4, 8, 16])
+@pytest.mark.parametrize("spp", [2, 8])  # from 8 on, the chance of stopped samples is taken out too
 @pytest.mark.parametrize(
-    ("illuminant", "color"),
-    [
-        ("A", (1, 1, 1)),
-        ("A", (0.05, 0.05, 1)),
-        ("A", (1, 0.05, 0.05)),
-        ("FL2", (0.02, 1, 0.02)),
-        ("D65", (1, 0.5, 0.1)),
-    ],
+    ("illuminant", "color"), [("A", (0.05, 0.05, 1)), ("FL2", (0.02, 1, 0.02)), ("D65", (1, 0.5, 0.1))]
 )
 def test_balanced_colours_are_right_in_the_mean(illuminant: str, color: tuple[float, float, float], spp: int) -> None:
     """Against the same samples with nothing taken out of their chance."""
@@ -315,26 +307,16 @@ def test_samples_count_in_the_pixels_where_their_colours_end() -> None:
         assert (apart**2).mean() < 1.5
 
 
-def test_effects_are_listed() -> None:
-    assert [effect.name for effect in rc.effects()] == [
-        "dispersion",
-        "coatings",
-        "ghosts",
-        "film_reflection",
-        "diffraction",
-        "motion_blur",
-        "rolling_shutter",
-    ]
-
-
-def test_what_the_lens_cannot_give_is_said() -> None:
-    camera = rc.Camera(rc.Lens.load("wide-22mm"), film=rc.Film(3.6, 2.4, (6, 4)))
-    with pytest.warns(
-        UserWarning, match="dispersion: the glasses of surfaces 1, 3, .* of wide-22mm have one index only"
-    ):
-        rc.render(scenes.sky(), camera, spp=1, effects="dispersion")
-    camera = rc.Camera(rc.Lens.load("fisheye-6mm-220deg"), film=rc.Film(3.6, 2.4, (6, 4)))
-    with pytest.warns(UserWarning, match=r"the glass of surface \d+ of fisheye-6mm-220deg has one index only"):
+@pytest.mark.parametrize(
+    ("name", "message"),
+    [
+        ("wide-22mm", "the glasses of surfaces 1, 3, .* have"),
+        ("fisheye-6mm-220deg", r"the glass of surface \d+ .* has"),
+    ],
+)
+def test_what_the_lens_cannot_give_is_said(name: str, message: str) -> None:
+    camera = rc.Camera(rc.Lens.load(name), film=rc.Film(3.6, 2.4, (6, 4)))
+    with pytest.warns(UserWarning, match=f"dispersion: {message} one index only"):
         rc.render(scenes.sky(), camera, spp=1, effects="dispersion")
 
 
@@ -342,34 +324,22 @@ def test_what_makes_no_picture_is_an_error() -> None:
     lens = rc.Lens.load("singlet-100mm")
     camera = rc.Camera(lens, film=rc.Film(3.6, 2.4, (6, 4)))
 
-    def taken(camera: rc.Camera = camera, **settings: object) -> None:
-        rc.render(scenes.sky(), camera, spp=1, **{"effects": (), **settings})  # type: ignore[arg-type]
-
-    with pytest.raises(
-        rc.InputError,
-        match='unknown effect "glare"; expected some of auto, none, dispersion, coatings, ghosts, film_reflection',
-    ):
-        taken(effects=["glare"])
-    with pytest.raises(rc.InputError, match="illuminant belongs to the effects dispersion and diffraction"):
-        taken(illuminant="A")
-    with pytest.raises(rc.InputError, match="dispersion: the camera's model must be full"):
-        taken(camera.replace(model="thin"), effects=["dispersion"])
-    for illuminant, words in (
-        ("D100", "is unknown"),
-        (900.0, "between 380 and 780"),
-        ([(500, 1.0), (480, 1.0)], "must rise"),
-        ([(500, 1.0)], "at least two points"),
-        ([(546, 1.0), (560, 1.0)], "too little"),
-    ):
-        with pytest.raises(rc.InputError, match=f"illuminant: .*{words}"):
-            taken(effects=["dispersion"], illuminant=illuminant)
     known = rc.Glass.table([(486.1327, 1.52238), (587.5618, 1.5168), (656.2725, 1.51432)])
-    short = lens.with_surface(0, material=known)
-    with pytest.raises(
-        rc.InputError, match=r"dispersion: the glass of surface 1 .*is known from 486.1 to 656.3 nm; 380"
+    short = camera.replace(lens=lens.with_surface(0, material=known))
+    for taken_by, effects, illuminant, message in (
+        (camera, "glare", None, 'unknown effect "glare"; expected some of auto, none, dispersion, coatings'),
+        (camera, (), "A", "illuminant belongs to the effects dispersion and diffraction"),
+        (camera.replace(model="thin"), "dispersion", None, "dispersion: the camera's model must be full"),
+        (camera, "dispersion", "D100", "illuminant: .*is unknown"),
+        (camera, "dispersion", 900.0, "illuminant: .*between 380 and 780"),
+        (camera, "dispersion", [(500, 1.0), (480, 1.0)], "illuminant: .*must rise"),
+        (camera, "dispersion", [(500, 1.0)], "illuminant: .*at least two points"),
+        (camera, "dispersion", [(546, 1.0), (560, 1.0)], "illuminant: .*too little"),
+        (short, "dispersion", None, "the glass of surface 1 .*is known from 486.1 to 656.3 nm; 380"),
     ):
-        taken(camera.replace(lens=short), effects=["dispersion"])
-    taken(camera.replace(lens=short), effects=["dispersion"], illuminant=546.1)
+        with pytest.raises(rc.InputError, match=message):
+            rc.render(scenes.sky(), taken_by, spp=1, effects=effects, illuminant=illuminant)
+    rc.render(scenes.sky(), short, spp=1, effects="dispersion", illuminant=546.1)
 
 
 def test_metadata_session_and_shot_file(tmp_path: Path) -> None:

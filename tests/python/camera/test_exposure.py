@@ -11,8 +11,6 @@ import realcam as rc
 from ...centred_lenses import CENTRED
 from .. import scenes, yardsticks
 
-LENSES = CENTRED
-MODELS = ("pinhole", "thin", "thick", "full")
 # One of each kind: sums by force take seconds.
 UNLIKE = (
     "double-gauss-50mm",
@@ -37,11 +35,7 @@ def axial_exposure(lens: rc.Lens, *, model: str = "full", time_s: float = 1.0, s
     return float(rc.render(scenes.sky(), camera, effects=(), spp=spp).pixels.mean(dtype=np.float64))
 
 
-def test_every_lens_is_tested() -> None:
-    assert len(LENSES) >= 12
-
-
-@pytest.mark.parametrize("name", LENSES)
+@pytest.mark.parametrize("name", CENTRED)
 def test_constant_field_gives_pi_sin_squared_on_the_axis(name: str) -> None:
     lens = rc.Lens.load(name)
     # At least 98% of the samples pass, all with the same weight, so that one standard deviation of the mean
@@ -115,15 +109,6 @@ def test_relative_illumination_of_ideal_models_is_cos_to_the_fourth() -> None:
         np.testing.assert_allclose(column / column[200], cosine**4, rtol=2e-3, err_msg=model)
 
 
-@pytest.mark.parametrize("name", LENSES)
-def test_camera_models_agree_on_the_axis(name: str) -> None:
-    lens = rc.Lens.load(name)
-    exposures = [axial_exposure(lens, model=model, spp=1024) for model in MODELS]
-    # The ideal models take over the real lens's exposure, by a quadrature over 4096 rays (1e-3 of the area at its
-    # edges at worst); the full lens is sampled: 1024 samples a pixel of which 2% miss, over several pixels.
-    assert max(exposures) / min(exposures) < 1.005
-
-
 def test_half_the_time_is_half_the_exposure_exactly() -> None:
     lens = rc.Lens.load("tessar-50mm")
     scene = scenes.scene_of(scenes.quad((0, 0, -3), 1, emission=(200, 100, 50))).with_environment(5.0)
@@ -136,19 +121,6 @@ def test_half_the_time_is_half_the_exposure_exactly() -> None:
     np.testing.assert_array_equal(half, whole / 2)
 
 
-@pytest.mark.parametrize("name", ["double-gauss-50mm", "tessar-50mm", "wide-22mm", "zoom-70-210mm"])
-def test_one_stop_halves_the_exposure(name: str) -> None:
-    wide = rc.Lens.load(name).stopped_down(5.6)
-    closed = rc.Lens.load(name).stopped_down(5.6 * math.sqrt(2))
-    ratio = axial_exposure(wide) / axial_exposure(closed)
-    # sin(theta') of the real marginal ray is not quite in proportion to the diaphragm's radius (spherical
-    # aberration of the pupil): it says how far from 2 the ratio is, here at most 1%. The noise of both
-    # exposures is 0.06%.
-    real = yardsticks.axial_irradiance(wide) / yardsticks.axial_irradiance(closed)
-    assert ratio == pytest.approx(real, rel=0.003)
-    assert ratio == pytest.approx(2, rel=0.01)
-
-
 def grey_card_exposure(lens: rc.Lens, iso: float) -> rc.Image:
     """Card of 18% at 5 m, square to a sun of 80 klux behind the camera; f/16, 1/125 s."""
     scene = scenes.scene_of(scenes.quad((0, 0, -5), 5, diffuse=0.18)).with_sun((0, 0, -1), (8e4, 8e4, 8e4))
@@ -156,7 +128,7 @@ def grey_card_exposure(lens: rc.Lens, iso: float) -> rc.Image:
     return rc.render(scene, camera, effects=(), spp=64)
 
 
-@pytest.mark.parametrize("name", ["double-gauss-50mm", "cooke-triplet-50mm", "telephoto-250mm", "wide-22mm"])
+@pytest.mark.parametrize("name", ["double-gauss-50mm", "telephoto-250mm"])
 def test_sunny_16_lands_on_middle_grey(name: str) -> None:
     image = grey_card_exposure(rc.Lens.load(name), iso=100)
     # ISO 12232 (standard output sensitivity): 10 lx s / ISO is middle grey. A third of a stop is what cameras
@@ -194,7 +166,7 @@ def test_white_is_clipped_and_black_is_black() -> None:
     assert film[-1] == 255 or film[-1] > 250
 
 
-@pytest.mark.parametrize("name", LENSES)
+@pytest.mark.parametrize("name", CENTRED)
 def test_most_sampled_rays_pass(name: str) -> None:
     lens = rc.Lens.load(name)
     stats = rc.render(scenes.sky(), rc.Camera(lens, film=rc.Film(*lens.film_mm, (120, 80))), effects=(), spp=16).stats

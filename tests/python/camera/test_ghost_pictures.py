@@ -220,12 +220,17 @@ def test_ghosts_under_a_line_have_the_reflectances_of_that_line(wavelength_nm: f
                      abs(total / expected - 1), 0.01, ""))  # fmt: skip
 
 
-def lit_board(*, emits: bool) -> rc.Scene:
-    """A board that sends out 1 cd/m^2 to all sides: its own, or a sun's behind the camera."""
-    place, half_width = (0.3, 0.2, -3.0), 0.5
-    if emits:
-        return scenes.scene_of(scenes.quad(place, half_width, emission=1.0))
-    return scenes.scene_of(scenes.quad(place, half_width, diffuse=1.0)).with_sun((0, 0, -1), (np.pi, np.pi, np.pi))
+def ghosts_of_boards(
+    camera: rc.Camera, place: tuple[float, float, float], spp: int, effects: set[str]
+) -> tuple[np.ndarray, np.ndarray]:
+    """(H, W) each, of a board of 1 cd/m^2 to all sides: light that it emits, and light that it reflects of a sun."""
+    reflecting = scenes.scene_of(scenes.quad(place, 0.5, diffuse=1.0)).with_sun((0, 0, -1), (np.pi, np.pi, np.pi))
+    plain = effects - {"film_reflection"}
+    emitted, reflected = (
+        ghosts(scene, camera, spp=spp, effects=effects) - lit_without_ghosts(scene, camera, spp=spp, effects=plain)
+        for scene in (scenes.scene_of(scenes.quad(place, 0.5, emission=1.0)), reflecting)
+    )
+    return emitted.mean(axis=2), reflected.mean(axis=2)
 
 
 @pytest.mark.parametrize("effects", [set(), {"dispersion", "film_reflection"}])
@@ -233,13 +238,8 @@ def test_what_reflects_light_has_the_ghosts_of_what_emits_it(effects: set[str]) 
     """Those are traced from the film, these from the light: two ways of computing the same."""
     lens = rc.Lens.load("double-gauss-50mm").with_coating("bare").focused(5.0)
     camera = rc.Camera(lens, film=FILM, exposure_time_s=1)
-    plain, seen = effects - {"film_reflection"}, []
-    for emits in (True, False):
-        scene = lit_board(emits=emits)
-        light = ghosts(scene, camera, spp=512, effects=effects)
-        light -= lit_without_ghosts(scene, camera, spp=512, effects=plain)
-        seen.append(light.mean(axis=2).reshape(4, 24, 4, 24).mean(axis=(1, 3)))
-    emitted, reflected = seen
+    pictures = ghosts_of_boards(camera, (0.3, 0.2, -3.0), 512, effects)
+    emitted, reflected = (light.reshape(4, 24, 4, 24).mean(axis=(1, 3)) for light in pictures)
     hold(Measurement("Effects", "ghosts of a board that reflects light against those of one that emits it",
                      " and ".join(["light", *sorted(effects)]), "cpu", "float32",
                      abs(reflected.sum() / emitted.sum() - 1), 0.01, ""))  # fmt: skip
@@ -268,18 +268,16 @@ def test_the_veil_of_a_sky_is_that_of_lamps_all_around() -> None:
                      "cpu", "float32", abs(total / expected - 1), 0.01, ""))  # fmt: skip
 
 
-def test_a_lamp_behind_an_object_makes_no_ghost() -> None:
+def test_a_lamp_behind_an_object_or_the_camera_makes_no_ghost() -> None:
     lens = rc.Lens.load("double-gauss-50mm").focused(2.0)
     camera = rc.Camera(lens, film=FILM, exposure_time_s=1)
-    place = (1000.0, 500.0, -10000.0)
-    lamp = (1e8, 1e8, 1e8)
-    seen = scenes.scene_of(scenes.quad((-0.5, 0.25, -5), 0.4)).with_point_light(place, lamp)
-    hidden = scenes.scene_of(scenes.quad((0.5, 0.25, -5), 0.4)).with_point_light(place, lamp)
-    without = {"spp": 4, "max_bounces": 0}
-    bright = ghosts(seen, camera, **without) - lit_without_ghosts(seen, camera, **without)
-    dark = ghosts(hidden, camera, **without) - lit_without_ghosts(hidden, camera, **without)
-    assert bright.sum() > 0
-    assert (dark == 0).all()
+    assert ghosts(far_lamp(0.05, 0.0, distance_m=-1e4), camera, spp=4).sum() == 0
+    settings = {"spp": 4, "max_bounces": 0}
+    for x, is_seen in ((-0.5, True), (0.5, False)):
+        scene = scenes.scene_of(scenes.quad((x, 0.25, -5), 0.4)).with_point_light((1000, 500, -10000), (1e8,) * 3)
+        light = ghosts(scene, camera, **settings) - lit_without_ghosts(scene, camera, **settings)  # type: ignore[arg-type]
+        assert light.any() == is_seen
+        assert light.sum() >= 0
 
 
 @pytest.mark.parametrize("name", ["double-gauss-50mm", "fisheye-6mm-220deg", "phone-4mm", "mirror-telephoto-500mm"])
@@ -292,22 +290,6 @@ def test_lamps_anywhere_give_numbers(name: str, tangents: tuple[float, float]) -
     assert (once >= 0).all()
     # The unit of the sums follows the light, so that the same samples leave the same numbers.
     np.testing.assert_allclose(brighter, 1e8 * once, rtol=1e-5, atol=1e-9 * brighter.max())
-
-
-def test_a_lamp_behind_the_camera_makes_no_ghost() -> None:
-    behind = far_lamp(0.05, 0.0, distance_m=-1e4)
-    camera = rc.Camera(rc.Lens.load("double-gauss-50mm"), film=FILM, exposure_time_s=1)
-    assert ghosts(behind, camera, spp=4).sum() == 0
-
-
-@pytest.mark.parametrize("f_number", [2.8, 22.0])
-def test_stopping_down_takes_light_from_ghosts(f_number: float) -> None:
-    lens = rc.Lens.load("double-gauss-50mm").with_iris(blades=7)
-    camera = rc.Camera(lens.stopped_down(f_number), film=FILM, exposure_time_s=1)
-    light = ghosts(far_lamp(0.15, 0.1), camera, spp=16).sum()
-    assert 0 < light < np.inf
-    wide = ghosts(far_lamp(0.15, 0.1), camera.replace(lens=lens), spp=16).sum()
-    assert light < 1.02 * wide
 
 
 def test_the_same_ghosts_each_time_whatever_the_threads() -> None:
@@ -332,14 +314,14 @@ def test_shares_are_told_again() -> None:
 
 
 def test_ghosts_are_listed_by_what_they_bring() -> None:
-    bare = rc.Lens.load("double-gauss-50mm").with_coating("bare").ghosts()
+    lens = rc.Lens.load("double-gauss-50mm")
+    bare, coated = (lens.with_coating(coating).ghosts() for coating in ("bare", "quarter_wave"))
     assert len(bare) == 45
     shares = [ghost.share or 0.0 for ghost in bare]
     assert shares == sorted(shares, reverse=True)
-    coated = rc.Lens.load("double-gauss-50mm").with_coating("quarter_wave").ghosts()
     assert sum(ghost.share or 0.0 for ghost in coated) < 0.1 * sum(shares)
     first = bare[0]
-    alone = rc.Lens.load("double-gauss-50mm").ghost(first.first, first.second)
+    alone = lens.ghost(first.first, first.second)
     assert alone.effective_focal_length_mm == first.effective_focal_length_mm
     assert alone.share is None
 

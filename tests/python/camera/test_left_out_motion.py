@@ -6,24 +6,18 @@ import numpy as np
 import pytest
 import realcam as rc
 
-from ..scenes import quad, scene_of
+from ..scenes import quad, scene_of, shifted
 
 LENS = rc.Lens.load("tessar-50mm").focused(4.0)
 FILM = rc.Film(36, 24, (48, 32))
 OPENS, EXPOSED, READOUT = 0.125, 0.5, 0.25  # s
 
 
-def shifted(x: float) -> np.ndarray:
-    matrix = np.eye(4)
-    matrix[:3, 3] = x, 0, -3
-    return matrix
-
-
 def passing() -> rc.Scene:
     """A sign that crosses the picture within a second, lit by itself: a pixel has no noise but that of its edges."""
     sign = scene_of(quad((0, 0, 0), 0.3, 0.9, emission=1000))
     ground = scene_of(quad((0, 0, -9), 30, emission=10))
-    return ground.with_instance(sign, name="sign").moved("sign", [shifted(-1), shifted(1)], times_s=[0, 1])
+    return ground.with_instance(sign, name="sign").moved("sign", [shifted(-1, z=-3), shifted(1, z=-3)], times_s=[0, 1])
 
 
 def camera(**options: object) -> rc.Camera:
@@ -43,13 +37,10 @@ def test_without_motion_blur_all_stands_as_in_the_middle_of_the_exposure() -> No
 
 
 def test_a_camera_that_moves_stands_too() -> None:
-    def pose(x: float) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
-        return (x, 0, 0), (x, 0, -1)
-
-    keys = [(0, *pose(0.0)), (1, *pose(0.5))]
-    position, look_at = pose(0.5 * (OPENS + EXPOSED / 2))
+    keys = [(0, (0, 0, 0), (0, 0, -1)), (1, (0.5, 0, 0), (0.5, 0, -1))]
+    x = 0.5 * (OPENS + EXPOSED / 2)
     scene = passing().at_time(0.5)
-    standing = picture(scene, camera(position=position, look_at=look_at))
+    standing = picture(scene, camera(position=(x, 0, 0), look_at=(x, 0, -1)))
     left_out = picture(scene, camera(motion=keys), "-motion_blur")
     # Roundings of the pose move edges by some 1e-7 of a pixel.
     assert (np.abs(left_out - standing) > 1e-5 * standing.max()).mean() < 0.01
@@ -78,6 +69,8 @@ def test_named_effects_are_there_anyway() -> None:
     named = rc.render(passing(), cam, spp=4, device="cpu", effects={"motion_blur", "rolling_shutter"})
     np.testing.assert_array_equal(named.pixels, rc.render(passing(), cam, effects=(), spp=4, device="cpu").pixels)
     assert "realcam:effects" not in named.metadata()
+    image = rc.render(passing(), cam, spp=1, device="cpu", effects={"-rolling_shutter", "-motion_blur"})
+    assert image.metadata()["realcam:effects"] == "-motion_blur,-rolling_shutter"
 
 
 def test_a_session_begins_anew_where_motion_is_left_out() -> None:
@@ -90,19 +83,10 @@ def test_a_session_begins_anew_where_motion_is_left_out() -> None:
     np.testing.assert_array_equal(session.image().pixels, moved)
 
 
-def test_what_is_left_out_is_told() -> None:
-    image = rc.render(passing(), camera(), spp=1, device="cpu", effects={"-rolling_shutter", "-motion_blur"})
-    assert image.metadata()["realcam:effects"] == "-motion_blur,-rolling_shutter"
-
-
 @pytest.mark.parametrize(
     ("effects", "wanted"),
     [
-        (
-            ["motion"],
-            'unknown effect "motion"; expected some of auto, none, dispersion, coatings, ghosts, film_reflection, '
-            "diffraction, -motion_blur, -rolling_shutter",
-        ),
+        (["motion"], 'unknown effect "motion"; expected some of auto, .* -motion_blur, -rolling_shutter'),
         (["--motion_blur"], 'unknown effect "--motion_blur"'),
         (["dispersion", "-dispersion"], "dispersion is both named and left out"),
     ],

@@ -42,11 +42,7 @@ def test_points_in_focus_are_where_the_real_lens_shows_them(name: str) -> None:
         camera = camera_with(name, model, (13, 9), share)
         rays = camera.generate_rays(spp=4096)
         focus = camera.lens.focus_distance_m
-        o, d, w = (
-            np.asarray(rays.origins_m),
-            np.asarray(rays.directions, dtype=float),
-            np.asarray(rays.weights, dtype=float),
-        )
+        o, d, w = (np.asarray(part, dtype=float) for part in (rays.origins_m, rays.directions, rays.weights))
         t = (-focus - o[:, 2]) / d[:, 2]
         x = o[:, :2] + t[:, None] * d[:, :2]
         pixels = np.asarray(rays.pixels)

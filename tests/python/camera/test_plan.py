@@ -64,18 +64,14 @@ def test_defocus_is_the_circle_of_confusion(distance_m: float) -> None:
     assert size == pytest.approx(circle * 900 / 36, rel=0.1, abs=0.3)  # and what aberrations add, most in the corners
 
 
-def test_what_is_sharp_in_a_small_picture_needs_no_lens() -> None:
-    camera = camera_of(f_number=11.0, focus_m=30.0, film=rc.Film(3.6, 2.4, (90, 60)))
-    plan = rc.plan(board(30.0, radiance=200), camera, device="cpu", effects={"-coatings", "-ghosts"})
-    assert plan.model == "pinhole"
-    assert plan.effects == []
-
-
-def test_what_is_not_sharp_needs_one() -> None:
-    camera = camera_of(f_number=2.1, focus_m=1.0, film=rc.Film(3.6, 2.4, (90, 60)))
-    plan = rc.plan(board(30.0), camera, device="cpu", effects={"-coatings", "-ghosts"})
-    assert plan.model == "thin"
-    assert {d.effect for d in plan.decisions if d.is_kept} == {"defocus"}
+@pytest.mark.parametrize(("f_number", "focus_m", "radiance", "model"), [(11, 30, 200, "pinhole"), (2.1, 1, 1, "thin")])
+def test_what_is_sharp_in_a_small_picture_needs_no_lens(
+    f_number: float, focus_m: float, radiance: float, model: str
+) -> None:
+    camera = camera_of(f_number=f_number, focus_m=focus_m, film=rc.Film(3.6, 2.4, (90, 60)))
+    plan = rc.plan(board(30.0, radiance=radiance), camera, device="cpu", effects={"-coatings", "-ghosts"})
+    assert (plan.model, plan.effects) == (model, [])
+    assert {d.effect for d in plan.decisions if d.is_kept} == ({"defocus"} if model == "thin" else set())
 
 
 def test_colours_of_one_index_fall_together() -> None:
@@ -152,11 +148,15 @@ def test_what_nobody_knows_of_the_glass_is_left_to_the_user() -> None:
 
 def test_coloured_ghosts_call_for_dispersion() -> None:
     """Sun in the frame of a coated lens at f/5.6, which calls for diffraction too: ghosts have one colour without
-    dispersion, and differ by more than a code with it."""
+    dispersion, and differ by more than a code with it. A lens whose glasses have one index has ghosts of one colour."""
+    scene = scenes.scene_of(scenes.quad((0, 0, -50), 4.0, diffuse=0.02)).with_sun((-0.15, -0.1, 1.0), (8e4, 8e4, 8e4))
+    sunny = {"exposure_time_s": 1 / 2000, "iso": 100}
+    fisheye = rc.Lens.load("fisheye-10mm").with_coating("bare").stopped_down(8)
+    of_one_index = decisions(scene, rc.Camera(fisheye, film=rc.Film(23.5, 15.6, (240, 160)), **sunny))
+    assert of_one_index["ghosts"].is_kept
+    assert of_one_index["dispersion"].size == pytest.approx(0, abs=1e-3)
     lens = rc.Lens.load("double-gauss-50mm").focused(10.0).stopped_down(5.6).with_coating("quarter_wave")
-    camera = rc.Camera(lens, film=rc.Film(36, 24, (240, 160)), exposure_time_s=1 / 2000, iso=100)
-    towards_sun = np.array([0.15, 0.1, -1.0])
-    scene = scenes.scene_of(scenes.quad((0, 0, -50), 4.0, diffuse=0.02)).with_sun(-towards_sun, (8e4, 8e4, 8e4))
+    camera = rc.Camera(lens, film=rc.Film(36, 24, (240, 160)), **sunny)
     of = decisions(scene, camera)
     assert of["ghosts"].is_kept
     assert of["dispersion"].unit == "codes"
@@ -171,16 +171,6 @@ def test_coloured_ghosts_call_for_dispersion() -> None:
     one, many = (picture.developed().astype(float).reshape(20, 8, 30, 8, 3).mean(axis=(1, 3)) for picture in pictures)
     colour = np.abs(many - one).max()
     assert colour > 1, "the picture shows it"
-
-
-def test_glass_of_one_index_has_ghosts_of_one_colour() -> None:
-    lens = rc.Lens.load("fisheye-10mm").with_coating("bare").stopped_down(8)
-    assert all(not isinstance(s.material, str) for s in lens.surfaces)
-    camera = rc.Camera(lens, film=rc.Film(23.5, 15.6, (240, 160)), exposure_time_s=1 / 2000, iso=100)
-    scene = scenes.scene_of(scenes.quad((0, 0, -50), 4.0, diffuse=0.02)).with_sun((-0.15, -0.1, 1.0), (8e4, 8e4, 8e4))
-    of = decisions(scene, camera)
-    assert of["ghosts"].is_kept
-    assert of["dispersion"].size == pytest.approx(0, abs=1e-3)
 
 
 def test_times_are_measured_where_they_are_asked_for() -> None:
@@ -214,7 +204,7 @@ def test_qualities_are_thresholds() -> None:
     assert of["coatings"].threshold == 1
 
 
-def test_an_automatic_picture_is_that_of_its_plan() -> None:
+def test_an_automatic_picture_is_that_of_its_plan_and_says_so(tmp_path: Path) -> None:
     scene, camera = board(3.0), camera_of(f_number=2.1, focus_m=1.0, film=rc.Film(3.6, 2.4, (45, 30)))
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UserWarning)
@@ -223,19 +213,11 @@ def test_an_automatic_picture_is_that_of_its_plan() -> None:
         named = rc.render(scene, camera.replace(model=plan.model), spp=4, device="cpu", effects=plan.effects)
     np.testing.assert_array_equal(automatic.pixels, named.pixels)
     assert list(automatic.effects) == plan.effects
-
-
-def test_a_picture_says_what_was_decided(tmp_path: Path) -> None:
-    scene, camera = board(3.0), camera_of(f_number=2.1, focus_m=1.0, film=rc.Film(3.6, 2.4, (45, 30)))
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", UserWarning)
-        plan = rc.plan(scene, camera, device="cpu")
-        picture = rc.render(scene, camera, spp=1, device="cpu", effects="auto")
-    assert picture.metadata()["realcam:plan"] == picture.plan == plan.summary
-    picture.save(tmp_path / "picture.exr")
+    assert automatic.metadata()["realcam:plan"] == automatic.plan == plan.summary
+    automatic.save(tmp_path / "picture.exr")
     written = read_film(tmp_path / "picture.exr")[1]
     # All that the file says, but for the version of the library that wrote it.
-    assert {name: written[name] for name in picture.metadata()} == picture.metadata()
+    assert {name: written[name] for name in automatic.metadata()} == automatic.metadata()
     assert "realcam:plan" not in rc.render(scene, camera, effects=(), max_bounces=1, spp=1, device="cpu").metadata()
 
 
@@ -255,18 +237,13 @@ def test_a_plan_is_a_value() -> None:
         ({"threshold_codes": float("nan")}, "above 0"),
         ({"quality": "best"}, 'unknown quality "best"; draft, photo or reference'),
         ({"effects": {"ghosts", "-ghosts"}}, "both named and left out"),
-        ({"effects": "glare"}, 'unknown effect "glare"'),
+        ({"distance_m": -10}, "sees no object and no light"),
     ],
 )
 def test_what_cannot_be_planned_is_said(settings: dict[str, object], message: str) -> None:
+    distance_m = settings.pop("distance_m", 3.0)
     with pytest.raises(rc.InputError, match=message):
-        rc.plan(board(3.0), camera_of(), device="cpu", **settings)  # type: ignore[arg-type]
-
-
-def test_a_camera_that_sees_nothing_has_no_plan() -> None:
-    behind = scenes.scene_of(scenes.quad((0, 0, 10), 1.0, emission=1.0))
-    with pytest.raises(rc.InputError, match="sees no object and no light"):
-        rc.plan(behind, camera_of(), device="cpu")
+        rc.plan(board(distance_m), camera_of(), device="cpu", **settings)  # type: ignore[arg-type]
 
 
 def test_live_views_want_names() -> None:

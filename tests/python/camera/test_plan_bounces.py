@@ -63,26 +63,11 @@ def test_a_furnace_has_as_many_as_its_series(albedo: float, device: str) -> None
     assert rc.render(scene, shot, effects=(), spp=1, device=device).settings.max_bounces == chosen
 
 
-def ball(middle: tuple[float, float, float], radius: float) -> np.ndarray:
-    """Corners of triangles, (T, 3, 3)."""
-    along, down = np.meshgrid(np.linspace(0, 2 * np.pi, 49), np.linspace(0, np.pi, 25))
-    points = np.stack([np.sin(down) * np.cos(along), np.cos(down), np.sin(down) * np.sin(along)], axis=-1)
-    a, b, c, d = points[:-1, :-1], points[:-1, 1:], points[1:, 1:], points[1:, :-1]
-    triangles = np.concatenate([np.stack(t, axis=-2).reshape(-1, 3, 3) for t in ((a, b, c), (a, c, d))])
-    area = np.linalg.norm(np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0]), axis=1)
-    return np.asarray(middle) + radius * triangles[area > 1e-9]
-
-
 def glass_before_a_wall() -> rc.Scene:
     glass = rc.Material.metallic_roughness(base_color=(1, 1, 1), roughness=0, metallic=0, transmission=1, ior=1.5)
-    corners, wall = scenes.quad((0, 0, -3), 3, emission=2.0, diffuse=0.5)
-    triangles = np.concatenate([ball((0, 0, -1.5), 0.3), corners[[0, 1, 2]][None], corners[[0, 2, 3]][None]])
-    return rc.Scene.from_arrays(
-        triangles.reshape(-1, 3),
-        np.arange(3 * len(triangles)).reshape(-1, 3),
-        triangle_materials=np.r_[np.zeros(len(triangles) - 2, int), 1, 1],
-        materials=[glass, wall],
-    )
+    ball = scenes.sphere(0.3, 24, glass, inward=False)
+    wall = scenes.scene_of(scenes.quad((0, 0, -3), 3, emission=2.0, diffuse=0.5))
+    return wall.with_instance(ball, scenes.shifted(z=-1.5))
 
 
 def facing_mirrors() -> rc.Scene:

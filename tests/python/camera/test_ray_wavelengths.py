@@ -66,19 +66,9 @@ def test_a_moving_camera_is_where_its_rays_times_say() -> None:
     np.testing.assert_allclose(way[:, 1:], 0, atol=2e-6)
 
 
-@pytest.mark.parametrize(
-    ("wrong", "message"),
-    [
-        ((700, 400), "two numbers between 300 and 2500"),
-        ((100, 400), "two numbers between 300 and 2500"),
-        ((400, float("nan")), "two numbers between 300 and 2500"),
-    ],
-)
-def test_wavelengths_that_are_no_range(wrong: tuple[float, float], message: str) -> None:
-    with pytest.raises(rc.InputError, match=message):
+@pytest.mark.parametrize("wrong", [(700, 400), (100, 400), (400, float("nan"))])
+def test_wavelengths_that_are_no_range(wrong: tuple[float, float]) -> None:
+    with pytest.raises(rc.InputError, match="two numbers between 300 and 2500"):
         rc.Camera(LENS, film=FILM).generate_rays(wavelengths_nm=wrong)
-
-
-def test_a_model_that_knows_one_wavelength_says_so() -> None:
     with pytest.raises(rc.InputError, match='needs the camera model "full"'):
         rc.Camera(LENS, film=FILM, model="thin").generate_rays(wavelengths_nm=(400, 700))

@@ -15,10 +15,8 @@ from .. import scenes
 def test_the_spectrum_is_the_stated_one() -> None:
     corner, rms, rate = 2.0, 0.25, 50.0
     times = np.arange(0, 400, 1 / rate)
-    curves = []
-    for seed in range(6):
-        angles, shifts = rc.Shake(rms_deg=rms, rms_mm=1000 * rms, corner_hz=corner, seed=seed).at(times)
-        curves += [*angles.T, *shifts.T]
+    shakes = [rc.Shake(rms_deg=rms, rms_mm=1000 * rms, corner_hz=corner, seed=seed).at(times) for seed in range(6)]
+    curves = [curve for shake in shakes for part in shake for curve in part.T]
     frequencies, power = welch(np.array(curves), rate, nperseg=500)
     found = power.mean(axis=0)
     stated = 4 * rms**2 / (np.pi * corner) / (1 + (frequencies / corner) ** 2) ** 2
@@ -102,14 +100,9 @@ def test_a_camera_can_turn_in_any_place() -> None:
     assert np.abs(pictures[0] - pictures[1]).mean() < 1e-3 * pictures[0].mean()
 
 
-def written(folder: Path, text: str) -> Path:
-    path = folder / "walk.csv"
-    path.write_text(text)
-    return path
-
-
 def test_a_curve_is_read_from_a_table(tmp_path: Path) -> None:
-    path = written(tmp_path, "# gyro\ny_deg, time_s,z_m\n0.5, 0, 1e-3\n\n-1,0.25,0\r\n")
+    path = tmp_path / "walk.csv"
+    path.write_text("# gyro\ny_deg, time_s,z_m\n0.5, 0, 1e-3\n\n-1,0.25,0\r\n")
     assert rc.Shake.load(path) == rc.Shake(curve=[(0, (0, 0.5, 0), (0, 0, 1e-3)), (0.25, (0, -1, 0), (0, 0, 0))])
 
 
@@ -129,7 +122,8 @@ def test_a_curve_is_read_from_a_table(tmp_path: Path) -> None:
     ],
 )
 def test_mistakes_in_a_table_are_named(tmp_path: Path, text: str, line: int | None, wanted: str) -> None:
-    path = written(tmp_path, text)
+    path = tmp_path / "walk.csv"
+    path.write_text(text)
     with pytest.raises(rc.InputError) as refusal:
         rc.Shake.load(path)
     assert str(refusal.value).startswith(f"{path}:{line}: " if line else f"{path}: ")

@@ -30,7 +30,7 @@ def picture(of: rc.Shot) -> rc.Image:
         return rc.render(of.scene, of.camera, of.settings, device="cpu")
 
 
-def command(*words: str | Path, **more: object) -> subprocess.Popen[str]:
+def started(*words: str | Path, **more: object) -> subprocess.Popen[str]:
     """`realcam job ...` as a process of its own."""
     program = [sys.executable, "-m", "realcam", "job", *map(str, words)]
     environment = {**os.environ, "PYTHONPATH": str(Path(rc.__file__).parents[1])}
@@ -39,7 +39,7 @@ def command(*words: str | Path, **more: object) -> subprocess.Popen[str]:
 
 def run(*words: str | Path, **more: object) -> tuple[int, str, str]:
     """Exit code, output and errors of `realcam job ...`."""
-    process = command(*words, **more)
+    process = started(*words, **more)
     output, errors = process.communicate(timeout=120)
     return process.returncode, output, errors
 

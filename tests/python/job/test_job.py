@@ -21,10 +21,10 @@ import numpy as np
 import pytest
 import realcam as rc
 from realcam import archive
-from realcam.cli import app as cli
 from realcam.job.folder import FORMAT
 
-from .job_programs import command, picture, run, shot, units
+from ..programs import Command
+from .job_programs import picture, run, shot, started, units
 
 TILE = (32, 32)
 
@@ -75,7 +75,7 @@ def test_processes_that_are_killed_lose_only_what_they_have_in_hand(tmp_path: Pa
     folder = tmp_path / "job"
     job = made(folder, lamp=shot(400))
     moment = random.Random(5)
-    workers = [command("work", folder, "--here", "--quiet", "--threads", "1") for _ in range(3)]
+    workers = [started("work", folder, "--here", "--quiet", "--threads", "1") for _ in range(3)]
     kept: dict[str, tuple[int, int]] = {}
     for _ in range(3):
         time.sleep(moment.uniform(0.3, 1.2))
@@ -83,7 +83,7 @@ def test_processes_that_are_killed_lose_only_what_they_have_in_hand(tmp_path: Pa
         kept |= units(folder)
         workers[victim].send_signal(signal.SIGKILL)
         workers[victim].wait()
-        workers[victim] = command("work", folder, "--here", "--quiet", "--threads", "1")
+        workers[victim] = started("work", folder, "--here", "--quiet", "--threads", "1")
     for worker in workers:
         _, errors = worker.communicate(timeout=120)
         assert (worker.returncode, errors) == (0, "")
@@ -111,18 +111,16 @@ def test_a_full_disk_stops_work_in_one_line_and_loses_nothing(tmp_path: Path) ->
     assert job.image() == picture(shot())
 
 
-def test_another_version_is_refused_by_its_name(tmp_path: Path) -> None:
+def test_another_version_is_refused_by_its_name(tmp_path: Path, command: Command) -> None:
     folder = tmp_path / "job"
     made(folder)
     about = json.loads((folder / "job.json").read_text())
     about["engine"]["realcam"] = "9.8.7"
     (folder / "job.json").write_text(json.dumps(about))
-    code, _, errors = run("work", folder, "--here")
-    assert code == 2
-    assert errors == (
-        f"realcam: error: {folder}: realcam 9.8.7 made this job, and this is realcam {rc.__version__}; "
-        "all machines of a job need the same version\n"
-    )
+    refused = command("job", "work", folder, "--here")
+    assert refused.returncode == 2
+    made_by_another = f"{folder}: realcam 9.8.7 made this job, and this is realcam {rc.__version__}; all machines"
+    assert refused.stderr.startswith(f"realcam: error: {made_by_another}")
     about["format"] += 1
     (folder / "job.json").write_text(json.dumps(about))
     with pytest.raises(rc.InputError, match=f"its format is {FORMAT + 1}; this realcam reads {FORMAT}"):
@@ -149,7 +147,7 @@ def test_a_machine_that_computes_other_bits_is_refused(tmp_path: Path) -> None:
     assert "REALCAM_INSTRUCTION_SET" not in os.environ
 
 
-def test_what_was_deleted_or_damaged_is_done_again(tmp_path: Path) -> None:
+def test_what_was_deleted_or_damaged_is_done_again(tmp_path: Path, command: Command) -> None:
     folder = tmp_path / "job"
     noisy = shot("auto", noise_codes=1.5, max_spp=600)
     job = made(folder, lamp=noisy)
@@ -161,9 +159,9 @@ def test_what_was_deleted_or_damaged_is_done_again(tmp_path: Path) -> None:
     status = job.status()
     assert (status.units_known - status.units_done, status.is_done) == (2, False)
     assert status.damaged == (f"00000/{done[5].name}",)
-    code, output, _ = run("status", folder)
-    assert code == 0
-    assert f", 1 damaged (00000/{done[5].name}), which realcam job work does again" in output
+    told = command("job", "status", folder)
+    assert told.returncode == 0
+    assert f", 1 damaged (00000/{done[5].name}), which realcam job work does again" in told.stdout
     with pytest.raises(rc.InputError, match=r"2 of .* units are missing; realcam job work does them"):
         job.image()
     (folder / "rounds" / "00000" / "002.npz").write_bytes(b"nothing")
@@ -191,10 +189,9 @@ def test_a_folder_that_is_half_deleted_says_what_is_missing(tmp_path: Path, lost
     folder = tmp_path / "job"
     made(folder, lamp=shot(4))
     (folder / lost).rename(tmp_path / "lost")
-    code, _, errors = run("work", folder, "--here")
-    assert code == 2
-    assert why in errors
-    assert errors.count("\n") == 1
+    with pytest.raises(rc.InputError, match=why) as error:
+        rc.Job.load(folder).work()
+    assert "\n" not in str(error.value)
 
 
 def changed(folder: Path, **entries: object) -> None:
@@ -240,43 +237,37 @@ HUGE = 10**15
 
 
 @pytest.mark.parametrize(
-    "entries",
+    ("key", "values"),
     [
-        {"name": "../victim/holiday"},
-        {"name": "a\nb"},
-        {"name": 3},
-        {"spp": HUGE},
-        {"spp": 0},
-        {"spp": 1.5},
-        {"spp": True},
-        {"resolution": [1 << 20, 1 << 20]},
-        {"resolution": [60]},
-        {"resolution": "60x40"},
-        {"tile": [1, 1]},
-        {"tile": [32, -32]},
-        {"digest": "../../x"},
-        {"scene": "0" * 64},
-        {"has_layers": 1},
-        {"shots": []},
-        {"shots": {"a": 1}},
-        {"shots": [None]},
-        {"probes": 7},
-        {"engine": []},
-        {"engine": {"realcam": rc.__version__}},
-        {"device": ["cpu"]},
-        {"id": "x"},
-        {"format": None},
-        {"spp": 1 << 24, "tile": [32, 32], "resolution": [4096, 4096]},  # more units than a folder can hold
+        ("name", ("../victim/holiday", "a\nb", 3)),
+        ("spp", (HUGE, 0, 1.5, True, 1 << 24)),
+        ("resolution", ([1 << 20, 1 << 20], [60], "60x40")),
+        ("tile", ([1, 1], [32, -32])),
+        ("digest", ("../../x",)),
+        ("scene", ("0" * 64,)),
+        ("has_layers", (1,)),
+        ("shots", ([], {"a": 1}, [None])),
+        ("probes", (7,)),
+        ("engine", ([], {"realcam": rc.__version__})),
+        ("device", (["cpu"],)),
+        ("id", ("x",)),
+        ("format", (None,)),
     ],
 )
-def test_a_strangers_job_file_is_refused_in_one_line(tmp_path: Path, job_of_four: Path, entries: dict) -> None:
+def test_a_strangers_job_file_is_refused_in_one_line(
+    tmp_path: Path, job_of_four: Path, key: str, values: tuple[object, ...]
+) -> None:
     folder = tmp_path / "job"
     shutil.copytree(job_of_four, folder)
-    changed(folder, **entries)
-    with pytest.raises(rc.InputError) as error:
-        rc.Job.load(folder)
-    assert str(error.value).startswith(str(folder))
-    assert "\n" not in str(error.value)
+    original = (folder / "job.json").read_bytes()
+    for value in values:
+        (folder / "job.json").write_bytes(original)
+        # 4096 x 4096 pixels of 2^24 samples are more units than a folder can hold.
+        changed(folder, **({"resolution": [4096, 4096], "tile": [32, 32]} if value == 1 << 24 else {}), **{key: value})
+        with pytest.raises(rc.InputError) as error:
+            rc.Job.load(folder)
+        assert str(error.value).startswith(str(folder))
+        assert "\n" not in str(error.value)
 
 
 @pytest.fixture(scope="session")
@@ -399,13 +390,13 @@ def test_what_is_no_job_is_refused(tmp_path: Path) -> None:
     folder = tmp_path / "job"
     with pytest.raises(rc.InputError, match="there is no such folder"):
         rc.Job.load(folder)
-    with pytest.raises(rc.InputError, match="a job wants one shot at least"):
-        rc.Job.make(folder, {})
-    for name in ("", "a/b", ".hidden", "a\nb"):
-        with pytest.raises(rc.InputError, match="a shot's name is that of its picture"):
-            rc.Job.make(folder, {name: shot(4)}, device="cpu")
-    with pytest.raises(rc.InputError, match="a tile must have 1 to"):
-        rc.Job.make(folder, {"lamp": shot(4)}, device="cpu", tile=(0, 8))
+    for shots, tile, why in (
+        ({}, TILE, "a job wants one shot at least"),
+        *(({name: shot(4)}, TILE, "a shot's name is that of its picture") for name in ("", "a/b", ".hidden", "a\nb")),
+        ({"lamp": shot(4)}, (0, 8), "a tile must have 1 to"),
+    ):
+        with pytest.raises(rc.InputError, match=why):
+            rc.Job.make(folder, shots, device="cpu", tile=tile)
     assert not folder.exists()
     job = made(folder, one=shot(4), two=shot(4, seed=1))
     with pytest.raises(rc.InputError, match="this job is there already"):
@@ -440,41 +431,51 @@ effects = []
 """
 
 
-def test_the_commands_make_work_tell_and_finish(tmp_path: Path) -> None:
+def test_the_commands_make_work_tell_and_finish(
+    tmp_path: Path, command: Command, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def job(*words: str) -> tuple[int, str, str]:
+        ended = command("job", *words)
+        return ended.returncode, ended.stdout, ended.stderr
+
+    monkeypatch.chdir(tmp_path)
     (tmp_path / "wall.obj").write_text("v -1 -1 0\nv 1 -1 0\nv 0 1 0\nf 1 2 3\n")
     (tmp_path / "one.toml").write_text(SHOT + "spp = 8\n")
     (tmp_path / "two.toml").write_text(SHOT + "seed = 7\n")  # as many samples as the noise wants
     words = ("make", "one.toml", "two.toml", "-o", "both.job", "--device", "cpu", "--tile", "32x16")
-    code, output, errors = run(*words, "--sbatch", "both.sbatch", "--openjd", "both.json", "--tasks", "5", cwd=tmp_path)
+    code, output, errors = job(*words, "--sbatch", "both.sbatch", "--openjd", "both.json", "--tasks", "5")
     assert (code, errors) == (0, "")
     assert output == "both.job: 2 pictures, units as the noise wants them\nwrote both.sbatch\nwrote both.json\n"
     (tmp_path / "wall.obj").unlink()  # the job has all that it needs
     script = (tmp_path / "both.sbatch").read_text()
     assert "#SBATCH --array=1-5\n" in script
-    words_of_script = script.splitlines()[-1].split()
-    assert words_of_script[:6] == ["exec", "realcam", "job", "work", "--quiet", "--part"]
-    assert words_of_script[-1] == str(tmp_path / "both.job")
+    last = script.splitlines()[-1]
+    assert last.startswith("exec realcam job work --quiet --part") and last.endswith(str(tmp_path / "both.job"))
     template = json.loads((tmp_path / "both.json").read_text())
     assert template["specificationVersion"] == "jobtemplate-2023-09"
     assert [step["name"] for step in template["steps"]] == ["Work", "Finish"]
-    code, _, errors = run("finish", "both.job", "-o", "pictures", cwd=tmp_path)
-    assert code == 2
-    assert errors.count("\n") == 1
+    code, _, errors = job("finish", "both.job", "-o", "pictures")
+    assert (code, errors.count("\n")) == (2, 1)
     assert "units are missing" in errors
-    code, output, _ = run("work", "both.job", "--here", cwd=tmp_path)
+    code, output, _ = job("work", "both.job", "--here")
     assert code == 0
     assert output == "both.job: all units are done; realcam job finish both.job -o FILE makes the pictures\n"
-    code, output, _ = run("status", "both.job", "--json", cwd=tmp_path)
-    assert json.loads(output)["shots_done"] == 2
-    assert run("finish", "both.job", "-o", "pictures", "--format", "png", cwd=tmp_path)[0] == 0
+    assert json.loads(job("status", "both.job", "--json")[1])["shots_done"] == 2
+    assert job("finish", "both.job", "-o", "pictures", "--format", "png")[0] == 0
     assert sorted(path.name for path in (tmp_path / "pictures").iterdir()) == ["one.png", "two.png"]
     (tmp_path / "link").symlink_to("both.job/units")
     before = contents(tmp_path / "both.job")
     for inside in ("both.job", "both.job/units", "link"):
-        code, _, errors = run("finish", "both.job", "-o", inside, cwd=tmp_path)
-        assert code == 2
-        assert errors.count("\n") == 1
+        code, _, errors = job("finish", "both.job", "-o", inside)
+        assert (code, errors.count("\n")) == (2, 1)
     assert contents(tmp_path / "both.job") == before
+
+
+@pytest.fixture(scope="session")
+def job_of_two(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("two") / "two.job"
+    made(folder, one=shot(4), two=shot(4, seed=1))
+    return folder
 
 
 def contents(folder: Path) -> dict[Path, bytes]:
@@ -496,23 +497,12 @@ def contents(folder: Path) -> dict[Path, bytes]:
     ],
 )
 def test_a_mistake_on_the_command_line_is_told_in_one_line(
-    tmp_path_factory: pytest.TempPathFactory,
-    monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
-    words: tuple[str, ...],
-    why: str,
+    job_of_two: Path, monkeypatch: pytest.MonkeyPatch, command: Command, words: tuple[str, ...], why: str
 ) -> None:
-    folder = tmp_path_factory.getbasetemp() / "two.job"
-    if not folder.exists():
-        made(folder, one=shot(4), two=shot(4, seed=1))
-    monkeypatch.chdir(folder.parent)
-    monkeypatch.setattr("sys.argv", ["realcam", "job", *(str(folder) if word == "JOB" else word for word in words)])
-    with pytest.raises(SystemExit, match="2"):
-        cli.run()
-    output, errors = capsys.readouterr()
-    assert output == ""
-    assert why in errors
-    assert errors.count("\n") == 1
+    monkeypatch.chdir(job_of_two.parent)
+    refused = command("job", *(job_of_two if word == "JOB" else word for word in words))
+    assert (refused.returncode, refused.stdout, refused.stderr.count("\n")) == (2, "", 1)
+    assert why in refused.stderr
 
 
 def test_what_a_killed_write_leaves_goes_when_work_goes_on(tmp_path: Path) -> None:

@@ -15,7 +15,8 @@ import pytest
 import realcam as rc
 from realcam.job.clusters import dask_executor
 
-from .job_programs import command, picture, run, shot, units
+from ..programs import Command
+from .job_programs import picture, shot, started, units
 
 pytest.importorskip("distributed", reason="realcam[cluster] is missing")
 
@@ -45,7 +46,7 @@ def wait_for(units_done: int, folder: Path, program: subprocess.Popen[str]) -> N
 def test_a_worker_that_is_killed_is_replaced(tmp_path: Path) -> None:
     folder = tmp_path / "job"
     job = made(folder)
-    program = command("work", folder, "--workers", "2", "--threads", "1", "--quiet")
+    program = started("work", folder, "--workers", "2", "--threads", "1", "--quiet")
     for done in (1, 5):
         wait_for(done, folder, program)
         os.kill(workers_of(program.pid)[-1], signal.SIGKILL)
@@ -97,7 +98,7 @@ def test_a_scheduler_that_is_killed_stops_work_in_one_line(
 ) -> None:
     folder = tmp_path / "job"
     job = made(folder)
-    program = command("work", folder, "--scheduler", address, "--threads", "1")
+    program = started("work", folder, "--scheduler", address, "--threads", "1")
     wait_for(3, folder, program)
     scheduler.kill()
     output, errors = program.communicate(timeout=60)
@@ -111,7 +112,7 @@ def test_a_scheduler_that_is_killed_stops_work_in_one_line(
 
 
 def test_a_scheduler_that_is_not_there_is_told_in_one_line(
-    tmp_path: Path, address: str, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, address: str, monkeypatch: pytest.MonkeyPatch, command: Command
 ) -> None:
     from realcam.job import clusters
 
@@ -122,7 +123,6 @@ def test_a_scheduler_that_is_not_there_is_told_in_one_line(
     ):
         pass
     made(tmp_path / "job")
-    code, _, errors = run("work", tmp_path / "job", "--scheduler", "nowhere.json")
-    assert code == 2
-    assert errors.count("\n") == 1
-    assert "nowhere.json" in errors
+    refused = command("job", "work", tmp_path / "job", "--scheduler", "nowhere.json")
+    assert (refused.returncode, refused.stderr.count("\n")) == (2, 1)
+    assert "nowhere.json" in refused.stderr

@@ -16,6 +16,7 @@ CALLS = {
     "psf": "lens.psf(5.0, size=2048)",
     "aim": "lens.aim(places)",
     "trace": "lens.trace(o, d, start='scene')",
+    "rays": "rc.Camera(lens, film=rc.Film(36, 24, (1000, 1000))).generate_rays(spp=50)",
 }
 PROGRAM = """
 import time

@@ -62,21 +62,17 @@ def test_a_light_1e8_times_as_bright_leaves_its_neighbours_alone(name: str) -> N
 
 
 @each_sensor
-def test_zero_exposure_is_black(name: str) -> None:
+def test_zero_exposure_is_black_and_saturated_is_white(name: str) -> None:
     sensor, pitch_um, iso = of(name)
-    raw = sensor.expose(film_of(np.zeros((200, 200)), pitch_um=pitch_um, iso=iso))
+    black, white = (
+        sensor.expose(film_of(np.full((200, 200), lux_s), pitch_um=pitch_um, iso=iso)) for lux_s in (0, 1e3)
+    )
     dark_e = sensor.dark_current_e_per_s * 0.01
-    expected = raw.black_level_dn + raw.gain_dn_per_e * dark_e
-    error = raw.gain_dn_per_e * np.sqrt(sensor.read_noise_e**2 + sensor.dsnu_e**2 + dark_e) + 0.3
-    assert raw.mosaic.mean() == pytest.approx(expected, abs=5 * error / 200)
-    assert raw.developed(demosaic="bilinear").mean() < 12
-
-
-@each_sensor
-def test_saturated_is_white(name: str) -> None:
-    sensor, pitch_um, iso = of(name)
-    raw = sensor.expose(film_of(np.full((32, 32), 1e3), pitch_um=pitch_um, iso=iso))
-    assert (raw.developed(demosaic="bilinear") == 255).all()
+    expected = black.black_level_dn + black.gain_dn_per_e * dark_e
+    error = black.gain_dn_per_e * np.sqrt(sensor.read_noise_e**2 + sensor.dsnu_e**2 + dark_e) + 0.3
+    assert black.mosaic.mean() == pytest.approx(expected, abs=5 * error / 200)
+    assert black.developed(demosaic="bilinear").mean() < 12
+    assert (white.developed(demosaic="bilinear") == 255).all()
 
 
 @each_sensor
@@ -208,25 +204,21 @@ def test_mistakes_in_sensor_files_are_told_with_their_line(text: str, why: str, 
 
 
 def test_other_mistakes_are_told() -> None:
-    with pytest.raises(rc.InputError, match='unknown sensor "idael"') as error:
-        rc.Sensor.load("idael")
-    assert 'did you mean "ideal"' in str(error.value)
-    with pytest.raises(rc.InputError, match="no such file"):
-        rc.Sensor.load("./nothing.toml")
     film, sensor = film_of(np.ones((4, 4)), pitch_um=1, iso=100), counter()
-    iso = sensor.iso_range()[0]
-    with pytest.raises(rc.InputError, match=r"image must be a realcam.Image; it is 3"):
-        sensor.expose(3)  # type: ignore[arg-type]
-    with pytest.raises(rc.InputError, match="the seed must lie between"):
-        sensor.expose(film, iso=iso, seed=-1)
-    raw = sensor.expose(film, iso=iso)
-    with pytest.raises(rc.InputError, match="has no colour filters"):
-        _ = raw.camera_from_xyz
-    color = rc.Sensor.load("ideal").expose(film)
-    with pytest.raises(rc.InputError, match="unknown demosaicing 'magic'"):
-        color.exposure("magic")
-    with pytest.raises(rc.InputError, match=r"raw\.bmp: expected \.dng, \.npy "):
-        color.save("raw.bmp")
+    iso, ideal = sensor.iso_range()[0], rc.Sensor.load("ideal")
+    raw, color = sensor.expose(film, iso=iso), ideal.expose(film)
+    for use, message in (
+        (lambda: rc.Sensor.load("idael"), 'unknown sensor "idael".*did you mean "ideal"'),
+        (lambda: rc.Sensor.load("./nothing.toml"), "no such file"),
+        (lambda: sensor.expose(3), r"image must be a realcam.Image; it is 3"),  # type: ignore[arg-type]
+        (lambda: sensor.expose(film, iso=iso, seed=-1), "the seed must lie between"),
+        (lambda: raw.camera_from_xyz, "has no colour filters"),
+        (lambda: color.exposure("magic"), "unknown demosaicing 'magic'"),
+        (lambda: color.save("raw.bmp"), r"raw\.bmp: expected \.dng, \.npy "),
+        (lambda: ideal.replace(resolution=(3, 3)).expose(film), "has 4 x 4 pixels, and the sensor 'ideal' 3 x 3"),
+    ):
+        with pytest.raises(rc.InputError, match=message):
+            use()
 
 
 def test_what_is_not_installed_is_told_in_one_line(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
@@ -269,23 +261,15 @@ def test_what_is_changed_is_told() -> None:
 @pytest.mark.parametrize(
     ("changes", "wanted"),
     [
-        ({"angular_response": [[0, 0.5], [20, 0.5]]}, r"begins with \[0, 1\]"),
         ({"black_level_dn": 200, "adc_bits": 8}, "black_level_dn must be from 0 to half"),
         ({"dark_current_temperature_c": -300}, "from -273.15"),
         ({"read_noise_e": 1e30}, "from 0 to 1e12"),
         ({"pixel_pitch_um": 1e-300}, "from 0.001 to 1e6"),
-        ({"color_filter_array": "RGBW"}, "RGGB, BGGR, GRBG or GBRG"),
     ],
 )
 def test_values_beyond_sense_are_refused(changes: dict[str, object], wanted: str) -> None:
     with pytest.raises(rc.InputError, match=wanted):
         rc.Sensor.load("ideal").replace(**changes)
-
-
-def test_a_picture_has_no_more_pixels_than_the_sensor() -> None:
-    image = film_of(np.full((8, 8), 0.1), pitch_um=5)
-    with pytest.raises(rc.InputError, match=r"has 8 x 8 pixels, and the sensor 'ideal' 3 x 3"):
-        rc.Sensor.load("ideal").replace(resolution=(3, 3)).expose(image)
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,7 @@ import realcam as rc
 from .sensors import counter, electron_film, film_of, log_factorials, photons_per_um2
 
 
-@pytest.mark.parametrize("mean", [0.02, 0.7, 3.0, 9.99, 10.01, 14.0, 60.0, 1000.0, 30000.0])
+@pytest.mark.parametrize("mean", [0.02, 0.7, 9.99, 10.01, 60.0, 1000.0, 30000.0])
 def test_electrons_are_poisson_distributed(mean: float) -> None:
     """Pearson's chi-square against the probabilities themselves. With D degrees of freedom it has the mean D and the
     variance 2 D; six deviations are one chance in 1e6 even for few bins, whose tail is longer.
@@ -57,10 +57,12 @@ def test_the_same_numbers_for_any_number_of_threads() -> None:
     sensor = counter(black_level_dn=50).replace(
         prnu_percent=1, dsnu_e=2, read_noise_e=3, row_noise_e=1, hot_pixel_share=0.01
     )
+    before = film.pixels.copy()
     one = sensor.expose(film, seed=5, threads=1)
     assert np.array_equal(one.mosaic, sensor.expose(film, seed=5, threads=2).mosaic)
     assert one == sensor.expose(film, seed=5)
     assert one != sensor.expose(film, seed=6)
+    assert np.array_equal(film.pixels, before)
 
 
 def test_seeds_give_independent_noise() -> None:
@@ -140,10 +142,3 @@ def test_converter_noise_comes_after_the_gain() -> None:
         film = film_of(np.zeros((500, 500)), pitch_um=1, iso=gain * lowest)
         deviation = sensor.expose(film).mosaic.std()
         assert deviation == pytest.approx(np.sqrt((3 * gain) ** 2 + 16 + 1 / 12), rel=5 / np.sqrt(2 * 250000))
-
-
-def test_nothing_on_the_film_changes() -> None:
-    film = electron_film(100, (20, 30))
-    before = film.pixels.copy()
-    counter().expose(film)
-    assert np.array_equal(film.pixels, before)

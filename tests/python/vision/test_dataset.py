@@ -20,7 +20,6 @@ import pytest
 import realcam as rc
 from realcam.dataset import Recipe, make, samples
 from realcam.dataset.pictures import codes_of, png_bytes
-from realcam.dataset.sample import _run_lengths
 from realcam.dataset.scenes import random_camera, random_scene
 from realcam.dataset.shards import DatasetFolder
 
@@ -177,8 +176,10 @@ def test_a_camera_stands_outside_of_all_bodies() -> None:
 
 def test_a_recipe_that_has_made_no_picture_may_be_mended(tmp_path: Path) -> None:
     recipe = dataclasses.replace(Recipe(), count=1, size=(60, 40), spp=1, lenses=("no such lens",))
-    with pytest.raises(rc.InputError, match="no such lens"):
+    with pytest.raises(rc.InputError, match=r"picture \d: .*no such lens"):
         make(recipe, tmp_path / "out", Here(), device="cpu")
+    with pytest.raises(rc.InputError, match="this has no shards"):
+        list(samples(tmp_path))
     make(dataclasses.replace(recipe, lenses=("tessar-50mm",)), tmp_path / "out", Here(), device="cpu")
     with pytest.raises(rc.InputError, match=r"another recipe \(lenses\)"):
         make(recipe, tmp_path / "out", Here(), device="cpu")
@@ -201,12 +202,6 @@ def test_pictures_come_back_from_their_bytes(shape: tuple[int, ...]) -> None:
     assert np.array_equal(codes_of(png_bytes(codes)), codes)
 
 
-def test_run_lengths_begin_with_what_the_object_is_not() -> None:
-    # The example of a 2 x 3 mask, column by column: 1 0, 1 1, 0 0.
-    assert _run_lengths(np.array([[1, 1, 0], [0, 1, 0]], bool)) == [0, 1, 1, 2, 2]
-    assert _run_lengths(np.array([[0, 1, 0], [0, 1, 0]], bool)) == [2, 2, 2]
-
-
 @pytest.mark.parametrize(
     ("text", "message"),
     [
@@ -227,17 +222,6 @@ def test_mistakes_in_a_recipe_have_one_line(tmp_path: Path, text: str, message: 
     with pytest.raises(rc.InputError, match=message) as caught:
         Recipe.load(path)
     assert "\n" not in str(caught.value)
-
-
-def test_a_picture_that_fails_names_itself(tmp_path: Path) -> None:
-    recipe = dataclasses.replace(SMALL, lenses=("no-such-lens",))
-    with pytest.raises(rc.InputError, match=r"picture \d: .*no-such-lens"):
-        make(recipe, tmp_path / "out", Here(), device="cpu")
-
-
-def test_a_folder_without_shards_says_so(tmp_path: Path) -> None:
-    with pytest.raises(rc.InputError, match="this has no shards"):
-        list(samples(tmp_path))
 
 
 @pytest.mark.parametrize(

@@ -15,12 +15,6 @@ WALL = scenes.scene_of(scenes.quad((0, 0, -4), 50, diffuse=0.5)).with_environmen
 CARD = scenes.scene_of(scenes.quad((0, 0, 0), 0.3, diffuse=0.5))
 
 
-def shifted(x: float = 0, y: float = 0, z: float = -2) -> np.ndarray:
-    matrix = np.eye(4)
-    matrix[:3, 3] = x, y, z
-    return matrix
-
-
 def focal_px(camera: rc.Camera) -> float:
     return float(camera.camera_matrix[0, 0])
 
@@ -93,7 +87,7 @@ def test_real_lenses_distort_and_breathe(name: str) -> None:
 
 def test_a_card_hides_of_the_wall_what_lies_behind_it() -> None:
     """The wall's points whose line to the second pinhole goes through the card: similar triangles."""
-    scene = WALL.with_instance(CARD, shifted(), name="card")
+    scene = WALL.with_instance(CARD, scenes.shifted(z=-2), name="card")
     first = scenes.pinhole(FILM, position=(-0.2, 0, 0), look_at=(-0.2, 0, -1))
     second = scenes.pinhole(FILM, position=(0.2, 0, 0), look_at=(0.2, 0, -1))
     flow = rc.optical_flow(scene, first, second)
@@ -137,8 +131,10 @@ def test_rows_that_are_exposed_later_see_things_later() -> None:
     """A card falls at b rows a second, and rows are exposed tau seconds after one another. What is in row r is seen at
     t = tau r, and in the next picture, T later, in r' = r + b (T + tau r' - tau r): so r' - r = b T / (1 - b tau)."""
     speed_m_s, later_s, readout_s = 4.0, 0.05, 0.04
-    scene = WALL.with_instance(CARD, shifted(y=0.5), name="card")
-    scene = scene.moved("card", np.stack([shifted(y=0.5), shifted(y=0.5 - speed_m_s)]), (0, 1))
+    scene = WALL.with_instance(CARD, scenes.shifted(y=0.5, z=-2), name="card")
+    scene = scene.moved(
+        "card", np.stack([scenes.shifted(y=0.5, z=-2), scenes.shifted(y=0.5 - speed_m_s, z=-2)]), (0, 1)
+    )
     camera = scenes.pinhole(FILM).replace(exposure_time_s=0.002, readout_time_s=readout_s)
     flow = rc.optical_flow(scene, camera, camera.replace(shutter_opens_s=later_s))
     image = rc.render(scene, camera, spp=1, effects=(), layers=["object_id"])
@@ -155,9 +151,9 @@ def test_rows_that_are_exposed_later_see_things_later() -> None:
 
 
 def test_the_next_scene_may_be_another_arrangement() -> None:
-    scene = WALL.with_instance(CARD, shifted(), name="card")
+    scene = WALL.with_instance(CARD, scenes.shifted(z=-2), name="card")
     camera = scenes.pinhole(FILM)
-    then = WALL.with_instance(CARD, shifted(x=0.1), name="card")
+    then = WALL.with_instance(CARD, scenes.shifted(x=0.1, z=-2), name="card")
     flow = rc.optical_flow(scene, camera, camera, then)
     card = rc.render(scene, camera, spp=1, effects=(), layers=["object_id"]).layers["object_id"] == 2
     pupil = camera.entrance_pupil_position_m

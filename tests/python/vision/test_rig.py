@@ -9,6 +9,9 @@ import numpy as np
 import pytest
 import realcam as rc
 
+from .. import scenes
+from .test_vision import quaternion_matrix
+
 BASELINE_M = 0.1
 
 
@@ -26,9 +29,8 @@ def turned(degrees: float, shift: tuple[float, float, float] = (0, 0, 0)) -> np.
     return pose
 
 
-def floor(size: float = 3.0) -> rc.Scene:
-    corners = size * np.array([(-1, 0, -1), (1, 0, -1), (1, 0, 1), (-1, 0, 1)])
-    return rc.Scene.from_arrays(corners, [(0, 2, 1), (0, 3, 2)]).with_environment(500)
+def floor() -> rc.Scene:
+    return scenes.scene_of(scenes.quad((0, 0, 0), 3, up=(0, 0, -1), diffuse=0.5)).with_environment(500)
 
 
 def test_a_stereo_pair_stands_beside_its_camera_and_has_the_pose_of_opencv() -> None:
@@ -192,13 +194,8 @@ def test_frames_of_colmap_put_its_cameras_where_they_are(tmp_path: Path) -> None
         return [line.split() for line in text.splitlines() if line and not line.startswith("#")]
 
     def pose(words: list[str]) -> tuple[np.ndarray, np.ndarray]:
-        w, x, y, z, *shift = map(float, words)
-        turn = [
-            [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
-            [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
-            [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
-        ]
-        return np.array(turn), np.array(shift)
+        numbers = [float(word) for word in words]
+        return quaternion_matrix(*numbers[:4]), np.array(numbers[4:])
 
     assert [words[0] for words in lines("cameras.txt")] == ["1", "2"]  # one for each sensor of the rig
     (rig_words,) = lines("rigs.txt")
