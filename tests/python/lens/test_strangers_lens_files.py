@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import math
-import subprocess
 import warnings
 from collections.abc import Sequence
 from pathlib import Path
@@ -13,12 +12,7 @@ import numpy as np
 import pytest
 import realcam as rc
 
-from ..programs import PROGRAM
-
-
-def run(command: Sequence[object]) -> str:
-    return subprocess.run(list(map(str, command)), capture_output=True, text=True, check=True).stdout
-
+from ..programs import Command
 
 pytestmark = pytest.mark.filterwarnings("ignore")
 
@@ -378,7 +372,7 @@ LD 0.3 2.5
 """
 
 
-def test_catalogues_of_glasses(tmp_path: Path) -> None:
+def test_catalogues_of_glasses(tmp_path: Path, command: Command) -> None:
     catalogue = tmp_path / "mine.agf"
     catalogue.write_text(AGF)
     rows = [OBJECT, surface(25, 3, 6, "  GLAS XYZ-1 0 0 1.5 40\n"), surface(-40, 3, 6, "  GLAS XYZ-2 0 0 1.5 40\n")]
@@ -391,20 +385,21 @@ def test_catalogues_of_glasses(tmp_path: Path) -> None:
     l2 = 0.5875618**2
     schott = 2.5 - 0.01 * l2 + 0.02 / l2 + 0.0004 / l2**2 + 0.00001 / l2**3 + 0.000001 / l2**4
     assert second == pytest.approx(math.sqrt(schott), abs=1e-7)
-    run([*PROGRAM, "lens", "info", tmp_path / "lens.zmx", "--glass-catalogue", catalogue])
+    assert command("lens", "info", tmp_path / "lens.zmx", "--glass-catalogue", catalogue).returncode == 0
     (tmp_path / "no.agf").write_text("NM X 99\n")
     with pytest.raises(rc.LensFileError, match="number of the dispersion formula"):
         load(tmp_path, "lens.zmx", text, glass_catalogue=[tmp_path / "no.agf"])
 
 
-def test_lenses_of_the_lens_path_have_names(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_lenses_of_the_lens_path_have_names(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, command: Command) -> None:
+    monkeypatch.setenv("REALCAM_LENS_PATH", "")
     folder = tmp_path / "lenses"
     folder.mkdir()
     (folder / "mine.zmx").write_text(zemax([OBJECT, *SINGLET]))
     (folder / "notes.txt").write_text("no lens")
-    listed = run([*PROGRAM, "lens", "list", "--lens-path", folder])
+    listed = command("lens", "list", "--lens-path", folder).stdout
     assert "mine " in listed and "notes" not in listed
-    assert "25.3" in run([*PROGRAM, "lens", "info", "mine", "--lens-path", folder])
+    assert "25.3" in command("lens", "info", "mine", "--lens-path", folder).stdout
     monkeypatch.setenv("REALCAM_LENS_PATH", f"{tmp_path}/none:{folder}")
     with pytest.warns(UserWarning):
         assert rc.Lens.load("mine").name == "mine"
