@@ -48,6 +48,11 @@ def hold(measurement: Measurement) -> None:
     assert measurement.worst <= measurement.limit, measurement
 
 
+def hold_core(section: str, what: str, tried: str, worst: float, limit: float, unit: str) -> None:
+    """`hold` for a routine of the core that calculates in double precision."""
+    hold(Measurement(section, what, tried, "core", "float64", float(worst), limit, unit))
+
+
 def breaks(measurement: Measurement) -> None:
     """Assert that a deliberately broken copy of a routine goes past the limit: the test that holds it can fail."""
     _write("broken", asdict(measurement))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Any
 
@@ -27,6 +28,20 @@ def unit(a: list[Any]) -> list[Any]:
 
 def cross(a: list[Any], b: list[Any]) -> list[Any]:
     return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+
+
+def by_differences(
+    function: Callable[[dict[str, Any]], dict[str, Any]], numbers: dict[str, Any], names: Iterable[str], share: Any
+) -> dict[str, list[float]]:
+    """Central differences of each quantity of `function(changed numbers)` by the numbers of these names. share: the
+    step over the number."""
+    slopes: dict[str, list[float]] = {}
+    for name in names:
+        step = share * (abs(numbers[name]) or 1)
+        above, below = (function({name: numbers[name] + side}) for side in (step, -step))
+        for quantity, value in above.items():
+            slopes.setdefault(quantity, []).append(float((value - below[quantity]) / (2 * step)))
+    return slopes
 
 
 @dataclass

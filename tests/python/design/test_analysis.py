@@ -59,42 +59,34 @@ def test_every_plot_has_labels_and_units(computed: dict[str, object], number: in
     assert abs(sum(page) - sum(ink)) > 1.8, "the text stands out from the page"
 
 
-def lines_of(kind: str, data: object, number: int = 0) -> list[tuple[np.ndarray, np.ndarray]]:
-    axes = analysis.plot_figure(kind, data).axes[number]
-    return [(np.asarray(line.get_xdata()), np.asarray(line.get_ydata())) for line in axes.get_lines()]
+# Of each plot: the number of the axes, the number of the line, x (0) or y (1), and what the line shows there.
+LINES: dict[str, tuple[int, int, int, Callable[..., np.ndarray]]] = {
+    "ray-fan": (1, 2, 1, lambda fan: 1e3 * fan.tangential_mm[1, 2]),
+    "spot": (2, 0, 1, lambda spots: 1e3 * spots.points_mm[0, 2, 0, :, 1]),
+    "longitudinal": (0, 1, 0, lambda along: along.focus_mm[1]),
+    "field-curves": (0, 1, 0, lambda curves: curves.sagittal_mm[0]),
+    "distortion": (0, 0, 0, lambda bent: bent.percent),
+    "lateral-colour": (0, 2, 0, lambda colour: 1e3 * colour.shift_mm[2]),
+    "mtf": (0, 3, 1, lambda contrast: contrast.sagittal[0, 1]),
+    "mtf-field": (0, 0, 1, lambda contrast: contrast.tangential[0, :, 0]),
+    "mtf-focus": (0, 0, 1, lambda contrast: contrast.tangential[:, 0, 0]),
+    "relative-illumination": (0, 0, 1, lambda light: 100 * light.relative_illumination),
+}
 
 
 @pytest.mark.pictures
-def test_plots_show_the_arrays(computed: dict[str, object]) -> None:
-    fan = computed["ray-fan"]
-    for w, (x, y) in enumerate(lines_of("ray-fan", fan, 1)[:3]):
-        np.testing.assert_array_equal(x, fan.pupil)
-        np.testing.assert_array_equal(y, 1e3 * fan.tangential_mm[1, w])
-    spots = computed["spot"]
-    x, y = lines_of("spot", spots, 2)[0]
-    np.testing.assert_array_equal(np.column_stack([x, y]), 1e3 * spots.points_mm[0, 2, 0])
-    along = computed["longitudinal"]
-    np.testing.assert_array_equal(lines_of("longitudinal", along)[1][0], along.focus_mm[1])
-    curves = computed["field-curves"]
-    np.testing.assert_array_equal(lines_of("field-curves", curves)[0][0], curves.tangential_mm[0])
-    np.testing.assert_array_equal(lines_of("field-curves", curves)[1][0], curves.sagittal_mm[0])
-    bent = computed["distortion"]
-    np.testing.assert_array_equal(lines_of("distortion", bent)[0][0], bent.percent)
-    colour = computed["lateral-colour"]
-    np.testing.assert_array_equal(lines_of("lateral-colour", colour)[2][0], 1e3 * colour.shift_mm[2])
-    contrast = computed["mtf"]
-    np.testing.assert_array_equal(lines_of("mtf", contrast)[2][1], contrast.tangential[0, 1])
-    np.testing.assert_array_equal(lines_of("mtf", contrast)[3][1], contrast.sagittal[0, 1])
-    over = computed["mtf-field"]
-    np.testing.assert_array_equal(lines_of("mtf-field", over)[0][1], over.tangential[0, :, 0])
-    through = computed["mtf-focus"]
-    np.testing.assert_array_equal(lines_of("mtf-focus", through)[0][1], through.tangential[:, 0, 0])
-    light = computed["relative-illumination"]
-    np.testing.assert_array_equal(lines_of("relative-illumination", light)[0][1], 100 * light.relative_illumination)
-    front = computed["wavefront"]
+@pytest.mark.parametrize("kind", LINES)
+def test_lines_show_the_arrays(computed: dict[str, object], kind: str) -> None:
+    axes, line, axis, shown = LINES[kind]
+    drawn = analysis.plot_figure(kind, computed[kind]).axes[axes].get_lines()[line].get_data()[axis]
+    np.testing.assert_array_equal(drawn, shown(computed[kind]))
+
+
+@pytest.mark.pictures
+def test_images_and_bars_show_the_arrays(computed: dict[str, object]) -> None:
+    front, bars = computed["wavefront"], computed["seidel"]
     shown = analysis.plot_figure("wavefront", front).axes[0].get_images()[0].get_array()
     np.testing.assert_array_equal(np.ma.filled(shown, np.nan), front.map_waves)
-    bars = computed["seidel"]
     heights = [bar.get_height() for bar in analysis.plot_figure("seidel", bars).axes[0].patches]
     np.testing.assert_array_equal(np.reshape(heights, (7, -1))[:, :-1].T, bars.waves)
 
@@ -242,11 +234,12 @@ def test_bundles_carry_all_the_light() -> None:
     half = len(bundle.energy) // 2
     assert bundle.mirrored
     np.testing.assert_array_equal(bundle.points_mm[:half] * (-1, 1), bundle.points_mm[half:])
-    start, end = bundle.edge_entry_mm[:, 0], bundle.edge_entry_mm[:, 1]
-    area = 0.5 * abs(np.sum(start[:, 0] * end[:, 1] - start[:, 1] * end[:, 0]))
-    edges = [LENS.bundle(20.0, arms=s).edge_entry_mm for s in (256,)]
-    fine = 0.5 * abs(np.sum(edges[0][:, 0, 0] * edges[0][:, 1, 1] - edges[0][:, 0, 1] * edges[0][:, 1, 0]))
-    assert area == pytest.approx(fine, rel=2e-3)
+
+    def area(of: object) -> float:
+        start, end = of.edge_entry_mm[:, 0].T, of.edge_entry_mm[:, 1].T  # type: ignore[attr-defined]
+        return 0.5 * abs(np.sum(start[0] * end[1] - start[1] * end[0]))
+
+    assert area(bundle) == pytest.approx(area(LENS.bundle(20.0, arms=256)), rel=2e-3)
 
 
 NOLL = [(0, 0), (1, 1), (1, -1), (2, 0), (2, -2), (2, 2), (3, -1), (3, 1), (3, -3), (3, 3), (4, 0), (4, 2), (4, -2),

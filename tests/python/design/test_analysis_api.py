@@ -80,15 +80,6 @@ def test_figures_of_a_wavefront_are_those_of_its_rays() -> None:
     np.testing.assert_allclose(image, image[:, ::-1], atol=1e-6)
 
 
-def test_what_is_removed_is_gone() -> None:
-    whole, level, focused = (LENS.wavefront(12.0, remove=what) for what in (None, "tilt", "focus"))
-    assert whole.rms_waves >= level.rms_waves >= focused.rms_waves > 0
-    good = focused.status == rc.RayStatus.OK
-    x, y = focused.pupil[good].T
-    for term in (np.ones_like(x), x, y, x * x + y * y):
-        assert abs((focused.opd_waves[good] * term).mean()) < 1e-9
-
-
 def test_the_centroid_is_another_centre() -> None:
     chief, centroid = LENS.wavefront(12.0), LENS.wavefront(12.0, reference="centroid")
     spot = LENS.spot(12.0, pattern="grid", samples=64)
@@ -123,43 +114,6 @@ def test_a_spot_on_another_plane() -> None:
     assert LENS.spot(5.0, film_distance_mm=there).rms_radius_mm > 3 * LENS.spot(5.0).rms_radius_mm
 
 
-def test_a_near_object_is_sharp_on_a_film_that_is_focused_on_it() -> None:
-    near = LENS.focused(0.8)
-    to_object = 0.8 - near.film_position_mm / 1000
-    # What is in focus is the object where no other is given.
-    for given in ({}, {"object_distance_m": to_object}):
-        assert near.spot(5.0, **given).rms_radius_mm < 0.03
-    assert near.spot(5.0, object_distance_m=math.inf).rms_radius_mm > 0.3
-    # A far object is one at infinity.
-    far, infinite = LENS.wavefront(5.0, object_distance_m=1e9), LENS.wavefront(5.0)
-    np.testing.assert_allclose(far.opd_waves, infinite.opd_waves, atol=1e-6)
-
-
-@pytest.mark.parametrize("name", ["double-gauss-50mm", "fisheye-6mm-220deg", "phone-4mm", "mirror-telephoto-500mm"])
-def test_aimed_rays_meet_the_stop_where_they_are_to(name: str) -> None:
-    lens = rc.Lens.load(name)
-    angle = {"fisheye-6mm-220deg": 95.0, "mirror-telephoto-500mm": 1.5}.get(name, 15.0)
-    places = np.array([(0.0, 0.3), (-0.6, 0.2), (0.4, -0.5), (0.7, 0.1)])
-    aimed = lens.aim(places, angle)
-    assert aimed.origins_mm.shape == aimed.directions.shape == (4, 3)
-    at_stop = lens.trace(aimed.origins_mm, aimed.directions, start="scene", surface_count=lens.stop_index + 1)
-    passed = aimed.status == rc.RayStatus.OK
-    assert np.isnan(aimed.origins_mm[~passed]).all()
-    assert np.isnan(aimed.directions[~passed]).all()
-    assert passed.sum() >= 2
-    np.testing.assert_allclose(np.linalg.norm(aimed.directions[passed], axis=1), 1, rtol=1e-15)
-    radius = lens.stop_semi_diameter_mm
-    np.testing.assert_allclose(at_stop.origins_mm[passed, :2], radius * places[passed], atol=1e-9 * radius)
-    # Beyond 90 degrees the light comes from behind.
-    assert (np.sign(aimed.directions[passed, 2]) == np.sign(math.cos(math.radians(angle)))).all()
-
-
-def test_a_place_that_no_ray_reaches() -> None:
-    aimed = LENS.aim([[0.0, 0.0], [9.0, 0.0]], 5.0)
-    assert aimed.status.tolist() == [rc.RayStatus.OK, rc.RayStatus.NO_CONVERGENCE]
-    assert np.isnan(aimed.origins_mm[1]).all()
-
-
 PLATE = rc.Lens(
     surfaces=[
         rc.Stop(clear_semi_diameter_mm=5, thickness_mm=1),
@@ -186,7 +140,6 @@ TELECENTRIC = rc.Lens(
         (lambda: LENS.spot(30.0), "none of 127 rays at a field angle of 30 deg passes lens"),
         (lambda: LENS.spot(200.0), "field angle is 200 deg; expected less than 180 deg"),
         (lambda: LENS.spot(95.0, object_distance_m=2.0), "less than 90 deg"),
-        (lambda: LENS.spot(math.nan), "field angle is nan"),
         (lambda: LENS.spot(0.0, object_distance_m=0.0), "object distance must be a positive"),
         (lambda: LENS.spot(0.0, film_distance_mm=math.inf), "film_distance_mm must be a finite length"),
         (lambda: LENS.spot(0.0, wavelength_nm=5.0), "wavelength must lie between"),
@@ -231,22 +184,20 @@ def test_a_ray_aimed_at_the_edge_of_the_stop_passes_it_when_it_is_traced(name: s
     assert share.max(initial=0) <= 1
 
 
-def test_a_ray_aimed_past_the_edge_of_the_stop_is_blocked() -> None:
-    aimed = LENS.aim([[1 + 1e-8, 0.0], [1.2, 0.0]])
-    assert aimed.status.tolist() == [rc.RayStatus.VIGNETTED, rc.RayStatus.VIGNETTED]
-    assert np.isnan(aimed.origins_mm).all()
+def test_rays_that_no_stop_lets_pass_have_no_numbers() -> None:
+    aimed = LENS.aim([[0.0, 0.0], [1 + 1e-8, 0.0], [1.2, 0.0], [9.0, 0.0]])
+    status = rc.RayStatus
+    assert aimed.status.tolist() == [status.OK, status.VIGNETTED, status.VIGNETTED, status.NO_CONVERGENCE]
+    assert np.isnan(aimed.origins_mm[1:]).all() and np.isnan(aimed.directions[1:]).all()
 
 
 def test_the_plane_in_focus_is_the_object_where_none_is_given() -> None:
+    """test_analysis.py has spots, wavefronts and third-order sums."""
     near = LENS.focused(0.8)
     to_object = 0.8 - near.film_position_mm / 1000
-    given = {"object_distance_m": to_object}
-    # Metres and back to millimetres: a rounding of the distance.
-    assert near.wavefront(5.0).strehl == pytest.approx(near.wavefront(5.0, **given).strehl, rel=1e-8)
-    assert near.wavefront(0.0).rms_waves < 0.1 * near.wavefront(0.0, object_distance_m=math.inf).rms_waves
-    np.testing.assert_allclose(near.seidel(5.0).seidel_mm, near.seidel(5.0, **given).seidel_mm, rtol=1e-9, atol=1e-15)
     places = [[0.3, 0.4], [0.0, 0.9]]
-    np.testing.assert_allclose(near.aim(places, 5.0).directions, near.aim(places, 5.0, **given).directions, atol=1e-12)
+    expected = near.aim(places, 5.0, object_distance_m=to_object).directions
+    np.testing.assert_allclose(near.aim(places, 5.0).directions, expected, atol=1e-12)
     # The film is where the axial spot of the plane in focus is smallest; focusing ends within 1e-9 of the distance.
     assert near.best_focus_mm() == pytest.approx(near.film_distance_mm, rel=1e-9)
     assert near.best_focus_mm(math.inf) == pytest.approx(LENS.film_distance_mm, rel=1e-9)
@@ -255,10 +206,3 @@ def test_the_plane_in_focus_is_the_object_where_none_is_given() -> None:
     assert fisheye.spot(100.0).rms_radius_mm == fisheye.spot(100.0, object_distance_m=math.inf).rms_radius_mm
     with pytest.raises(rc.InputError, match="expected less than 90 deg for the plane in focus"):
         fisheye.focused(1.0).spot(100.0)
-
-
-def test_the_example_of_the_readme_is_that_of_a_lens_in_focus() -> None:
-    lens = LENS.focused(1.2).stopped_down(2.8)
-    # The figures of an image that is in focus; asking for infinity instead gave 0.0005.
-    assert lens.wavefront(10).strehl == pytest.approx(0.011, abs=0.0005)
-    assert lens.spot(10).rms_radius_mm < 0.02

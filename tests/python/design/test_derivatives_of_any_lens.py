@@ -10,7 +10,7 @@ import pytest
 import realcam as rc
 from mpmath import mpf
 
-from .fifty_digits import Face, ObjectRays, cross, dot, plus, traced, unit
+from .fifty_digits import Face, ObjectRays, by_differences, cross, dot, plus, traced, unit
 
 WAVELENGTH_NM = 587.5618
 STOP = 3.0
@@ -65,6 +65,14 @@ def faces_of(of: dict[str, Any]) -> list[Face]:
         Face(mpf(N3), 1, of["film"], of["c4"]),
         Face(1, 1, 0),
     ]
+
+
+def exact_numbers(lens: rc.Lens) -> dict[str, Any]:
+    """NUMBERS, with the curvatures that the lens keeps in double precision."""
+    curvatures = {
+        name: lens.surfaces[i].curvature_per_mm for name, i in (("c0", 0), ("c1", 1), ("cylinder", 3), ("c4", 4))
+    }
+    return {name: mpf(value) for name, value in (NUMBERS | curvatures).items()}
 
 
 class Truth(ObjectRays):
@@ -124,26 +132,17 @@ def test_gradients_are_central_differences_in_fifty_digits(object_m: float) -> N
     quantities = ("spot_mm", "chief_ray_height_mm", "mtf_tangential", "mtf_sagittal", "wavefront_waves")
     found = {q: lens.gradient(q, list(VARIABLES.values()), frequency_per_mm=15, samples=1, **named) for q in quantities}
     with mpmath.workdps(50):
-        numbers = {name: mpf(value) for name, value in NUMBERS.items()}
-        numbers |= {
-            name: mpf(lens.surfaces[k].curvature_per_mm)
-            for name, k in (("c0", 0), ("c1", 1), ("cylinder", 3), ("c4", 4))
-        }
-
+        numbers = exact_numbers(lens)
         drawn = Truth(numbers, chief, 1000 * object_m, pupil)
 
         def truth(change: dict[str, Any]) -> dict[str, Any]:
             rays = Truth(numbers | change, chief, 1000 * object_m, pupil, drawn)
             return {q: getattr(rays, q)() for q in quantities}
 
-        here = {q: getattr(drawn, q)() for q in quantities}
+        wanted = by_differences(truth, numbers, VARIABLES, mpf(10) ** -14)
         for q in quantities:
-            assert found[q].value == pytest.approx(float(here[q]), rel=1e-9), q
-        for k, name in enumerate(VARIABLES):
-            step = mpf(10) ** -14 * (abs(numbers[name]) or 1)
-            above, below = truth({name: numbers[name] + step}), truth({name: numbers[name] - step})
-            for q in quantities:
-                assert found[q].by[k] == pytest.approx(float((above[q] - below[q]) / (2 * step)), rel=1e-9), (q, name)
+            assert found[q].value == pytest.approx(float(getattr(drawn, q)()), rel=1e-9), q
+            assert found[q].by == pytest.approx(np.array(wanted[q]), rel=1e-9), q
 
 
 def focal_length_and_f_number(of: dict[str, Any], near: rc.AimedRays) -> tuple[Any, Any]:
@@ -182,27 +181,22 @@ def focal_length_and_f_number(of: dict[str, Any], near: rc.AimedRays) -> tuple[A
 def test_first_order_is_a_central_difference_in_fifty_digits() -> None:
     lens = tilted_anamorphic()
     near = lens.aim([[0.0, 0.0]], film_mm=(0.0, 0.0))
-    found = [lens.gradient(q, list(VARIABLES.values())) for q in ("effective_focal_length_mm", "f_number")]
-    data = lens.first_order()
-    # These are found by differences of rays in double.
-    assert found[0].value == pytest.approx(data.effective_focal_length_mm, rel=1e-8)
-    assert found[1].value == pytest.approx(data.f_number, rel=1e-8)
+    quantities = ("effective_focal_length_mm", "f_number")
+    found = {q: lens.gradient(q, list(VARIABLES.values())) for q in quantities}
+    for q in quantities:
+        # First-order data are found by differences of rays in double.
+        assert found[q].value == pytest.approx(getattr(lens.first_order(), q), rel=1e-8)
     with mpmath.workdps(50):
-        numbers = {name: mpf(value) for name, value in NUMBERS.items()}
-        numbers |= {
-            name: mpf(lens.surfaces[k].curvature_per_mm)
-            for name, k in (("c0", 0), ("c1", 1), ("cylinder", 3), ("c4", 4))
-        }
-        assert found[0].value == pytest.approx(float(focal_length_and_f_number(numbers, near)[0]), rel=1e-10)
-        for k, name in enumerate(VARIABLES):
-            step = mpf(10) ** -14 * (abs(numbers[name]) or 1)
-            above, below = (
-                focal_length_and_f_number(numbers | {name: numbers[name] + side}, near) for side in (step, -step)
-            )
-            for i in (0, 1):
-                # The second derivatives of rays are differences of first ones in double.
-                wanted = float((above[i] - below[i]) / (2 * step))
-                assert found[i].by[k] == pytest.approx(wanted, rel=1e-7, abs=1e-9 * found[i].value), (i, name)
+        numbers = exact_numbers(lens)
+
+        def truth(change: dict[str, Any]) -> dict[str, Any]:
+            return dict(zip(quantities, focal_length_and_f_number(numbers | change, near), strict=True))
+
+        assert found[quantities[0]].value == pytest.approx(float(truth({})[quantities[0]]), rel=1e-10)
+        wanted = by_differences(truth, numbers, VARIABLES, mpf(10) ** -14)
+    for q in quantities:
+        # The second derivatives of rays are differences of first ones in double.
+        assert found[q].by == pytest.approx(np.array(wanted[q]), rel=1e-7, abs=1e-9 * found[q].value), q
 
 
 def test_the_first_order_of_a_lens_that_is_moved_before_its_film_is_asked_for_before() -> None:

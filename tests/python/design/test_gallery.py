@@ -29,26 +29,9 @@ def test_a_sheet_names_each_lens_with_focal_length_and_f_number(tmp_path: Path) 
         assert f"{data.effective_focal_length_mm:.4g} mm  f/{data.f_number:.3g}" in words
 
 
-@pytest.mark.parametrize(
-    ("suffix", "magic"),
-    [
-        (".png", b"\x89PNG"),
-        (".pdf", b"%PDF"),
-        (".svg", b"<?xml"),
-        (".jpg", b"\xff\xd8\xff"),
-        (".tif", b"II*\0"),
-        (".webp", b"RIFF"),
-    ],
-)
-def test_the_suffix_chooses_the_format(tmp_path: Path, suffix: str, magic: bytes) -> None:
-    target = tmp_path / f"sheet{suffix}"
-    save_gallery(target, [rc.Lens.load("singlet-100mm")])
-    assert target.read_bytes().startswith(magic)
-
-
 def test_mistakes_are_named_and_write_nothing(tmp_path: Path) -> None:
     lens = rc.Lens.load("singlet-100mm")
-    with pytest.raises(rc.ImageFileError, match=r"unknown suffix; expected \.svg, \.png, \.pdf, .* or \.tiff"):
+    with pytest.raises(rc.ImageFileError, match="unknown suffix"):
         save_gallery(tmp_path / "sheet.bmp", [lens])
     with pytest.raises(rc.InputError, match="at least one lens"):
         save_gallery(tmp_path / "sheet.png", [])

@@ -11,13 +11,9 @@ import numpy as np
 import pytest
 import realcam as rc
 
-from ...measurement import Measurement, hold
+from ...measurement import hold_core
 
 FAR = math.inf
-
-
-def truth(what: str, tried: str, worst: float, limit: float, unit: str = "of the peak") -> None:
-    hold(Measurement("Truth", what, tried, "core", "float64", worst, limit, unit))
 
 
 def perfect(f_number: float, f_mm: float = 100.0) -> rc.Lens:
@@ -102,7 +98,8 @@ def test_real_lenses_agree_with_prysm(name: str, f_number: float) -> None:
         psf = lens.psf(field, object_distance_m=FAR)
         error = np.abs(psf_of_prysm(lens, field, psf) - psf.values).max() / psf.values.max()
         worst = max(worst, float(error))
-    truth(f"PSF of {name} at f/{f_number:g} against prysm's propagation", "0 and 14 degrees", worst, 1e-3)
+    what = f"PSF of {name} at f/{f_number:g} against prysm's propagation"
+    hold_core("Truth", what, "0 and 14 degrees", worst, 1e-3, "of the peak")
 
 
 def test_both_sums_agree() -> None:
@@ -124,10 +121,10 @@ def test_both_sums_agree() -> None:
         worst = max(worst, float(np.abs(direct.values - fft.values).max() / direct.values.max()))
         assert fft.energy == pytest.approx(direct.energy, abs=1e-3)
         assert fft.centre_mm == direct.centre_mm
-    truth("PSF by direct sum against FFT", f"{len(cases)} lenses and fields", worst, 1e-3)
+    hold_core("Truth", "PSF by direct sum against FFT", f"{len(cases)} lenses and fields", worst, 1e-3, "of the peak")
 
 
-@pytest.mark.parametrize("blades", [5, 6, 7, 8, 9])
+@pytest.mark.parametrize("blades", [5, 6])
 def test_blades_make_spikes(blades: int) -> None:
     """Each straight edge sends light to both sides, and opposite edges to the same."""
     lens = perfect(4).with_iris(blades, rotation_deg=10).stopped_down(8)
@@ -154,7 +151,8 @@ def test_short_waves_go_where_rays_go() -> None:
         psf = lens.psf(10, wavelength, object_distance_m=FAR, film_distance_mm=there, pitch_um=0.25)
         errors = [abs(psf.energy_inside(r) - rays.energy_inside(r)) for r in radii]
         worst.append(max(errors))
-    truth("encircled energy of waves of 100 nm against rays", "wide-22mm, out of focus", worst[1], 0.03, "of the light")
+    what = "encircled energy of waves of 100 nm against rays"
+    hold_core("Truth", what, "wide-22mm, out of focus", worst[1], 0.03, "of the light")
     assert worst[1] < 0.5 * worst[0]
 
 
@@ -208,17 +206,6 @@ def test_a_wavefront_and_its_psf_have_one_strehl_ratio() -> None:
     assert lens.psf(object_distance_m=FAR).strehl == pytest.approx(wavefront.strehl, abs=2e-3)
 
 
-def test_several_wavelengths_are_added() -> None:
-    lens = rc.Lens.load("achromat-75mm")
-    lines, weights = [486.1327, 587.5618, 656.2725], [1.0, 2.0, 1.0]
-    white = lens.psf(0, lines, weights=weights, object_distance_m=FAR, pitch_um=0.8)
-    single = [lens.psf(0, line, object_distance_m=FAR, pitch_um=0.8).values for line in lines]
-    expected = sum(w * values for w, values in zip(weights, single, strict=True)) / 4
-    np.testing.assert_allclose(white.values, expected, rtol=1e-9)
-    assert list(white.weights) == [0.25, 0.5, 0.25]
-    assert white.wavelength_nm == pytest.approx(np.average(lines, weights=weights))
-
-
 def test_hard_lenses_have_psfs() -> None:
     for lens, field in (
         (perfect(64), 0.0),
@@ -230,21 +217,6 @@ def test_hard_lenses_have_psfs() -> None:
         assert 0.7 < psf.energy <= 1, lens.name
         assert 0 < psf.strehl < 1 + 1e-9, lens.name
     assert perfect(64).psf(object_distance_m=FAR).strehl == pytest.approx(1, abs=1e-9)
-
-
-TABULATED = rc.Lens(
-    name="tabulated",
-    surfaces=[
-        rc.Stop(clear_semi_diameter_mm=5, thickness_mm=1),
-        rc.Surface(
-            radius_of_curvature_mm=50,
-            thickness_mm=2,
-            material=rc.Glass.table([(450, 1.53), (550, 1.52), (650, 1.51)]),
-            clear_semi_diameter_mm=6,
-        ),
-        rc.Surface(radius_of_curvature_mm=-50, clear_semi_diameter_mm=6),
-    ],
-)
 
 
 @pytest.mark.parametrize(
@@ -260,10 +232,7 @@ TABULATED = rc.Lens(
         ({"wavelength_nm": [500, 600], "weights": [1]}, "1 weights for 2 wavelengths"),
         ({"wavelength_nm": [500, 600], "weights": [1, 0]}, "weights must be positive"),
         ({"wavelength_nm": 50}, "between 100 and 20000 nm"),
-        (
-            {"wavelength_nm": 700},
-            "the glass of surface 2 of tabulated is known from 450 to 650 nm; 700 nm was requested",
-        ),
+        ({"wavelength_nm": 110}, r"\(N-BK7\) of achromat-75mm lets no light pass below its resonance"),
         ({"field_deg": 88}, "88 deg"),
         ({"film_distance_mm": math.nan}, "film_distance_mm must be a finite length"),
         ({"film_distance_mm": 1e7}, "too many for a sum of rays"),
@@ -271,7 +240,7 @@ TABULATED = rc.Lens(
     ],
 )
 def test_what_cannot_be_is_said(arguments: dict[str, object], message: str) -> None:
-    lens = TABULATED if arguments.get("wavelength_nm") == 700 else rc.Lens.load("double-gauss-50mm")
+    lens = rc.Lens.load("achromat-75mm" if arguments.get("wavelength_nm") == 110 else "double-gauss-50mm")
     with pytest.raises(rc.InputError, match=message):
         lens.psf(**{"object_distance_m": FAR, **arguments})
 
@@ -280,7 +249,6 @@ def test_light_far_out_of_focus_takes_no_minutes_unasked() -> None:
     lens = rc.Lens.load("double-gauss-50mm").focused(1.5)
     with pytest.raises(rc.InputError, match="too many for a sum of rays"):
         lens.psf(3, size=16, film_distance_mm=lens.film_distance_mm + 22)
-    with pytest.raises(rc.InputError, match="rays must be a positive number, at most 16777216"):
-        lens.psf(rays=10**12)
-    with pytest.raises(rc.InputError, match="at most 16777216"):
-        lens.psf(method="geometric", rays=10**12)
+    for method in ("direct", "geometric"):
+        with pytest.raises(rc.InputError, match="at most 16777216"):
+            lens.psf(method=method, rays=10**12)

@@ -13,6 +13,10 @@ import realcam as rc
 from realcam import Lens, Stop, Surface, Tolerances, analysis, tolerance_study
 
 N = 1.5
+PLATE = [
+    Surface(thickness_mm=4, material=(N, 60.0), clear_semi_diameter_mm=10),
+    Surface(thickness_mm=2, clear_semi_diameter_mm=10),
+]
 
 
 def singlet(radius=100.0, thickness=0.01, semi_diameter=2.5, **options):
@@ -67,11 +71,7 @@ def test_radius_in_percent_and_fringes():
 
 
 def test_a_wedge_deviates_as_a_prism_does():
-    plate = [
-        Surface(thickness_mm=4, material=(N, 60.0), clear_semi_diameter_mm=10),
-        Surface(thickness_mm=2, clear_semi_diameter_mm=10),
-    ]
-    lens = singlet().inserted(0, plate)
+    lens = singlet().inserted(0, PLATE)
     study = study_of(lens, copies=8, wedge_arcmin={1: 30.0})
     f = lens.first_order().effective_focal_length_mm
     wedge = np.deg2rad(study.sizes)  # about x and y
@@ -277,7 +277,6 @@ def test_a_study_that_is_ended_has_what_is_done():
 @pytest.mark.parametrize(
     ("limits", "options", "message"),
     [
-        ({"radius_mm": {1: -0.1}}, {}, r"radius_mm of surface 2 is -0\.1; expected a number of 0 or more"),
         ({"radius_mm": float("nan")}, {}, "radius_mm is nan; expected a number of 0 or more"),
         ({"radius_mm": {99: 0.1}}, {}, "no surface 99; the lens has 11, counted from 0"),
         ({"radius_mm": {5: 0.1}}, {}, "radius_mm: surface 6 is a stop, which bends no light"),
@@ -285,7 +284,6 @@ def test_a_study_that_is_ended_has_what_is_done():
         ({"index": {1: 0.1}}, {}, "no glass behind surface 2"),
         ({"wedge_arcmin": {0: 1}}, {}, "no glass in front of surface 1, and no wedge; use surface_tilt_arcmin"),
         ({"element_tilt_arcmin": {(3, 3): 1}}, {}, "surface 4 alone is no element"),
-        ({"element_tilt_arcmin": {3: 1}}, {}, "surface 4 alone is no element"),
         ({"wedge_arcmin": 700.0}, {}, "wedge_arcmin is 700; expected at most 600"),
         ({}, {}, "there is no tolerance"),
         ({"radius_mm": 0.1}, {"copies": 0}, "copies is 0; expected a whole number from 1"),
@@ -322,13 +320,8 @@ def test_names_that_are_none():
         study.yield_of(contrast=1.0)
     with pytest.raises(rc.InputError, match=r"loss is 2\.0"):
         study.inverse_sensitivities(2.0)
-    plates = Tolerances(radius_mm=0.1)
     with pytest.raises(rc.InputError, match="surfaces 1 to 2 cannot compensate: they are planes"):
-        plate = [
-            Surface(thickness_mm=4, material=(N, 60.0), clear_semi_diameter_mm=10),
-            Surface(thickness_mm=2, clear_semi_diameter_mm=10),
-        ]
-        tolerance_study(singlet().inserted(0, plate), plates, compensators=(rc.ElementShift(0, 1),))
+        study_of(singlet().inserted(0, PLATE), radius_mm=0.1, compensators=(rc.ElementShift(0, 1),))
 
 
 @pytest.mark.parametrize("name", ["commercial", "precision", "high"])
@@ -372,7 +365,6 @@ def test_the_command_prints_what_it_found(command):
     ("words", "message"),
     [
         (("--grade", "cheap"), 'unknown grade "cheap"'),
-        (("--copies", "0"), "copies is 0; expected a whole number from 1"),
         (("--compensate", "hope"), 'unknown compensator "hope"; expected one of refocus, film_tilt, nothing'),
         (("--compensate", "refocus,nothing"), 'unknown compensator "nothing"; expected one of refocus, film_tilt'),
         (("-o", "report.doc"), ".html"),

@@ -2,14 +2,13 @@
 
 import json
 import math
-import subprocess
 from pathlib import Path
 
 import numpy as np
 import pytest
 import realcam as rc
 
-from ..programs import PROGRAM
+from ..programs import Command
 
 
 def galilean(film_distance_mm: float | None = 40.0) -> rc.Lens:
@@ -59,12 +58,14 @@ def test_what_an_afocal_lens_cannot_do_is_refused_with_the_reason() -> None:
         galilean(film_distance_mm=None)
 
 
+HOLE = rc.Lens(surfaces=[rc.Stop(clear_semi_diameter_mm=0.1)], name="hole", film_distance_mm=20.0)
+
+
 def test_a_camera_without_a_lens_is_a_pinhole() -> None:
     """A stop alone, which is afocal: every model gives the same picture, and a stop of 0.1 mm cos^4 of it."""
-    hole = rc.Lens(surfaces=[rc.Stop(clear_semi_diameter_mm=0.1)], name="hole", film_distance_mm=20.0)
     mean = {}
     for model in ("pinhole", "thin", "thick", "full"):
-        camera = rc.Camera(hole, film=rc.Film(width_mm=20, height_mm=20, resolution=(8, 8)), model=model)
+        camera = rc.Camera(HOLE, film=rc.Film(width_mm=20, height_mm=20, resolution=(8, 8)), model=model)
         rays = camera.generate_rays(spp=256)
         assert np.isfinite(rays.weights).all() and np.isfinite(rays.directions).all()
         mean[model] = rays.weights.mean()
@@ -84,19 +85,14 @@ def test_an_object_nearer_than_the_nearest_is_refused_with_the_nearest() -> None
 
 
 @pytest.mark.picture_files
-def test_the_command_line_writes_infinite_figures_as_json_that_anyone_reads(tmp_path: Path) -> None:
+def test_the_command_line_writes_infinite_figures_as_json_that_anyone_reads(tmp_path: Path, command: Command) -> None:
     path = tmp_path / "hole.toml"
-    path.write_text(
-        "format = 1\nname = 'hole'\nfilm_distance_mm = 20\n[[surface]]\ntype = 'stop'\nclear_semi_diameter_mm = 0.1\n"
-    )
+    HOLE.save(path)
 
     def no_json(constant: str) -> None:
         pytest.fail(f"{constant} is no JSON")
 
-    def info(*options: str) -> str:
-        return subprocess.run([*PROGRAM, "lens", "info", path, *options], capture_output=True, text=True).stdout
-
-    data = json.loads(info("--json"), parse_constant=no_json)
+    data = json.loads(command("lens", "info", path, "--json").stdout, parse_constant=no_json)
     assert data["effective_focal_length_mm"] is None
     assert data["entrance_pupil_diameter_mm"] == pytest.approx(0.2)
-    assert "inf" in info()
+    assert "inf" in command("lens", "info", path).stdout

@@ -28,15 +28,9 @@ def differences(one: Any, other: Any, names: list[str]) -> set[str]:
     return {name for name in names if getattr(one, name) != getattr(other, name)}
 
 
-@pytest.mark.parametrize("name", CAMERA_CHANGES)
-def test_a_camera_changes_in_one_thing(name: str) -> None:
-    changed = CAMERA.replace(**{name: CAMERA_CHANGES[name]})
-    assert getattr(changed, name) == CAMERA_CHANGES[name]
-    assert differences(changed, CAMERA, list(CAMERA_CHANGES)) == {name}
-
-
 def test_a_camera_that_replaces_nothing_is_equal_and_all_is_another() -> None:
     assert CAMERA.replace() == CAMERA
+    assert FILM.replace() == FILM
     assert CAMERA.replace(**CAMERA_CHANGES) == rc.Camera(**CAMERA_CHANGES)
 
 
@@ -45,13 +39,6 @@ def test_a_changed_camera_is_checked() -> None:
         CAMERA.replace(iso=-1)
     with pytest.raises(rc.InputError, match="must look at"):
         CAMERA.replace(look_at=CAMERA.position)
-
-
-def test_a_film_changes_in_one_thing() -> None:
-    assert FILM.replace(width_mm=30) == rc.Film(30, 16, (60, 40))
-    assert FILM.replace(height_mm=30) == rc.Film(24, 30, (60, 40))
-    assert FILM.replace(resolution=(6, 4)) == rc.Film(24, 16, (6, 4))
-    assert FILM.replace() == FILM
 
 
 SURFACE = rc.Surface(
@@ -75,11 +62,21 @@ SURFACE_CHANGES: dict[str, Any] = {
 }
 
 
-@pytest.mark.parametrize("name", SURFACE_CHANGES)
-def test_a_surface_changes_in_one_thing(name: str) -> None:
-    changed = SURFACE.replace(**{name: SURFACE_CHANGES[name]})
-    assert getattr(changed, name) == SURFACE_CHANGES[name]
-    assert differences(changed, SURFACE, list(SURFACE_CHANGES)) == {name}
+FILM_CHANGES: dict[str, Any] = {"width_mm": 30.0, "height_mm": 30.0, "resolution": (6, 4)}
+
+
+@pytest.mark.parametrize(
+    ("original", "changes", "name"),
+    [
+        (original, changes, name)
+        for original, changes in ((CAMERA, CAMERA_CHANGES), (FILM, FILM_CHANGES), (SURFACE, SURFACE_CHANGES))
+        for name in changes
+    ],
+)
+def test_one_thing_changes_and_no_other(original: Any, changes: dict[str, Any], name: str) -> None:
+    changed = original.replace(**{name: changes[name]})
+    assert getattr(changed, name) == changes[name]
+    assert differences(changed, original, list(changes)) == {name}
 
 
 def test_none_as_a_material_is_air() -> None:
@@ -131,16 +128,13 @@ def test_power_follows_the_radius_of_a_thin_lens() -> None:
 
 def test_a_wide_open_stop_follows_its_rim_and_a_closed_one_stays() -> None:
     stop, rim = LENS.stop_index, LENS.surfaces[LENS.stop_index].clear_semi_diameter_mm
-    assert open_lens().with_surface(stop, clear_semi_diameter_mm=0.5 * rim).stop_semi_diameter_mm == 0.5 * rim
-    assert (
-        LENS.with_surface(stop, clear_semi_diameter_mm=0.99 * rim).stop_semi_diameter_mm == LENS.stop_semi_diameter_mm
-    )
-    narrow = 0.5 * LENS.stop_semi_diameter_mm
-    assert LENS.with_surface(stop, clear_semi_diameter_mm=narrow).stop_semi_diameter_mm == narrow
-
-
-def open_lens() -> rc.Lens:
-    return rc.Lens.load("telephoto-200mm-inner-focus").focused(3)
+    closed, narrow = LENS.stop_semi_diameter_mm, 0.5 * LENS.stop_semi_diameter_mm
+    for lens, new_rim, expected in (
+        (LENS.wide_open(), 0.5 * rim, 0.5 * rim),
+        (LENS, 0.99 * rim, closed),
+        (LENS, narrow, narrow),
+    ):
+        assert lens.with_surface(stop, clear_semi_diameter_mm=new_rim).stop_semi_diameter_mm == expected
 
 
 def test_a_lens_that_cannot_be_built_is_refused() -> None:

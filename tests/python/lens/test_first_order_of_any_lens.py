@@ -175,26 +175,6 @@ def test_tilt_and_shift_change_no_first_order_data() -> None:
         assert moved.stopped_down(4).stop_semi_diameter_mm == lens.stopped_down(4).stop_semi_diameter_mm
 
 
-def test_a_periscope_has_the_data_of_its_lens() -> None:
-    """Two mirrors at 45 degrees fold the light, and change nothing but where the lens stands."""
-    base = rc.Lens.load("double-gauss-50mm")
-    mirror = rc.Mirror(clear_semi_diameter_mm=40, thickness_mm=0)
-    opening = rc.Surface(type="aperture", clear_semi_diameter_mm=40, thickness_mm=-60)
-    front, *others = base.surfaces
-    folded = [
-        mirror.replace(tilt_deg=(45, 0, 0)),
-        opening.replace(tilt_deg=(45, 0, 0)),
-        mirror.replace(tilt_deg=(-45, 0, 0)),
-        opening.replace(tilt_deg=(-45, 0, 0), thickness_mm=50),
-        front,
-        *others,
-    ]
-    lens = rc.Lens(surfaces=folded, film_distance_mm=base.film_distance_mm)
-    data, alone = lens.first_order(), base.first_order()
-    assert data.effective_focal_length_mm == pytest.approx(alone.effective_focal_length_mm, rel=1e-9)
-    assert data.f_number == pytest.approx(alone.f_number, rel=1e-9)
-
-
 def test_without_light_there_are_no_data() -> None:
     base = rc.Lens.load("double-gauss-50mm")
     away = base.with_surface(3, tilt_deg=(90, 0, 0))

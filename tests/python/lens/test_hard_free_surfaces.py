@@ -7,7 +7,7 @@ import pytest
 import realcam as rc
 from frame_scene import frame_scene
 
-from ...measurement import Measurement, hold
+from ...measurement import hold_core
 
 SECTION = "Surfaces"
 STOP = rc.Surface(type="stop", clear_semi_diameter_mm=100)
@@ -22,27 +22,6 @@ def bundle(half_width: float, half_slope: float, count: int = 500) -> tuple[np.n
     origins = np.column_stack([rng.uniform(-half_width, half_width, (count, 2)), np.full(count, -5.0)])
     directions = np.column_stack([rng.uniform(-half_slope, half_slope, (count, 2)), np.ones(count)])
     return origins, directions / np.linalg.norm(directions, axis=1, keepdims=True)
-
-
-def held(what: str, tried: str, worst: float, limit: float, unit: str) -> None:
-    hold(Measurement(SECTION, what, tried, "core", "float64", float(worst), limit, unit))
-
-
-def test_a_periscope_of_two_right_angles_keeps_directions():
-    """Two mirrors at 45 degrees turn the axis by 90 degrees and back."""
-    mirror = rc.Surface(type="mirror", clear_semi_diameter_mm=40, tilt_deg=(45, 0, 0))
-    lens = lens_of(
-        mirror,
-        rc.Surface(clear_semi_diameter_mm=60, thickness_mm=-50, tilt_deg=(45, 0, 0)),
-        mirror.replace(tilt_deg=(-45, 0, 0)),
-        rc.Surface(clear_semi_diameter_mm=60, tilt_deg=(-45, 0, 0)),
-    )
-    origins, directions = bundle(10, 0.05)
-    traced = lens.trace(origins, directions, start="scene")
-    assert (traced.status == rc.RayStatus.OK).all()
-    # A direction has two reflections and two turns of its frame behind it: some ten roundings.
-    ulps = np.abs(traced.directions - directions).max() / np.finfo(float).eps
-    held("periscope with breaks of 45 and 90 degrees: direction", "500 rays", ulps, 16, "ulp")
 
 
 def test_a_plane_along_the_light_is_missed():
@@ -84,7 +63,7 @@ def test_a_prism_whose_faces_touch(wedge_deg):
     found = np.arctan2(traced.directions[:, 1], traced.directions[:, 2])
     # Two refractions and the arc sines of the reference: a dozen roundings of directions.
     worst = np.abs(found - out).max() / np.finfo(float).eps
-    held(f"prism of {wedge_deg:g} degrees whose faces touch: angle", "41 rays", worst, 16, "ulp")
+    hold_core(SECTION, f"prism of {wedge_deg:g} degrees whose faces touch: angle", "41 rays", worst, 16, "ulp")
 
 
 @pytest.mark.parametrize(
@@ -110,7 +89,9 @@ def test_toroids_near_spheres_cylinders_and_points(radius, radius_x):
     # As for aspheres: the search ends where a step is a rounding of the point.
     worst = np.abs(off).max() / rim / np.finfo(float).eps
     tried = f"{passed.sum()} rays"
-    held(f"toroid of {radius:g} and {radius_x:.10g} mm: off the surface", tried, worst, 16, "ulp of the rim")
+    hold_core(
+        SECTION, f"toroid of {radius:g} and {radius_x:.10g} mm: off the surface", tried, worst, 16, "ulp of the rim"
+    )
 
 
 def test_film_turned_away():

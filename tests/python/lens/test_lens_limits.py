@@ -121,20 +121,6 @@ def test_focusing_stops_where_faces_would_cross() -> None:
     assert free.focused(0.5 - 0.3 * len(gaps) / 60).surfaces[2].thickness_mm < least
 
 
-def test_bundled_lenses_focus_without_crossing() -> None:
-    for name in rc.lens_names():
-        lens = rc.Lens.load(name)
-        assert not lens.allow_overlap
-        states = 0
-        for distance in (0.2, 0.5, 1.0, 2.0, 4.0, 10.0, 100.0):
-            try:
-                lens.focused(distance)
-                states += 1
-            except rc.InputError as error:
-                assert any(why in str(error) for why in ("nearest", "passes it", "no place of its film")), str(error)
-        assert states >= 3, name
-
-
 @pytest.mark.parametrize(
     ("call", "says"),
     [

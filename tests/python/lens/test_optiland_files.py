@@ -9,6 +9,8 @@ import numpy as np
 import pytest
 import realcam as rc
 
+pytestmark = pytest.mark.filterwarnings("ignore")
+
 AIR = {"type": "IdealMaterial", "index": 1.0}
 
 
@@ -49,7 +51,6 @@ def test_a_glass_that_another_maker_has_is_taken_with_a_warning(tmp_path):
     assert lens.surfaces[1].material.index(587.56) == pytest.approx(1.62041, abs=2e-5)
 
 
-@pytest.mark.filterwarnings("ignore")
 def test_forbes_terms(tmp_path):
     config = {"radius": 40.0, "conic": 0.0, "norm_radius": 12.0, "terms": {"0": 0.05, "2": 0.01}}
     front = surface("ForbesQNormalSlopeGeometry", 0.0, 40.0, GLASS, is_stop=True, geometry={"surface_config": config})
@@ -57,7 +58,6 @@ def test_forbes_terms(tmp_path):
     assert lens.surfaces[1].forbes == {"kind": "bfs", "radius_mm": 12, "coefficients_mm": [0.05, 0, 0.01]}
 
 
-@pytest.mark.filterwarnings("ignore")
 def test_apertures(tmp_path):
     def aperture(**shape) -> rc.Surface:
         front = surface("StandardGeometry", 0.0, 40.0, GLASS, is_stop=True)
@@ -86,7 +86,6 @@ def test_fields_beyond_a_curved_image_end_at_its_edge(tmp_path):
     assert 0.5 * np.hypot(*lens.film_mm) < 12
 
 
-@pytest.mark.filterwarnings("ignore")
 def test_a_mirror_that_folds_the_axis(tmp_path):
     """A plane at 45 degrees before a lens that looks along y."""
     mirror = surface("Plane", 20.0, np.inf, is_stop=True, interaction_model={"is_reflective": True})

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import math
-import subprocess
 import warnings
 from collections.abc import Sequence
 from pathlib import Path
@@ -13,12 +12,9 @@ import numpy as np
 import pytest
 import realcam as rc
 
-from ..programs import PROGRAM
+from ..programs import Command
 
-
-def run(command: Sequence[object]) -> str:
-    return subprocess.run(list(map(str, command)), capture_output=True, text=True, check=True).stdout
-
+pytestmark = pytest.mark.filterwarnings("ignore")
 
 HEAD = """MODE SEQ
 UNIT MM
@@ -260,10 +256,8 @@ def test_aspheric_terms_of_high_powers(power: int, tmp_path: Path) -> None:
     written = [lens]
     for suffix in (".zmx", ".toml", ".json", ".roa"):
         path = tmp_path / f"again{suffix}"
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            lens.save(path)
-            written.append(rc.Lens.load(path))
+        lens.save(path)
+        written.append(rc.Lens.load(path))
     for one in written:
         asphere = next(s for s in one.surfaces if s.radial_terms)
         assert asphere.radius_of_curvature_mm == pytest.approx(25, rel=1e-12)
@@ -355,9 +349,7 @@ LINES_NM = (486.1327, 587.5618, 656.2725)
 def test_glasses_for_optiland_are_written_as_data(material: object, tmp_path: Path) -> None:
     lens = lens_of([], [(50, 4, 8, material), (-80, 0, 8, None)])
     path = tmp_path / "lens.json"
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        lens.save(path)
+    lens.save(path)
     again, _ = load(tmp_path, "again.json", path.read_text())
     expected = [lens.surfaces[1].material.index(nm) for nm in LINES_NM]
     assert [again.surfaces[1].material.index(nm) for nm in LINES_NM] == pytest.approx(expected, abs=1e-9)
@@ -380,7 +372,7 @@ LD 0.3 2.5
 """
 
 
-def test_catalogues_of_glasses(tmp_path: Path) -> None:
+def test_catalogues_of_glasses(tmp_path: Path, command: Command) -> None:
     catalogue = tmp_path / "mine.agf"
     catalogue.write_text(AGF)
     rows = [OBJECT, surface(25, 3, 6, "  GLAS XYZ-1 0 0 1.5 40\n"), surface(-40, 3, 6, "  GLAS XYZ-2 0 0 1.5 40\n")]
@@ -393,20 +385,21 @@ def test_catalogues_of_glasses(tmp_path: Path) -> None:
     l2 = 0.5875618**2
     schott = 2.5 - 0.01 * l2 + 0.02 / l2 + 0.0004 / l2**2 + 0.00001 / l2**3 + 0.000001 / l2**4
     assert second == pytest.approx(math.sqrt(schott), abs=1e-7)
-    run([*PROGRAM, "lens", "info", tmp_path / "lens.zmx", "--glass-catalogue", catalogue])
+    assert command("lens", "info", tmp_path / "lens.zmx", "--glass-catalogue", catalogue).returncode == 0
     (tmp_path / "no.agf").write_text("NM X 99\n")
     with pytest.raises(rc.LensFileError, match="number of the dispersion formula"):
         load(tmp_path, "lens.zmx", text, glass_catalogue=[tmp_path / "no.agf"])
 
 
-def test_lenses_of_the_lens_path_have_names(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_lenses_of_the_lens_path_have_names(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, command: Command) -> None:
+    monkeypatch.setenv("REALCAM_LENS_PATH", "")
     folder = tmp_path / "lenses"
     folder.mkdir()
     (folder / "mine.zmx").write_text(zemax([OBJECT, *SINGLET]))
     (folder / "notes.txt").write_text("no lens")
-    listed = run([*PROGRAM, "lens", "list", "--lens-path", folder])
+    listed = command("lens", "list", "--lens-path", folder).stdout
     assert "mine " in listed and "notes" not in listed
-    assert "25.3" in run([*PROGRAM, "lens", "info", "mine", "--lens-path", folder])
+    assert "25.3" in command("lens", "info", "mine", "--lens-path", folder).stdout
     monkeypatch.setenv("REALCAM_LENS_PATH", f"{tmp_path}/none:{folder}")
     with pytest.warns(UserWarning):
         assert rc.Lens.load("mine").name == "mine"

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import math
 import re
-import subprocess
 
 import numpy as np
 import pytest
 import realcam as rc
 
 from ...centred_lenses import CENTRED
-from ..programs import PROGRAM
+from ..programs import Command
 from ..scenes import quad, scene_of
 
 UNUSUAL = sorted(set(rc.lens_names()) - set(CENTRED))
@@ -151,10 +150,9 @@ def test_a_point_out_of_focus_is_the_pupils_ellipse() -> None:
     assert math.sqrt(4 * (x2 - blur)) == pytest.approx(4.0 * abs(1 - d / 100), rel=0.01)
 
 
-@pytest.mark.slow
-def test_lens_info_says_forms_places_and_both_focal_lengths() -> None:
+def test_lens_info_says_forms_places_and_both_focal_lengths(command: Command) -> None:
     def told(name: str) -> str:
-        return subprocess.run([*PROGRAM, "lens", "info", name], capture_output=True, text=True, check=True).stdout
+        return command("lens", "info", name).stdout
 
     anamorphic = told("anamorphic-65mm")
     assert "toroid, radius -99.5 mm in xz" in anamorphic
