@@ -308,6 +308,7 @@ class Surface:
         xy_terms: Mapping[tuple[int, int], float] | None = None,
         zernike: dict[str, Any] | None = None,
         forbes: dict[str, Any] | None = None,
+        superconic: dict[str, Any] | None = None,
         aperture: dict[str, Any] | None = None,
         obscurations: Sequence[dict[str, Any]] | None = None,
     ) -> None:
@@ -326,8 +327,10 @@ class Surface:
         form: "biconic" or "toroid", of which radius and conic are the section in the yz plane, and
         radius_of_curvature_x_mm and conic_x that in the xz plane. A toroid's even terms are of y.
         radial_terms: {power of r: mm^(1 - power)}, powers 1 to 20. xy_terms: {(i, j): coefficient of x^i y^j}.
-        zernike: {"order": "noll" or "fringe", "radius_mm", "coefficients_mm"}. forbes: the same with
-        "kind": "bfs" or "con". These parts are added to the conic.
+        zernike: {"order": "noll" or "fringe", "radius_mm", "coefficients_mm"}.
+        forbes: {"kind": "bfs" or "con", "radius_mm", "coefficients_mm"}.
+        superconic: {"radius_mm", "coefficients"}.
+        These parts are added to the conic.
         aperture: {"ellipse_mm" or "rectangle_mm": (half_x, half_y)}, {"circle_mm": radius} or
         {"polygon_mm": corners}, each with "offset_mm". obscurations: a list of {"circle_mm", "ellipse_mm" or
         "rectangle_mm", "offset_mm", "angle_deg"} and {"spider_arms": count, "width_mm", "angle_deg"}.
@@ -354,6 +357,7 @@ class Surface:
         xy_terms: Mapping[tuple[int, int], float] | None = None,
         zernike: dict[str, Any] | None = None,
         forbes: dict[str, Any] | None = None,
+        superconic: dict[str, Any] | None = None,
         aperture: dict[str, Any] | None = None,
         obscurations: Sequence[dict[str, Any]] | None = None,
     ) -> Surface:
@@ -403,6 +407,8 @@ class Surface:
     @property
     def returns(self) -> bool: ...
     @property
+    def superconic(self) -> dict[str, Any]: ...
+    @property
     def thickness_mm(self) -> float: ...
     @property
     def tilt_deg(self) -> tuple[float, float, float]: ...
@@ -412,6 +418,11 @@ class Surface:
     def xy_terms(self) -> dict[tuple[int, int], float]: ...
     @property
     def zernike(self) -> dict[str, Any]: ...
+
+def _form_terms() -> tuple:
+    """
+    Keywords of Surface for terms of the sag, which are variables, too.
+    """
 
 @final
 class FirstOrder:
@@ -581,8 +592,8 @@ class Lens:
         wavelength_nm: float | None = None,
     ) -> AimedRays:
         """
-        Rays of one object point that meet given places on the real stop, for Lens.trace(start="scene").
-        pupil: (N, 2), places on the stop as shares of its radius.
+        Rays of one object point that hit given points of the real stop, for Lens.trace(start="scene").
+        pupil: (N, 2), points of the stop in units of its radius.
         field_deg: angle to the axis at which the light comes; positive: it rises towards +y and the film. Less than 180
           for an object at infinity; less than 90, seen from the middle of the paraxial entrance pupil, for one nearer.
         film_mm: (x, y), names the field by the film point, from the film's middle, at which the chief ray of the design
@@ -590,7 +601,7 @@ class Lens:
         object_distance_m: object plane to front vertex, inf allowed; None is the plane in focus.
         wavelength_nm: None is the design wavelength.
         Returns AimedRays; the status is that of the ray behind the lens, and a ray that is not OK is nan. Origins may
-        lie behind the front surface: Lens.trace takes a ray for the whole straight line. Places on the very edge of the stop
+        lie behind the front surface: Lens.trace takes a ray for the whole straight line. Points on the very edge of the stop
         are aimed at 5e-11 of its radius further in, so that rounding does not block the ray when it is traced.
         Raises InputError where no ray of the object point reaches the middle of the stop.
         """
@@ -620,13 +631,9 @@ class Lens:
         object_distance_m: object plane to front vertex, inf allowed; None is the plane in focus.
         wavelength_nm: None is the design wavelength.
         film_distance_mm: last vertex to the plane that points_mm lie in; None: the film.
-        arms, nodes: lines from the middle of the light to its edge, which real rays find, and rays on each.
+        arms, nodes: number of radial arms about the centre of the light, and of Gauss nodes on each interval of an arm on which
+        light passes; real rays find the intervals' ends.
         Returns a RayBundle. Raises InputError where no light passes, or a glass is not known at the wavelength.
-        """
-    def overlaps(self) -> list[tuple[int, int, float, float]]:
-        """
-        Pairs of faces that cross inside their rims, as (first, second, depth_mm, radius_mm): the indices of the
-        two, how far they reach into each other at most, and how far from the axis that is. Empty but with allow_overlap.
         """
     def draw(
         self,
@@ -648,12 +655,12 @@ class Lens:
         """
         Draws the meridional section with rays as a matplotlib figure, which notebooks show; the film is on the right.
 
-        plane, rays, rays_from, fields, fields_deg, wavelengths_nm, object_distance_m: see realcam.drawing.cross_section.
+        plane, rays, rays_from, fields, fields_deg, wavelengths_nm, object_distance_m: see realcam.cross_section.
         radius_colours: draws faces of positive radius of curvature in blue, of negative in red.
         marks: entrance and exit pupil (EP, XP), principal planes (H, H'), focal points (F, F').
         insets: the rays of each field at the film, magnified.
         ghost: the lens in another state; its elements that have moved are drawn as outlines.
-        theme: "light" or "dark". width_px: of the picture. realcam.draw.save_cross_section writes it to a file.
+        theme: "light" or "dark". width_px: of the picture. realcam.drawing.save_cross_section writes it to a file.
         Raises InputError if no light passes the lens or an option is invalid.
         """
     def film_points(
@@ -760,6 +767,11 @@ class Lens:
         First-order data in the two principal meridians, about the chief ray of the film's middle; that nearer to
         the x axis first. Raises InputError where there is no such ray.
         """
+    def overlaps(self) -> list[tuple[int, int, float, float]]:
+        """
+        Pairs of faces that cross inside their rims, as (first, second, depth_mm, radius_mm): the indices of the
+        two, how far they reach into each other at most, and how far from the axis that is. Empty but with allow_overlap.
+        """
     def psf(
         self,
         field_deg: float = 0.0,
@@ -858,8 +870,8 @@ class Lens:
         pattern, samples: "grid", the cells of a square of samples x samples; "rings", samples rings at Gauss's nodes,
           whose means over a round stop are exact for smooth functions; "hexapolar", a middle ray and samples rings of 6, 12,
           ... rays up to the edge, all of one weight.
-        pupil: (N, 2), places on the stop as shares of its radius, in place of a pattern.
-        Rays fill the real stop: each is aimed at its place there within 1e-10 of the stop's radius. One for which no ray is
+        pupil: (N, 2), points of the stop in units of its radius, instead of a pattern.
+        Rays fill the real stop: each is aimed at its point there within 1e-10 of the stop's radius. One for which no ray is
         found ends as NO_CONVERGENCE, and what a rim blocks as VIGNETTED.
         Returns a Spot. Raises InputError where no ray passes.
         """
@@ -941,8 +953,8 @@ class Lens:
         pattern, samples: "grid", the cells of a square of samples x samples; "rings", samples rings at Gauss's nodes,
           whose means over a round stop are exact for smooth functions; "hexapolar", a middle ray and samples rings of 6, 12,
           ... rays up to the edge, all of one weight.
-        pupil: (N, 2), places on the stop as shares of its radius, in place of a pattern.
-        Rays fill the real stop: each is aimed at its place there within 1e-10 of the stop's radius. One for which no ray is
+        pupil: (N, 2), points of the stop in units of its radius, instead of a pattern.
+        Rays fill the real stop: each is aimed at its point there within 1e-10 of the stop's radius. One for which no ray is
         found ends as NO_CONVERGENCE, and what a rim blocks as VIGNETTED.
         Raises InputError where no ray passes, or a material is not known at that wavelength.
         """
@@ -978,8 +990,8 @@ class Lens:
         pattern, samples: "grid", the cells of a square of samples x samples; "rings", samples rings at Gauss's nodes,
           whose means over a round stop are exact for smooth functions; "hexapolar", a middle ray and samples rings of 6, 12,
           ... rays up to the edge, all of one weight.
-        pupil: (N, 2), places on the stop as shares of its radius, in place of a pattern.
-        Rays fill the real stop: each is aimed at its place there within 1e-10 of the stop's radius. One for which no ray is
+        pupil: (N, 2), points of the stop in units of its radius, instead of a pattern.
+        Rays fill the real stop: each is aimed at its point there within 1e-10 of the stop's radius. One for which no ray is
         found ends as NO_CONVERGENCE, and what a rim blocks as VIGNETTED.
         Returns a Wavefront. Raises InputError where no ray passes, or no reference sphere can be laid.
         """
@@ -1061,6 +1073,7 @@ class Lens:
         xy_terms: Mapping[tuple[int, int], float] | None = None,
         zernike: dict[str, Any] | None = None,
         forbes: dict[str, Any] | None = None,
+        superconic: dict[str, Any] | None = None,
         aperture: dict[str, Any] | None = None,
         obscurations: Sequence[dict[str, Any]] | None = None,
     ) -> Lens:
@@ -1435,7 +1448,7 @@ class AimedRays:
     @property
     def status(self) -> NDArray[np.int32]:
         """
-        (N,): RayStatus values; NO_CONVERGENCE where no ray was found that meets the place.
+        (N,): RayStatus values; NO_CONVERGENCE where no ray was found that hits the point.
         """
 
 @final
@@ -1483,12 +1496,12 @@ class Wavefront:
     @property
     def status(self) -> NDArray[np.int32]:
         """
-        (N,): RayStatus values; NO_CONVERGENCE where no ray was found that meets the place.
+        (N,): RayStatus values; NO_CONVERGENCE where no ray was found that hits the point.
         """
     @property
     def stop_radius_mm(self) -> float:
         """
-        What places in the pupil are shares of.
+        Unit of coordinates in the pupil.
         """
     @property
     def strehl(self) -> float:
@@ -1556,7 +1569,7 @@ class Spot:
     @property
     def status(self) -> NDArray[np.int32]:
         """
-        (N,): RayStatus values; NO_CONVERGENCE where no ray was found that meets the place.
+        (N,): RayStatus values; NO_CONVERGENCE where no ray was found that hits the point.
         """
     @property
     def weights(self) -> NDArray[np.float64]:
@@ -1574,13 +1587,13 @@ class PSF:
     @staticmethod
     def _repr_png_(psf: PSF) -> bytes:
         """
-        PNG of a point spread function on a logarithmic scale.
+        PNG of a point spread function on a logarithmic scale, for notebooks.
         """
     def __copy__(self) -> Self: ...
     def __deepcopy__(self, memo: object) -> Self: ...
     def energy_inside(self, radius_um: float, about_um: tuple[float, float] = (0.0, 0.0)) -> float:
         """
-        Share of the light within a circle about a place (x, y), as far as the array reaches.
+        Share of the light within a circle about a point (x, y), as far as the array reaches.
         """
     def mtf(
         self, frequencies_per_mm: ArrayLike | None = None
@@ -1885,8 +1898,8 @@ class Camera:
         The camera where it has the scene in its picture, in focus: position, look_at and focus_distance_m as
         given, and what is None chosen. scene_camera: the name of one of scene.cameras, whose place, direction
         and motion to take, or "none"; where nothing is said of the view it is the first of them. Without one the
-        view follows the rules of docs/scenes.md: an object from its front (+z, or -y where up is z) and slightly
-        above, where it fills nine tenths of the film, and a room from its open side or from a corner inside.
+        view follows the rules of docs/scenes.md: an object from its front (+z, or -y where up is z), slightly above
+        and aside, where it fills nine tenths of the film, and a room from its open side or from a corner inside.
         Of the camera itself lens, film, model and exposure stay. Raises InputError.
         """
     @overload
@@ -1952,7 +1965,7 @@ class Camera:
         self, pixels: ArrayLike, *, through: str = "light", return_light: Literal[True]
     ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
         """
-        The lines along which places of the picture, (N, 2) column and row as from project, look into the
+        The lines along which points of the picture, (N, 2) column and row as from project, look into the
         scene: (origins_m, directions), (N, 3) float64, the first where the line leaves the lens, the second
         unit. project takes each of their points back to the pixel.
         through: "light": the mean of the rays that a film point gets; "chief": that through the middle of
@@ -2524,8 +2537,8 @@ class RenderSettings:
     layers: names of what else Image.layers is to hold, or "all" (docs/layers.md), which leaves dual_pixel out.
     effects: "auto": what the shot calls for, and the cheapest camera model that shows it, by thresholds: those of
     quality, "draft" (2 pixels, 4 codes), "photo" (0.5, 1) or "reference" (0.1, 0.25), or threshold_px and
-    threshold_codes; or names of what is simulated besides (rc.effects() lists them; docs/dispersion.md), () for
-    none. Warns of what the lens cannot give of them.
+    threshold_codes; or names of optional effects (rc.effects() lists them; docs/dispersion.md), () for none.
+    Warns of what the lens cannot give of them.
     illuminant: of dispersion and diffraction, the spectrum of all light: "D65", "D50", "A", "FL2", a wavelength in nm,
     or (wavelength_nm, power) pairs; None: D65. As an attribute it is a text.
     pupil_sampling: where a full lens's rays are sent: "outline", where real rays were found to pass; to compare
@@ -2655,7 +2668,7 @@ def _effect_notices(lens: Lens, settings: RenderSettings) -> list[str]: ...
 @final
 class EffectInfo:
     """
-    What can be simulated besides. str() is a line of it.
+    Optional effect of a picture. str() is a line of it.
     """
     def __copy__(self) -> Self: ...
     def __deepcopy__(self, memo: object) -> Self: ...
