@@ -1,6 +1,6 @@
 # Sets `variable` to a generated source with the text of some files, which <header>.hpp declares.
 function(realcam_embed_files variable kind header)
-  get_filename_component(name ${header} NAME)
+  set(name bundled_${kind}_files)
   set(source ${PROJECT_BINARY_DIR}/${name}.cpp)
   # The list goes through a file: as an argument its semicolons would be taken apart. It is part of DEPENDS, so that
   # what is removed also leaves the program.

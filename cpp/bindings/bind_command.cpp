@@ -40,7 +40,8 @@ private:
     }
 };
 
-int run_command(std::vector<std::string> words) {
+int run_command(const Typed<"list[bytes]", py::list>& arguments) {
+    auto words = arguments.cast<std::vector<std::string>>();
     words.insert(words.begin(), "realcam");
     std::vector<char*> pointers;
     for (std::string& word : words) pointers.push_back(word.data());
@@ -50,7 +51,7 @@ int run_command(std::vector<std::string> words) {
     return app::run_command_line(static_cast<int>(words.size()), pointers.data(), &film_writer);
 }
 
-py::list listed_commands() {
+Typed<"list[tuple[list[str], str, list[tuple[list[str], str, str]]]]", py::list> listed_commands() {
     py::list commands;
     for (const app::ListedCommand& command : app::listed_commands()) {
         py::list options;

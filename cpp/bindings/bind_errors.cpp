@@ -76,7 +76,7 @@ void record_inputs(bool is_on) {
 
 void bind_errors(py::module_& m) {
     m.def("_record_inputs", &record_inputs, "is_on"_a);
-    m.def("_check_no_input", &image_io::check_no_input, "output"_a);
+    m.def("_check_no_input", [](const py::bytes& output) { image_io::check_no_input(output); }, "output"_a);
     m.def(
         "one_line", [](const std::string& message) { return text_from(io::one_line(message)); }, "message"_a,
         "A message as one line: without control characters, and what is too long for a message without its middle.");

@@ -48,7 +48,7 @@ py::object value_of(const toml::node& node) {
     return py::none();  // dates, which realcam's files do not use
 }
 
-py::tuple read_toml(const std::string& text, const std::string& file) {
+Typed<"tuple[dict[str, Any], dict[str, int]]", py::tuple> read_toml(const std::string& text, const std::string& file) {
     const toml::table table = io::parse_toml(text, file, raise_toml_error);
     py::dict lines;
     for (const auto& [key, node] : table) lines[text_of(key)] = key.source().begin.line;

@@ -9,10 +9,12 @@
 #include "../camera/film/develop.hpp"
 #include "../io/lens/lens_file.hpp"
 #include "../optics/analysis/object_point.hpp"
+#include "../optics/prescription/coating.hpp"
 #include "../optics/prescription/lens_system.hpp"
 #include "../render/session/progress.hpp"
 #include "../render/settings/render_settings.hpp"
 #include "../scene/assembly.hpp"
+#include "typed_object.hpp"
 #include "unlocked.hpp"
 
 namespace realcam::bindings {
@@ -44,6 +46,7 @@ void bind_pupil_table(py::module_& m);
 void bind_projection(py::module_& m);
 void bind_material(py::module_& m);
 void bind_scene(py::module_& m);
+void bind_scene_arrays(py::class_<Assembly>& scene);
 void bind_scene_materials(py::class_<Assembly>& scene);
 void bind_instances(py::class_<Assembly>& scene);
 void bind_settings(py::module_& m);
@@ -62,11 +65,8 @@ void bind_help(py::module_& m);
 void bind_pictures(py::module_& m);
 void bind_command(py::module_& m);
 
-/// Post-processes all functions and classes of the module. Must be called last.
-void finish_module(py::module_& m);
-
-/// DeviceNotice that issues a UserWarning on the line of the user's call. May be called with or without the GIL.
-void warn_of_device(const std::string& text);
+/// Issues a UserWarning on the line of the user's call. May be called with or without the GIL.
+void warn(const std::string& text);
 
 /// Converts "film" or "linear". Throws InputError.
 ToneCurve tone_curve_from(const std::string& name);
@@ -104,6 +104,8 @@ inline py::str text_from(const std::string& text) {
 
 /// Converts a medium: an index, (n_d, V_d), the name of a catalogue glass, or a Glass; None is air.
 Glass glass_from(const py::object& material);
+/// Converts the name of a known coating or a Coating. Throws InputError.
+Coating coating_from(const py::object& coating);
 /// Describes a medium, for __repr__.
 std::string glass_text(const Glass& glass);
 

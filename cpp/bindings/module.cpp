@@ -1,6 +1,27 @@
 #include "bindings.hpp"
 #include "values/value_state.hpp"
 
+namespace realcam::bindings {
+namespace {
+
+/// Makes Class.__new__ raise an error, because it would create an object without a value. Python itself calls the
+/// type's slot, which is unchanged: only the dict entry is replaced.
+void refuse_new(const py::object& type) {
+    const std::string name = type.attr("__name__").cast<std::string>();
+    const py::cpp_function refuse(
+        [name](const py::args&, const py::kwargs&) {
+            throw py::type_error(name + ".__new__ makes no " + name + "; call the class, or what its help names");
+        },
+        py::name("__new__"), py::scope(type));
+    PyObject* entries = reinterpret_cast<PyTypeObject*>(type.ptr())->tp_dict;
+    const py::object entry = py::reinterpret_steal<py::object>(PyStaticMethod_New(refuse.ptr()));
+    if (PyDict_SetItemString(entries, "__new__", entry.ptr()) != 0) throw py::error_already_set();
+    PyType_Modified(reinterpret_cast<PyTypeObject*>(type.ptr()));
+}
+
+}  // namespace
+}  // namespace realcam::bindings
+
 PYBIND11_MODULE(_core, m) {
     using namespace realcam::bindings;
     m.doc() = "The C++ core of realcam.";
@@ -47,6 +68,7 @@ PYBIND11_MODULE(_core, m) {
     bind_pictures(m);
     bind_command(m);
 #endif
-    finish_module(m);
+    for (const py::handle type : py::module_::import("realcam.arguments").attr("explain_wrong_arguments")(m))
+        refuse_new(py::reinterpret_borrow<py::object>(type));
     watch_exit_and_fork();
 }

@@ -79,7 +79,6 @@ from .image import Image
 from .image_file import read_environment
 from .lens import Mirror, Stop
 from .live_view import LiveView
-from .pickling import name_static_functions as _name_static_functions
 from .planning import plan
 from .raw_image import RawImage
 from .render import render
@@ -169,7 +168,6 @@ for _type, _name, _package, _function in (
     setattr(_type, _name, _ToolMethod(_type, _name, _package, _function))
 
 _core._name_cuda_plugin(_cuda_plugin())
-_name_static_functions()
 
 __all__ = [
     "PSF",

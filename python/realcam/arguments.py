@@ -1,18 +1,19 @@
 """Error messages for wrong arguments: signatures in Python's types, and one sentence on the argument at fault.
 
-The extension calls this module to clean its docstrings while it is loaded, and when a call does not match any
-signature; valid calls pay nothing.
+The extension hands its functions to this module while it is loaded (`explain_wrong_arguments`).
 """
 
 from __future__ import annotations
 
 import ast
 import difflib
+import functools
 import inspect
 import operator
 import re
 import reprlib
 from collections.abc import Callable, Mapping, Sequence
+from types import ModuleType
 from typing import Any
 
 NUMBERS = ("no", "one", "two", "three", "four", "five", "six")
@@ -20,13 +21,60 @@ NUMBERS = ("no", "one", "two", "three", "four", "five", "six")
 SPELLINGS = (
     (r"typing\.SupportsFloat \| typing\.SupportsIndex", "float"),
     (r"typing\.SupportsInt \| typing\.SupportsIndex", "int"),
-    (r"(?:typing\.Annotated\[)?numpy\.typing\.ArrayLike, numpy\.\w+\]", "ArrayLike"),
+    (r"(?:typing\.Annotated\[)?numpy\.typing\.ArrayLike, (?:numpy\.|realcam::)\w+\]", "ArrayLike"),
     (r"numpy\.ndarray\[numpy\.\w+\]", "ArrayLike"),
     (r"numpy\.typing\.NDArray\[numpy\.(\w+)\]", r"NDArray[\1]"),
     (r"realcam\._core\.|collections\.abc\.|typing_extensions\.", ""),
     (r"\(arg0: ", "(self: "),
 )
 FIXED_SIZE = re.compile(r'(?:typing\.)?Annotated\[(?:Sequence|list)\[(\w+)\], "?FixedSize\((\d)\)"?\]')
+
+
+def explain_wrong_arguments(core: ModuleType) -> list[type]:
+    """Replaces the functions and methods of the extension by Python functions that raise ArgumentError if no signature
+    accepts their arguments. Returns the classes of the extension.
+
+    As Python functions they also pickle by their names: executor.map(rc.Lens.load, paths).
+    """
+
+    def replace(owner: ModuleType | type, name: str, prefix: str) -> None:
+        function = getattr(owner, name)
+        function = getattr(function, "__func__", function)
+        if not inspect.isbuiltin(function):
+            return
+        call = _explaining(function, prefix + name, core.ArgumentError)
+        is_static = isinstance(inspect.getattr_static(owner, name), staticmethod)
+        setattr(owner, name, staticmethod(call) if is_static else call)
+
+    classes = [value for value in vars(core).values() if type(value).__name__ == "pybind11_type"]
+    for owner in (core, *classes):
+        for name in list(vars(owner)):
+            # Special methods are called by Python itself, and _pybind11_conduit_v1_ by other extensions.
+            if name == "__init__" or not name.startswith(("__", "_pybind11_")):
+                replace(owner, name, f"{owner.__name__}." if isinstance(owner, type) else "")
+    return classes
+
+
+def _explaining(function: Callable[..., Any], qualified_name: str, error_type: type[Exception]) -> Callable[..., Any]:
+    doc = cleaned(function.__doc__ or "")
+
+    @functools.wraps(function)
+    def call(*arguments: Any, **named: Any) -> Any:
+        try:
+            return function(*arguments, **named)
+        except TypeError as error:
+            text = str(error)
+            if "(): incompatible " not in text or "Invoked with:" not in text:
+                raise
+            try:
+                problem = complaint(doc, arguments, named)
+            except Exception:  # a signature that cannot be parsed, or a repr that fails
+                raise error from None
+        raise error_type(problem)
+
+    call.__qualname__ = qualified_name
+    call.__doc__ = doc
+    return call
 
 
 def cleaned(doc: str) -> str:
@@ -133,7 +181,7 @@ def _misfit(annotation: ast.expr | None, value: Any) -> str | None:
     if kind in SCALARS:
         wanted_here, fits = SCALARS[kind]
         return None if fits(value) else wanted_here
-    if kind == "object" or type(value).__name__ == kind:
+    if kind in UNCHECKED or type(value).__name__ == kind:
         return None
     return f"{'an' if kind[0] in 'AEIO' else 'a'} {kind}"
 
@@ -147,6 +195,8 @@ def _misfit_of_items(annotation: ast.Subscript, value: Any) -> str | None:
         return None if None in wanted else " or ".join(map(str, wanted))
     if outer in ("Mapping", "dict"):
         return None if isinstance(value, Mapping) and all(_all_fit(items, pair) for pair in value.items()) else "a dict"
+    if outer not in ("Sequence", "Iterable", "list", "tuple"):  # the function itself checks the value
+        return None
     if outer == "tuple":
         words = SCALARS[ast.unparse(items[0])][0].split(" ", 1)[-1]
         return None if _all_fit(items, value) else f"{NUMBERS[len(items)]} {words}s"
@@ -196,8 +246,11 @@ def _is_array(value: Any) -> bool:
     return _succeeds(lambda v: np.asarray(v, dtype=float), value)
 
 
+# Annotations of values that the function itself converts.
+UNCHECKED = ("object", "Any", "DTypeLike")
 SCALARS: dict[str, tuple[str, Callable[[Any], bool]]] = {
     "float": ("a number", _is_number),
+    "complex": ("a number", lambda value: not isinstance(value, (str, bytes)) and _succeeds(complex, value)),
     "int": ("a whole number", lambda value: _succeeds(operator.index, value)),
     "bool": ("True or False", lambda value: isinstance(value, bool) or type(value).__name__ in ("bool_", "bool")),
     "str": ("a text", lambda value: isinstance(value, str)),

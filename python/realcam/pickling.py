@@ -6,7 +6,6 @@ Pickles are untrusted input: their state passes the same checks as a new object,
 from __future__ import annotations
 
 import dataclasses
-import functools
 from collections.abc import Callable
 from typing import Any
 
@@ -40,23 +39,6 @@ def restored(kind: str, state_format: int, version: str, state: Any) -> Any:
     except (RuntimeError, TypeError, ValueError, AttributeError, OverflowError):
         pass  # messages about C++ types
     raise _core.InputError(f"this {kind} was pickled by realcam {made_by} and cannot be read: {why}")
-
-
-def name_static_functions() -> None:
-    """Makes static methods Python functions, which pickle by their names: executor.map(rc.Lens.load, paths)."""
-
-    def named(function: Callable[..., Any], qualified_name: str) -> Callable[..., Any]:
-        @functools.wraps(function)
-        def call(*arguments: Any, **keywords: Any) -> Any:
-            return function(*arguments, **keywords)
-
-        call.__qualname__ = qualified_name
-        return call
-
-    for type_ in [value for value in vars(_core).values() if isinstance(value, type)]:
-        for name, member in list(vars(type_).items()):
-            if isinstance(member, staticmethod) and not name.startswith("_"):
-                setattr(type_, name, staticmethod(named(member.__func__, f"{type_.__name__}.{name}")))
 
 
 def described(value: Any, buffers: list[np.ndarray]) -> Any:

@@ -52,7 +52,7 @@ ORDER = {
     "scene": ("", "textures", "geometry", "materials", "lights", "render_space"),
     "render": ("path", "layers", "settings", "ghosts", "lights", "film", "framing", "session"),
     "cuda": ("device", "kernels", "session", "rays", ""),
-    "bindings": ("bindings.hpp unlocked.*", "values", "lens", "camera", "scene", "pictures", ""),
+    "bindings": ("bindings.hpp typed_object.hpp unlocked.*", "values", "lens", "camera", "scene", "pictures", ""),
     "optics": ("prescription", "trace", "coating", "pupil", "lens", "ghost", "analysis", "derivatives", "tolerance"),
     "io": ("files", "text", "lens", "lens/formats", "sensor", "scene", "mesh", "gltf", ""),
 }

@@ -40,6 +40,9 @@ CUTS = {
         (r"    if constexpr \(effects\.have_wavelengths\(\)\) draw_wavelengths.*?\n", ""),
         (r"    // Diffraction at the edges of the aperture.*?\n    \}\n", ""),
     ],
+    "render/film/film_control_variates.hpp": [
+        (r"/// True if samples also count for.*?(?=\}  // namespace realcam\n)", ""),
+    ],
     "render/path/path_state.hpp": [
         (r"template <int N>\nstruct SharedResults.*?(?=template <int N, Effects effects>)", ""),
         (r"    \[\[no_unique_address\]\] .* shared;\n(.*\n){2}", ""),

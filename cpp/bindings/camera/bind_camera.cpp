@@ -62,7 +62,9 @@ std::vector<PoseKey> motion_from(const std::vector<Key>& keys) {
     return motion;
 }
 
-py::tuple keys_of(const Camera& camera) {
+Typed<"tuple[tuple[float, tuple[float, float, float], tuple[float, float, float], tuple[float, float, float]], ...]",
+      py::tuple>
+keys_of(const Camera& camera) {
     py::list keys;
     for (const PoseKey& key : camera.motion)
         keys.append(py::make_tuple(key.time_s, triple_of(key.pose.position_m), triple_of(key.pose.look_at_m),
@@ -109,7 +111,7 @@ Camera changed_camera(Camera camera, const std::optional<LensSystem>& lens, cons
 }
 
 /// Returns a Python named tuple, in degrees.
-py::object field_of_view_deg(const Camera& camera) {
+Typed<"FieldOfView"> field_of_view_deg(const Camera& camera) {
     const FieldOfView view = field_of_view(camera);
     const auto degrees = [](double radians) { return radians * 180 / std::numbers::pi; };
     return py::module_::import("realcam._core")

@@ -23,7 +23,11 @@ namespace {
 
 /// Camera rays as numpy arrays or DeviceArrays.
 struct CameraRaysResult {
-    py::object origins_m, directions, weights, pixels, wavelengths_nm, times_s;
+    Typed<"_Doubles"> origins_m;
+    Typed<"_Floats"> directions, weights;
+    Typed<"_Integers"> pixels;
+    Typed<"_Floats"> wavelengths_nm;
+    Typed<"_Doubles"> times_s;
 };
 
 /// Shortest and longest wavelength in nm; std::nullopt: the lens's design wavelength.
@@ -144,9 +148,10 @@ template <>
 struct RestoredCheck<CameraRaysResult> {
     static void check(const CameraRaysResult& rays) {
         const py::ssize_t count = restored_length(rays.weights);
-        for (const py::object* vectors : {&rays.origins_m, &rays.directions})
+        for (const py::object* vectors : std::initializer_list<const py::object*>{&rays.origins_m, &rays.directions})
             check_restored_array(*vectors, {'f', {count, 3}});
-        for (const py::object* numbers : {&rays.weights, &rays.wavelengths_nm, &rays.times_s})
+        for (const py::object* numbers :
+             std::initializer_list<const py::object*>{&rays.weights, &rays.wavelengths_nm, &rays.times_s})
             check_restored_array(*numbers, {'f', {count}});
         check_restored_array(rays.pixels, {'i', {count}});
     }
@@ -173,7 +178,7 @@ radiance is its irradiance. 0: the lens blocks the ray.)")
             return "<realcam.CameraRays " + counted(py::len(r.weights), "ray") + '>';
         });
     py::class_<RayChunks>(m, "RayChunks", "An iterator over a camera's rays: see Camera.ray_chunks.")
-        .def("__iter__", [](const py::object& self) { return self; })
+        .def("__iter__", [](const Typed<"Self">& self) { return self; })
         .def("__next__", &next_chunk, "Returns CameraRays.");
     py::reinterpret_borrow<py::class_<Camera>>(m.attr("Camera"))
         .def(

@@ -79,7 +79,9 @@ std::int64_t row_count(const Doubles& array, int columns, const char* what) {
     return array.shape(0);
 }
 
-py::object project(const Camera& camera, const Doubles& points, const std::string& through, bool return_status) {
+Typed<"NDArray[float64] | tuple[NDArray[float64], NDArray[int32]]"> project(const Camera& camera, const Doubles& points,
+                                                                            const std::string& through,
+                                                                            bool return_status) {
     const ProjectionRay ray = projection_ray_from(through);
     const std::int64_t count = row_count(points, 3, "points_m");
     py::array_t<double> pixels({count, std::int64_t{2}});
@@ -103,7 +105,8 @@ py::object project(const Camera& camera, const Doubles& points, const std::strin
     return py::make_tuple(pixels, status);
 }
 
-py::tuple rays_through(const Camera& camera, const Doubles& pixels, const std::string& through, bool return_light) {
+Typed<"tuple[NDArray[float64], ...]", py::tuple> rays_through(const Camera& camera, const Doubles& pixels,
+                                                              const std::string& through, bool return_light) {
     const ProjectionRay which = projection_ray_from(through);
     const std::int64_t count = row_count(pixels, 2, "pixels");
     py::array_t<double> origins({count, std::int64_t{3}}), directions({count, std::int64_t{3}}), light(count);
@@ -143,7 +146,7 @@ py::array_t<double> camera_matrix(const Camera& camera) {
                       {3, 3});
 }
 
-py::tuple world_to_camera(const Camera& camera) {
+Typed<"tuple[NDArray[float64], NDArray[float64]]", py::tuple> world_to_camera(const Camera& camera) {
     const PinholeCamera p = pinhole_of(camera);
     const Vec3d t = p.translation_m;
     return py::make_tuple(array_from(std::vector<double>{p.right.x, p.right.y, p.right.z, p.down.x, p.down.y, p.down.z,

@@ -27,7 +27,7 @@ std::vector<SensorPoint> points_from(const char* key, const Rows& rows) {
     return points;
 }
 
-py::tuple pairs_of(const std::vector<SensorPoint>& points) {
+Typed<"tuple[tuple[float, float], ...]", py::tuple> pairs_of(const std::vector<SensorPoint>& points) {
     py::tuple pairs(points.size());
     for (std::size_t i = 0; i < points.size(); ++i) pairs[i] = py::make_tuple(points[i].at, points[i].value);
     return pairs;
@@ -45,7 +45,7 @@ std::vector<QuantumEfficiency> efficiency_from(const Rows& rows, bool has_filter
     return table;
 }
 
-py::tuple efficiency_of(const Sensor& sensor) {
+Typed<"tuple[tuple[float, ...], ...]", py::tuple> efficiency_of(const Sensor& sensor) {
     py::tuple rows(sensor.quantum_efficiency.size());
     for (std::size_t i = 0; i < rows.size(); ++i) {
         const auto& [nm, e] = sensor.quantum_efficiency[i];
@@ -228,7 +228,8 @@ void bind_data(py::class_<Sensor>& type) {
         .def_readonly("title", &Sensor::title)
         .def_readonly("source", &Sensor::source)
         .def_property_readonly(
-            "assumptions", [](const Sensor& s) { return py::tuple(py::cast(s.assumptions)); },
+            "assumptions",
+            [](const Sensor& s)->Typed<"tuple[str, ...]", py::tuple> { return py::tuple(py::cast(s.assumptions)); },
             "What is not published, and what stands in its place: a text for each.")
         .def_property_readonly(
             "pixel_pitch_um",
@@ -292,7 +293,7 @@ void bind_sensor(py::module_& m) {
     def_hashable_value(type);
     type.def_static(
             "load",
-            [](const py::object& name) {
+            [](const PathLike& name) {
                 const std::string path = path_from(name);
                 const Unlocked unlocked;
                 return io::read_sensor(path, heed_signals);
@@ -333,11 +334,12 @@ each channel of the film (columns), cover glass included. Raises InputError.)")
 (0, inf) where the gain is whatever the ISO asks for. The highest is the lowest with the largest gain.)")
         .def(
             "expose",
-            [](const py::object& self, const py::object& image, std::optional<double> iso, std::int64_t seed,
-               std::int64_t serial, std::optional<double> temperature_c, int threads) {
-                return py::module_::import("realcam.raw_image")
-                    .attr("exposed")(self, image, iso, seed, serial, temperature_c, threads);
-            },
+            [](const Typed<"Sensor">& self, const Typed<"Image">& image, std::optional<double> iso, std::int64_t seed,
+               std::int64_t serial, std::optional<double> temperature_c, int threads)
+                ->Typed<"RawImage"> {
+                    return py::module_::import("realcam.raw_image")
+                        .attr("exposed")(self, image, iso, seed, serial, temperature_c, threads);
+                },
             "image"_a, py::kw_only(), "iso"_a = py::none(), "seed"_a = 0, "serial"_a = 0,
             "temperature_c"_a = py::none(), "threads"_a = 0,
             R"(The RawImage that the sensor makes of an Image, on whose film it lies; the image stays as it is.

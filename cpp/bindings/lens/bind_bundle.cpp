@@ -88,10 +88,11 @@ RayBundle make_bundle(const LensSystem& lens, double field_deg, std::optional<do
 }
 
 /// Returns an array (M, 2) of float32: the film points of those of `count` rays that pass.
-py::array make_film_points(const LensSystem& lens, double field_deg, std::int64_t count,
-                           std::optional<double> object_distance_m, const FilmPoint& film_mm,
-                           std::optional<double> wavelength_nm, std::optional<double> film_distance_mm,
-                           const std::string& pattern, const py::object& dtype) {
+Typed<"NDArray[float32]", py::array> make_film_points(const LensSystem& lens, double field_deg, std::int64_t count,
+                                                      std::optional<double> object_distance_m, const FilmPoint& film_mm,
+                                                      std::optional<double> wavelength_nm,
+                                                      std::optional<double> film_distance_mm,
+                                                      const std::string& pattern, const DTypeLike& dtype) {
     const double wavelength = wavelength_or_design(lens, wavelength_nm);
     if (film_distance_mm && !std::isfinite(*film_distance_mm))
         throw InputError("film_distance_mm must be a finite length, or None for the film");

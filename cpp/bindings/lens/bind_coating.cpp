@@ -62,8 +62,8 @@ CoatingMaterial coating_material_from(const py::object& material) {
     return CoatingMaterial::transparent(glass_from(material));
 }
 
-CoatingLayer make_layer(const py::object& material, std::optional<double> thickness_nm, std::optional<double> waves,
-                        std::optional<double> design_wavelength_nm) {
+CoatingLayer make_layer(const CoatingMaterialLike& material, std::optional<double> thickness_nm,
+                        std::optional<double> waves, std::optional<double> design_wavelength_nm) {
     CoatingLayer layer{coating_material_from(material), 0};
     if (thickness_nm.has_value() == waves.has_value())
         throw InputError("a layer needs exactly one of thickness_nm and thickness_waves");
@@ -76,8 +76,10 @@ CoatingLayer make_layer(const py::object& material, std::optional<double> thickn
     return layer;
 }
 
-Coating make_coating(const std::vector<CoatingLayer>& layers, const py::object& metal,
-                     std::optional<double> reflectance, const std::string& name) {
+Coating make_coating(
+    const std::vector<CoatingLayer>& layers,
+    const Typed<"complex | tuple[float, float] | Sequence[tuple[float, float, float]] | str | Glass | None">& metal,
+    std::optional<double> reflectance, const std::string& name) {
     if (reflectance && (!layers.empty() || !metal.is_none()))
         throw InputError("a stated reflectance leaves nothing to calculate: no layers and no metal go with it");
     Coating coating = reflectance       ? stated_reflectance(*reflectance, name)
@@ -89,12 +91,14 @@ Coating make_coating(const std::vector<CoatingLayer>& layers, const py::object& 
 
 /// Response of a coating: arrays of the broadcast shape of angles and wavelengths.
 struct CoatingResponse {
-    py::object reflectance_s, reflectance_p, transmittance_s, transmittance_p, absorptance_s, absorptance_p, r_s, r_p,
-        t_s, t_p;
+    using Shares = Typed<"NDArray[float64]">;
+    using Amplitudes = Typed<"NDArray[complex128]">;
+    Shares reflectance_s, reflectance_p, transmittance_s, transmittance_p, absorptance_s, absorptance_p;
+    Amplitudes r_s, r_p, t_s, t_p;
 };
 
-CoatingResponse response(const Coating& coating, const py::object& angle_deg, const py::object& wavelength_nm,
-                         const py::object& outside, const py::object& inside, bool from_inside) {
+CoatingResponse response(const Coating& coating, const ArrayLike& angle_deg, const ArrayLike& wavelength_nm,
+                         const MediumLike& outside, const MediumLike& inside, bool from_inside) {
     if (coating.kind == CoatingKind::unknown) throw InputError("of an unknown coating nothing can be said");
     const bool mirror = coating.is_for_mirrors();
     if (!mirror && inside.is_none())
@@ -227,7 +231,7 @@ void bind_coating(py::module_& m) {
             "\"bare\", \"quarter_wave\" (MgF2, 1.38, for 550 nm), \"aluminium\", \"silver\", or \"unknown\".")
         .def_static(
             "quarter_wave",
-            [](const py::object& material, double nm) {
+            [](const CoatingMaterialLike& material, double nm) {
                 const CoatingLayer layer = make_layer(material, std::nullopt, 0.25, nm);
                 return layered_coating({layer}, "quarter_wave");
             },

@@ -94,11 +94,10 @@ LightDirection direction_of_derivatives(const std::string& start) {
     return start == "film" ? LightDirection::to_scene : LightDirection::to_film;
 }
 
-py::tuple backpropagate_rays(const LensSystem& lens, const InputArray<double>& origins,
-                             const InputArray<double>& directions, const Variables& variables,
-                             const InputArray<double>& of_origins, const InputArray<double>& of_directions,
-                             const InputArray<double>& of_paths, std::optional<double> wavelength_nm,
-                             const std::string& start) {
+Typed<"tuple[NDArray[float64], NDArray[float64], NDArray[float64]]", py::tuple> backpropagate_rays(
+    const LensSystem& lens, const InputArray<double>& origins, const InputArray<double>& directions,
+    const Variables& variables, const InputArray<double>& of_origins, const InputArray<double>& of_directions,
+    const InputArray<double>& of_paths, std::optional<double> wavelength_nm, const std::string& start) {
     const py::ssize_t count = differentiated_rays(origins, directions);
     for (const InputArray<double>* of : {&of_origins, &of_directions})
         if (of->ndim() != 2 || of->shape(0) != count || of->shape(1) != 3)
@@ -124,10 +123,10 @@ py::tuple backpropagate_rays(const LensSystem& lens, const InputArray<double>& o
                           by_directions);
 }
 
-py::tuple ray_derivatives(const LensSystem& lens, const InputArray<double>& origins,
-                          const InputArray<double>& directions, const Variables& variables,
-                          std::optional<double> wavelength_nm, const std::string& start, const std::string& frame,
-                          std::optional<int> surface_count, bool rims) {
+Typed<"tuple[NDArray[int32], NDArray[float64], NDArray[float64], NDArray[float64]]", py::tuple> ray_derivatives(
+    const LensSystem& lens, const InputArray<double>& origins, const InputArray<double>& directions,
+    const Variables& variables, std::optional<double> wavelength_nm, const std::string& start, const std::string& frame,
+    std::optional<int> surface_count, bool rims) {
     const py::ssize_t count = differentiated_rays(origins, directions);
     const DualPath path(lens, direction_of_derivatives(start), wavelength_or_design(lens, wavelength_nm),
                         variables_from(variables),

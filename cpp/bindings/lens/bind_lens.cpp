@@ -240,7 +240,10 @@ two, how far they reach into each other at most, and how far from the axis that 
             "surface_frames", [](const LensSystem& l) { return frames_array(surface_frames(l).surfaces); },
             "(N, 4, 3): x, y and z axis of each surface and its vertex in mm, lens frame.")
         .def_property_readonly(
-            "film_frame", [](const LensSystem& l) { return py::array(frames_array({film_frame(l)})[py::int_(0)]); },
+            "film_frame",
+            [](const LensSystem& l) {
+                return py::array_t<double>(py::object(frames_array({film_frame(l)})[py::int_(0)]));
+            },
             "(4, 3): x, y and z axis of the film and its middle in mm, lens frame. Light comes with growing z.")
         .def_property_readonly("focus_distance_m", [](const LensSystem& l) { return l.focus_distance / 1000; })
         .def_property_readonly("nearest_focus_m", [](const LensSystem& l) { return l.focusing.nearest_mm / 1000; })

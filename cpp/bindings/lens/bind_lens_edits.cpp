@@ -36,7 +36,7 @@ into focus again. Raises InputError, and LensFileError where the lens cannot be 
 f-number stays too, because it is the open area that it means. Raises LensFileError.)")
         .def(
             "with_coating",
-            [](const LensSystem& lens, const py::object& coating, const std::optional<std::vector<int>>& surfaces) {
+            [](const LensSystem& lens, const CoatingLike& coating, const std::optional<std::vector<int>>& surfaces) {
                 return surfaces ? with_coating(lens, coating_from(coating), *surfaces)
                                 : with_coating(lens, coating_from(coating));
             },

@@ -13,10 +13,7 @@ using namespace py::literals;
 
 namespace {
 
-void warn(const std::string& message) {
-    // Attributes the warning to the line of the user's call.
-    if (PyErr_WarnEx(PyExc_UserWarning, message.c_str(), 1) < 0) throw py::error_already_set();
-}
+using CataloguePaths = Typed<"str | os.PathLike[str] | Sequence[str | os.PathLike[str]] | None">;
 
 /// Reads the lens of a file with notes on computed or assumed values. Releases the GIL; Ctrl-C interrupts it.
 std::pair<LensSystem, std::vector<std::string>> read_unlocked(const std::string& path, io::LensReadOptions options) {
@@ -30,8 +27,8 @@ std::pair<LensSystem, std::vector<std::string>> read_unlocked(const std::string&
 
 /// Returns the lens, and the field angles in degrees and wavelengths in nm that a file of another program specifies.
 std::tuple<LensSystem, std::vector<double>, std::vector<double>> load_with_light(
-    const py::object& name, const std::optional<std::map<std::string, py::object>>& glass, bool force,
-    const std::optional<std::string>& pbrt_thickness, const py::object& glass_catalogue) {
+    const PathLike& name, const std::optional<std::map<std::string, MediumLike>>& glass, bool force,
+    const std::optional<std::string>& pbrt_thickness, const CataloguePaths& glass_catalogue) {
     io::LensReadOptions options;
     io::DesignLight light;
     options.design_light = &light;
@@ -49,17 +46,17 @@ std::tuple<LensSystem, std::vector<double>, std::vector<double>> load_with_light
     return {std::move(lens), std::move(light.fields_deg), std::move(light.wavelengths_nm)};
 }
 
-LensSystem load_lens(const py::object& name, const std::optional<std::map<std::string, py::object>>& glass, bool force,
-                     const std::optional<std::string>& pbrt_thickness, const py::object& glass_catalogue) {
+LensSystem load_lens(const PathLike& name, const std::optional<std::map<std::string, MediumLike>>& glass, bool force,
+                     const std::optional<std::string>& pbrt_thickness, const CataloguePaths& glass_catalogue) {
     return std::get<0>(load_with_light(name, glass, force, pbrt_thickness, glass_catalogue));
 }
 
-std::pair<LensSystem, std::vector<std::string>> read_lens_with_notes(const py::object& path) {
+std::pair<LensSystem, std::vector<std::string>> read_lens_with_notes(const PathLike& path) {
     return read_unlocked(path_from(path), {});
 }
 
 /// Returns the content of a file for the lens, and notes on properties that the format of that suffix cannot represent.
-std::pair<py::bytes, std::vector<std::string>> file_content(const LensSystem& lens, const py::object& path) {
+std::pair<py::bytes, std::vector<std::string>> file_content(const LensSystem& lens, const PathLike& path) {
     const std::string file = path_from(path);
     if (io::suffix_of(file) == ".osl")
         return {py::module_::import("realcam.osl").attr("shader_text")(lens).attr("encode")(), {}};
@@ -67,7 +64,7 @@ std::pair<py::bytes, std::vector<std::string>> file_content(const LensSystem& le
     return {py::bytes(text.text), std::move(text.warnings)};
 }
 
-void save_lens(const LensSystem& lens, const py::object& path) {
+void save_lens(const LensSystem& lens, const PathLike& path) {
     const py::module_ files = py::module_::import("realcam.files");
     files.attr("check_target")(path);
     const auto [content, warnings] = file_content(lens, path);

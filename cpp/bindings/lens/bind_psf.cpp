@@ -122,7 +122,8 @@ double mean_wavelength(const Psf& psf) {
     return sum;
 }
 
-py::tuple mtf(const Psf& psf, const std::optional<InputArray<double>>& frequencies_per_mm) {
+Typed<"tuple[NDArray[float64], NDArray[float64], NDArray[float64]]", py::tuple> mtf(
+    const Psf& psf, const std::optional<InputArray<double>>& frequencies_per_mm) {
     const InputArray<double> frequencies =
         frequencies_per_mm.value_or(array_of(static_cast<std::size_t>(psf.size / 2 + 1), [&](std::size_t i) {
             return 1e3 * static_cast<double>(i) / (psf.size * psf.pitch_um);

@@ -100,9 +100,9 @@ radial_terms: {power of r: mm^(1 - power)}, powers 1 to 20. xy_terms: {(i, j): c
 aperture: {"ellipse_mm" or "rectangle_mm": (half_x, half_y)}, {"circle_mm": radius} or
 {"polygon_mm": corners}, each with "offset_mm". obscurations: a list of {"circle_mm", "ellipse_mm" or
 "rectangle_mm", "offset_mm", "angle_deg"} and {"spider_arms": count, "width_mm", "angle_deg"}.)";
-    surface.def(py::init([](double radius_of_curvature, double thickness, const py::object& material,
+    surface.def(py::init([](double radius_of_curvature, double thickness, const MediumLike& material,
                             double clear_semi_diameter, double conic, const std::map<int, double>& aspheric,
-                            double inner_semi_diameter, const std::string& type, const py::object& coating,
+                            double inner_semi_diameter, const std::string& type, const CoatingLike& coating,
                             const std::vector<double>& decentre, const std::vector<double>& tilt, bool returns,
                             const C::Name& form, C::Number radius_x, C::Number conic_x, const C::RadialTerms& radial,
                             const C::XyTerms& xy, const TermsDict<row>&... terms, const C::Dict& aperture,

@@ -64,7 +64,8 @@ void check_sizes(const Numbers& sizes, int dimension, std::size_t errors) {
         throw InputError("as many sizes as errors are wanted, " + std::to_string(errors));
 }
 
-py::dict judge(const ToleranceEvaluator& judge, const ErrorNames& names, const Numbers& sizes) {
+Typed<"dict[str, NDArray[float64]]", py::dict> judge(const ToleranceEvaluator& judge, const ErrorNames& names,
+                                                     const Numbers& sizes) {
     const std::vector<LensError> errors = errors_from(names);
     check_sizes(sizes, 2, errors.size());
     const auto count = static_cast<std::size_t>(sizes.shape(0));

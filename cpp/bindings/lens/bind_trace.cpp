@@ -25,7 +25,9 @@ using Doubles = InputArray<double>;
 
 /// Traced rays as numpy arrays or DeviceArrays.
 struct TraceResult {
-    py::object origins_mm, directions, optical_path_mm, status, surface_index, transmission;
+    Typed<"_Doubles"> origins_mm, directions, optical_path_mm;
+    Typed<"_Integers"> status, surface_index;
+    Typed<"NDArray[float64] | None"> transmission;
 };
 
 /// Validated options of a trace.
@@ -129,8 +131,8 @@ TraceResult trace_device_arrays(const LensSystem& lens, const DeviceInput& origi
             py::cast(traced.status),  py::cast(traced.surface_index), py::none()};
 }
 
-TraceResult trace(const LensSystem& lens, const py::object& origins, const py::object& directions,
-                  std::optional<double> wavelength_nm, const std::string& start, const py::object& dtype,
+TraceResult trace(const LensSystem& lens, const ArrayLike& origins, const ArrayLike& directions,
+                  std::optional<double> wavelength_nm, const std::string& start, const DTypeLike& dtype,
                   std::optional<int> surface_count, const std::optional<std::string>& device, bool transmission) {
     const TraceOptions options = options_of(lens, wavelength_nm, start, dtype, surface_count, transmission);
     const auto from = device_input(origins, "origins_mm"), along = device_input(directions, "directions");

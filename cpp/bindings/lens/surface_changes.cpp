@@ -71,7 +71,7 @@ Terms terms_from(const py::dict& given) {
 }
 
 template <class Terms>
-void change_terms(std::optional<Terms>& terms, const std::optional<py::dict>& to) {
+void change_terms(std::optional<Terms>& terms, const std::optional<FormDict>& to) {
     if (!to) return;
     if (to->empty())
         terms.reset();
@@ -203,7 +203,7 @@ std::map<std::pair<int, int>, double> xy_terms_of(const Surface& surface) {
     return terms;
 }
 
-py::dict terms_of(const Surface& surface, std::size_t row) {
+FormDict terms_of(const Surface& surface, std::size_t row) {
     py::dict result;
     std::size_t i = 0;
     over_rows(surface.form, [&](const auto& terms) {
@@ -218,7 +218,7 @@ py::dict terms_of(const Surface& surface, std::size_t row) {
     return result;
 }
 
-py::dict aperture_of(const Surface& surface) {
+FormDict aperture_of(const Surface& surface) {
     const ApertureShape& shape = surface.aperture_shape;
     py::dict result;
     switch (shape.kind) {
@@ -238,8 +238,8 @@ py::dict aperture_of(const Surface& surface) {
     return result;
 }
 
-std::vector<py::dict> obscurations_of(const Surface& surface) {
-    std::vector<py::dict> list;
+std::vector<FormDict> obscurations_of(const Surface& surface) {
+    std::vector<FormDict> list;
     for (const Obscuration& piece : surface.aperture_shape.obscurations) {
         py::dict plain;
         plain[piece.is_rectangle ? "rectangle_mm" : "ellipse_mm"] = pair_of(piece.half);

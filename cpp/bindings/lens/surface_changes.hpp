@@ -16,7 +16,7 @@
 namespace realcam::bindings {
 
 /// Terms of each row of kFormTerms as dicts; omitted ones are left unchanged.
-using TermsDicts = std::array<std::optional<py::dict>, kFormTermsCount>;
+using TermsDicts = std::array<std::optional<FormDict>, kFormTermsCount>;
 
 /// Changes of a surface's form and aperture; omitted ones are left unchanged.
 struct FormChanges {
@@ -26,8 +26,8 @@ struct FormChanges {
     std::optional<std::map<int, double>> radial_terms;
     std::optional<std::map<std::pair<int, int>, double>> xy_terms;
     TermsDicts terms;
-    std::optional<py::dict> aperture;
-    std::optional<std::vector<py::dict>> obscurations;
+    std::optional<FormDict> aperture;
+    std::optional<std::vector<FormDict>> obscurations;
 };
 
 /// Applies changes to a surface. An empty dict removes the respective form or aperture. Throws InputError for an
@@ -39,20 +39,20 @@ std::string form_name(const Surface& surface);
 std::map<int, double> radial_terms_of(const Surface& surface);
 std::map<std::pair<int, int>, double> xy_terms_of(const Surface& surface);
 /// `row`: of kFormTerms. Empty if the surface has no such terms.
-py::dict terms_of(const Surface& surface, std::size_t row);
-py::dict aperture_of(const Surface& surface);
-std::vector<py::dict> obscurations_of(const Surface& surface);
+FormDict terms_of(const Surface& surface, std::size_t row);
+FormDict aperture_of(const Surface& surface);
+std::vector<FormDict> obscurations_of(const Surface& surface);
 
-/// Converts the name of a known coating or a Coating. Throws InputError.
-Coating coating_from(const pybind11::object& coating);
+/// Medium of a changed surface; `...`: unchanged, because None is air.
+using MediumChange = Typed<"float | tuple[float, float] | str | Glass | types.EllipsisType | None">;
 
 /// Changes of a surface; omitted ones are left unchanged.
 struct SurfaceChanges {
     using Number = std::optional<double>;
     using Numbers = std::optional<std::vector<double>>;
     using Name = std::optional<std::string>;
-    using Dict = std::optional<py::dict>;
-    using Dicts = std::optional<std::vector<py::dict>>;
+    using Dict = std::optional<FormDict>;
+    using Dicts = std::optional<std::vector<FormDict>>;
     using RadialTerms = std::optional<std::map<int, double>>;
     using XyTerms = std::optional<std::map<std::pair<int, int>, double>>;
 
@@ -89,8 +89,8 @@ void def(std::index_sequence<row...>, py::class_<T>& type, const char* name, Fun
     type.def(
         name,
         [function](const T& self, Index<First>... indices, C::Number radius, C::Number thickness,
-                   const py::object& material, C::Number clear, C::Number conic, const C::RadialTerms& aspheric,
-                   C::Number inner, const C::Name& surface_type, const py::object& coating, const C::Numbers& decentre,
+                   const MediumChange& material, C::Number clear, C::Number conic, const C::RadialTerms& aspheric,
+                   C::Number inner, const C::Name& surface_type, const Typed<"str | Coating | None">& coating, const C::Numbers& decentre,
                    const C::Numbers& tilt, std::optional<bool> returns, const C::Name& form, C::Number radius_x,
                    C::Number conic_x, const C::RadialTerms& radial, const C::XyTerms& xy,
                    const TermsDict<row>&... terms, const C::Dict& aperture, const C::Dicts& obscurations) {

@@ -9,7 +9,7 @@ using namespace py::literals;
 namespace {
 
 py::array_t<float> denoised(Denoiser& denoiser, const InputArray<float>& exposure, const InputArray<float>& albedo,
-                            const InputArray<float>& normal, bool fast, const py::object& progress) {
+                            const InputArray<float>& normal, bool fast, const ProgressFunction& progress) {
     for (const auto* array : {&exposure, &albedo, &normal})
         if (array->ndim() != 3 || array->shape(0) != exposure.shape(0) || array->shape(1) != exposure.shape(1) ||
             array->shape(2) != 3 || array->size() == 0)

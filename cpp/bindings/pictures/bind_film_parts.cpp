@@ -106,7 +106,7 @@ AccumulatedFilm FilmArrays::film() const {
     return film;
 }
 
-py::dict region_sums_to(RegionSums sums, const FilmRegion& region) {
+RegionSumArrays region_sums_to(RegionSums sums, const FilmRegion& region) {
     StatNumbers stats;
     for (const auto& [name, member] : kSeconds) stats[name] = sums.stats.*member;
     for (const auto& [name, member] : kRays) stats[name] = static_cast<double>(sums.stats.*member);
@@ -120,11 +120,11 @@ RenderStats stats_from(const StatNumbers& numbers) {
     return stats;
 }
 
-py::array layer_sums_to(std::vector<LayerSum> sums, const FilmRegion& region) {
+VoidArray layer_sums_to(std::vector<LayerSum> sums, const FilmRegion& region) {
     return array_from(std::move(sums), {region.height, region.width});
 }
 
-py::list splats_to(std::vector<SplatFilm> films) {
+SplatList splats_to(std::vector<SplatFilm> films) {
     py::list list;
     for (const SplatFilm& film : films) {
         const auto count = static_cast<py::ssize_t>(film.blocks.size());
@@ -151,14 +151,14 @@ void bind_film_parts(py::module_& m) {
     m.attr("_SAMPLED_LAYERS") = sampled_layers;
     m.def(
         "_developed_exposure",
-        [](const InputArray<PixelSum>& pixels, const py::list& splats, const RenderSettings& settings,
+        [](const InputArray<PixelSum>& pixels, const SplatList& splats, const RenderSettings& settings,
            double exposure_time_s) {
             return developed_exposure({pixels, std::nullopt, splats}, settings, exposure_time_s);
         },
         "pixels"_a, "splats"_a, "settings"_a, "exposure_time_s"_a);
     m.def(
         "_traced_exposure",
-        [](const py::list& splats, double exposure_time_s) {
+        [](const SplatList& splats, double exposure_time_s) {
             const std::vector<SplatFilm> films = splat_films_from(splats);
             std::vector<float> exposure = traced_exposure(films, exposure_time_s);
             const py::ssize_t height = exposure.empty() ? 0 : films.front().height,

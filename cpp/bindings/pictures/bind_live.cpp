@@ -35,12 +35,12 @@ public:
     }
 
     /// Renders the last frame's camera and settings with layers.
-    py::dict image(const Camera& camera, const RenderSettings& settings) {
+    PictureFields image(const Camera& camera, const RenderSettings& settings) {
         Image image = session_.use([&](const auto&) { return view_->picture(camera, settings, heed_signals); });
         return picture_from(std::move(image), settings.layers);
     }
 
-    py::tuple picture() {
+    Typed<"tuple[DeviceArray | NDArray[float32], DeviceArray | NDArray[float32]]", py::tuple> picture() {
         std::optional<DevicePicture> on_gpu;
         std::optional<Image> image;
         session_.use([&](const auto&) {

@@ -18,13 +18,15 @@ using namespace py::literals;
 namespace {
 
 /// Returns the pixels and the reader's warnings.
-py::tuple read_environment(const std::string& path, const std::string& layer) {
+Typed<"tuple[NDArray[float32], list[str]]", py::tuple> read_environment(const py::bytes& path,
+                                                                        const std::string& layer) {
+    const std::string file = path;
     Environment environment;
     std::vector<std::string> warnings;
     {
         const Unlocked unlocked;
         environment = image_io::read_environment(
-            path, layer, [&](const std::string& warning) { warnings.push_back(warning); }, heed_signals);
+            file, layer, [&](const std::string& warning) { warnings.push_back(warning); }, heed_signals);
     }
     py::array_t<float> pixels({environment.height, environment.width, 3});
     std::memcpy(pixels.mutable_data(), environment.pixels.data(), environment.pixels.size() * sizeof(Vec3f));
@@ -68,7 +70,7 @@ T member(const py::object& image, const char* name) {
 }
 
 /// Writes a realcam.Image, `image`, to a file.
-void write_picture(const std::string& path, const py::object& image, bool film_tone) {
+void write_picture(const py::bytes& path, const py::object& image, bool film_tone) {
     const auto exposure = member<FloatArray>(image, "pixels"), depth = member<FloatArray>(image, "depth");
     if (exposure.ndim() != 3 || exposure.shape(2) != 3 || depth.ndim() != 2 || depth.shape(0) != exposure.shape(0) ||
         depth.shape(1) != exposure.shape(1))
@@ -87,28 +89,31 @@ void write_picture(const std::string& path, const py::object& image, bool film_t
     metadata.seed = member<std::uint32_t>(image, "seed");
     metadata.denoiser = member<std::string>(image, "denoiser");
     metadata.plan = member<std::string>(image, "plan");
+    const std::string file = path;
     const Unlocked unlocked;
-    image_io::write_image(picture, path, metadata, film_tone ? ToneCurve::film : ToneCurve::linear, heed_signals);
+    image_io::write_image(picture, file, metadata, film_tone ? ToneCurve::film : ToneCurve::linear, heed_signals);
 }
 
 using Entries = std::vector<std::pair<std::string, std::string>>;
 
-py::tuple read_film(const std::string& path) {
+Typed<"tuple[NDArray[float32], list[tuple[str, str]]]", py::tuple> read_film(const py::bytes& path) {
+    const std::string file = path;
     image_io::FilmFile film;
     {
         const Unlocked unlocked;
-        film = image_io::read_film(path, heed_signals);
+        film = image_io::read_film(file, heed_signals);
     }
     py::array_t<float> exposure({film.height, film.width, 3});
     std::memcpy(exposure.mutable_data(), film.exposure.data(), film.exposure.size() * sizeof(float));
     return py::make_tuple(exposure, film.entries);
 }
 
-void write_codes(const std::string& path, const py::array_t<std::uint8_t, py::array::c_style>& codes,
+void write_codes(const py::bytes& path, const py::array_t<std::uint8_t, py::array::c_style>& codes,
                  const Entries& entries) {
     if (codes.ndim() != 3 || codes.shape(2) != 3) throw InputError("codes of the shape (H, W, 3) are wanted");
+    const std::string file = path;
     const Unlocked unlocked;
-    image_io::write_codes(path, static_cast<int>(codes.shape(1)), static_cast<int>(codes.shape(0)), codes.data(),
+    image_io::write_codes(file, static_cast<int>(codes.shape(1)), static_cast<int>(codes.shape(0)), codes.data(),
                           entries, heed_signals);
 }
 

@@ -22,9 +22,10 @@ namespace realcam::bindings {
 
 using namespace py::literals;
 
-void warn_of_device(const std::string& text) {
+void warn(const std::string& text) {
     const py::gil_scoped_acquire acquire;
-    if (PyErr_WarnEx(PyExc_UserWarning, text.c_str(), 1) < 0) throw py::error_already_set();
+    // Level 1 is the function of realcam.arguments that calls each function of this module.
+    if (PyErr_WarnEx(PyExc_UserWarning, text.c_str(), 2) < 0) throw py::error_already_set();
 }
 
 ToneCurve tone_curve_from(const std::string& name) {
@@ -65,8 +66,8 @@ Progress progress_of(const py::object& callback) {
 namespace {
 
 /// `keeps_stopped`: if the progress function stops rendering, returns the picture of the samples taken so far.
-py::dict render(const Assembly& scene, const Camera& camera, const RenderSettings& settings, const std::string& device,
-                const py::object& progress, bool keeps_stopped) {
+PictureFields render(const Assembly& scene, const Camera& camera, const RenderSettings& settings,
+                     const std::string& device, const ProgressFunction& progress, bool keeps_stopped) {
     const Progress report = progress_of(progress);
     const KeepGoing finishes = keeps_stopped ? KeepGoing(heed_signals) : KeepGoing();
     Image image = OwnedSession::shared(device).use(
@@ -159,7 +160,9 @@ void bind_render(py::module_& m) {
         .def_property_readonly("description", &line_of, "What it is and needs, in a line.")
         .def("__str__", py::overload_cast<const EffectInfo&>(&line_text))
         .def("__repr__", [](const EffectInfo& e) { return std::string("<realcam.EffectInfo ") + e.name + '>'; });
-    m.def("effects", [effect_rows] { return py::list(effect_rows); }, "All effects that can be named.");
+    m.def(
+        "effects", [effect_rows]()->Typed<"list[EffectInfo]", py::list> { return py::list(effect_rows); },
+        "All effects that can be named.");
     m.def("develop", &develop, "exposure"_a, "iso"_a, "tone"_a = "film",
           R"(Film exposure in lux seconds (any shape) as 8-bit sRGB codes at a sensitivity; 10 / iso lux seconds become
 middle grey, 118. tone: "film" (soft highlights) or "linear" (clipped).)");
@@ -178,7 +181,7 @@ middle grey, 118. tone: "film" (soft highlights) or "linear" (clipped).)");
         .def("__str__", py::overload_cast<const Device&>(&line_text))
         .def("__repr__", [](const Device& d) { return "<realcam.Device " + line_text(d) + '>'; });
     m.def("devices", &devices, "All devices of this machine, the CPU first.");
-    m.def("_name_cuda_plugin", &name_cuda_plugin, "path"_a);
+    m.def("_name_cuda_plugin", [](const py::bytes& path) { name_cuda_plugin(path); }, "path"_a);
 }
 
 }  // namespace realcam::bindings

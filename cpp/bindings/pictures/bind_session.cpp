@@ -47,7 +47,7 @@ public:
     }
 
     /// `wanted`: settings; only their noise goal is used.
-    py::dict add_until(const RenderSettings& wanted) {
+    Typed<"_Reached", py::dict> add_until(const RenderSettings& wanted) {
         const NoiseGoal goal = wanted.noise.value_or(NoiseGoal());
         const ReachedNoise reached =
             taken([&](Session& session, const Progress& progress) { return session.add_until(goal, progress); });
@@ -55,7 +55,7 @@ public:
                         "spp_wanted"_a = reached.samples_wanted, "shortfall"_a = shortfall_of(reached, goal));
     }
 
-    py::dict picture() {
+    PictureFields picture() {
         LayerSet layers;
         Image image = session_.use([&](const auto& session) {
             layers = settings_.layers;
@@ -64,8 +64,8 @@ public:
         return picture_from(std::move(image), layers);
     }
 
-    py::dict expose_region(const RegionNumbers& numbers, std::int64_t first, int count,
-                           const std::optional<InputArray<std::uint32_t>>& counts) {
+    RegionSumArrays expose_region(const RegionNumbers& numbers, std::int64_t first, int count,
+                                  const std::optional<InputArray<std::uint32_t>>& counts) {
         const FilmRegion region = region_from(numbers);
         std::vector<std::uint32_t> of_pixels;
         if (counts) of_pixels.assign(counts->data(), counts->data() + counts->size());
@@ -75,7 +75,7 @@ public:
                               region);
     }
 
-    py::array see_region(const RegionNumbers& numbers, std::int64_t first, int count) {
+    VoidArray see_region(const RegionNumbers& numbers, std::int64_t first, int count) {
         const FilmRegion region = region_from(numbers);
         return layer_sums_to(taken([&](Session& session, const Progress& progress) {
                                  return session.see_region(region, first, count, progress);
@@ -83,12 +83,12 @@ public:
                              region);
     }
 
-    py::list expose_splats(std::int64_t first, int count) {
+    SplatList expose_splats(std::int64_t first, int count) {
         return splats_to(taken(
             [&](Session& session, const Progress& progress) { return session.expose_splats(first, count, progress); }));
     }
 
-    py::dict picture_of(const FilmArrays& arrays, const StatNumbers& stats) {
+    PictureFields picture_of(const FilmArrays& arrays, const StatNumbers& stats) {
         AccumulatedFilm film = arrays.film();
         film.stats = stats_from(stats);
         film.stats.device = device_;
@@ -136,7 +136,7 @@ void bind_session(py::module_& m) {
         .def(
             "picture_of",
             [](PythonSession& self, const InputArray<PixelSum>& pixels,
-               const std::optional<InputArray<LayerSum>>& layers, const py::list& splats,
+               const std::optional<InputArray<LayerSum>>& layers, const SplatList& splats,
                const StatNumbers& stats) { return self.picture_of({pixels, layers, splats}, stats); },
             "pixels"_a, "layers"_a, "splats"_a, "stats"_a)
         .def("cancel", &PythonSession::cancel)

@@ -96,8 +96,30 @@ struct Setting {
     const char* type;  ///< Python type annotation
     void (*set)(Draft&, Word);
     py::object (*get)(S);  ///< null: there is no property, because the argument sets other settings
+    void (*define)(py::class_<RenderSettings>&, const char* name);  ///< defines the property
     const char* initial = nullptr;  ///< Python text of the default; null: the repr of `get(RenderSettings())`
 };
+
+/// Returns a setting whose property is `get`; its signature shows the type of the result.
+template <auto get>
+Setting setting(const char* name, const char* type, void (*set)(Draft&, Word), const char* initial = nullptr) {
+    return {name,
+            type,
+            set,
+            [](S s) -> py::object {
+                if constexpr (std::derived_from<decltype(get(s)), py::object>)
+                    return get(s);
+                else
+                    return py::cast(get(s));
+            },
+            [](py::class_<RenderSettings>& settings, const char* property) {
+                settings.def_property_readonly(property, get);
+            },
+            initial};
+}
+
+using Names = Typed<"tuple[str, ...]", py::tuple>;
+using CountOrAuto = Typed<"int | Literal['auto']">;
 
 template <auto member>
 void set(Draft& d, Word word) {
@@ -106,8 +128,8 @@ void set(Draft& d, Word word) {
 }
 
 template <auto member>
-py::object get(S s) {
-    return py::cast(s.*member);
+auto get(S s) {
+    return s.*member;
 }
 
 template <auto member>
@@ -118,8 +140,8 @@ void set_noise(Draft& d, Word word) {
 
 /// Returns a noise setting as the user gave it. None if there is no noise goal or the goal does not specify it.
 template <auto member>
-py::object get_noise(S s) {
-    return py::cast(draft_of(s).noise.*member);
+auto get_noise(S s) {
+    return draft_of(s).noise.*member;
 }
 
 template <auto member>
@@ -128,8 +150,8 @@ void set_threshold(Draft& d, Word word) {
 }
 
 template <auto member>
-py::object get_threshold(S s) {
-    return py::float_(s.thresholds.*member);
+double get_threshold(S s) {
+    return s.thresholds.*member;
 }
 
 /// Sets a member by name. `find` returns the value of a name, or std::nullopt for an unknown one.
@@ -156,63 +178,64 @@ void set_spp(Draft& d, Word word) {
 
 // Applied in this order.
 const Setting kSettings[] = {
-    {"spp", "int | str", set_spp, [](S s) -> py::object { return s.noise ? py::cast("auto") : py::cast(s.spp); }},
-    {"noise", "float | None", set_noise<&NoiseRequest::noise>, get_noise<&NoiseRequest::noise>},
-    {"noise_codes", "float | None", set_noise<&NoiseRequest::noise_codes>, get_noise<&NoiseRequest::noise_codes>},
-    {"seconds", "float | None", set_noise<&NoiseRequest::seconds>, get_noise<&NoiseRequest::seconds>},
-    {"max_spp", "int | None", set_noise<&NoiseRequest::max_spp>, get_noise<&NoiseRequest::max_spp>},
-    {"seed", "int", [](Draft& d, Word word) { d.settings.seed = seed_from(word.cast<std::int64_t>()); },
-     get<&RenderSettings::seed>},
-    {"max_bounces", "int | str",
-     [](Draft& d, Word word) {
-         try {
-             d.settings.max_bounces = bounces_from(word);
-         } catch (const py::cast_error&) {
-             refuse("max_bounces must be a whole number or \"auto\"; it is " + short_repr(word));
-         }
-     },
-     [](S s) -> py::object { return s.max_bounces ? py::cast(*s.max_bounces) : py::cast("auto"); }},
-    {"transport", "str",
-     [](Draft& d, Word word) {
-         set_named<&RenderSettings::transport>(d, word, "transport", shot::transport_named, shot::kTransportNames);
-     },
-     [](S s) -> py::object { return py::cast(io::name_of(s.transport)); }},
-    {"clamp_cd_m2", "float", set<&RenderSettings::clamp>, get<&RenderSettings::clamp>},
-    {"threads", "int", set<&RenderSettings::threads>, get<&RenderSettings::threads>},
-    {"layers", "str | Iterable[str]",
-     [](Draft& d, Word word) {
-         d.settings.layers = layers_named(names_from(word, "layers must be names (docs/layers.md)"));
-     },
-     [](S s) -> py::object { return py::tuple(py::cast(names_of(s.layers))); }},
-    {"effects", "str | Iterable[str]",
-     [](Draft& d, Word word) {
-         d.settings.effects = effects_named(names_from(word, "effects must be names (rc.effects() lists them)"));
-     },
-     [](S s) -> py::object { return py::tuple(py::cast(names_of(s.effects))); }},
+    setting<[](S s) { return CountOrAuto(s.noise ? py::cast("auto") : py::cast(s.spp)); }>("spp", "int | str", set_spp),
+    setting<get_noise<&NoiseRequest::noise>>("noise", "float | None", set_noise<&NoiseRequest::noise>),
+    setting<get_noise<&NoiseRequest::noise_codes>>("noise_codes", "float | None",
+                                                   set_noise<&NoiseRequest::noise_codes>),
+    setting<get_noise<&NoiseRequest::seconds>>("seconds", "float | None", set_noise<&NoiseRequest::seconds>),
+    setting<get_noise<&NoiseRequest::max_spp>>("max_spp", "int | None", set_noise<&NoiseRequest::max_spp>),
+    setting<get<&RenderSettings::seed>>(
+        "seed", "int", [](Draft& d, Word word) { d.settings.seed = seed_from(word.cast<std::int64_t>()); }),
+    setting<[](S s) { return CountOrAuto(s.max_bounces ? py::cast(*s.max_bounces) : py::cast("auto")); }>(
+        "max_bounces", "int | str",
+        [](Draft& d, Word word) {
+            try {
+                d.settings.max_bounces = bounces_from(word);
+            } catch (const py::cast_error&) {
+                refuse("max_bounces must be a whole number or \"auto\"; it is " + short_repr(word));
+            }
+        }),
+    setting<[](S s) { return io::name_of(s.transport); }>(
+        "transport", "str",
+        [](Draft& d, Word word) {
+            set_named<&RenderSettings::transport>(d, word, "transport", shot::transport_named, shot::kTransportNames);
+        }),
+    setting<get<&RenderSettings::clamp>>("clamp_cd_m2", "float", set<&RenderSettings::clamp>),
+    setting<get<&RenderSettings::threads>>("threads", "int", set<&RenderSettings::threads>),
+    setting<[](S s) { return Names(py::tuple(py::cast(names_of(s.layers)))); }>(
+        "layers", "str | Iterable[str]",
+        [](Draft& d, Word word) {
+            d.settings.layers = layers_named(names_from(word, "layers must be names (docs/layers.md)"));
+        }),
+    setting<[](S s) { return Names(py::tuple(py::cast(names_of(s.effects)))); }>(
+        "effects", "str | Iterable[str]",
+        [](Draft& d, Word word) {
+            d.settings.effects = effects_named(names_from(word, "effects must be names (rc.effects() lists them)"));
+        }),
     {"quality", "str",
      [](Draft& d, Word word) {
          set_named<&RenderSettings::thresholds>(d, word, "quality", quality_named, kQualityNames);
      },
-     nullptr, "'photo'"},
-    {"threshold_px", "float | None", set_threshold<&PlanThresholds::pixels>, get_threshold<&PlanThresholds::pixels>,
-     "None"},
-    {"threshold_codes", "float | None", set_threshold<&PlanThresholds::codes>, get_threshold<&PlanThresholds::codes>,
-     "None"},
-    {"illuminant", "str | float | Sequence[tuple[float, float]] | None",
-     [](Draft& d, Word word) { d.settings.illuminant = light_from(word); },
-     [](S s) -> py::object { return s.illuminant ? py::cast(s.illuminant->text()) : py::none(); }},
-    {"pupil_sampling", "str",
-     [](Draft& d, Word word) {
-         set_named<&RenderSettings::pupil_sampling>(d, word, "pupil_sampling", shot::pupil_sampling_named,
-                                                    shot::kPupilSamplingNames);
-     },
-     [](S s) -> py::object { return py::cast(name_of(s.pupil_sampling)); }},
-    {"light_tracing", "str",
-     [](Draft& d, Word word) {
-         set_named<&RenderSettings::light_tracing>(d, word, "light_tracing", shot::light_tracing_named,
-                                                   shot::kLightTracingNames);
-     },
-     [](S s) -> py::object { return py::cast(name_of(s.light_tracing)); }},
+     nullptr, nullptr, "'photo'"},
+    setting<get_threshold<&PlanThresholds::pixels>>("threshold_px", "float | None",
+                                                    set_threshold<&PlanThresholds::pixels>, "None"),
+    setting<get_threshold<&PlanThresholds::codes>>("threshold_codes", "float | None",
+                                                   set_threshold<&PlanThresholds::codes>, "None"),
+    setting<[](S s) { return s.illuminant ? std::optional(s.illuminant->text()) : std::nullopt; }>(
+        "illuminant", "str | float | Sequence[tuple[float, float]] | None",
+        [](Draft& d, Word word) { d.settings.illuminant = light_from(word); }),
+    setting<[](S s) { return name_of(s.pupil_sampling); }>(
+        "pupil_sampling", "str",
+        [](Draft& d, Word word) {
+            set_named<&RenderSettings::pupil_sampling>(d, word, "pupil_sampling", shot::pupil_sampling_named,
+                                                       shot::kPupilSamplingNames);
+        }),
+    setting<[](S s) { return name_of(s.light_tracing); }>("light_tracing", "str",
+                                                          [](Draft& d, Word word) {
+                                                              set_named<&RenderSettings::light_tracing>(
+                                                                  d, word, "light_tracing", shot::light_tracing_named,
+                                                                  shot::kLightTracingNames);
+                                                          }),
 };
 
 /// Returns the constructor's signature in pybind11's format.
@@ -311,13 +334,13 @@ void bind_settings(py::module_& m) {
         type.def(py::init([](const py::kwargs& words) { return changed({}, words); }), signature().c_str())
             .def(
                 "with_", [](const RenderSettings& self, const py::kwargs& changes) { return changed(self, changes); },
-                "with_(self: RenderSettings, **changes) -> RenderSettings\n\n"
+                "with_(self: RenderSettings, **changes: Unpack[_SettingWords]) -> RenderSettings\n\n"
                 "The same with changes, named as those of the constructor. What a change leaves without a meaning goes "
                 "too: what\nis wanted of the noise with a number of samples, an illuminant with the last effect that "
                 "uses it. Raises InputError.");
     }
     for (const Setting& setting : kSettings)
-        if (setting.get) type.def_property_readonly(setting.name, setting.get);
+        if (setting.define) setting.define(type, setting.name);
     type.def(
             "__eq__",
             [](const RenderSettings& self, const py::object& other) -> py::object {

@@ -100,7 +100,8 @@ std::string text_of_shake(const Shake& shake) {
     return text + '>';
 }
 
-py::tuple shake_positions(const Shake& shake, const std::vector<double>& times_s) {
+Typed<"tuple[NDArray[float64], NDArray[float64]]", py::tuple> shake_positions(const Shake& shake,
+                                                                              const std::vector<double>& times_s) {
     const std::vector<ShakeKey> keys = shake_at(shake, times_s);
     const std::vector<py::ssize_t> shape = {static_cast<py::ssize_t>(keys.size()), 3};
     py::array_t<double> angles(shape), positions(shape);
@@ -115,7 +116,8 @@ py::tuple shake_positions(const Shake& shake, const std::vector<double>& times_s
     return py::make_tuple(angles, positions);
 }
 
-py::tuple curve_of(const Shake& shake) {
+Typed<"tuple[tuple[float, tuple[float, float, float], tuple[float, float, float]], ...]", py::tuple> curve_of(
+    const Shake& shake) {
     py::list curve;
     for (const ShakeKey& key : shake.curve)
         curve.append(py::make_tuple(key.time_s, triple(key.rotation_deg), triple(key.position_m)));
@@ -198,7 +200,7 @@ curve: (time_s, (x, y, z) in degrees, (x, y, z) in metres) in rising order of ti
 then z. Raises InputError.)")
         .def_static(
             "load",
-            [](const py::object& path) {
+            [](const PathLike& path) {
                 const std::string name = path_from(path);
                 return Shake{.curve = shot::read_shake_curve(name)};
             },
@@ -216,7 +218,7 @@ z_m; but for the time any may be missing. Raises InputError naming file and line
 }
 
 /// Returns the shot keys that are command line options.
-py::list listed_shot_keys() {
+Typed<"list[tuple[str, str | None, str, str, str, str]]", py::list> listed_shot_keys() {
     py::list keys;
     for (const shot::ShotKey& key : shot::shot_keys())
         keys.append(py::make_tuple(key.name, key.option, key.group, key.placeholder, key.help()));
@@ -234,9 +236,10 @@ std::vector<std::pair<const shot::ShotKey*, std::string>> options_of(const std::
 /// Returns the fields of realcam.Shot by name, and true if neither a number of samples nor a noise goal is specified.
 /// `changes` and `words`: see shot::ShotChanges. `given`: a scene that replaces the file's, which messages call by the
 /// path; `lens`: replaces the request's; `denoises`: the picture will be denoised.
-py::tuple read_shot(const py::object& path, const std::string& changes, const std::map<std::string, std::string>& words,
-                    const std::optional<Assembly>& given, std::optional<LensSystem> lens, bool denoises,
-                    const std::string& device) {
+Typed<"tuple[_Shot, bool]", py::tuple> read_shot(const PathLike& path, const std::string& changes,
+                                                 const std::map<std::string, std::string>& words,
+                                                 const std::optional<Assembly>& given, std::optional<LensSystem> lens,
+                                                 bool denoises, const std::string& device) {
     shot::ShotRequest request;
     Camera camera;
     Assembly scene;
@@ -258,8 +261,7 @@ py::tuple read_shot(const py::object& path, const std::string& changes, const st
         scene = given ? shot::scene_of(request, *given, readers, heed_signals)
                       : shot::scene_of(request, readers, heed_signals);
     }
-    for (const std::string& note : notes)
-        if (PyErr_WarnEx(PyExc_UserWarning, note.c_str(), 1) < 0) throw py::error_already_set();
+    for (const std::string& note : notes) warn(note);
     shot::Shot shot = shot::set_up(request, std::move(camera), std::move(scene));
     if (request.meters_exposure_time()) {
         const py::none no_callback;
@@ -274,8 +276,8 @@ py::tuple read_shot(const py::object& path, const std::string& changes, const st
     return py::make_tuple(std::move(fields), request.sampling == shot::Sampling::unsaid);
 }
 
-py::dict metadata(const Camera& camera, const RenderSettings& settings, int spp, std::uint32_t seed,
-                  const std::string& plan, const std::string& denoiser) {
+Typed<"dict[str, str]", py::dict> metadata(const Camera& camera, const RenderSettings& settings, int spp,
+                                           std::uint32_t seed, const std::string& plan, const std::string& denoiser) {
     py::dict entries;
     io::ImageMetadata metadata = io::metadata_of(camera, settings);
     metadata.spp = spp;

@@ -28,8 +28,8 @@ Camera framed(Camera camera, const Assembly& scene, const std::optional<Triple>&
     return camera;
 }
 
-Camera metered(Camera camera, const Assembly& scene, const std::string& device, const py::object& max_bounces,
-               const py::object& progress) {
+Camera metered(Camera camera, const Assembly& scene, const std::string& device, const Typed<"int | str">& max_bounces,
+               const ProgressFunction& progress) {
     const Progress report = progress_of(progress);
     const std::optional<int> bounces = bounces_from(max_bounces);
     camera.exposure_time_s = OwnedSession::shared(device).use([&](const auto& session) {

@@ -22,15 +22,22 @@ inline FilmRegion region_from(const RegionNumbers& region) {
     return {region[0], region[1], region[2], region[3]};
 }
 
+/// Sums of a region, see region_sums_to.
+using RegionSumArrays = Typed<"_RegionSums", py::dict>;
+/// Structured array.
+using VoidArray = Typed<"NDArray[void]", py::array>;
+/// Films of splats, see splats_to.
+using SplatList = Typed<"list[_Splats]", py::list>;
+
 /// Converts the sums of a region to a dict with an array (height, width) that has the fields of PixelSum, and with its
 /// stats.
-py::dict region_sums_to(RegionSums sums, const FilmRegion& region);
+RegionSumArrays region_sums_to(RegionSums sums, const FilmRegion& region);
 
 /// Converts the layer sums of a region to an array (height, width) with the fields of LayerSum.
-py::array layer_sums_to(std::vector<LayerSum> sums, const FilmRegion& region);
+VoidArray layer_sums_to(std::vector<LayerSum> sums, const FilmRegion& region);
 
 /// Converts each film to a dict: light (a number), sums (films, height, width, 3) int64, blocks and units_per_lux.
-py::list splats_to(std::vector<SplatFilm> films);
+SplatList splats_to(std::vector<SplatFilm> films);
 
 /// Rendering statistics by their names in Python.
 using StatNumbers = std::map<std::string, double>;
@@ -41,7 +48,7 @@ RenderStats stats_from(const StatNumbers& numbers);
 struct FilmArrays {
     InputArray<PixelSum> pixels;
     std::optional<InputArray<LayerSum>> layers;
-    py::list splats;
+    SplatList splats;
 
     AccumulatedFilm film() const;
 };

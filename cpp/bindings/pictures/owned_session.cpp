@@ -54,7 +54,7 @@ void OwnedSession::cancel(Collected collected) const {
 
 const std::shared_ptr<Session>& OwnedSession::made() {
     if (session_) return session_;
-    std::shared_ptr<Session> session = make_(device_, warn_of_device);
+    std::shared_ptr<Session> session = make_(device_, warn);
     const py::gil_scoped_acquire acquire;
     session_ = std::move(session);
     return session_;

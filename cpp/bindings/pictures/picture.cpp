@@ -24,7 +24,7 @@ py::array array_of_layer(LayerImage layer, py::ssize_t height, py::ssize_t width
 
 }  // namespace
 
-py::dict picture_from(Image image, LayerSet layers) {
+PictureFields picture_from(Image image, LayerSet layers) {
     const py::array pixels = array_from(std::move(image.exposure), {image.height, image.width, 3}),
                     depth = array_from(std::move(image.depth), {image.height, image.width});
     py::dict arrays;

@@ -48,7 +48,8 @@ py::array_t<double> matrix_of(const Affine<double>& map) {
     });
 }
 
-Assembly with_instance(Assembly scene, const Assembly& object, const py::object& matrices, const std::string& name) {
+Assembly with_instance(Assembly scene, const Assembly& object, const OptionalArrayLike& matrices,
+                       const std::string& name) {
     DistinctNames names(scene);
     if (matrices.is_none()) {
         add(scene, object, {}, name, names);
@@ -79,7 +80,7 @@ std::size_t find_instance(const Assembly& scene, const std::variant<py::ssize_t,
                                          "\"; the number of one of them is wanted");
 }
 
-Assembly moved(Assembly scene, const std::variant<py::ssize_t, std::string>& which, const py::object& matrices,
+Assembly moved(Assembly scene, const std::variant<py::ssize_t, std::string>& which, const ArrayLike& matrices,
                const std::optional<std::vector<double>>& times_s) {
     const std::size_t instance = find_instance(scene, which);
     Transforms transforms = transforms_from(matrices);
@@ -99,7 +100,7 @@ Assembly moved(Assembly scene, const std::variant<py::ssize_t, std::string>& whi
     return scene;
 }
 
-py::tuple instances_of(const Assembly& scene) {
+Typed<"tuple[tuple[str, NDArray[float64]], ...]", py::tuple> instances_of(const Assembly& scene) {
     py::list list;
     for (const Instance& i : scene.instances)
         list.append(py::make_tuple(text_from(i.name), matrix_of(i.scene_from_object)));
@@ -113,7 +114,7 @@ py::array_t<double> matrices_of(const std::vector<Affine<double>>& maps) {
     return py::module_::import("numpy").attr("array")(list);
 }
 
-py::tuple motions_of(const Assembly& scene) {
+Typed<"tuple[tuple[tuple[float, ...], NDArray[float64]] | None, ...]", py::tuple> motions_of(const Assembly& scene) {
     py::list list;
     for (const Instance& i : scene.instances) {
         if (i.motion)
@@ -124,7 +125,7 @@ py::tuple motions_of(const Assembly& scene) {
     return py::tuple(list);
 }
 
-py::tuple cameras_of(const Assembly& scene) {
+Typed<"tuple[tuple[str, NDArray[float64], float], ...]", py::tuple> cameras_of(const Assembly& scene) {
     constexpr double kDegrees = 57.29577951308232;
     py::list list;
     for (const SceneCamera& camera : scene.cameras)

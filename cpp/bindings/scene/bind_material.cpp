@@ -17,6 +17,8 @@ using namespace py::literals;
 namespace {
 
 using Which = std::variant<py::ssize_t, py::str>;
+using ColourTuple = Typed<"tuple[float, float, float]", py::tuple>;
+using TexturePixels = Typed<"NDArray[uint8] | NDArray[float32] | None">;
 
 std::size_t texture_index(TextureReference Material::* wanted) {
     std::size_t i = 0;
@@ -43,9 +45,9 @@ std::string value(const PythonMaterial& m, std::string PythonMaterial::* member)
     return m.*member;
 }
 /// Returns a read-only array that shares the texture's memory, or None.
-py::object value(const PythonMaterial& m, TextureReference Material::* member) {
+TexturePixels value(const PythonMaterial& m, TextureReference Material::* member) {
     const std::shared_ptr<const Texture>& texture = m.textures[texture_index(member)];
-    if (!texture) return py::none();
+    if (!texture) return TexturePixels(py::none());
     using Owner = std::shared_ptr<const Texture>;
     const py::capsule owner(new Owner(texture), [](void* p) { delete static_cast<Owner*>(p); });
     const std::vector<py::ssize_t> shape = {texture->height, texture->width, 4};
@@ -83,7 +85,8 @@ struct Field {
     Member member;
     const char* text;
 
-    using Value = decltype(value(std::declval<PythonMaterial>(), std::declval<Member>()));
+    using Property = decltype(value(std::declval<PythonMaterial>(), std::declval<Member>()));
+    using Value = std::conditional_t<std::is_same_v<Property, TexturePixels>, OptionalArrayLike, Property>;
     Field(const char* name, Member member, const char* text = "") : name(name), member(member), text(text) {}
 };
 
@@ -101,7 +104,7 @@ template <class Member>
 void def_property(py::class_<PythonMaterial>& material, const Field<Member>& field) {
     const auto get = [member = field.member](const PythonMaterial& m) {
         if constexpr (std::is_same_v<typename Field<Member>::Value, Colour>)
-            return py::tuple(py::cast(value(m, member)));
+            return ColourTuple(py::cast(value(m, member)));
         else if constexpr (std::is_same_v<typename Field<Member>::Value, std::string>)
             return text_from(value(m, member));
         else
@@ -112,7 +115,8 @@ void def_property(py::class_<PythonMaterial>& material, const Field<Member>& fie
 
 PythonMaterial with_numbers(PythonMaterial m, const std::optional<Colour>& diffuse,
                             const std::optional<Colour>& specular, std::optional<float> shininess,
-                            const std::optional<Colour>& emission, const py::object& texture,
+                            const std::optional<Colour>& emission,
+                            const Typed<"ArrayLike | types.EllipsisType | None">& texture,
                             const std::optional<std::string>& name, std::optional<float> metallic,
                             std::optional<float> roughness, std::optional<float> transmission, std::optional<float> ior,
                             std::optional<float> opacity) {
@@ -154,7 +158,7 @@ std::string text_of(const PythonMaterial& material) {
 
 // Materials of a scene.
 
-py::dict materials_of(const Assembly& scene) {
+Typed<"dict[str, Material]", py::dict> materials_of(const Assembly& scene) {
     py::dict materials;
     const std::vector<std::string> names = material_names(*scene.static_geometry);
     for (std::size_t i = 0; i < names.size(); ++i)
@@ -186,7 +190,7 @@ Assembly with_material(const Assembly& scene, const Which& which, const PythonMa
     return changed_scene;
 }
 
-Assembly with_texture(const Assembly& scene, const Which& which, const py::object& pixels) {
+Assembly with_texture(const Assembly& scene, const Which& which, const ArrayLike& pixels) {
     PythonMaterial material = material_of(scene.static_geometry, find_material(scene, which));
     material.textures[0] = texture_from(pixels, io::TextureUse::colour);
     material.values.diffuse_texture = {};

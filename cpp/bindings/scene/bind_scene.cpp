@@ -13,7 +13,6 @@
 #include "../values/short_text.hpp"
 #include "../values/value_methods.hpp"
 #include "picture_readers.hpp"
-#include "scene_from_arrays.hpp"
 
 namespace realcam::bindings {
 
@@ -28,7 +27,7 @@ Vec3d unit_vector(const char* what, const Triple& direction) {
     return (1 / size) * d;
 }
 
-Assembly load(const py::object& path, double scale, const std::vector<std::string>& objects) {
+Assembly load(const PathLike& path, double scale, const std::vector<std::string>& objects) {
     const std::string name = path_from(path);
     const Unlocked unlocked;
     return io::read_scene(name, {scale, objects, heed_signals}, picture_readers().texture);
@@ -70,8 +69,8 @@ Environment environment_from(const py::object& radiance, const std::string& laye
     return environment;
 }
 
-Assembly with_environment(const Assembly& scene, const py::object& radiance, double scale, double rotation_deg,
-                          const std::string& layer) {
+Assembly with_environment(const Assembly& scene, const Typed<"float | ArrayLike | str | os.PathLike[str]">& radiance,
+                          double scale, double rotation_deg, const std::string& layer) {
     return with_valid_static_geometry(scene, [&](Scene& changed) {
         changed.environment =
             realcam::changed(environment_from(radiance, layer, changed.warnings), {scale, rotation_deg});
@@ -131,14 +130,6 @@ those of static geometry; objects bring their own along.)");
 of nodes (of an OBJ: what follows "o" or "g") that become instances, each with all below it, to be moved
 by their names; of several nodes "car" the second is "car.2". Only regular files are read.
 Raises SceneFileError, and KeyboardInterrupt on Ctrl-C. What could be put up with is in warnings.)")
-        .def_static(
-            "from_arrays", &scene_from_arrays, "vertices_m"_a, "triangles"_a, py::kw_only(), "normals"_a = py::none(),
-            "uvs"_a = py::none(), "triangle_materials"_a = py::none(), "materials"_a = std::vector<PythonMaterial>{},
-            "colors"_a = py::none(),
-            R"(vertices_m: (V, 3) float; triangles: (T, 3) int; normals: (V, 3) unit, zero for flat; uvs: (V, 2);
-triangle_materials: (T,) indices into materials; colors: (V, 3) or (V, 4), linear Rec. 709, by which the
-materials' diffuse or base colours, and a fourth number by which their opacity is multiplied.
-Raises InputError or SceneFileError.)")
         .def("with_environment", &with_environment, "radiance"_a, py::kw_only(), "scale"_a = 1.0,
              "rotation_deg"_a = 0.0, "layer"_a = "",
              R"(The scene in light from all around: a number or (r, g, b) in cd/m^2, or an (H, W, 3) latitude-longitude
@@ -160,14 +151,14 @@ InputError.)")
         .def_property_readonly("has_light", &Assembly::has_light)
         .def_property_readonly("bounds_m", &bounds, "Lowest and highest corner of the bounding box.")
         .def_property_readonly(
-            "warnings",
-            [](const Assembly& s) {
+            "warnings", [](const Assembly& s)->Typed<"list[str]", py::list> {
                 py::list texts;
                 for (const std::string& warning : s.static_geometry->warnings) texts.append(text_from(warning));
                 return texts;
             },
             "What the reader put up with, such as a missing texture.")
         .def("__repr__", [](const Assembly& s) { return text_of(s); });
+    bind_scene_arrays(scene_class);
     bind_instances(scene_class);
     bind_scene_materials(scene_class);
 }

@@ -1,12 +1,19 @@
-#include "scene_from_arrays.hpp"
+#include <pybind11/stl.h>
 
 #include <algorithm>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "../../scene/scene_checks.hpp"
 #include "../bindings.hpp"
+#include "../values/arrays.hpp"
+#include "../values/material.hpp"
 
 namespace realcam::bindings {
+
+using namespace py::literals;
+
 namespace {
 
 void check_shape(const py::array& array, py::ssize_t columns, const char* what) {
@@ -26,11 +33,10 @@ InputArray<std::int64_t> indices_from(const py::object& sequence, const char* wh
     return InputArray<std::int64_t>(values);
 }
 
-}  // namespace
-
-Assembly scene_from_arrays(const InputArray<double>& vertices, const py::object& triangle_corners,
+/// See Scene.from_arrays.
+Assembly scene_from_arrays(const InputArray<double>& vertices, const ArrayLike& triangle_corners,
                            const std::optional<InputArray<float>>& normals, const std::optional<InputArray<float>>& uvs,
-                           const py::object& material_of_triangle, const std::vector<PythonMaterial>& materials,
+                           const OptionalArrayLike& material_of_triangle, const std::vector<PythonMaterial>& materials,
                            const std::optional<InputArray<float>>& colors) {
     const InputArray<std::int64_t> triangles = indices_from(triangle_corners, "triangles");
     std::optional<InputArray<std::int64_t>> triangle_materials;
@@ -90,6 +96,19 @@ Assembly scene_from_arrays(const InputArray<double>& vertices, const py::object&
     if (scene.triangles.empty()) throw InputError("all of the scene's triangles are without area");
     if (dropped > 0) scene.warnings.push_back(std::to_string(dropped) + " triangle(s) without area dropped");
     return scene;
+}
+
+}  // namespace
+
+void bind_scene_arrays(py::class_<Assembly>& scene) {
+    scene.def_static(
+        "from_arrays", &scene_from_arrays, "vertices_m"_a, "triangles"_a, py::kw_only(), "normals"_a = py::none(),
+        "uvs"_a = py::none(), "triangle_materials"_a = py::none(), "materials"_a = std::vector<PythonMaterial>{},
+        "colors"_a = py::none(),
+        R"(vertices_m: (V, 3) float; triangles: (T, 3) int; normals: (V, 3) unit, zero for flat; uvs: (V, 2);
+triangle_materials: (T,) indices into materials; colors: (V, 3) or (V, 4), linear Rec. 709, by which the
+materials' diffuse or base colours, and a fourth number by which their opacity is multiplied.
+Raises InputError or SceneFileError.)");
 }
 
 }  // namespace realcam::bindings

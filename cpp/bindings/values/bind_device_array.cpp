@@ -21,7 +21,7 @@ py::dtype dtype_of(const SharedDeviceArray& array) {
     throw InputError("an array of unknown type");
 }
 
-py::tuple shape_of(const SharedDeviceArray& array) {
+Typed<"tuple[int, ...]", py::tuple> shape_of(const SharedDeviceArray& array) {
     return py::tuple(py::cast(array.shape()));
 }
 
@@ -29,7 +29,7 @@ std::string device_of(const SharedDeviceArray& array) {
     return "cuda:" + std::to_string(array.ordinal());
 }
 
-py::array numpy_of(const SharedDeviceArray& array) {
+Typed<"NDArray[Any]", py::array> numpy_of(const SharedDeviceArray& array) {
     py::array copy(dtype_of(array), array.shape());
     void* const to = copy.mutable_data();
     const Unlocked unlocked;
@@ -37,14 +37,15 @@ py::array numpy_of(const SharedDeviceArray& array) {
     return copy;
 }
 
-py::object host_copy_of(const SharedDeviceArray& array, const py::object& dtype, const py::object& copy) {
+Typed<"NDArray[Any]"> host_copy_of(const SharedDeviceArray& array, const Typed<"DTypeLike | None">& dtype,
+                                   const Typed<"bool | None">& copy) {
     if (!copy.is_none() && !copy.cast<bool>())
         throw py::value_error("a DeviceArray becomes a numpy array only as a copy; copy=False is out of reach");
     const py::array numbers = numpy_of(array);
     return dtype.is_none() ? py::object(numbers) : numbers.attr("astype")(dtype, "copy"_a = false);
 }
 
-py::dict interface_of(const SharedDeviceArray& array) {
+Typed<"dict[str, Any]", py::dict> interface_of(const SharedDeviceArray& array) {
     const auto address = reinterpret_cast<std::uintptr_t>(array.data());
     return py::dict("version"_a = 3, "shape"_a = shape_of(array), "typestr"_a = dtype_of(array).attr("str"),
                     "data"_a = py::make_tuple(address, false), "strides"_a = py::none(), "stream"_a = py::none());
@@ -79,9 +80,9 @@ last of those who share it.)")
         .def_property_readonly("__cuda_array_interface__", &interface_of, "Version 3.")
         .def(
             "__dlpack__",
-            [](const SharedDeviceArray& array, const py::object&, const py::object& max_version,
-               const py::object& dl_device,
-               const py::object& copy) { return dlpack_capsule(array, max_version, dl_device, copy); },
+            [](const SharedDeviceArray& array, const Typed<"int | None">&,
+               const Typed<"tuple[int, int] | None">& max_version, const Typed<"tuple[int, int] | None">& dl_device,
+               const Typed<"bool | None">& copy) { return dlpack_capsule(array, max_version, dl_device, copy); },
             py::kw_only(), "stream"_a = py::none(), "max_version"_a = py::none(), "dl_device"_a = py::none(),
             "copy"_a = py::none(),
             R"(As the Python array API standard has it; the numbers are complete, so that any stream may read them.

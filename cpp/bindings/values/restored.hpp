@@ -2,6 +2,7 @@
 #include <pybind11/numpy.h>
 
 #include <algorithm>
+#include <concepts>
 #include <cstring>
 #include <type_traits>
 #include <vector>
@@ -25,6 +26,9 @@ struct AnyMembers {
     template <class T>
     static void check(const T&) {}
 };
+
+template <class T, class... Types>
+concept OneOf = (std::same_as<T, Types> || ...);
 
 /// `value`: the last enumerator of an enumeration that starts at 0 and has no gaps.
 template <class E>

@@ -24,8 +24,16 @@ template <class T>
 struct RestoredCheck<Vec3<T>> : AnyMembers {};
 template <class T>
 struct RestoredCheck<Affine<T>> : AnyMembers {};
-template <>
-struct RestoredCheck<Color> : AnyMembers {};
+
+/// Parts that are checked together with the value that holds them: a glass by restored_glass, layers and metal by the
+/// coating, whose error names the layer, and a material by the scene.
+template <OneOf<Color, Glass::TablePoint, Glass::Parts, CoatingMaterial::Point, CoatingMaterial, SurfacePlacement,
+                XyTerm, SurfaceForm, Obscuration, ApertureShape, IrisShape, FocusingRule,
+                ZoomPosition, ZoomRange, FirstOrder, Meridian, Pose, PoseKey, Shutter, QuantumEfficiency, SensorPoint,
+                SensorConversion, SensorNoise, RenderStats, Triangle, VertexColor, TextureSampler, TextureReference,
+                Material, ScenePointLight, SunLight, Environment, Scene, Instance>
+              T>
+struct RestoredCheck<T> : AnyMembers {};
 
 // Types of a lens.
 
@@ -35,11 +43,6 @@ template <>
 struct LastEnumerator<CoatingKind> : LastIs<CoatingKind::reflectance> {};
 template <>
 struct LastEnumerator<SurfaceType> : LastIs<SurfaceType::aperture> {};
-
-template <>
-struct RestoredCheck<Glass::TablePoint> : AnyMembers {};
-template <>
-struct RestoredCheck<Glass::Parts> : AnyMembers {};  // checked by restored_glass
 
 /// Creates a glass through the public constructors. Throws InputError.
 inline Glass restored_glass(Glass::Parts parts) {
@@ -58,10 +61,6 @@ inline Glass restored_glass(Glass::Parts parts) {
     return glass;
 }
 
-template <>
-struct RestoredCheck<CoatingMaterial::Point> : AnyMembers {};
-template <>
-struct RestoredCheck<CoatingMaterial> : AnyMembers {};  // checked by the coating, whose error names the layer
 template <>
 struct RestoredCheck<CoatingLayer> {
     static void check(const CoatingLayer& layer) { check_coating(layered_coating({layer})); }
@@ -84,20 +83,9 @@ struct LastEnumerator<E> : LastIs<E{1}> {};
 template <>
 struct LastEnumerator<ApertureOutline> : LastIs<ApertureOutline::polygon> {};
 
-// Checked by the surface or the lens.
-template <>
-struct RestoredCheck<SurfacePlacement> : AnyMembers {};
-template <>
-struct RestoredCheck<XyTerm> : AnyMembers {};
 template <class Terms>
     requires requires { Terms::words; }
 struct RestoredCheck<Terms> : AnyMembers {};
-template <>
-struct RestoredCheck<SurfaceForm> : AnyMembers {};
-template <>
-struct RestoredCheck<Obscuration> : AnyMembers {};
-template <>
-struct RestoredCheck<ApertureShape> : AnyMembers {};
 template <>
 struct RestoredCheck<Surface> {
     /// Checks that do not depend on the lens.
@@ -108,14 +96,6 @@ struct RestoredCheck<Surface> {
         if (const std::string why = form_error(surface); !why.empty()) throw InputError("a surface " + why);
     }
 };
-template <>
-struct RestoredCheck<IrisShape> : AnyMembers {};
-template <>
-struct RestoredCheck<FocusingRule> : AnyMembers {};
-template <>
-struct RestoredCheck<ZoomPosition> : AnyMembers {};
-template <>
-struct RestoredCheck<ZoomRange> : AnyMembers {};
 template <>
 struct RestoredCheck<LensSystem> {
     static void check(const LensSystem& lens) {
@@ -131,46 +111,16 @@ struct RestoredCheck<LensSystem> {
         if (!(lens.focusing.nearest_mm >= 0)) throw LensFileError("the nearest focus must be 0 or a distance");
     }
 };
-template <>
-struct RestoredCheck<FirstOrder> : AnyMembers {};
-template <>
-struct RestoredCheck<Meridian> : AnyMembers {};
 
 // Types of a camera and its film, sensor and exposure.
 
 template <>
 struct LastEnumerator<CameraModel> : LastIs<CameraModel::full_lens_double> {};
 
-template <>
-struct RestoredCheck<Film> {
-    static void check(const Film& film) { validate(film); }
+template <OneOf<Film, Camera, Sensor> T>
+struct RestoredCheck<T> {
+    static void check(const T& value) { validate(value); }
 };
-template <>
-struct RestoredCheck<Pose> : AnyMembers {};
-template <>
-struct RestoredCheck<PoseKey> : AnyMembers {};
-template <>
-struct RestoredCheck<Shutter> : AnyMembers {};
-template <>
-struct RestoredCheck<Camera> {
-    static void check(const Camera& camera) { validate(camera); }
-};
-
-template <>
-struct RestoredCheck<QuantumEfficiency> : AnyMembers {};
-template <>
-struct RestoredCheck<SensorPoint> : AnyMembers {};
-template <>
-struct RestoredCheck<SensorConversion> : AnyMembers {};
-template <>
-struct RestoredCheck<SensorNoise> : AnyMembers {};
-template <>
-struct RestoredCheck<Sensor> {
-    static void check(const Sensor& sensor) { validate(sensor); }
-};
-
-template <>
-struct RestoredCheck<RenderStats> : AnyMembers {};
 
 // Types of a scene.
 
@@ -194,22 +144,6 @@ inline constexpr bool has_names_of_files<SceneCamera> = true;
 template <>
 inline constexpr bool has_names_of_files<PythonMaterial> = true;
 
-template <>
-struct RestoredCheck<Triangle> : AnyMembers {};
-template <>
-struct RestoredCheck<VertexColor> : AnyMembers {};
-template <>
-struct RestoredCheck<TextureSampler> : AnyMembers {};
-template <>
-struct RestoredCheck<TextureReference> : AnyMembers {};
-template <>
-struct RestoredCheck<Material> : AnyMembers {};
-template <>
-struct RestoredCheck<ScenePointLight> : AnyMembers {};
-template <>
-struct RestoredCheck<SunLight> : AnyMembers {};
-template <>
-struct RestoredCheck<Environment> : AnyMembers {};
 template <>
 struct RestoredCheck<Texture> {
     static void check(const Texture& texture) {
@@ -237,10 +171,6 @@ struct RestoredCheck<SceneCamera> {
         require_restored(camera.vertical_field_rad >= 0 && camera.vertical_field_rad < std::numbers::pi);
     }
 };
-template <>
-struct RestoredCheck<Scene> : AnyMembers {};
-template <>
-struct RestoredCheck<Instance> : AnyMembers {};
 template <>
 struct RestoredCheck<Assembly> {
     static void check(const Assembly& scene) {

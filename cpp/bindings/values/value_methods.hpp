@@ -3,6 +3,7 @@
 
 #include <concepts>
 
+#include "../typed_object.hpp"
 #include "value_state.hpp"
 
 namespace realcam::bindings {
@@ -43,10 +44,9 @@ void def_result(pybind11::class_<T, Options...>& type) {
 /// Defines copy and deepcopy of an immutable class, which return the object itself.
 template <class T, class... Options>
 void def_copy(pybind11::class_<T, Options...>& type) {
-    type.def("__copy__", [](const pybind11::object& self) { return self; });
-    type.def(
-        "__deepcopy__", [](const pybind11::object& self, const pybind11::object&) { return self; },
-        pybind11::arg("memo"));
+    using Self = Typed<"Self">;
+    type.def("__copy__", [](const Self& self) { return self; });
+    type.def("__deepcopy__", [](const Self& self, const pybind11::object&) { return self; }, pybind11::arg("memo"));
 }
 
 /// Like def_result, for immutable values.

@@ -3,6 +3,7 @@
 #include "../device/launch_grid.hpp"
 #include "bvh_scene.hpp"
 #include "layer_kernels.hpp"
+#include "lanes_per_pixel.hpp"
 #include "warp_tiles.hpp"
 
 namespace realcam {

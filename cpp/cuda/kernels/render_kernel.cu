@@ -3,6 +3,7 @@
 #include "../../render/path/path_settings.hpp"
 #include "../device/cuda_error.hpp"
 #include "../device/launch_grid.hpp"
+#include "lanes_per_pixel.hpp"
 #include "warp_tiles.hpp"
 
 namespace realcam {

@@ -9,8 +9,8 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// A. W. Greynolds, "Superconic and subconic surfaces in optical design", Proc. SPIE 4832, 1 (2002), as Zemax's type
-/// SUPERCON. With s^2 = r^2 + z^2 and w = (s / radius)^2 the surface is where
+/// A. W. Greynolds, "Superconic and subconic surfaces in optical design", Proc. SPIE 4832, 1 (2002). With
+/// s^2 = r^2 + z^2 and w = (s / radius)^2 the surface is where
 ///     s^2 (1 + U_1 w + U_2 w^2 + ...) + k z^2 + radius z (V_1 w + V_2 w^2 + ...) = 2 z / c.
 /// A conic if all coefficients are 0; a Cartesian oval has U_1 and V_1.
 struct SuperconicTerms {

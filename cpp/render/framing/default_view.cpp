@@ -88,8 +88,8 @@ Pose pose_of(const Affine<double>& scene_from_camera, const LensSystem& lens) {
 /// surface on the axis beyond the lens or, if there is none, on the plane through the centre of the subject. Throws
 /// InputError if the lens cannot focus there.
 template <class PoseOfLens>
-void transform(Camera& camera, const Assembly& assembly, const Subject& subject, std::optional<double> focus_distance_m,
-               PoseOfLens&& pose_of_lens) {
+void pose_and_focus(Camera& camera, const Assembly& assembly, const Subject& subject,
+                    std::optional<double> focus_distance_m, PoseOfLens&& pose_of_lens) {
     const LensSystem lens = camera.lens;
     camera.pose = pose_of_lens(lens);
     // The pose depends on the focus, and the focus on the pose, so both are iterated.
@@ -164,7 +164,7 @@ void choose_view(Camera& camera, const Assembly& assembly, const Subject& subjec
     };
     for (int i = 0;; ++i) {
         try {
-            transform(camera, assembly, subject, request.focus_distance_m, pose_of_lens);
+            pose_and_focus(camera, assembly, subject, request.focus_distance_m, pose_of_lens);
             return;
         } catch (const InputError&) {
             if (request.focus_distance_m || i == 99) throw;
@@ -177,6 +177,14 @@ void choose_view(Camera& camera, const Assembly& assembly, const Subject& subjec
 
 }  // namespace
 
+void add_daylight(Scene& scene, const Pose& pose) {
+    const auto axes = camera_detail::axes_of(pose);
+    const Vec3d to_sun = normalized(-0.5 * axes.right + 0.8 * axes.up + 0.6 * axes.backward);
+    scene.suns.push_back({static_cast<Vec3f>(-to_sun), {84e3f, 80e3f, 68e3f}});
+    scene.environment = {};
+    scene.environment.constant = {4450, 5040, 6250};
+}
+
 const SceneCamera* set_view(Camera& camera, const Assembly& assembly, const ViewRequest& request) {
     validate(assembly);
     camera.motion.clear();
@@ -186,8 +194,8 @@ const SceneCamera* set_view(Camera& camera, const Assembly& assembly, const View
     if (from) {
         const Affine<double> transform = from->transform_at(camera.shutter.opens_s);
         try {
-            transform(camera, still, subject, request.focus_distance_m,
-                      [&](const LensSystem& lens) { return pose_of(transform, lens); });
+            pose_and_focus(camera, still, subject, request.focus_distance_m,
+                           [&](const LensSystem& lens) { return pose_of(transform, lens); });
         } catch (const InputError& error) {
             throw InputError(std::string(error.what()) + " (in the place of the scene's camera \"" + from->name +
                              "\"; camera \"none\" takes another)");
@@ -198,7 +206,7 @@ const SceneCamera* set_view(Camera& camera, const Assembly& assembly, const View
         if (from->motion) set_motion(camera, std::move(keys));
     } else if (request.position_m) {
         const Pose pose = {*request.position_m, request.look_at_m.value_or(subject.box.middle()), request.up};
-        transform(camera, still, subject, request.focus_distance_m, [&](const LensSystem&) { return pose; });
+        pose_and_focus(camera, still, subject, request.focus_distance_m, [&](const LensSystem&) { return pose; });
     } else {
         choose_view(camera, still, subject, request);
     }

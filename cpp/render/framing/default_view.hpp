@@ -33,9 +33,8 @@ struct ViewRequest {
 /// - front: +z (-y if up is z), or the first of the right, the left and the back side if the front is a wall that is
 ///   seen from inside.
 /// - an object is seen from its front, slightly above and aside (by half the angles of the diagonals of its box, so
-/// that
-///   a flat picture is seen from in front), from a distance at which the boxes of its parts fill nine tenths of the
-///   film, or nearer if a surface would be in between;
+///   that a flat picture is seen from in front), from a distance at which the boxes of its parts fill nine tenths of
+///   the film, or nearer if a surface would be in between;
 /// - an open room is seen horizontally through its open side, which fills the film;
 /// - a closed room is seen from the corner, near half of its height, with the longest view towards its content.
 /// - focus: the first surface on the camera's axis, or the depth of the subject's centre if the axis hits nothing. A

@@ -114,7 +114,7 @@ def docstrings() -> Iterator[tuple[str, str]]:
         for name, thing in vars(owner).items():
             if inspect.ismodule(thing) or (name != "__init__" and name.startswith("__")):
                 continue
-            text = inspect.getdoc(thing.fget if isinstance(thing, property) else getattr(owner, name))
+            text = inspect.getdoc(getattr(owner, name))
             if text and text != inspect.getdoc(object.__init__):
                 yield f"{owner.__name__}.{name}", text
 

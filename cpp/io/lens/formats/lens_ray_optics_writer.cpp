@@ -95,7 +95,7 @@ private:
             json_.null();
             return;
         }
-        const auto& [decentre, tilt, returns] = place;
+        const auto& [decentre, tilt, returns] = placement;
         begin("rayoptics.elem.surface", "DecenterData").text("_dtype", returns ? "dec and return" : "decenter");
         write_array("dec", {decentre.x, decentre.y, decentre.z});
         write_array("euler", {-tilt.x, -tilt.y, tilt.z});  // the first two angles are positive clockwise

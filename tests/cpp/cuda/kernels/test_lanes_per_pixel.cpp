@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "cuda/kernels/warp_tiles.hpp"
+#include "cuda/kernels/lanes_per_pixel.hpp"
 #include "doctest/doctest.h"
 
 using namespace realcam;
