@@ -110,8 +110,25 @@ SCENES = {
 }
 
 
-def pictures(scene: rc.Scene, camera: rc.Camera, devices: tuple[str, str], **options: Any) -> list[rc.Image]:
-    return [rc.render(scene, camera, device=device, **{"effects": (), **options}) for device in devices]
+BOTH = ("cpu", "cuda")
+
+
+def view(lens: rc.Lens, resolution: tuple[int, int], **more: Any) -> rc.Camera:
+    pose = {} if "motion" in more else {"position": (0, 1, 3), "look_at": (0, 0.6, -2)}
+    return rc.Camera(lens, film=rc.Film(*lens.film_mm, resolution), **pose, **more)
+
+
+def double_gauss(resolution: tuple[int, int] = (120, 80), **more: Any) -> rc.Camera:
+    return view(rc.Lens.load("double-gauss-50mm").focused(4.0), resolution, **more)
+
+
+def tessar(resolution: tuple[int, int]) -> rc.Camera:
+    return view(rc.Lens.load("tessar-50mm").focused(4.0), resolution)
+
+
+def pictures(scene: str, camera: rc.Camera, devices: tuple[str, str] = BOTH, **options: Any) -> list[rc.Image]:
+    made = SCENES[scene]()
+    return [rc.render(made, camera, device=device, **{"effects": (), **options}) for device in devices]
 
 
 def hold_parity(a: rc.Image, b: rc.Image) -> None:
@@ -142,45 +159,53 @@ def hold_layer_parity(a: rc.Image, b: rc.Image) -> None:
         assert (~same).sum() <= 2 + 3 * ASTRAY_SHARE * same.size, name
 
 
+def hold_close(a: rc.Image, b: rc.Image) -> None:
+    """The same light, where samples that pass a pixel's border by less than their rounding are next door."""
+    assert a.stats.sampled_rays == b.stats.sampled_rays
+    one, other = a.pixels.astype(float), b.pixels.astype(float)
+    np.testing.assert_allclose(other.mean(axis=(0, 1)), one.mean(axis=(0, 1)), rtol=1e-3)
+    assert np.sqrt(((one - other) ** 2).mean() / (one**2).mean()) <= 2e-2
+
+
+each_scene = pytest.mark.parametrize("scene", SCENES)
+each_model = pytest.mark.parametrize("model", ["pinhole", "thin", "thick", "full"])
+
+
 @needs_gpu
-@pytest.mark.parametrize("scene", SCENES)
-@pytest.mark.parametrize("model", ["pinhole", "thin", "thick", "full"])
+@each_scene
+@each_model
 @pytest.mark.parametrize("bounces", [0, 3])
-def test_pictures_agree(scene: str, model: str, bounces: int) -> None:
-    lens = rc.Lens.load("double-gauss-50mm").focused(4.0)
-    camera = rc.Camera(lens, film=rc.Film(36, 24, (120, 80)), model=model, position=(0, 1, 3), look_at=(0, 0.6, -2))
-    hold_parity(*pictures(SCENES[scene](), camera, ("cpu", "cuda"), spp=32, seed=5, max_bounces=bounces))
+def test_pictures_and_layers_agree(scene: str, model: str, bounces: int) -> None:
+    images = pictures(scene, double_gauss(model=model), spp=32, seed=5, max_bounces=bounces, layers="all")
+    hold_parity(*images)
+    hold_layer_parity(*images)
 
 
 @needs_gpu
-@pytest.mark.parametrize("model", ["pinhole", "thin", "thick", "full"])
+@each_model
 @pytest.mark.parametrize("scene", ["motion", "all kinds"])
 def test_pictures_of_a_moving_camera_agree(scene: str, model: str) -> None:
-    lens = rc.Lens.load("double-gauss-50mm").focused(4.0)
     keys = [(0, (0, 1, 3), (0, 0.6, -2)), (0.005, (0.1, 1, 3), (0.2, 0.6, -2)), (0.02, (0.1, 1.1, 3), (0, 0.6, -2))]
-    film = rc.Film(36, 24, (120, 80))
-    camera = rc.Camera(lens, film=film, model=model, motion=keys, shutter_opens_s=0.001, readout_time_s=0.01)
-    one, other = pictures(SCENES[scene](), camera, ("cpu", "cuda"), spp=32, seed=5, max_bounces=1, layers="all")
-    hold_parity(one, other)
-    hold_layer_parity(one, other)
+    camera = double_gauss(model=model, motion=keys, shutter_opens_s=0.001, readout_time_s=0.01)
+    images = pictures(scene, camera, spp=32, seed=5, max_bounces=1, layers="all")
+    hold_parity(*images)
+    hold_layer_parity(*images)
 
 
 @needs_gpu
 @pytest.mark.parametrize("name", rc.lens_names())
 def test_pictures_through_every_lens_agree(name: str) -> None:
     lens = rc.Lens.load(name)
+    hold_layer_parity(*pictures("objects", view(lens, (60, 40)), spp=32, layers="all"))
     lens = lens.stopped_down(1.4 * lens.first_order().f_number) if lens.first_order().f_number > 0 else lens
-    camera = rc.Camera(lens, film=rc.Film(*lens.film_mm, (60, 40)), position=(0, 1, 3), look_at=(0, 0.6, -2))
-    hold_parity(*pictures(SCENES["area light"](), camera, ("cpu", "cuda"), spp=32, max_bounces=1))
+    hold_parity(*pictures("area light", view(lens, (60, 40)), spp=32, max_bounces=1))
 
 
 @needs_gpu
 @pytest.mark.parametrize("resolution", [(1, 1), (3, 2), (33, 17), (257, 3)])
 @pytest.mark.parametrize("spp", [1, 3, 64, 1000])
 def test_any_number_of_pixels_and_samples(resolution: tuple[int, int], spp: int) -> None:
-    lens = rc.Lens.load("tessar-50mm").focused(4.0)
-    camera = rc.Camera(lens, film=rc.Film(36, 24, resolution), position=(0, 1, 3), look_at=(0, 0.6, -2))
-    a, b = pictures(SCENES["all kinds"](), camera, ("cpu", "cuda"), spp=spp)
+    a, b = pictures("all kinds", tessar(resolution), spp=spp)
     assert a.stats.sampled_rays == b.stats.sampled_rays == spp * resolution[0] * resolution[1]
     # One stray sample among few weighs much: the middle of the pixels' errors.
     errors = np.abs(b.pixels - a.pixels).max(axis=2) / (a.pixels.max(axis=2) + 1e-6 * a.pixels.max())
@@ -188,44 +213,21 @@ def test_any_number_of_pixels_and_samples(resolution: tuple[int, int], spp: int)
 
 
 @needs_gpu
-@pytest.mark.parametrize("scene", SCENES)
-@pytest.mark.parametrize("model", ["pinhole", "thin", "thick", "full"])
-def test_layers_agree(scene: str, model: str) -> None:
-    lens = rc.Lens.load("double-gauss-50mm").focused(4.0)
-    camera = rc.Camera(lens, film=rc.Film(36, 24, (120, 80)), model=model, position=(0, 1, 3), look_at=(0, 0.6, -2))
-    hold_layer_parity(*pictures(SCENES[scene](), camera, ("cpu", "cuda"), spp=32, seed=5, layers="all"))
-
-
-@needs_gpu
-@pytest.mark.parametrize("name", rc.lens_names())
-def test_layers_through_every_lens_agree(name: str) -> None:
-    lens = rc.Lens.load(name)
-    camera = rc.Camera(lens, film=rc.Film(*lens.film_mm, (60, 40)), position=(0, 1, 3), look_at=(0, 0.6, -2))
-    hold_layer_parity(*pictures(SCENES["objects"](), camera, ("cpu", "cuda"), spp=32, layers="all"))
-
-
-@needs_gpu
 @pytest.mark.parametrize(("resolution", "spp"), [((1, 1), 1000), ((3, 2), 7), ((257, 3), 64)])
 def test_layers_of_any_number_of_pixels_and_samples(resolution: tuple[int, int], spp: int) -> None:
-    lens = rc.Lens.load("tessar-50mm").focused(4.0)
-    camera = rc.Camera(lens, film=rc.Film(36, 24, resolution), position=(0, 1, 3), look_at=(0, 0.6, -2))
-    hold_layer_parity(*pictures(SCENES["all kinds"](), camera, ("cpu", "cuda"), spp=spp, layers="all"))
+    hold_layer_parity(*pictures("all kinds", tessar(resolution), spp=spp, layers="all"))
 
 
 @needs_gpu
 @pytest.mark.parametrize("effects", [(), ("dispersion",)])
 def test_the_same_picture_twice(effects: tuple[str, ...]) -> None:
-    lens = rc.Lens.load("tessar-50mm").focused(4.0)
-    camera = rc.Camera(lens, film=rc.Film(36, 24, (60, 40)), position=(0, 1, 3), look_at=(0, 0.6, -2))
-    a, b = pictures(SCENES["all kinds"](), camera, ("cuda", "cuda"), spp=50, effects=effects)
+    a, b = pictures("all kinds", tessar((60, 40)), ("cuda", "cuda"), spp=50, effects=effects)
     np.testing.assert_array_equal(a.pixels, b.pixels)
 
 
 @needs_two
 def test_several_gpus_take_the_same_picture() -> None:
-    lens = rc.Lens.load("double-gauss-50mm").focused(4.0)
-    camera = rc.Camera(lens, film=rc.Film(36, 24, (120, 80)), position=(0, 1, 3), look_at=(0, 0.6, -2))
-    one, both = pictures(SCENES["all kinds"](), camera, ("cuda:0", "cuda:0,1"), spp=101)
+    one, both = pictures("all kinds", double_gauss(), ("cuda:0", "cuda:0,1"), spp=101)
     # The same samples; their sums in double are added in another order.
     np.testing.assert_allclose(both.pixels, one.pixels, rtol=3e-7)
     assert both.stats.sampled_rays == one.stats.sampled_rays
@@ -233,31 +235,24 @@ def test_several_gpus_take_the_same_picture() -> None:
 
 
 @needs_gpu
-@pytest.mark.parametrize("scene", SCENES)
+@each_scene
 def test_pictures_of_a_spectral_line_agree(scene: str) -> None:
-    lens = rc.Lens.load("double-gauss-50mm").focused(4.0)
-    camera = rc.Camera(lens, film=rc.Film(36, 24, (120, 80)), position=(0, 1, 3), look_at=(0, 0.6, -2))
     settings: dict[str, Any] = {"effects": ["dispersion"], "illuminant": 450}
-    hold_parity(*pictures(SCENES[scene](), camera, ("cpu", "cuda"), spp=32, seed=5, max_bounces=1, **settings))
+    hold_parity(*pictures(scene, double_gauss(), spp=32, seed=5, max_bounces=1, **settings))
 
 
 @needs_gpu
-@pytest.mark.parametrize("scene", SCENES)
+@each_scene
 @pytest.mark.parametrize("name", ["double-gauss-50mm", "phone-4mm"])
 def test_pictures_with_dispersion_agree(scene: str, name: str) -> None:
     """A ray that is taken back to the border of its pixel may end on either side of it: some thousandths of the samples
     count for other wavelengths."""
-    lens = rc.Lens.load(name).focused(4.0)
-    camera = rc.Camera(lens, film=rc.Film(*lens.film_mm, (60, 40)), position=(0, 1, 3), look_at=(0, 0.6, -2))
-    one, other = pictures(SCENES[scene](), camera, ("cpu", "cuda"), spp=256, max_bounces=1, effects=["dispersion"])
-    a, b = one.pixels.astype(float), other.pixels.astype(float)
-    assert one.stats.sampled_rays == other.stats.sampled_rays
-    np.testing.assert_allclose(b.mean(axis=(0, 1)), a.mean(axis=(0, 1)), rtol=1e-3)
-    assert np.sqrt(((a - b) ** 2).mean() / (a**2).mean()) <= 2e-2
+    camera = view(rc.Lens.load(name).focused(4.0), (60, 40))
+    hold_close(*pictures(scene, camera, spp=256, max_bounces=1, effects=["dispersion"]))
 
 
 @needs_gpu
-@pytest.mark.parametrize("scene", SCENES)
+@each_scene
 @pytest.mark.parametrize("name", ["double-gauss-50mm", "phone-4mm", "mirror-telephoto-500mm"])
 def test_pictures_with_coatings_agree(scene: str, name: str) -> None:
     lens = rc.Lens.load(name).focused(6.0)
@@ -265,43 +260,29 @@ def test_pictures_with_coatings_agree(scene: str, name: str) -> None:
     lens = lens.with_coating("quarter_wave")
     if mirrors:
         lens = lens.with_coating("silver", mirrors)
-    camera = rc.Camera(lens, film=rc.Film(*lens.film_mm, (60, 40)), position=(0, 1, 3), look_at=(0, 0.6, -2))
     for settings in ({"effects": ["coatings"]}, {"effects": ["coatings", "dispersion"], "illuminant": 450}):
-        hold_parity(*pictures(SCENES[scene](), camera, ("cpu", "cuda"), spp=32, seed=5, max_bounces=1, **settings))
-
-
-def ghosts_of(scene: rc.Scene, camera: rc.Camera, device: str, effects: set[str]) -> np.ndarray:
-    with_ghosts, without = (
-        rc.render(scene, camera, device=device, spp=256, effects=names) for names in (effects | {"ghosts"}, effects)
-    )
-    return np.asarray(with_ghosts.pixels.astype(float) - without.pixels)
+        hold_parity(*pictures(scene, view(lens, (60, 40)), spp=32, seed=5, max_bounces=1, **settings))
 
 
 @needs_gpu
-@pytest.mark.parametrize("scene", SCENES)
-@pytest.mark.parametrize("dispersion", [False, True])
-def test_ghosts_agree(scene: str, dispersion: bool) -> None:
+@each_scene
+@pytest.mark.parametrize("base", [set(), {"dispersion"}])
+def test_ghosts_agree(scene: str, base: set[str]) -> None:
     """A ghost sample that passes a rim or a pixel's border by less than its rounding is lost, or next door: one in
     thousands, of which each may weigh much."""
     lens = rc.Lens.load("double-gauss-50mm").with_coating("bare").focused(4.0)
-    film = rc.Film(36, 24, (60, 40))
-    camera = rc.Camera(lens, film=film, position=(0, 1, 3), look_at=(0, 0.6, -2), readout_time_s=0.01)
-    base = {"dispersion"} if dispersion else set()
-    one, other = (ghosts_of(SCENES[scene](), camera, device, base) for device in ("cpu", "cuda"))
+    camera = view(lens, (60, 40), readout_time_s=0.01)
+    with_ghosts, without = (pictures(scene, camera, spp=256, effects=names) for names in (base | {"ghosts"}, base))
+    one, other = (a.pixels.astype(float) - b.pixels for a, b in zip(with_ghosts, without, strict=True))
     assert one.sum() > 0
     np.testing.assert_allclose(other.sum(), one.sum(), rtol=3e-3)
     assert np.sqrt(((one - other) ** 2).mean()) <= 0.05 * np.sqrt((one**2).mean())
 
 
 @needs_gpu
-@pytest.mark.parametrize("scene", SCENES)
-@pytest.mark.parametrize("effects", [{"diffraction"}, {"diffraction", "dispersion", "coatings"}])
-def test_pictures_with_diffraction_agree(scene: str, effects: set[str]) -> None:
+@each_scene
+@pytest.mark.parametrize("effects", [("diffraction",), ("coatings", "diffraction", "dispersion")])
+def test_pictures_with_diffraction_agree(scene: str, effects: tuple[str, ...]) -> None:
     """A splat that passes a pixel's border by less than its rounding is next door: as of ghosts."""
     lens = rc.Lens.load("double-gauss-50mm").with_coating("bare").with_iris(blades=6).stopped_down(11).focused(4.0)
-    camera = rc.Camera(lens, film=rc.Film(36, 24, (60, 40)), position=(0, 1, 3), look_at=(0, 0.6, -2))
-    one, other = pictures(SCENES[scene](), camera, ("cpu", "cuda"), spp=256, max_bounces=1, effects=sorted(effects))
-    a, b = one.pixels.astype(float), other.pixels.astype(float)
-    assert one.stats.sampled_rays == other.stats.sampled_rays
-    np.testing.assert_allclose(b.mean(axis=(0, 1)), a.mean(axis=(0, 1)), rtol=1e-3)
-    assert np.sqrt(((a - b) ** 2).mean() / (a**2).mean()) <= 2e-2
+    hold_close(*pictures(scene, view(lens, (60, 40)), spp=256, max_bounces=1, effects=effects))

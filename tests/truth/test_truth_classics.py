@@ -60,10 +60,9 @@ def built(name: str) -> rc.Lens:
     return rc.Lens(surfaces=surfaces, name=name)
 
 
-@pytest.mark.parametrize("source", ["file", "table"])
 @pytest.mark.parametrize("name", CLASSICS)
-def test_first_order_data(name: str, source: str) -> None:
-    lens = rc.Lens.load(name) if source == "file" else built(name)
+def test_first_order_data(name: str) -> None:
+    lens = rc.Lens.load(name)
     count, stop, focal_length, back_focal_distance, f_number = CLASSICS[name]
     first = lens.first_order()
     assert (len(lens.surfaces), lens.stop_index + 1) == (count, stop)

@@ -10,6 +10,7 @@ import pytest
 import realcam as rc
 
 from ..centred_lenses import CENTRED
+from .perfect_lenses import ellipsoid, folded_paraboloid, thin_lens, thin_lens_aberration
 
 LENSES = CENTRED
 Trace = Callable[..., rc.TraceResult]
@@ -85,48 +86,24 @@ def test_aplanatic_points_of_a_sphere(n: float, radius: float, trace: Trace) -> 
 
 @pytest.mark.parametrize("n", [1.4, 1.5168, 1.9])
 def test_ellipsoid_images_infinity_perfectly_into_glass(n: float, trace: Trace) -> None:
-    """Conic -1 / n^2: the focus lies n R / (n - 1) behind the vertex."""
-    surface = rc.Surface(radius_of_curvature_mm=40, material=n, conic=-1 / n**2, clear_semi_diameter_mm=30)
-    lens = rc.Lens(surfaces=[stop(30), surface], film_distance_mm=1.0, allow_overlap=True)
-    out = trace(lens, *parallel(np.linspace(0.5, 29, 50)), start="scene")
-    assert miss(out, n * 40 / (n - 1)).max() < 1e-9
+    lens = ellipsoid(n)
+    focus = lens.film_position_mm
+    out = trace(lens, *parallel(np.linspace(0.5, 28.9, 50)), start="scene")
+    assert miss(out, focus).max() < 1e-9
     # Equal optical paths to the focus: Fermat's principle.
-    left = n * np.linalg.norm(np.array([0, 0, n * 40 / (n - 1)]) - out.origins_mm, axis=1)
+    left = n * np.linalg.norm(np.array([0, 0, focus]) - out.origins_mm, axis=1)
     assert np.ptp(out.optical_path_mm + left) < 1e-9
 
 
 def test_paraboloid_mirror_images_infinity_on_its_focus(trace: Trace) -> None:
-    """A flat mirror folds the light back to the film's side: 100 mm to the focus, 60 from the fold."""
-    primary = rc.Mirror(radius_of_curvature_mm=-200, conic=-1, thickness_mm=-40, clear_semi_diameter_mm=80)
-    fold = rc.Mirror(clear_semi_diameter_mm=80)
-    entrance = rc.Stop(clear_semi_diameter_mm=80, thickness_mm=50)
-    lens = rc.Lens(surfaces=[entrance, primary, fold], film_distance_mm=60.0)
+    lens = folded_paraboloid()
     out = trace(lens, *parallel(np.linspace(0.5, 79, 50)), start="scene")
     assert lens.film_position_mm == pytest.approx(70)
     assert miss(out, 70.0).max() < 1e-9
     assert abs(lens.first_order().effective_focal_length_mm) == pytest.approx(100, rel=1e-12)
     # A sphere of the same radius misses it by h^3 / (2 R^2) and more.
-    sphere = rc.Mirror(radius_of_curvature_mm=-200, thickness_mm=-40, clear_semi_diameter_mm=80)
-    spherical = rc.Lens(surfaces=[entrance, sphere, fold], film_distance_mm=60.0)
-    worse = trace(spherical, *parallel(np.array([40.0])), start="scene")
+    worse = trace(lens.with_surface(1, conic=0), *parallel(np.array([40.0])), start="scene")
     assert miss(worse, 70.0)[0] == pytest.approx(40**3 / (2 * 200**2), rel=0.1)
-
-
-def thin_lens(shape: float, n: float = 1.5, focal_length: float = 100.0) -> rc.Lens:
-    """Without thickness; shape = (R2 + R1) / (R2 - R1)."""
-    power = 1 / ((n - 1) * focal_length)
-    c1, c2 = 0.5 * power * (shape + 1), 0.5 * power * (shape - 1)
-    radii = [math.inf if c == 0 else 1 / c for c in (c1, c2)]
-    rim = {"clear_semi_diameter_mm": 5.0}
-    return rc.Lens(
-        surfaces=[
-            stop(5),
-            rc.Surface(radius_of_curvature_mm=radii[0], material=n, **rim),
-            rc.Surface(radius_of_curvature_mm=radii[1], **rim),
-        ],
-        film_distance_mm=focal_length,
-        allow_overlap=True,  # a thin lens has no thickness for its curved faces
-    )
 
 
 def third_order(lens: rc.Lens, trace: Trace) -> float:
@@ -143,20 +120,8 @@ def third_order(lens: rc.Lens, trace: Trace) -> float:
 @pytest.mark.parametrize("n", [1.5, 1.8])
 @pytest.mark.parametrize("shape", [-2.0, -1.0, 0.0, 0.5, 1.0, 2.0])
 def test_spherical_aberration_of_a_thin_lens_against_its_bending(shape: float, n: float, trace: Trace) -> None:
-    """Jenkins and White, Fundamentals of Optics, equation 9l, for an object at infinity (p = -1)."""
-    bracket = (n + 2) / (n - 1) * shape**2 - 4 * (n + 1) * shape + (3 * n + 2) * (n - 1) + n**3 / (n - 1)
-    expected = bracket / (8 * 100**3 * n * (n - 1))
     # The fit leaves out the eighth order in h / f = 0.02.
-    assert third_order(thin_lens(shape, n), trace) == pytest.approx(expected, rel=1e-4)
-
-
-def test_best_bending_of_a_thin_lens(trace: Trace) -> None:
-    """Least spherical aberration at the shape 2 (n^2 - 1) / (n + 2)."""
-    n = 1.5
-    best = 2 * (n**2 - 1) / (n + 2)
-    shapes = best + np.linspace(-0.3, 0.3, 7)
-    parabola = np.polyfit(shapes, [third_order(thin_lens(q, n), trace) for q in shapes], 2)
-    assert -parabola[1] / (2 * parabola[0]) == pytest.approx(best, rel=1e-3)
+    assert third_order(thin_lens(shape, n), trace) == pytest.approx(thin_lens_aberration(shape, n), rel=1e-4)
 
 
 @pytest.mark.parametrize("name", LENSES)

@@ -11,6 +11,7 @@ import realcam as rc
 
 from ..measurement import Measurement, hold
 from . import code_v_listing as listing
+from .perfect_lenses import ellipsoid, folded_paraboloid
 
 LENS = listing.listed_lens()
 FIELDS = {field.field_deg: field for field in listing.FIELD_ABERRATIONS}
@@ -86,18 +87,6 @@ def test_the_reference_sphere_of_the_axis() -> None:
     assert wavefront.reference_radius_mm == pytest.approx(LENS.film_position_mm - first.exit_pupil_position_mm)
 
 
-def folded_paraboloid(defocus_mm: float = 0.0, semi_diameter_mm: float = 80.0) -> rc.Lens:
-    """Focal length 100; a flat mirror folds the light back to the film's side."""
-    return rc.Lens(
-        surfaces=[
-            rc.Stop(clear_semi_diameter_mm=semi_diameter_mm, thickness_mm=50),
-            rc.Mirror(radius_of_curvature_mm=-200, conic=-1, thickness_mm=-40, clear_semi_diameter_mm=90),
-            rc.Mirror(clear_semi_diameter_mm=90),
-        ],
-        film_distance_mm=60.0 + defocus_mm,
-    )
-
-
 def test_paraboloid_mirror_is_perfect() -> None:
     wavefront = folded_paraboloid().wavefront(pattern="hexapolar", samples=20)
     measured("optical path difference of a folded paraboloid", "1261 rays", largest(wavefront.opd_waves), 1e-6)
@@ -107,15 +96,7 @@ def test_paraboloid_mirror_is_perfect() -> None:
 
 @pytest.mark.parametrize("n", [1.4, 1.5168, 1.9])
 def test_ellipsoid_is_perfect(n: float) -> None:
-    """Conic -1 / n^2: infinity is imaged n R / (n - 1) behind the vertex, in the glass."""
-    lens = rc.Lens(
-        surfaces=[
-            rc.Stop(clear_semi_diameter_mm=29),
-            rc.Surface(radius_of_curvature_mm=40, material=n, conic=-1 / n**2, clear_semi_diameter_mm=30),
-        ],
-        film_distance_mm=n * 40 / (n - 1),
-    )
-    wavefront = lens.wavefront(pattern="hexapolar", samples=20)
+    wavefront = ellipsoid(n).wavefront(pattern="hexapolar", samples=20)
     measured(f"optical path difference of an ellipsoid of index {n}", "1261 rays", largest(wavefront.opd_waves), 1e-6)
 
 

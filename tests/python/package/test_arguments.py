@@ -18,7 +18,6 @@ SCENE = rc.Scene.from_arrays([(0, 0, -2), (1, 0, -2), (0, 1, -2)], [(0, 1, 2)]).
 
 WRONG: list[tuple[Callable[[], Any], str]] = [
     (lambda: rc.Camera(LENS, position="abc"), "position must be three numbers; it is 'abc'"),
-    (lambda: rc.Camera(LENS, position=(1, 2)), "position must be three numbers; it is (1, 2)"),
     (lambda: rc.Camera(LENS, look_at=(1, 2, None)), "look_at must be three numbers; it is (1, 2, None)"),
     (lambda: rc.Camera("tessar-50mm"), "lens must be a Lens; it is 'tessar-50mm'"),
     (lambda: rc.Camera(), "Camera() needs the argument lens"),
@@ -29,53 +28,28 @@ WRONG: list[tuple[Callable[[], Any], str]] = [
         "Camera() takes at most one argument without a name, and two are given; by name there are film, position, "
         "look_at, up, exposure_time_s, iso, model",
     ),
-    (lambda: rc.Camera(LENS, iso="fast"), "iso must be a number; it is 'fast'"),
     (lambda: rc.Camera(LENS, film=3), "film must be a Film or None; it is 3"),
     (lambda: CAMERA.replace(iso=[1]), "iso must be a number or None; it is [1]"),
-    (lambda: CAMERA.framing(3), "scene must be a Scene; it is 3"),
     (lambda: CAMERA.generate_rays(spp=1.5), "spp must be a whole number; it is 1.5"),
-    (lambda: rc.Film("a"), "width_mm must be a number; it is 'a'"),
     (lambda: rc.Film(resolution=(1.5, 2)), "resolution must be two whole numbers; it is (1.5, 2)"),
     (lambda: rc.Film(resolution=960), "resolution must be two whole numbers; it is 960"),
     (
         lambda: CAMERA.generate_rays(spp=10**5000),
         f"spp must be a whole number between {-(2**31)} and {2**31 - 1}; it is one of the type int",
     ),
-    (
-        lambda: rc.Film(resolution=(2**40, 2)),
-        f"resolution must be a whole number between {-(2**31)} and {2**31 - 1}; it is ({2**40}, 2)",
-    ),
-    (
-        lambda: rc.Film(1, 2, (3, 4), (5, 6), 7),
-        "Film() takes at most four arguments without a name, and five are given",
-    ),
-    (lambda: rc.Surface(radius_of_curvature_mm="flat", clear_semi_diameter_mm=1), "radius_of_curvature_mm must be "),
-    (lambda: rc.Surface(), "Surface() needs the argument clear_semi_diameter_mm"),
+    (lambda: rc.Film(1, 2, (3, 4), (5, 6), 7), "Film() takes at most four arguments without a name, and five are "),
     (lambda: rc.Surface(clear_semi_diameter_mm=1, aspheric_coefficients=[1]), "aspheric_coefficients must be a dict"),
-    (lambda: rc.Stop(clear_semi_diameter_mm=None), "clear_semi_diameter_mm must be a number; it is None"),
     (lambda: rc.Lens(surfaces=[1, 2]), "surfaces must be a list, each of them a Surface; it is [1, 2]"),
-    (lambda: rc.Lens(surfaces=LENS), "surfaces must be a list, each of them a Surface; it is <realcam.Lens"),
     (lambda: LENS.focused("near"), "focus_distance_m must be a number; it is 'near'"),
-    (lambda: LENS.focused(), "focused() needs the argument focus_distance_m"),
     (lambda: rc.Lens.focused(3, 2), "self must be a Lens; it is 3"),
-    (lambda: LENS.with_surface("front", conic=1), "index must be a whole number; it is 'front'"),
     (lambda: LENS.spot(pattern=3), "pattern must be a text; it is 3"),
     (lambda: LENS.aim("abc"), "pupil must be an array of numbers; it is 'abc'"),
     (lambda: LENS.seidel(1, colours_nm=(1, 2, 3)), "colours_nm must be two numbers; it is (1, 2, 3)"),
-    (lambda: rc.Glass.named(3), "name must be a text; it is 3"),
     (lambda: rc.Glass.table([(1, 2), 3]), "points must be a list"),
-    (lambda: rc.Material(diffuse=0.5), "diffuse must be three numbers; it is 0.5"),
-    (lambda: rc.Material(emission=(1, 2, 3, 4)), "emission must be three numbers; it is (1, 2, 3, 4)"),
-    (lambda: SCENE.with_sun("down", 1), "direction must be three numbers; it is 'down'"),
     (lambda: SCENE.with_material(1.5, rc.Material()), "which must be a whole number or a text; it is 1.5"),
-    (lambda: SCENE.with_material(0, "red"), "material must be a Material; it is 'red'"),
     (lambda: SCENE.with_instance("chair"), "object must be a Scene; it is 'chair'"),
-    (lambda: rc.Scene.from_arrays("abc", [(0, 1, 2)]), "vertices_m must be an array of numbers; it is 'abc'"),
-    (lambda: rc.Scene.load("a.obj", scale="big"), "scale must be a number; it is 'big'"),
-    (lambda: rc.render(3, CAMERA, effects=()), "scene must be a Scene; it is 3"),
     (lambda: rc.render(SCENE, SCENE, effects=()), "camera must be a Camera; it is <realcam.Scene"),
     (lambda: rc.render(SCENE, CAMERA, effects=(), spp="many"), "spp must be a whole number or \"auto\"; it is 'many'"),
-    (lambda: rc.LiveView(3), "scene must be a Scene; it is 3"),
 ]
 
 
@@ -138,14 +112,10 @@ def test_no_object_without_a_value_can_be_made(kind: type) -> None:
 def docstrings() -> Iterator[tuple[str, str]]:
     for owner in [*classes(), _core, rc, rc.Image]:
         for name, thing in vars(owner).items():
+            if inspect.ismodule(thing) or (name != "__init__" and name.startswith("__")):
+                continue
             text = inspect.getdoc(getattr(owner, name))
-            inherited = name == "__init__" and text == inspect.getdoc(object.__init__)
-            if (
-                text
-                and not inherited
-                and not inspect.ismodule(thing)
-                and (name == "__init__" or not name.startswith("__"))
-            ):
+            if text and text != inspect.getdoc(object.__init__):
                 yield f"{owner.__name__}.{name}", text
 
 

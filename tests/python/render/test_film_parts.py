@@ -122,26 +122,16 @@ def test_what_is_no_part_of_the_picture_is_refused(tmp_path: Path) -> None:
     assert part != session.expose((0, 0, 2, 2), 1, 1)
 
 
-@pytest.mark.parametrize("share", [0.0, 0.3, 0.999])
-def test_a_damaged_file_is_no_part(tmp_path: Path, share: float) -> None:
+def test_a_damaged_file_is_no_part(tmp_path: Path) -> None:
     session = rc.Session(room(), camera(), settings(), device="cpu")
     file = tmp_path / "part.npz"
     session.expose((0, 0, 8, 8), 0, 4).save(file)
     content = file.read_bytes()
-    file.write_bytes(content[: int(share * len(content))])
-    with pytest.raises(rc.InputError, match=r"part\.npz: this file is damaged"):
-        rc.FilmPart.load(file)
+    changed_bit = bytearray(content)
+    changed_bit[len(content) // 2] ^= 4
+    for damaged in (b"", content[: len(content) // 3], content[:-1], bytes(changed_bit)):
+        file.write_bytes(damaged)
+        with pytest.raises(rc.InputError, match=r"part\.npz: this file is damaged"):
+            rc.FilmPart.load(file)
     with pytest.raises(rc.InputError, match="there is no such file"):
         rc.FilmPart.load(tmp_path / "other.npz")
-
-
-def test_a_changed_bit_in_a_file_is_found(tmp_path: Path) -> None:
-    session = rc.Session(room(), camera(), settings(), device="cpu")
-    file = tmp_path / "part.npz"
-    session.expose((0, 0, 8, 8), 0, 4).save(file)
-    content = bytearray(file.read_bytes())
-    middle = len(content) // 2
-    content[middle] ^= 4
-    file.write_bytes(content)
-    with pytest.raises(rc.InputError, match="damaged"):
-        rc.FilmPart.load(file)

@@ -12,12 +12,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 import realcam as rc
-from realcam.cli import app as cli
 from realcam.image_file import read_film
 from realcam.video import write_video
 
 from .. import scenes
-from ..programs import EXECUTABLE, PROGRAM, PYTHON, wants_executable
+from ..programs import EXECUTABLE, PROGRAM, PYTHON, Command, wants_executable
 
 SHOT = """
 format = 1
@@ -47,13 +46,6 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     (tmp_path / "pan.toml").write_text(SHOT)
     monkeypatch.chdir(tmp_path)
     return tmp_path
-
-
-def command(monkeypatch: pytest.MonkeyPatch, *words: str) -> None:
-    monkeypatch.setattr("sys.argv", ["realcam", "job", *words])
-    with pytest.raises(SystemExit) as end:
-        cli.run()
-    assert end.value.code in (0, None)
 
 
 def test_frames_open_their_shutters_one_after_the_other(folder: Path) -> None:
@@ -189,24 +181,28 @@ def test_the_executable_says_what_makes_films(folder: Path) -> None:
 @pytest.mark.parametrize(
     ("words", "wanted"),
     [
-        (["-o", "a.png", "--frames", "9-1"], '--frames: "9-1": expected a number, 1-240 or 1-240x2'),
-        (["-o", "a.png", "--frames", "1-9x0"], '--frames: "1-9x0": expected a number, 1-240 or 1-240x2'),
-        (["-o", "a.png", "--frames", ""], '--frames: "": expected a number, 1-240 or 1-240x2'),
-        (["-o", "a.png", "--frames", "1-2", "--fps", "0"], "--fps must be more than 0 frames per second"),
-        (["-o", "nowhere/a.png", "--frames", "1-2"], "nowhere"),
-        (["-o", "a.mp4", "-oa.mp4", "--frames", "1-2"], '"a.mp4" is given twice'),
-        (["-o", "a.mp4"], "--frames is missing: a film, .mp4, is made of frames, as of 1-240"),
-        (["-o", "nowhere/a.mp4", "--frames", "1-2"], "nowhere"),
+        ("render -oa.png --fps 0 --frames 1-2", "--fps must be more than 0 frames per second"),
+        ("render -onowhere/a.png --frames 1-2", "nowhere"),
+        ("render -oa.mp4 -oa.mp4 --frames 1-2", '"a.mp4" is given twice'),
+        ("render -oa.mp4", "--frames is missing"),
+        ("render -onowhere/a.mp4 --frames 1-2", "nowhere"),
+        *(
+            (f"{what} --frames={frames}", f'--frames: "{frames}": expected a number, 1-240 or 1-240x2')
+            for what in ("render -oa.png", "job make -oa.job")
+            for frames in ("9-1", "a-b", "1-2x0.5", "1-9x0", "-3", "")
+        ),
     ],
 )
-def test_films_that_cannot_be_are_refused(folder: Path, words: list[str], wanted: str) -> None:
-    if any(".mp4" in word for word in words):
+def test_films_that_cannot_be_are_refused(folder: Path, command: Command, words: str, wanted: str) -> None:
+    if ".mp4" in words:
         pytest.importorskip("av", reason="realcam[video] is missing")
-    done = subprocess.run([*PYTHON, "render", "pan.toml", *words], capture_output=True, text=True)
+    done = command(*words.split(), "pan.toml")
     assert done.returncode == 2
     assert done.stderr.startswith("realcam: error: ") and wanted in done.stderr
     assert done.stderr.count("\n") == 1
     assert not list(folder.glob("a*"))
+    with pytest.raises(rc.InputError, match="a film wants frames with numbers from 0 on"):
+        rc.Shot.load("pan.toml", device="cpu").frames([-1])
 
 
 def test_effects_of_a_film_are_planned_together(folder: Path) -> None:
@@ -240,13 +236,16 @@ def test_an_effect_that_one_lens_cannot_show_is_left_out_of_the_film() -> None:
         frame.render(device="cpu")
 
 
-def test_a_job_makes_numbered_pictures_and_a_film(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_job_makes_numbered_pictures_and_a_film(folder: Path, command: Command) -> None:
     av = pytest.importorskip("av", reason="realcam[video] is missing")
-    command(monkeypatch, "make", "pan.toml", "-o", "pan.job", "--frames", "1-25x8", "--device", "cpu", "--quiet")
-    command(monkeypatch, "work", "pan.job", "--here", "--quiet")
-    command(monkeypatch, "finish", "pan.job", "-o", "frames", "--quiet")
+    for words in (
+        "make pan.toml -o pan.job --frames 1-25x8 --device cpu",
+        "work pan.job --here",
+        "finish pan.job -o frames",
+        "finish pan.job -o pan.mp4 --fps 12.5",
+    ):
+        assert command("job", *words.split(), "--quiet").returncode == 0
     assert sorted(path.name for path in Path("frames").iterdir()) == [f"pan.{n:04d}.exr" for n in (1, 9, 17, 25)]
-    command(monkeypatch, "finish", "pan.job", "-o", "pan.mp4", "--fps", "12.5", "--quiet")
     with av.open("pan.mp4") as film:
         stream = film.streams.video[0]
         assert (stream.width, stream.height, float(stream.average_rate)) == (32, 22, 12.5)
@@ -266,20 +265,6 @@ def test_a_film_is_written_as_a_whole_or_not_at_all(tmp_path: Path) -> None:
     with pytest.raises(rc.ImageFileError, match=r"the folder .* does not exist"):
         write_video(tmp_path / "nowhere" / "film.mp4", sizes[:1], 24)
     assert list(tmp_path.iterdir()) == []
-
-
-@pytest.mark.parametrize("frames", ["9-1", "a-b", "1-2x0.5", "1-2x0", "-3", ""])
-def test_frames_that_are_no_range_are_refused(
-    folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], frames: str
-) -> None:
-    monkeypatch.setattr("sys.argv", ["realcam", "job", "make", "pan.toml", "-o", "pan.job", f"--frames={frames}"])
-    with pytest.raises(SystemExit, match="2"):
-        cli.run()
-    assert capsys.readouterr().err == (
-        f'realcam: error: --frames: "{frames}": expected a number, 1-240 or 1-240x2, the smaller one first\n'
-    )
-    with pytest.raises(rc.InputError, match="a film wants frames with numbers from 0 on"):
-        rc.Shot.load("pan.toml", device="cpu").frames([-1])
 
 
 @pytest.mark.slow

@@ -15,9 +15,8 @@ import pytest
 import realcam as rc
 from frame_scene import frame_scene
 
-GPUS = [d.name.removeprefix("cuda:") for d in rc.devices() if d.name.startswith("cuda:")]
-needs_gpu = pytest.mark.skipif(not GPUS, reason="no GPU on this machine")
-needs_two = pytest.mark.skipif(len(GPUS) < 2, reason=f"{len(GPUS)} GPUs on this machine; two are wanted")
+from ..device_memory import needs_gpu, needs_two
+
 one_or_several = pytest.mark.parametrize("device", ["cuda:0", pytest.param("cuda:0,1", marks=needs_two)])
 
 LENS = rc.Lens.load("tessar-50mm").focused(4.0)
@@ -117,21 +116,24 @@ print(repr(float(pixels.sum())), repr(float(pixels[::-1][:100].sum())))
 @pytest.mark.gpu
 @one_or_several
 def test_progress_stops_a_picture_soon(device: str) -> None:
-    scene, wide = frame_scene(spheres=3, boxes=3), camera((1200, 800))
-    rc.render(scene, wide, effects=(), spp=1, device=device)
-    shares: list[float] = []
-    times: list[float] = []
+    """Also a hard scene after an easy one."""
+    wide = camera((1200, 800))
+    sky = rc.Scene.from_arrays([[0, 0, 1e5], [1e-3, 0, 1e5], [0, 1e-3, 1e5]], [[0, 1, 2]]).with_environment(1.0)
+    rc.render(sky, wide, effects=(), spp=4096, max_bounces=0, device=device)  # many samples a millisecond
+    for scene, bounces in ((frame_scene(spheres=3, boxes=3), 1), (frame_scene(), 64)):
+        settings = rc.RenderSettings(effects=(), max_bounces=bounces)
+        times: list[float] = []
 
-    def progress(share: float) -> bool:
-        shares.append(share)
-        times.append(time.perf_counter())
-        return len(shares) < 3
+        def progress(_: float, times: list[float] = times) -> bool:
+            times.append(time.perf_counter())
+            return len(times) < 3
 
-    with pytest.raises(rc.Cancelled):
-        rc.render(scene, wide, effects=(), spp=1 << 20, device=device, progress=progress)
-    # The picture takes many minutes. What is under way ends within a sample of each thread; most of a tenth is slack.
-    assert time.perf_counter() - times[-1] < 0.1
-    assert rc.render(scene, wide, effects=(), spp=1, device=device).spp == 1
+        with pytest.raises(rc.Cancelled):
+            rc.render(scene, wide, settings, spp=1 << 20, device=device, progress=progress)
+        # The picture takes many minutes. What is under way ends within a sample of each thread, which takes a GPU some
+        # milliseconds: of a path of 65 bounces, each a ray and a shadow ray. Most of a tenth is slack.
+        assert time.perf_counter() - times[-1] < 0.1
+        assert rc.render(scene, wide, settings, spp=1, device=device).spp == 1
 
 
 @needs_gpu
@@ -151,24 +153,6 @@ def test_ctrl_c_stops_a_picture(device: str) -> None:
         rc.render(scene, wide, effects=(), spp=1 << 20, device=device)
     assert time.perf_counter() - times[0] < 0.3  # signals are looked for 20 times a second
     assert rc.render(scene, wide, effects=(), spp=1, device=device).spp == 1
-
-
-@needs_gpu
-@pytest.mark.gpu
-def test_a_hard_scene_after_an_easy_one_is_stopped_as_soon() -> None:
-    wide = camera((1200, 800))
-    sky = rc.Scene.from_arrays([[0, 0, 1e5], [1e-3, 0, 1e5], [0, 1e-3, 1e5]], [[0, 1, 2]]).with_environment(1.0)
-    rc.render(sky, wide, effects=(), spp=4096, max_bounces=0, device="cuda:0")  # many samples a millisecond
-    times: list[float] = []
-
-    def progress(share: float) -> bool:
-        times.append(time.perf_counter())
-        return len(times) < 3
-
-    with pytest.raises(rc.Cancelled):
-        rc.render(frame_scene(), wide, effects=(), spp=1 << 20, max_bounces=64, device="cuda:0", progress=progress)
-    # Of a path of 65 bounces, each a ray and a shadow ray, a GPU takes some milliseconds.
-    assert time.perf_counter() - times[-1] < 0.1
 
 
 CURRENT = """

@@ -53,26 +53,18 @@ def test_exr_holds_exposure_and_depth_to_the_bit(image: rc.Image, tmp_path: Path
 
 def test_developed_pictures_have_four_formats(image: rc.Image, tmp_path: Path) -> None:
     codes = image.developed("film").astype(int)
-    for suffix, most_codes in ((".png", 0), (".tif", 0), (".TIFF", 0), (".webp", 0), (".jpg", 40), (".jpeg", 40)):
+    for suffix, most_codes in ((".PNG", 0), (".tif", 0), (".TIFF", 0), (".webp", 0), (".jpg", 40), (".jpeg", 40)):
         path = tmp_path / f"picture{suffix}"
         image.save(path)
         pixels, spec = read(path)
         assert (spec.format, spec.nchannels) == (oiio.UINT8, 3)
         assert np.abs(pixels.astype(int) - codes).max() <= most_codes, suffix  # small sharp patches, as JPEG has them
         if suffix != ".webp":
-            told = str(spec.getattribute("ImageDescription" if suffix != ".png" else "realcam:lens"))
+            told = str(spec.getattribute("ImageDescription" if suffix != ".PNG" else "realcam:lens"))
             assert "double-gauss-50mm" in told
-    with pytest.raises(rc.ImageFileError, match=r"\.png, \.jpg, \.tif, \.webp \(developed\) or \.exr"):
-        image.save(tmp_path / "picture.bmp")
-
-
-def test_png_holds_the_developed_picture(image: rc.Image, tmp_path: Path) -> None:
-    for tone in ("film", "linear"):
-        path = tmp_path / f"{tone}.png"
-        image.save(str(path), tone=tone)
-        pixels, spec = read(path)
-        assert (spec.format, spec.nchannels) == (oiio.UINT8, 3)
-        np.testing.assert_array_equal(pixels, image.developed(tone))
+    image.save(str(tmp_path / "linear.png"), tone="linear")
+    pixels, _ = read(tmp_path / "linear.png")
+    np.testing.assert_array_equal(pixels, image.developed("linear"))
     # Row 0 is the top: red above, blue below.
     assert pixels[2, 8, 0] > pixels[2, 8, 2]
     assert pixels[9, 8, 2] > pixels[9, 8, 0]
@@ -106,59 +98,37 @@ def test_metadata_can_be_read_back(image: rc.Image, tmp_path: Path, suffix: str)
     assert value("isoSpeed") == 400
 
 
-@pytest.mark.parametrize("focus", [float("inf"), 3.0])
-@pytest.mark.parametrize("suffix", [".exr", ".png"])
-def test_focus_at_infinity_is_written_too(tmp_path: Path, focus: float, suffix: str) -> None:
-    lens = rc.Lens.load("tessar-50mm").focused(focus)
+@pytest.mark.parametrize("suffix", [".EXR", ".png"])
+def test_focus_at_infinity_is_written_too(tmp_path: Path, suffix: str) -> None:
+    lens = rc.Lens.load("tessar-50mm").focused(float("inf"))
     picture = rc.render(scenes.sky(), rc.Camera(lens, film=rc.Film(4, 4, (2, 2)), iso=3200), effects=(), spp=1)
     path = tmp_path / f"x{suffix}"
     picture.save(path)
-    assert float(read(path)[1].getattribute("realcam:focus_distance_m")) == focus
+    assert float(read(path)[1].getattribute("realcam:focus_distance_m")) == float("inf")
 
 
-@pytest.mark.parametrize("name", ["picture.gif", "picture", "picture.exr.bak", ".png"])
-def test_unknown_suffix_says_which_are_known(image: rc.Image, tmp_path: Path, name: str) -> None:
-    with pytest.raises(rc.ImageFileError, match=r"\.png, .*\.exr"):
+@pytest.mark.parametrize(
+    ("name", "why"),
+    [
+        *((name, r"\.png, \.jpg, .*\.exr") for name in ("picture.gif", "picture", "picture.exr.bak", ".png")),
+        ("nowhere/picture.png", r'picture\.png.*nowhere" does not exist'),
+        ("folder.png", "is a folder"),
+        ("pipe.png", "is a pipe or a device"),
+        ("/proc/picture.png", r"^/proc/picture\.png: cannot be written"),  # refuses everybody, root too
+        ("x" * 252 + ".png", "File name too long"),
+    ],
+)
+def test_a_name_that_cannot_be_written_is_told_why(image: rc.Image, tmp_path: Path, name: str, why: str) -> None:
+    (tmp_path / "folder.png").mkdir()
+    os.mkfifo(tmp_path / "pipe.png")
+    with pytest.raises(rc.ImageFileError, match=why):
         image.save(tmp_path / name)
-    assert list(tmp_path.iterdir()) == []
-
-
-def test_suffix_in_capitals(image: rc.Image, tmp_path: Path) -> None:
-    image.save(tmp_path / "A.PNG")
-    image.save(tmp_path / "B.EXR")
-    assert read(tmp_path / "A.PNG")[1].nchannels == 3
-    assert read(tmp_path / "B.EXR")[1].nchannels == 4
-
-
-def test_missing_folder_and_folder_in_place_of_the_file(image: rc.Image, tmp_path: Path) -> None:
-    with pytest.raises(rc.ImageFileError, match=r"picture\.png.*nowhere\" does not exist"):
-        image.save(tmp_path / "nowhere" / "picture.png")
-    (tmp_path / "taken.png").mkdir()
-    with pytest.raises(rc.ImageFileError, match="is a folder"):
-        image.save(tmp_path / "taken.png")
-    assert [path.name for path in tmp_path.iterdir()] == ["taken.png"]
-
-
-def test_folder_that_takes_no_files(image: rc.Image) -> None:
-    # Refuses everybody, root too.
-    with pytest.raises(rc.ImageFileError, match=r"^/proc/picture\.png: cannot be written"):
-        image.save("/proc/picture.png")
-
-
-def test_a_name_that_is_too_long(image: rc.Image, tmp_path: Path) -> None:
-    with pytest.raises(rc.ImageFileError, match="File name too long"):
-        image.save(tmp_path / ("x" * 252 + ".png"))
-    assert list(tmp_path.iterdir()) == []
-
-
-def in_a_process(program: str, *arguments: object) -> subprocess.CompletedProcess[str]:
-    begin = "import sys, numpy as np, realcam as rc\nfrom tests.python import scenes\n"
-    return subprocess.run(
-        [sys.executable, "-c", begin + program, *map(str, arguments)], capture_output=True, text=True, cwd=ROOT
-    )
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["folder.png", "pipe.png"]
 
 
 TAKE = """
+import sys, numpy as np, realcam as rc
+from tests.python import scenes
 picture = rc.render(scenes.sky(), rc.Camera(rc.Lens.load("tessar-50mm"), film=rc.Film(36, 24, {size})), spp=1)
 """
 
@@ -177,7 +147,9 @@ try:
 except rc.ImageFileError as error:
     print(error)
 """
-    run = in_a_process(TAKE.format(size=(300, 200)) + limit, path)
+    run = subprocess.run(
+        [sys.executable, "-c", TAKE.format(size=(300, 200)) + limit, path], capture_output=True, text=True, cwd=ROOT
+    )
     assert "picture" + suffix + ": cannot be written: the disk is full, or a limit" in run.stdout, run.stderr
     assert path.read_bytes() == b"the old one"
     assert [p.name for p in tmp_path.iterdir()] == [path.name]
@@ -196,8 +168,7 @@ object.__setattr__(picture, "depth", rng.random((3000, 4000), dtype=np.float32))
 print("saving", flush=True)
 picture.save(sys.argv[1])
 """
-    begin = "import sys, numpy as np, realcam as rc\nfrom tests.python import scenes\n"
-    program = begin + TAKE.format(size=(2, 2)) + save
+    program = TAKE.format(size=(2, 2)) + save
     with subprocess.Popen(
         [sys.executable, "-c", program, str(path)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, cwd=ROOT
     ) as process:
@@ -221,12 +192,6 @@ def test_a_symbolic_link_is_followed(image: rc.Image, tmp_path: Path) -> None:
     assert sorted(p.name for p in tmp_path.rglob("*")) == ["link.png", "one.png", "pictures"]
 
 
-def test_a_pipe_is_no_picture(image: rc.Image, tmp_path: Path) -> None:
-    os.mkfifo(tmp_path / "pipe.png")
-    with pytest.raises(rc.ImageFileError, match="is a pipe or a device"):
-        image.save(tmp_path / "pipe.png")
-
-
 def test_names_that_are_no_utf8(image: rc.Image, tmp_path: Path) -> None:
     path = os.fsdecode(os.fsencode(tmp_path) + b"/\xff\xfe.png")
     image.save(path)
@@ -235,22 +200,18 @@ def test_names_that_are_no_utf8(image: rc.Image, tmp_path: Path) -> None:
         image.save(os.fsdecode(os.fsencode(tmp_path) + b"/\xff/x.png"))
 
 
-def test_written_files_have_ordinary_permissions(image: rc.Image, tmp_path: Path) -> None:
+def test_a_new_file_has_the_mode_of_the_umask_and_one_that_is_replaced_its_own(image: rc.Image, tmp_path: Path) -> None:
+    new, private = tmp_path / "picture.png", tmp_path / "private.exr"
+    private.write_text("private")
+    private.chmod(0o600)
     before = os.umask(0o027)
     try:
-        image.save(tmp_path / "picture.png")
+        image.save(new)
+        image.save(private)
     finally:
         os.umask(before)
-    assert (tmp_path / "picture.png").stat().st_mode & 0o777 == 0o640
-
-
-@pytest.mark.parametrize("suffix", [".png", ".exr"])
-def test_a_file_that_is_replaced_keeps_its_permissions(image: rc.Image, tmp_path: Path, suffix: str) -> None:
-    path = tmp_path / f"picture{suffix}"
-    path.write_text("private")
-    path.chmod(0o600)
-    image.save(path)
-    assert path.stat().st_mode & 0o777 == 0o600
+    assert new.stat().st_mode & 0o777 == 0o640
+    assert private.stat().st_mode & 0o777 == 0o600
 
 
 def test_unknown_tone_curve(image: rc.Image, tmp_path: Path) -> None:
@@ -336,7 +297,7 @@ def test_a_picture_cut_short_is_refused(tmp_path: Path, capfd: pytest.CaptureFix
         write(tmp_path / name, codes, **wishes)
         whole = (tmp_path / name).read_bytes()
         rc.read_environment(tmp_path / name)
-        for share in np.linspace(0.01, 0.99, 30):
+        for share in np.linspace(0.01, 0.99, 15):
             (tmp_path / f"cut-{name}").write_bytes(whole[: int(share * len(whole))])
             with pytest.raises(rc.ImageFileError, match=f"cut-{name}: is (broken or incomplete|no picture)"):
                 rc.read_environment(tmp_path / f"cut-{name}")
@@ -406,10 +367,7 @@ def test_a_picture_that_claims_too_many_pixels_is_refused(tmp_path: Path) -> Non
     write_png(path, 11000, 8, 2, b"\0" * 100)
     with pytest.raises(rc.ImageFileError, match=r"11000 x 11000 pixels, and [0-9]+ bytes cannot hold so many"):
         rc.read_environment(path)
-
-
-def test_a_large_picture_of_one_colour_is_no_broken_one(tmp_path: Path) -> None:
-    """What compresses best: 1 bit a pixel, all the same."""
+    # What compresses best is none: 1 bit a pixel, all the same.
     write_png(tmp_path / "white.png", 4096, 1, 0, (b"\0" + b"\xff" * 512) * 4096)
     assert (rc.read_environment(tmp_path / "white.png") == 1).all()
 

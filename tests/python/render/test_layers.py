@@ -316,15 +316,15 @@ SPECKLED_FILM = rc.Film(24, 24, (4, 4))
 
 def test_variance_is_that_of_pictures_with_other_seeds(device: str) -> None:
     scene, taken_by = speckled_scene(), camera("pinhole", SPECKLED_FILM)
-    seeds, spp = 1000, 64
+    seeds, spp = 500, 64
     options: dict[str, object] = {"spp": spp, "max_bounces": 0, "layers": "variance", "device": device}
     images = [rc.render(scene, taken_by, effects=(), seed=seed, **options) for seed in range(seeds)]  # type: ignore[arg-type]
     pixels = np.stack([image.pixels for image in images]).astype(float)
     told = np.stack([image.layers["variance"] for image in images]).astype(float).mean(axis=0)
     assert (told > 0).all()
     ratio = pixels.var(axis=0, ddof=1) / told
-    # (seeds - 1) ratio follows chi-square with 999 degrees of freedom, so that one ratio has a standard deviation of
-    # sqrt(2 / 999), and the mean of 16 that know nothing of each other a 16th of its square. 64 samples lie in cells of
+    # (seeds - 1) ratio follows chi-square with 499 degrees of freedom, so that one ratio has a standard deviation of
+    # sqrt(2 / 499), and the mean of 16 that know nothing of each other a 16th of its square. 64 samples lie in cells of
     # 4096 specks or more, between which they are spread evenly in a few ways: that takes some thousandths off. Five of
     # them.
     deviation = math.sqrt(2 / (seeds - 1))

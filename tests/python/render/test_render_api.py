@@ -9,6 +9,7 @@ import subprocess
 import sys
 import textwrap
 import threading
+from collections.abc import Callable
 
 import numpy as np
 import pytest
@@ -46,25 +47,6 @@ def test_what_is_returned() -> None:
     assert rc.devices()
     with pytest.raises(dataclasses.FrozenInstanceError):
         image.spp = 5  # type: ignore[misc]
-
-
-@pytest.mark.parametrize(
-    ("arguments", "error", "says"),
-    [
-        ({"spp": 0}, rc.InputError, "spp"),
-        ({"spp": -1}, rc.InputError, "spp"),
-        ({"spp": 1 << 25}, rc.InputError, "spp"),
-        ({"max_bounces": -1}, rc.InputError, "max_bounces"),
-        ({"max_bounces": 1000}, rc.InputError, "max_bounces"),
-        ({"threads": -1}, rc.InputError, "threads"),
-        ({"seed": -1}, rc.InputError, "seed"),
-        ({"seed": 1 << 32}, rc.InputError, "seed"),
-        ({"device": "toaster"}, rc.InputError, "toaster.*cpu"),
-    ],
-)
-def test_settings_that_make_no_picture(arguments: dict[str, object], error: type[Exception], says: str) -> None:
-    with pytest.raises(error, match=says):
-        rc.render(small_scene(), camera(4, 4), effects=(), **arguments)  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize("model", ["thin", "full"])
@@ -127,37 +109,38 @@ def test_progress_rises_from_0_to_1() -> None:
     assert seen[-1] == 1.0
 
 
-def test_progress_false_stops() -> None:
+def small_picture() -> rc.Image:
+    return rc.render(small_scene(), camera(4, 4), effects=(), spp=1)
+
+
+def fails() -> None:
+    raise LookupError("a mistake of the user's")
+
+
+@pytest.mark.parametrize(
+    ("answer", "error", "says"),
+    [
+        (lambda: False, rc.Cancelled, None),
+        (small_picture, rc.InputError, "progress function"),  # one render within another
+        (fails, LookupError, "a mistake of the user's"),
+    ],
+    ids=["stops", "renders", "fails"],
+)
+def test_a_progress_function_ends_the_picture_at_once(
+    answer: Callable[[], object], error: type[Exception], says: str | None
+) -> None:
     calls: list[float] = []
 
-    def stop(done: float) -> bool:
+    def progress(done: float) -> object:
         calls.append(done)
-        return False
+        return answer()
 
-    with pytest.raises(rc.Cancelled):
-        rc.render(small_scene(), camera(2000, 1700), effects=(), spp=20000, progress=stop)
+    with pytest.raises(error, match=says):
+        rc.render(small_scene(), camera(2000, 1700), effects=(), spp=20000, progress=progress)  # type: ignore[arg-type]
     assert len(calls) == 1
     assert calls[0] < 0.9
     # Nothing is left over in the backend.
-    assert rc.render(small_scene(), camera(4, 4), effects=(), spp=1).pixels.shape == (4, 4, 3)
-
-
-def test_render_within_its_own_progress_is_an_error() -> None:
-    def again(done: float) -> bool:
-        rc.render(small_scene(), camera(4, 4), effects=(), spp=1)
-        return True
-
-    with pytest.raises(rc.InputError, match="progress function"):
-        rc.render(small_scene(), camera(2000, 1700), effects=(), spp=20000, progress=again)
-    assert rc.render(small_scene(), camera(4, 4), effects=(), spp=1).spp == 1
-
-
-def test_an_error_in_progress_comes_out_as_it_is() -> None:
-    def fail(done: float) -> bool:
-        raise LookupError(f"at {done >= 0}")
-
-    with pytest.raises(LookupError, match="at True"):
-        rc.render(small_scene(), camera(2000, 1700), effects=(), spp=20000, progress=fail)
+    assert small_picture().pixels.shape == (4, 4, 3)
 
 
 def test_progress_bar_says_nothing_where_there_is_no_terminal(capfd: pytest.CaptureFixture[str]) -> None:

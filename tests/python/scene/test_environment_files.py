@@ -51,13 +51,13 @@ def adapted(chromaticities: tuple[float, ...]) -> np.ndarray:
     return REC709_FROM_XYZ @ np.linalg.inv(BRADFORD) @ np.diag(cones) @ BRADFORD @ from_xyz
 
 
-@pytest.mark.parametrize("packed", ["flat", "channels", "pixels"])
-@pytest.mark.parametrize("width", [5, 16, 700])
+# Lines of fewer than eight pixels are never packed by channels.
+@pytest.mark.parametrize(
+    ("packed", "width"), [("flat", 5), ("pixels", 5), *itertools.product(("flat", "channels", "pixels"), (16, 700))]
+)
 def test_radiance_pixels_flat_and_in_both_kinds_of_runs(tmp_path: Path, packed: str, width: int) -> None:
     sky = np.repeat(SKY, 50, axis=1)[:, :width]
     sky[2] = sky[2, 0]  # a run of a whole line
-    if packed == "channels" and width < 8:
-        pytest.skip("lines of fewer than eight pixels are never packed so")
     write_radiance(tmp_path / "sky.hdr", sky, packed=packed)
     np.testing.assert_array_equal(read(tmp_path / "sky.hdr"), sky)
 
@@ -127,11 +127,8 @@ def test_openexr_colours_of_other_primaries(tmp_path: Path, chromaticities: tupl
 
 
 def test_openexr_colours_in_xyz_and_in_rec_709(tmp_path: Path) -> None:
-    for white in (
-        (1 / 3, 1 / 3),
-        (0, 0),
-        (0.3127, 0.329),
-    ):  # whatever they name for white, X, Y and Z are what they are
+    for white in ((1 / 3, 1 / 3), (0, 0), (0.3127, 0.329)):
+        # Whatever they name for white, X, Y and Z are what they are.
         xyz = SKY @ np.linalg.inv(REC709_FROM_XYZ).T
         write_exr(tmp_path / "sky.exr", xyz, chromaticities=(1, 0, 0, 1, 0, 0, *white))
         np.testing.assert_allclose(read(tmp_path / "sky.exr"), SKY, rtol=2e-3)

@@ -229,7 +229,6 @@ CASES: dict[str, tuple[Callable[[], rc.Scene], dict[str, object], dict[str, obje
         {},
     ),
     "dispersion": (lambda: lamps((0.4, 0.2, -4)), {}, {"effects": ("dispersion",)}),
-    "coatings": (lambda: lamps((0.4, 0.2, -4)), {}, {"effects": ("coatings",)}),
     "diffraction": (lambda: lamps((0.4, 0.2, -4)), {}, {"effects": ("diffraction",)}),
     "all effects": (lambda: lamps((0.4, 0.2, -4)), {}, {"effects": ("dispersion", "coatings", "diffraction")}),
 }

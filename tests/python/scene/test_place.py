@@ -85,24 +85,3 @@ def test_depth_of_a_plane_square_to_the_axis(model: str) -> None:
     depth = rc.render(scene, camera, effects=(), spp=16).depth
     # float32, relative to the camera.
     np.testing.assert_allclose(depth, 4.0, rtol=1e-6)
-
-
-def test_depth_is_the_mean_over_the_samples_that_hit() -> None:
-    camera = scenes.pinhole()
-    slope = scenes.quad((0, 0, -3), 2, right=(0.8, 0, -0.6), diffuse=0.5)
-    points, rays = scenes.points_on_plane(camera, 16, (0, 0, -3), np.cross((0.8, 0, -0.6), (0, 1, 0)))
-    expected = scenes.mean_over_pixels(rays, -points[:, 2])  # weighted as the exposure is
-    depth = rc.render(scenes.scene_of(slope).with_environment(1), camera, effects=(), spp=16).depth
-    np.testing.assert_allclose(depth, expected, rtol=1e-5)
-    assert len(rays.weights) == 16 * 24 * 16
-    # The left half of the picture is empty, and the pixels on the edge have the depth of what is there.
-    half = scenes.quad((1, 0, -3), 1, 2, diffuse=0.5)
-    depth = rc.render(scenes.scene_of(half).with_environment(1), camera, effects=(), spp=16).depth
-    assert np.isposinf(depth[:, :12]).all()
-    np.testing.assert_allclose(depth[:, 12:], 3.0, rtol=1e-6)
-
-
-def test_no_light_and_nothing_there() -> None:
-    image = rc.render(scenes.sky(0.0), scenes.pinhole(), effects=(), spp=4)
-    np.testing.assert_array_equal(image.pixels, 0)
-    assert np.isposinf(image.depth).all()

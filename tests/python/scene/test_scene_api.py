@@ -24,22 +24,17 @@ def test_a_scene_counts_and_bounds() -> None:
     assert rc.Scene.from_arrays(CORNERS, FACE, materials=[rc.Material(emission=(0, 1, 0))]).has_light
 
 
-@pytest.mark.parametrize("kind", [np.float32, np.float64, np.int64])
-@pytest.mark.parametrize("index", [np.uint8, np.int32, np.uint32, np.int64, np.uint64])
-def test_arrays_of_many_types(kind: type, index: type) -> None:
-    scene = rc.Scene.from_arrays(CORNERS.astype(kind), FACE.astype(index), triangle_materials=np.zeros(1, index))
-    np.testing.assert_array_equal(scene.bounds_m, [[0, 0, -3], [1, 1, -3]])
-
-
-def test_lists_and_strided_arrays() -> None:
+def test_arrays_of_many_types_lists_and_strided_arrays() -> None:
     wide = np.zeros((3, 6))
     wide[:, ::2] = CORNERS
     for vertices, faces in (
+        *((CORNERS.astype(kind), FACE) for kind in (np.float32, np.float64, np.int64)),
+        *((CORNERS, FACE.astype(index)) for index in (np.uint8, np.int32, np.uint32, np.int64, np.uint64)),
         (CORNERS.tolist(), FACE.tolist()),
         (wide[:, ::2], np.asfortranarray(np.repeat(FACE, 2, axis=0))[::2]),
         (CORNERS[::-1], [[2, 1, 0]]),
     ):
-        scene = rc.Scene.from_arrays(vertices, faces)
+        scene = rc.Scene.from_arrays(vertices, faces, triangle_materials=np.zeros(1, np.asarray(faces).dtype))
         np.testing.assert_array_equal(scene.bounds_m, [[0, 0, -3], [1, 1, -3]])
 
 
@@ -47,16 +42,13 @@ def test_lists_and_strided_arrays() -> None:
     ("arguments", "says"),
     [
         ({"vertices_m": np.zeros((3, 2))}, r"vertices_m must be an array of shape \(N, 3\)"),
-        ({"vertices_m": np.zeros(9)}, r"vertices_m .*\(N, 3\)"),
         ({"triangles": [0, 1, 2]}, r"triangles .*\(N, 3\)"),
         ({"triangles": np.zeros((0, 3), int)}, "no triangles"),
         ({"triangles": [[0, 1, 3]]}, "vertex 3"),
-        ({"triangles": [[0, 1, -1]]}, "vertex -1"),
         ({"triangles": [[0, 1, 2**40]]}, "vertex 1099511627776"),
         ({"triangles": [[0.5, 1, 2]]}, "integers"),
         ({"triangles": [[0, 0, 0]]}, "without area"),
         ({"vertices_m": [[math.nan, 0, 0], [1, 0, 0], [0, 1, 0]]}, "vertex 0.*finite"),
-        ({"vertices_m": [[math.inf, 0, 0], [1, 0, 0], [0, 1, 0]]}, "vertex 0.*finite"),
         ({"normals": np.zeros((2, 3))}, "2 normals for 3 vertices"),
         ({"normals": np.zeros((3, 2))}, r"normals .*\(N, 3\)"),
         ({"uvs": np.zeros((3, 3))}, r"uvs .*\(N, 2\)"),
@@ -84,6 +76,7 @@ def test_triangles_without_area_are_dropped_and_named() -> None:
 
 NO_ENVIRONMENT = {
     "negative": -1,
+    "past all measure": 1e31,
     "nan": math.nan,
     "infinite": math.inf,
     "two numbers": (1, 2),
@@ -108,12 +101,13 @@ def test_lights_that_are_none() -> None:
     for direction in ((0, 0, 0), (math.nan, 0, 0), (math.inf, 0, 0)):
         with pytest.raises(rc.InputError, match="direction"):
             scene.with_sun(direction, (1, 1, 1))
-    with pytest.raises(rc.InputError, match="illuminance"):
-        scene.with_sun((0, -1, 0), (-1, 1, 1))
     with pytest.raises(rc.InputError, match="position"):
         scene.with_point_light((0, math.nan, 0), (1, 1, 1))
-    with pytest.raises(rc.InputError, match="intensity"):
-        scene.with_point_light((0, 1, 0), (1, math.inf, 1))
+    for bad in (1e31, math.inf, math.nan, -1.0):
+        with pytest.raises(rc.InputError, match=r"illuminance.*between 0 and 1e"):
+            scene.with_sun((0, -1, 0), (bad, 1, 1))
+        with pytest.raises(rc.InputError, match=r"intensity.*between 0 and 1e"):
+            scene.with_point_light((0, 1, 0), (1, bad, 1))
 
 
 def test_scenes_are_values() -> None:

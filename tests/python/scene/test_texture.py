@@ -85,16 +85,3 @@ def test_between_texels_light_is_interpolated_linearly() -> None:
     measured = scenes.radiance(scene, camera)[..., 0]
     # Half a texel of float32 coordinates.
     np.testing.assert_allclose(measured, expected, atol=1e-5)
-
-
-def test_wrong_textures_are_errors() -> None:
-    scene = rc.Scene.from_arrays(scenes.quad((0, 0, -2), 1)[0], [[0, 1, 2]], uvs=UNIT_SQUARE)
-    with pytest.raises(rc.InputError, match=r"\(H, W, 4\)"):
-        scene.with_texture(0, np.zeros((4, 4, 2), np.uint8))
-    with pytest.raises(rc.InputError, match="no material 3"):
-        scene.with_texture(3, np.zeros((4, 4, 4), np.uint8))
-    with pytest.raises(rc.InputError, match="texture"):
-        scene.with_texture(0, np.zeros((0, 4, 4), np.uint8))
-    bare = rc.Scene.from_arrays(np.eye(3), [[0, 1, 2]])
-    with pytest.raises(rc.InputError, match="no texture coordinates"):
-        bare.with_texture(0, np.zeros((4, 4, 4), np.uint8))

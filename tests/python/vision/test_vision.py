@@ -212,7 +212,10 @@ def test_opencv_projects_what_the_fit_does() -> None:
 @pytest.mark.parametrize(
     ("call", "says"),
     [
-        (lambda: rc.fit_camera_model(camera_of("tessar-50mm"), "brown"), 'unknown camera model "brown"; expected one of pin'),
+        (
+            lambda: rc.fit_camera_model(camera_of("tessar-50mm"), "brown"),
+            'unknown camera model "brown"; expected one of pin',
+        ),
         (lambda: rc.fit_camera_model(camera_of("fisheye-6mm-220deg"), "opencv5"), "sees 90 degrees to the side"),
         (lambda: rc.fit_camera_model(camera_of("tessar-50mm"), distance_m=0), "distance_m must be a positive number"),
         (lambda: rc.fit_camera_model(camera_of("tessar-50mm"), distance_m=0.001), "lies inside the lens"),
