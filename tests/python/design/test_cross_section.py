@@ -247,7 +247,7 @@ def test_what_makes_no_sense_is_refused() -> None:
         ({"rays": -1}, "0 or more"),
         ({"rays_from": "film", "fields_deg": [1]}, "rays from the object"),
         ({"fields_deg": [60]}, "60"),
-        ({"plane": "xy"}, "yz or xz is wanted"),
+        ({"plane": "xy"}, "expected yz or xz"),
     ):
         with pytest.raises(rc.InputError, match=message):
             cross_section(GAUSS, **options)

@@ -288,8 +288,8 @@ MISTAKES = [
 ]
 # The whole of a file.
 NO_SHOTS = [
-    ("", "format = 1 is wanted"),
-    ("format = 2", "format = 1 is wanted"),
+    ("", "expected format = 1"),
+    ("format = 2", "expected format = 1"),
     ("format = 1", "scene is missing"),
     ("format = 1\nscene = 3", r"shot\.toml:2: \"scene\" must be a text"),
     ("format = 1\nscene = ''", r":2: \"scene\" is empty"),
