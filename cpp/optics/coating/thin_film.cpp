@@ -36,9 +36,9 @@ struct TangentialFields {
 
 /// Returns the fields in front of a film from those behind it, divided by exp(-i delta), which grows without limit in a
 /// thick absorbing film. `wave_number`: 2 pi / wavelength, 1/nm; `component`: normal_component in the film; `scale`: 1
-/// for s, 1 / index^2 for p, so that component * scale is the admittance y of the film. With h = (1 - exp(2 i delta)) /
-/// 2 the characteristic matrix {{cos d, -i sin d / y}, {-i y sin d, cos d}} over exp(-i d) is {{1 - h, h / y}, {y h, 1
-/// - h}}.
+/// for s, 1 / index^2 for p, so that component * scale is the admittance y of the film. With h = (1 - exp(2 i d)) / 2,
+/// d = delta, the characteristic matrix {{cos d, -i sin d / y}, {-i y sin d, cos d}} divided by exp(-i d) is
+/// {{1 - h, h / y}, {y h, 1 - h}}.
 TangentialFields through_film(TangentialFields behind, const FilmStack::Film& film, double wave_number,
                               Complex component, Complex scale) {
     const Complex delta = wave_number * film.thickness_nm * component;
@@ -57,7 +57,7 @@ SurfaceResponse response(const FilmStack& stack, double cosine, bool is_p) {
     const Complex y_behind = component_behind * scale_in(stack.index_behind);
     const double y_before = is_p ? cosine / before : cosine * before;
     TangentialFields fields{1, y_behind};
-    Complex passed = 1;  // the transmitted field over the product of all divisors of `fields`
+    Complex passed = 1;  // the transmitted field, divided by all that `fields` is divided by
     for (std::size_t i = stack.films.size(); i-- > 0;) {
         const FilmStack::Film& film = stack.films[i];
         const Complex component = normal_component(film.index, before, cosine);

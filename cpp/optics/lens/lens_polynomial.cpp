@@ -20,8 +20,11 @@ LensPolynomial::LensPolynomial(const LensSystem& lens, const PupilView& pupil, d
     front_radius_ = lens.surfaces.front().clear_semi_diameter;
     last_rim_ = lens.surfaces.back().sag(last_radius_);
     front_rim_ = lens.surfaces.front().sag(front_radius_);
-    const std::vector<TracedRay> rays = traced_rays(lens, pupil, 0, 1500), others = traced_rays(lens, pupil, 1, 750);
-    if (rays.size() < 200 || others.size() < 100)
+    constexpr std::uint32_t kFitRays = 1500, kTestRays = 750;
+    constexpr std::size_t kMinFitRays = 200, kMinTestRays = 100;  // that pass the lens
+    const std::vector<TracedRay> rays = traced_rays(lens, pupil, 0, kFitRays),
+                                 others = traced_rays(lens, pupil, 1, kTestRays);
+    if (rays.size() < kMinFitRays || others.size() < kMinTestRays)
         throw InputError("too few rays pass lens \"" + lens.name + "\" to fit polynomials to it");
     choose_degree(rays, others);
     drop_negligible_terms(others);

@@ -42,8 +42,8 @@ Vec3d entrance_pupil_middle(const ParabasalRays& rays, double index);
 double exit_pupil_distance(const LensSystem& lens, double wavelength_nm, Vec2<double> film);
 
 /// First-order data in one of the two principal meridians: planes containing the chief ray such that a parallel ray
-/// launched in one of them stays in a plane. (They are the singular vectors of the matrix of power.) Lengths in mm; a
-/// power of 0 has an infinite focal length.
+/// launched in one of them stays in a plane. (They are the singular directions of direction_by_position.) Lengths in
+/// mm; a power of 0 has an infinite focal length.
 struct Meridian {
     double azimuth_deg;  ///< azimuth of the plane in front of the lens, from the x axis towards y; -90 to 90
     double focal_length;

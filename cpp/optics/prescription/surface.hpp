@@ -43,6 +43,7 @@ inline Affine<double> along_axis(double distance) {
 /// Returns the inverse of a rigid motion.
 Affine<double> inverse_motion(const Affine<double>& motion);
 
+/// Effect of a surface on light.
 enum class SurfaceType {
     refracting,
     mirror,  ///< reverses the light: thicknesses after it are negative until the next mirror
@@ -59,8 +60,7 @@ struct Surface {
     double thickness = 0;  ///< distance to the next vertex along the axis; 0 for the last surface
     Glass material = Glass::air();  ///< medium behind the surface, for light that travels to the film
     double clear_semi_diameter = 0;
-    double inner_semi_diameter =
-        0;  ///< radius of a central hole or obstruction, inside which light is blocked; 0: none
+    double inner_semi_diameter = 0;  ///< radius of a central hole or obstruction, which blocks light; 0: none
     Coating coating;
     SurfacePlacement placement;
     SurfaceForm form;  ///< sag terms beyond the conic and the even aspheric terms
