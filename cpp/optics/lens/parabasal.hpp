@@ -10,7 +10,7 @@ namespace REALCAM_NAMESPACE {
 /// First-order (parabasal) ray transfer of a lens of any kind about a chief ray, as 2 x 2 matrices: derivatives of the
 /// position or direction of a ray on one side of the lens by those on the other side. A ray near the chief ray has a
 /// position, which is its offset in the plane perpendicular to the chief ray, mm, and an optical direction (unit vector
-/// times index), of which the components across the chief ray count. The axes across the chief ray are x of the frame
+/// times index), given by its two components across the chief ray. The axes across the chief ray are x of the frame
 /// and, nearly, y.
 struct ParabasalRays {
     ChiefRay chief;
