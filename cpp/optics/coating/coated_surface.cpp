@@ -12,7 +12,7 @@ CoatedSurface::CoatedSurface(const Coating& coating, bool is_mirror, double wave
     : stack_{wavelength_nm, before, {}, behind},
       is_mirror_(is_mirror),
       has_stated_reflectance_(is_mirror && coating.kind != CoatingKind::metal),
-      stated_(coating.kind == CoatingKind::reflectance ? coating.reflectance : 1) {
+      stated_reflectance_(coating.kind == CoatingKind::reflectance ? coating.reflectance : 1) {
     for (const CoatingLayer& layer : coating.layers)
         stack_.films.push_back({known_index(layer.material, wavelength_nm), layer.thickness_nm});
     if (!as_listed) std::reverse(stack_.films.begin(), stack_.films.end());
@@ -22,8 +22,9 @@ CoatedSurface::CoatedSurface(const Coating& coating, bool is_mirror, double wave
 PolarisedResponse CoatedSurface::at(double cosine) const {
     if (!has_stated_reflectance_) return response_of(stack_, cosine);
     // Phases of a perfect conductor, which reverses the tangential electric field.
-    const double r = std::sqrt(stated_);
-    return {{-r, 0, stated_, 0, 1 - stated_}, {r, 0, stated_, 0, 1 - stated_}};
+    const double r = std::sqrt(stated_reflectance_);
+    return {{-r, 0, stated_reflectance_, 0, 1 - stated_reflectance_},
+            {r, 0, stated_reflectance_, 0, 1 - stated_reflectance_}};
 }
 
 std::complex<double> CoatedSurface::known_index(const CoatingMaterial& material, double wavelength_nm) {

@@ -11,7 +11,7 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Returns the medium in front of a surface, for light travelling to the film.
+/// Returns the medium in front of surface `index` (from 0), on the scene's side.
 const Glass& medium_before(const LensSystem& lens, std::size_t index);
 
 /// True if a refracting surface has air on exactly one side; lens makers coat these faces. Two glasses in contact are
@@ -37,26 +37,31 @@ public:
     CoatedSurface(const Coating& coating, bool is_mirror, double wavelength_nm, double before, double behind,
                   bool as_listed);
 
-    /// `cosine`: cosine of the angle of incidence, in the incident medium.
+    /// Returns the reflection and transmission at one angle. `cosine`: cosine of the angle of incidence, 0 to 1, in the
+    /// incident medium.
     PolarisedResponse at(double cosine) const;
 
     bool is_mirror() const { return is_mirror_; }
 
 private:
+    /// Returns the material's index. Throws InputError if it is unknown, or if the wavelength is at or beyond a
+    /// resonance.
     static std::complex<double> known_index(const CoatingMaterial& material, double wavelength_nm);
 
     FilmStack stack_;
-    bool is_mirror_, has_stated_reflectance_;
-    double stated_;
+    bool is_mirror_;
+    bool has_stated_reflectance_;  ///< the reflectance is `stated_reflectance_` at all angles; the stack is not used
+    double stated_reflectance_;
 };
 
-/// Returns a surface of a lens for light of one wavelength travelling to the film or to the scene. `indices`:
-/// lens.indices(wavelength_nm). Throws InputError, naming surface and material, if a layer's index is unknown.
+/// Returns surface `index` (from 0) of a lens for light of one wavelength travelling to the film or to the scene.
+/// `indices`: result of lens.indices(wavelength_nm). Throws InputError, naming surface and material, if a layer's index
+/// is unknown.
 CoatedSurface coated_surface(const LensSystem& lens, std::size_t index, double wavelength_nm, LightDirection direction,
                              const std::vector<double>& indices);
 
-/// Returns all surfaces in the order of the light; std::nullopt for stops and apertures, which block light or pass it
-/// unchanged. Throws InputError if an index is unknown.
+/// Returns all surfaces of a lens in the order of the light; std::nullopt for stops and apertures, which block light or
+/// pass it unchanged. Throws InputError if an index is unknown.
 std::vector<std::optional<CoatedSurface>> coated_surfaces(const LensSystem& lens, double wavelength_nm,
                                                           LightDirection direction);
 

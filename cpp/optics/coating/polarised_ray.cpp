@@ -21,32 +21,33 @@ RayTransmittance PolarisedTrace::operator()(Vec3d origin, Vec3d direction) const
     ray.origin.set(0, entry.origin);
     ray.direction.set(0, entry.direction);
     ray.status[0] = static_cast<int>(entry.status);
-    const LensView<double> all = path_.view();
+    const LensView<double> view = path_.view();
     Fields fields;
     double averaged = 1;
     if (entry.status == RayStatus::ok) fields = unpolarised(normalized(entry.direction));
     for (std::size_t i = 0; i < surfaces_.size() && ray.status[0] == 0; ++i) {
-        const SurfaceView<double>& surface = all.surfaces[i];
-        if (all.free.frames && all.free.frames[i].before.changes) change(all.free.frames[i].before, ray, fields);
+        const SurfaceView<double>& surface = view.surfaces[i];
+        if (view.free.frames && view.free.frames[i].before.changes)
+            change_to_frame(view.free.frames[i].before, ray, fields);
         const Vec3d before = normalized(ray.direction[0]);
-        FreeParts<double> free = all.free.from(static_cast<int>(i));
+        FreeParts<double> free = view.free.from(static_cast<int>(i));
         free.frames = nullptr;  // the frame change would also leave the surface's frame
-        trace_lens(LensView<double>{&surface, 1, all.kind, all.iris, free}, ray, PathRecord<double, 1>{});
+        trace_lens(LensView<double>{&surface, 1, view.kind, view.iris, free}, ray, PathRecord<double, 1>{});
         if (ray.status[0] != 0 || !surfaces_[i]) continue;
-        const Vec3d normal = normal_at(all, static_cast<int>(i), ray.origin[0]);
+        const Vec3d normal = normal_at(view, static_cast<int>(i), ray.origin[0]);
         const PolarisedResponse response = surfaces_[i]->at(std::fabs(dot(before, normal)));
-        const bool mirror = surfaces_[i]->is_mirror();
-        averaged *= mirror ? response.mean_reflectance() : response.mean_transmittance();
-        fields = across(fields, before, normalized(ray.direction[0]), normal,
-                        mirror ? response.s.r : scaled_to_power(response.s),
-                        mirror ? response.p.r : scaled_to_power(response.p));
+        const bool is_mirror = surfaces_[i]->is_mirror();
+        averaged *= is_mirror ? response.mean_reflectance() : response.mean_transmittance();
+        fields = behind_surface(fields, before, normalized(ray.direction[0]), normal,
+                                is_mirror ? response.s.r : scaled_to_power(response.s),
+                                is_mirror ? response.p.r : scaled_to_power(response.p));
     }
     const auto status = static_cast<RayStatus>(ray.status[0]);
     if (status != RayStatus::ok) return {status, 0, 0};
     return {status, (power(fields.first) + power(fields.second)) / 2, averaged};
 }
 
-void PolarisedTrace::change(const FrameChange<double>& frame, LensRays<double, 1>& ray, Fields& fields) {
+void PolarisedTrace::change_to_frame(const FrameChange<double>& frame, LensRays<double, 1>& ray, Fields& fields) {
     change_frame(frame, ray);
     for (Field* field : {&fields.first, &fields.second})
         *field = {frame.direction(field->real), frame.direction(field->imaginary)};
@@ -67,34 +68,34 @@ PolarisedTrace::Fields PolarisedTrace::unpolarised(Vec3d direction) {
     return {{first, {0, 0, 0}}, {cross(direction, first), {0, 0, 0}}};
 }
 
-PolarisedTrace::Fields PolarisedTrace::across(const Fields& fields, Vec3d before, Vec3d after, Vec3d normal,
-                                              Complex to_s, Complex to_p) {
+PolarisedTrace::Fields PolarisedTrace::behind_surface(const Fields& fields, Vec3d before, Vec3d after, Vec3d normal,
+                                                      Complex s_coefficient, Complex p_coefficient) {
     const Vec3d across_plane = cross(before, normal);
     // Closer to normal incidence than this, both polarisations behave alike to double precision.
-    const bool normal_incidence = dot(across_plane, across_plane) < 1e-18;
-    const Vec3d s = normal_incidence ? some_perpendicular(before) : normalized(across_plane);
+    const bool is_normal_incidence = dot(across_plane, across_plane) < 1e-18;
+    const Vec3d s = is_normal_incidence ? some_perpendicular(before) : normalized(across_plane);
     const Vec3d p_before = cross(s, before), p_after = cross(s, after);
-    const auto changed = [&](const Field& field) {
-        const Complex a = to_s * along(field, s), b = to_p * along(field, p_before);
+    const auto transmitted = [&](const Field& field) {
+        const Complex a = s_coefficient * along(field, s), b = p_coefficient * along(field, p_before);
         return Field{a.real() * s + b.real() * p_after, a.imag() * s + b.imag() * p_after};
     };
-    return {changed(fields.first), changed(fields.second)};
+    return {transmitted(fields.first), transmitted(fields.second)};
 }
 
-Vec3d PolarisedTrace::normal_at(const LensView<double>& lens, int index, Vec3d at) {
+Vec3d PolarisedTrace::normal_at(const LensView<double>& lens, int index, Vec3d point) {
     const SurfaceView<double>& surface = lens.surfaces[index];
     if (surface.kind == SurfaceShape::freeform) {
-        const Lanes<double, 1> x = {at.x}, y = {at.y};
+        const Lanes<double, 1> x = {point.x}, y = {point.y};
         FreeformSags<double, 1> sag;
         freeform_sags<double, 1>(lens.free.freeforms[index], x, y, sag);
         return normalized(Vec3d{-sag.slope_x[0], -sag.slope_y[0], 1});
     }
     if (surface.kind == SurfaceShape::asphere) {
-        const double slope = 2 * asphere_sag(surface, at.x * at.x + at.y * at.y).derivative;
-        return normalized(Vec3d{-slope * at.x, -slope * at.y, 1});
+        const double slope = 2 * asphere_sag(surface, point.x * point.x + point.y * point.y).derivative;
+        return normalized(Vec3d{-slope * point.x, -slope * point.y, 1});
     }
     const double c = surface.curvature;
-    return normalized(Vec3d{-c * at.x, -c * at.y, 1 - c * surface.conic_factor * at.z});
+    return normalized(Vec3d{-c * point.x, -c * point.y, 1 - c * surface.conic_factor * point.z});
 }
 
 }  // namespace realcam

@@ -10,7 +10,7 @@ namespace REALCAM_NAMESPACE {
 /// Power transmittance of the lens for unpolarised light along a ray.
 struct RayTransmittance {
     RayStatus status;
-    double traced;    ///< with the polarisation traced from surface to surface; 0 if the ray does not pass
+    double traced;  ///< with the polarisation traced from surface to surface; 0 if the ray does not pass
     double averaged;  ///< product of the surfaces' means of s and p, as if the light were unpolarised at each of them
 };
 
@@ -32,30 +32,39 @@ public:
 
 private:
     using Complex = std::complex<double>;
+    /// Complex electric field, perpendicular to the ray.
     struct Field {
         Vec3d real, imaginary;
     };
+    /// The two fields that together represent unpolarised light.
     struct Fields {
         Field first, second;
     };
 
+    /// Component of a field along a unit vector.
     static Complex along(const Field& field, Vec3d unit) { return {dot(field.real, unit), dot(field.imaginary, unit)}; }
     static double power(const Field& field) {
         return dot(field.real, field.real) + dot(field.imaginary, field.imaginary);
     }
+    /// Returns the amplitude coefficient of transmission with its absolute value replaced by the root of the
+    /// transmittance.
     static Complex scaled_to_power(const SurfaceResponse& response);
 
+    /// Returns a unit vector perpendicular to a unit vector.
     static Vec3d some_perpendicular(Vec3d unit);
+    /// Returns two orthogonal fields of power 1 for a ray in this unit direction.
     static Fields unpolarised(Vec3d direction);
 
-    /// Returns the fields behind a surface. `to_s`, `to_p`: its complex amplitude coefficients for the two
-    /// polarisations.
-    static Fields across(const Fields& fields, Vec3d before, Vec3d after, Vec3d normal, Complex to_s, Complex to_p);
+    /// Returns the fields behind a surface. `before`, `after`: unit directions of the ray; `s_coefficient`,
+    /// `p_coefficient`: the surface's complex amplitude coefficients for the two polarisations.
+    static Fields behind_surface(const Fields& fields, Vec3d before, Vec3d after, Vec3d normal, Complex s_coefficient,
+                                 Complex p_coefficient);
 
     /// Transforms ray and fields into the frame of the next surface.
-    static void change(const FrameChange<double>& frame, LensRays<double, 1>& ray, Fields& fields);
+    static void change_to_frame(const FrameChange<double>& frame, LensRays<double, 1>& ray, Fields& fields);
 
-    static Vec3d normal_at(const LensView<double>& lens, int index, Vec3d at);
+    /// Returns the unit normal of surface `index`, in the order of the light, at a point in its frame, mm.
+    static Vec3d normal_at(const LensView<double>& lens, int index, Vec3d point);
 
     LensPath<double> path_;
     std::vector<std::optional<CoatedSurface>> surfaces_;

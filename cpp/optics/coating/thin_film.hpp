@@ -11,7 +11,7 @@ namespace REALCAM_NAMESPACE {
 struct FilmStack {
     struct Film {
         std::complex<double> index;
-        double thickness_nm;
+        double thickness_nm;  ///< physical thickness
     };
     double wavelength_nm;
     double index_before;  ///< index of the incident medium: real, since in an absorbing medium the incident wave has no
@@ -26,13 +26,14 @@ struct SurfaceResponse {
     /// where s is the direction of the s field and k that of the wave. So at normal incidence r has opposite signs for
     /// s and p.
     std::complex<double> r, t;
-    double reflectance, transmittance, absorptance;  ///< shares of the incident power
+    double reflectance, transmittance, absorptance;  ///< fractions of the incident power
 };
 
+/// Response to both polarisations: perpendicular (s) and parallel (p) to the plane of incidence.
 struct PolarisedResponse {
     SurfaceResponse s, p;
 
-    /// Values for unpolarised light.
+    /// Reflectance and transmittance for unpolarised light.
     double mean_reflectance() const { return (s.reflectance + p.reflectance) / 2; }
     double mean_transmittance() const { return (s.transmittance + p.transmittance) / 2; }
 };

@@ -19,6 +19,7 @@ namespace {
 /// wherever the pupil lies.
 class AxialRays {
 public:
+    /// `object_distance`: from the object point to the front vertex, mm.
     AxialRays(const LensSystem& lens, double wavelength_nm, double object_distance)
         : path_(lens, LightDirection::to_film, wavelength_nm) {
         const int behind_stop = lens.stop_index() + 1;
@@ -36,6 +37,7 @@ public:
         }
     }
 
+    /// Traces the rays with these paraxial heights at the stop, mm, to the last surface.
     template <int N>
     void trace(const double (&at_stop)[N], LensRays<double, N>& rays) const {
         for (int i = 0; i < N; ++i) {
@@ -51,26 +53,29 @@ public:
 
 private:
     LensPath<double> path_;
-    double height_ = 0, slope_ = 0;  ///< at the front vertex, for the ray of height 1 at the stop
+    double height_ = 0,
+           slope_ = 0;  ///< height and slope at the front vertex of the paraxial ray of height 1 at the stop
 };
 
-/// Returns the intervals of the squared height at the stop in which rays pass, up to the height `reach`.
-std::vector<std::pair<double, double>> passing_intervals(const AxialRays& rays, double reach) {
+/// Returns the intervals of the squared height at the stop, mm^2, in which rays pass, in ascending order up to the
+/// height `max_height`, mm.
+std::vector<std::pair<double, double>> passing_intervals(const AxialRays& rays, double max_height) {
     constexpr int kRays = 256, kEdges = 8, kHalvings = 44;
-    const double cell = reach * reach / kRays;
+    const double cell = max_height * max_height / kRays;
     LensRays<double, kRays> coarse;
     double height[kRays];
     for (int i = 0; i < kRays; ++i) height[i] = std::sqrt((i + 0.5) * cell);
     rays.trace(height, coarse);
     // Edges of the light are bisected to the last digit: a focus that jumps as single rays appear and vanish cannot be
-    // searched for.
+    // searched for. For each edge, squared heights on its two sides: rays pass at the first, and are blocked at the
+    // second.
     double open[kEdges], shut[kEdges];
     int edges = 0;
     for (int i = 1; i < kRays; ++i) {
-        const bool before = coarse.status[i - 1] == 0, here = coarse.status[i] == 0;
-        if (before == here || edges == kEdges) continue;
-        open[edges] = (i + (here ? 0.5 : -0.5)) * cell;
-        shut[edges] = (i + (here ? -0.5 : 0.5)) * cell;
+        const bool previous_passes = coarse.status[i - 1] == 0, passes = coarse.status[i] == 0;
+        if (previous_passes == passes || edges == kEdges) continue;
+        open[edges] = (i + (passes ? 0.5 : -0.5)) * cell;
+        shut[edges] = (i + (passes ? -0.5 : 0.5)) * cell;
         ++edges;
     }
     // With few edges, spare lanes evaluate the midpoints that the next bisections may need. Each edge has a binary tree
@@ -101,18 +106,18 @@ std::vector<std::pair<double, double>> passing_intervals(const AxialRays& rays, 
                 n = 2 * n + (passes ? 1 : 2);
             }
     }
-    std::vector<std::pair<double, double>> lit;
+    std::vector<std::pair<double, double>> intervals;
     bool inside = coarse.status[0] == 0;
-    if (inside) lit.emplace_back(0.0, 0.0);
+    if (inside) intervals.emplace_back(0.0, 0.0);
     for (int e = 0; e < edges; ++e) {
         inside = !inside;
         if (inside)
-            lit.emplace_back(open[e], 0.0);
+            intervals.emplace_back(open[e], 0.0);
         else
-            lit.back().second = open[e];
+            intervals.back().second = open[e];
     }
-    if (inside) lit.back().second = reach * reach;
-    return lit;
+    if (inside) intervals.back().second = max_height * max_height;
+    return intervals;
 }
 
 }  // namespace
@@ -127,10 +132,10 @@ double best_focus_distance(LensSystem lens, double wavelength_nm, double object_
     if (std::isinf(object_distance) && first_order(lens, wavelength_nm).is_afocal()) return kNone;
     lens.iris.blades = 0;
     const AxialRays axial(lens, wavelength_nm, object_distance);
-    // Beyond the paraxial rim, because real pupils can be larger.
-    const double reach = 1.5 * lens.open_stop_radius();
-    double cross = 0, square = 0;
-    for (const auto& [from, to] : passing_intervals(axial, reach)) {
+    // Larger than the stop, because the real pupil can be larger than the paraxial one.
+    const double max_height = 1.5 * lens.open_stop_radius();
+    double sum_x0_m = 0, sum_m_squared = 0;
+    for (const auto& [from, to] : passing_intervals(axial, max_height)) {
         double height[kRays];
         for (int i = 0; i < kRays; ++i) height[i] = std::sqrt(from + (to - from) * rule.node[i]);
         LensRays<double, kRays> rays;
@@ -138,11 +143,11 @@ double best_focus_distance(LensSystem lens, double wavelength_nm, double object_
         for (int i = 0; i < kRays; ++i) {
             if (rays.status[i] != 0) continue;
             const double weight = (to - from) * rule.weight[i], slope = rays.direction.x[i] / rays.direction.z[i];
-            cross += weight * (rays.origin.x[i] - slope * rays.origin.z[i]) * slope;
-            square += weight * slope * slope;
+            sum_x0_m += weight * (rays.origin.x[i] - slope * rays.origin.z[i]) * slope;
+            sum_m_squared += weight * slope * slope;
         }
     }
-    return square > 0 ? -cross / square : kNone;
+    return sum_m_squared > 0 ? -sum_x0_m / sum_m_squared : kNone;
 }
 
 }  // namespace realcam

@@ -22,11 +22,13 @@ struct GaussRule {
 
 }  // namespace best_focus_detail
 
-/// Distance from the last vertex to the film plane on which the real rays from an axial point make the smallest RMS
-/// spot, mm. The iris is treated as round. NaN if no ray passes, or for an afocal lens with the object at infinity.
+/// Returns the distance from the last vertex to the film plane on which the real rays from an axial point make the
+/// smallest RMS spot, mm. `object_distance`: from the point to the front vertex, mm, may be infinite. The iris is
+/// treated as round. Returns NaN if no ray passes, or for an afocal lens with the object at infinity. The lens must be
+/// a centred lens of revolution.
 ///
-/// The rays fill the aperture uniformly; x(z) = x0 + m z is straight behind the lens, so the plane of the least mean
-/// square is z = -integral(x0 m) / integral(m^2).
+/// The rays fill the aperture uniformly. Behind the lens they are straight lines x(z) = x0 + m z, so the plane of the
+/// smallest mean square is z = -integral(x0 m) / integral(m^2).
 double best_focus_distance(LensSystem lens, double wavelength_nm, double object_distance);
 
 }  // namespace REALCAM_NAMESPACE

@@ -12,7 +12,8 @@ namespace realcam {
 
 namespace {
 
-/// For each optical sine: true if the meridional ray from the film's centre passes the lens.
+/// Returns for each optical sine (index times sine of the angle to the axis): true if the meridional ray from the
+/// film's centre at this angle passes the lens.
 std::vector<bool> passing(const LensPath<double>& path, double film_distance, const std::vector<double>& sines) {
     constexpr std::size_t kBlock = 64;
     const double n = path.entry_index;
@@ -35,25 +36,26 @@ std::vector<bool> passing(const LensPath<double>& path, double film_distance, co
 }  // namespace
 
 double axis_irradiance(LensSystem lens) {
-    lens.require_rotational("the irradiance in the middle of the film");
+    lens.require_rotational("the irradiance at the centre of the film");
     lens.iris.blades = 0;
     const LensPath<double> path(lens, LightDirection::to_scene, lens.wavelength_nm);
     const Surface& last = lens.surfaces.back();
     const double n = path.entry_index, rim = last.clear_semi_diameter;
-    // Steepest ray that can hit the last surface, whose rim may bulge towards the film.
-    const double behind = lens.film_distance - std::max(last.sag(rim), 0.0);
-    const double widest = behind > 0 ? n * std::sin(std::atan(1.02 * rim / behind)) : n;
+    // Optical sine of the steepest ray that can hit the last surface, whose rim may bulge towards the film.
+    const double rim_distance = lens.film_distance - std::max(last.sag(rim), 0.0);
+    const double max_sine = rim_distance > 0 ? n * std::sin(std::atan(1.02 * rim / rim_distance)) : n;
     // Linear steps find obstructions; geometric steps find the smallest stop.
-    constexpr int kEven = 1024, kByShare = 512;
-    const double smaller = std::exp2(-0.125);
+    constexpr int kLinear = 1024, kGeometric = 512;
+    const double ratio = std::exp2(-0.125);
     std::vector<double> sines;
-    for (int i = 0; i < kEven; ++i) sines.push_back(widest * (i + 0.5) / kEven);
-    double small = sines.front();
-    for (int i = 0; i < kByShare; ++i) sines.push_back(small *= smaller);
+    for (int i = 0; i < kLinear; ++i) sines.push_back(max_sine * (i + 0.5) / kLinear);
+    double sine = sines.front();
+    for (int i = 0; i < kGeometric; ++i) sines.push_back(sine *= ratio);
     std::sort(sines.begin(), sines.end());
     const std::vector<bool> passes = passing(path, lens.film_distance, sines);
 
-    // Edges of the light, bisected to the last digit.
+    // Edges of the light, bisected to the last digit: sines on both sides of each edge, at which rays pass and are
+    // blocked, and 1 if the light lies below the edge, -1 if above.
     constexpr int kHalvings = 52;
     std::vector<double> open, shut, sign;
     for (std::size_t i = 1; i < sines.size(); ++i) {
@@ -65,10 +67,10 @@ double axis_irradiance(LensSystem lens) {
     for (int k = 0; k < kHalvings && !open.empty(); ++k) {
         std::vector<double> middle;
         for (std::size_t e = 0; e < open.size(); ++e) middle.push_back(0.5 * (open[e] + shut[e]));
-        const std::vector<bool> here = passing(path, lens.film_distance, middle);
-        for (std::size_t e = 0; e < open.size(); ++e) (here[e] ? open : shut)[e] = middle[e];
+        const std::vector<bool> middle_passes = passing(path, lens.film_distance, middle);
+        for (std::size_t e = 0; e < open.size(); ++e) (middle_passes[e] ? open : shut)[e] = middle[e];
     }
-    double squares = passes.back() ? widest * widest : 0.0;
+    double squares = passes.back() ? max_sine * max_sine : 0.0;
     for (std::size_t e = 0; e < open.size(); ++e) squares += sign[e] * open[e] * open[e];
     return std::numbers::pi * squares;
 }
@@ -90,12 +92,12 @@ AxialShares::AxialShares(const LensSystem& lens, double wavelength_nm) {
 }
 
 double AxialShares::operator()(const std::vector<Crossing>& crossings) const {
-    double share = 1;
+    double transmittance = 1;
     for (const Crossing& crossing : crossings) {
         const Face& face = surfaces_[static_cast<std::size_t>(crossing.surface)][crossing.in_order];
-        share *= crossing.is_reflected ? face.reflects : face.sends_on;
+        transmittance *= crossing.is_reflected ? face.reflectance : face.direct;
     }
-    return share;
+    return transmittance;
 }
 
 }  // namespace realcam

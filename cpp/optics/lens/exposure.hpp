@@ -15,20 +15,21 @@ public:
     /// Throws InputError if an index is not known at this wavelength.
     AxialShares(const LensSystem& lens, double wavelength_nm);
 
+    /// Returns the transmittance of a path, 0 to 1.
     double operator()(const std::vector<Crossing>& crossings) const;
 
 private:
-    /// Stops and apertures, which bend no light, have no losses.
+    /// Powers at normal incidence of a surface for light from one side. Those of stops and apertures are 1.
     struct Face {
-        double reflects = 1;
-        double sends_on = 1;  ///< on the direct path: transmittance of glass, reflectance of a mirror
+        double reflectance = 1;
+        double direct = 1;  ///< on the direct path: transmittance of glass, reflectance of a mirror
     };
-    std::vector<std::array<Face, 2>> surfaces_;  ///< for each surface, indexed by Crossing::in_order
+    std::vector<std::array<Face, 2>> surfaces_;  ///< for each surface; the second index is Crossing::in_order
 };
 
-/// Irradiance at the film's centre for unit radiance: the area that passes the lens in direction cosines, pi
-/// sin^2(theta') less a central obstruction. Computed with real meridional rays; the iris is treated as round. Throws
-/// InputError unless the lens is a centred lens of revolution.
+/// Returns the irradiance at the film's centre for unit radiance: the area, in optical direction cosines, of the cone
+/// of rays that passes the lens. For an unobstructed lens in air that is pi sin^2(theta'). It is computed with real
+/// meridional rays; the iris is treated as round. Throws InputError unless the lens is a centred lens of revolution.
 double axis_irradiance(LensSystem lens);
 
 }  // namespace REALCAM_NAMESPACE

@@ -15,13 +15,13 @@ namespace realcam {
 
 namespace {
 
-/// Formats a length in metres, with enough digits to tell it from `other`.
+/// Formats a length in metres, with enough digits to distinguish it from the length `other`, mm.
 std::string metres(double mm, double other = kInfinity) {
-    char text[40], against[40];
+    char text[40], other_text[40];
     for (int digits = 3; digits <= 17; ++digits) {
         std::snprintf(text, sizeof text, "%.*g m", digits, mm / 1000);
-        std::snprintf(against, sizeof against, "%.*g m", digits, other / 1000);
-        if (std::string(text) != against) break;
+        std::snprintf(other_text, sizeof other_text, "%.*g m", digits, other / 1000);
+        if (std::string(text) != other_text) break;
     }
     return text;
 }
@@ -42,6 +42,7 @@ LensSystem with_group_moved(LensSystem lens, double shift) {
 /// Tolerance of the object plane of a focused lens, relative to the focus distance.
 constexpr double kFocusTolerance = 1e-9;
 
+/// Throws InputError: the lens cannot focus at this distance, mm. `reason` follows the lens's name in the message.
 [[noreturn]] void fail(const LensSystem& lens, double focus_distance, const std::string& reason) {
     throw InputError("cannot focus at " + metres(focus_distance) + ": lens \"" + lens.name + "\" " + reason);
 }
@@ -49,36 +50,40 @@ constexpr double kFocusTolerance = 1e-9;
 /// Tolerance of the sum of the lengths from object to film, relative to the focus distance.
 constexpr double kRounding = 1e-14;
 
-/// Returns the film distance for an object plane beyond `nearest`. There the image moves less than the object, by the
-/// square of the magnification, so that secants from a distant start converge in two or three steps. Returns
-/// std::nullopt if they do not. `length`: front to last vertex.
+/// Returns the film distance at which the object plane lies `focus_distance` from the film, by the secant method;
+/// std::nullopt if it does not converge to an object beyond `nearest`. There the image moves less than the object, by
+/// the square of the magnification, so that the method needs two or three steps. `image_of`: returns the film distance
+/// for the distance of an object from the front vertex; `length`: distance from the front to the last vertex. Lengths
+/// in mm.
 template <class ImageOf>
 std::optional<double> image_by_secants(ImageOf&& image_of, double length, double focus_distance, double nearest) {
-    constexpr int kMost = 8;
+    constexpr int kMaxSteps = 8;
     // Start as if the film were at the last vertex.
-    double object = focus_distance - length, before = 0, object_before = 0;
-    for (int i = 0; i < kMost && object > nearest; ++i) {
+    double object = focus_distance - length, previous_excess = 0, previous_object = 0;
+    for (int i = 0; i < kMaxSteps && object > nearest; ++i) {
         const double image = image_of(object), excess = object + length + image - focus_distance;
         if (!(image >= 0)) break;
         if (std::fabs(excess) <= kRounding * focus_distance) return image;
-        const double slope = i == 0 ? 1 : (excess - before) / (object - object_before);
+        const double slope = i == 0 ? 1 : (excess - previous_excess) / (object - previous_object);
         if (!(slope > 0.5)) break;
-        before = excess;
-        object_before = object;
+        previous_excess = excess;
+        previous_object = object;
         object -= excess / slope;
     }
     return {};
 }
 
-/// Focuses by moving the whole lens. The distance from object to film, by real rays, has its minimum near magnification
-/// -1; the branch of more distant objects is the photographic one.
-LensSystem moved_as_a_whole(LensSystem lens, double focus_distance) {
+/// Returns the lens focused by moving it as a whole relative to the film. The distance from object to film, by real
+/// rays, has its minimum near magnification -1; the branch of more distant objects is the photographic one.
+LensSystem focused_as_a_whole(LensSystem lens, double focus_distance) {
+    // Film distance for an object at this distance from the front vertex.
     const auto image_of = [&](double object) { return best_focus_distance(lens, lens.wavelength_nm, object); };
     if (std::isinf(focus_distance)) {
         lens.film_distance = image_of(kInfinity);
         return lens;
     }
     const double length = lens.last_vertex();
+    // Distance from this object to its image, minus the required one.
     const auto excess = [&](double object) { return object + length + image_of(object) - focus_distance; };
     // Paraxially s = -ffd + f / |m|, so m = -1 lies at s = f - ffd. That is inside the lens if the front focal point
     // lies deep in it, as in a fisheye: hence the limit of 0.
@@ -88,7 +93,8 @@ LensSystem moved_as_a_whole(LensSystem lens, double focus_distance) {
         lens.film_distance = *image;
         return lens;
     }
-    const double far = focus_distance - length;  // object to film is longer by the image distance here
+    const double far =
+        focus_distance - length;  // an object whose distance to its image exceeds focus_distance by the image distance
     double excess_near = excess(near);
     // If no ray of a very near object passes the lens, move the object away until some do.
     for (int i = 30; i > 0 && std::isnan(excess_near) && near < far; --i) {
@@ -107,71 +113,76 @@ LensSystem moved_as_a_whole(LensSystem lens, double focus_distance) {
     if (!(excess_far >= 0)) fail(lens, focus_distance, "makes no real image behind its last surface");
     const Root object = find_root(excess, near, excess_near, far, excess_far, kRounding * focus_distance);
     if (!(std::fabs(object.value) <= kFocusTolerance * focus_distance))
-        fail(lens, focus_distance, "has no plane there that its rays make sharp");
+        fail(lens, focus_distance, "has no sharp image of that plane");
     lens.film_distance = image_of(object.at);
     return lens;
 }
 
-/// Focuses by moving the film along the last axis to the image. The image itself then moves by the square of the
-/// magnification, which is taken as 0 in the first step. Secants find the position.
-LensSystem film_moved(LensSystem lens, double focus_distance) {
+/// Returns the lens focused by moving the film along the last axis to the image, by the secant method. As the focus
+/// distance counts from the film, the image itself then moves by the square of the magnification, which is taken as 0
+/// in the first step.
+LensSystem focused_by_film(LensSystem lens, double focus_distance) {
     const double start = lens.film_distance, ahead = std::copysign(1.0, start);  // direction of the light there
     const double tolerance = 1e-12 * std::max(std::fabs(lens.film_position()), 1.0);
-    double before = 0, at_before = start;
-    constexpr int kMost = 60;
-    for (int i = 0; i < kMost; ++i) {
+    double previous_error = 0, previous_distance = start;
+    constexpr int kMaxSteps = 60;
+    for (int i = 0; i < kMaxSteps; ++i) {
         const double error = focus_error(lens, focus_distance);
         if (std::fabs(error) <= tolerance) return lens;
         if (!std::isfinite(error)) break;
-        const double slope = i == 0 ? -1 : ahead * (error - before) / (lens.film_distance - at_before);
-        before = error;
-        at_before = lens.film_distance;
+        const double slope = i == 0 ? -1 : ahead * (error - previous_error) / (lens.film_distance - previous_distance);
+        previous_error = error;
+        previous_distance = lens.film_distance;
         // The slope is near -1 unless the image belongs to another plane or does not exist: then the step is half the
         // error.
         lens.film_distance += ahead * (slope < -0.1 && slope > -3 ? -error / slope : 0.5 * error);
         if (!(std::fabs(lens.film_distance - start) < kLongest)) break;
     }
-    fail(lens, focus_distance, "has no place of its film there at which the light of the film's middle is sharp");
+    fail(lens, focus_distance, "has no film position at which that plane is sharp at the film's centre");
 }
 
-LensSystem moved_by_group(const LensSystem& lens, double focus_distance) {
+/// Returns the lens focused by moving its focusing group.
+LensSystem focused_by_group(const LensSystem& lens, double focus_distance) {
     const auto error = [&](double shift) { return focus_error(with_group_moved(lens, shift), focus_distance); };
     const auto& s = lens.surfaces;
     const auto first = static_cast<std::size_t>(lens.focusing.group_first);
     const auto last = static_cast<std::size_t>(lens.focusing.group_last);
-    const double back = first > 0 ? s[first - 1].thickness : lens.last_vertex();
-    const double forth = last + 1 < s.size() ? s[last].thickness : lens.film_distance;
+    // How far the group can move away from the film, and towards it.
+    const double away = first > 0 ? s[first - 1].thickness : lens.last_vertex();
+    const double towards = last + 1 < s.size() ? s[last].thickness : lens.film_distance;
     const double start = error(0), tolerance = kFocusTolerance * std::fabs(lens.film_position());
     if (start == 0) return lens;
     std::optional<FaceOverlap> overlap;
-    // The nearest root is the right one, as some groups also image a plane at a second, distant position, at which the
-    // lens is quite another one. The search therefore proceeds outwards on both sides, by distance. A sign change at
-    // which the image passes through infinity, or the last ray vanishes, is no root.
+    // The nearest root is the right one: some groups also image the plane at a second, distant position, at which the
+    // focal length differs much. The search therefore proceeds outwards on both sides, by distance. A sign change at
+    // which the image passes through infinity, or the last ray is blocked, is not a root.
     constexpr int kSteps = 200;
+    // Search on one side: length of a step, error at the end of the last step, index of the next step.
     struct Side {
-        double step, inner;
+        double step, inner_error;
         int next = 1;
         double distance() const { return next > kSteps ? kInfinity : std::fabs(step * next); }
     };
-    Side sides[2] = {{-back / kSteps, start}, {forth / kSteps, start}};
+    Side sides[2] = {{-away / kSteps, start}, {towards / kSteps, start}};
     for (int i = 0; i < 2 * kSteps; ++i) {
         Side& side = sides[sides[1].distance() < sides[0].distance()];
-        const double from = side.step * (side.next - 1), to = side.step * side.next, outer = error(to);
+        const double from = side.step * (side.next - 1), to = side.step * side.next, outer_error = error(to);
         ++side.next;
-        if (std::isfinite(side.inner) && std::isfinite(outer) && (side.inner > 0) != (outer > 0)) {
-            const Root shift = find_root(error, from, side.inner, to, outer, 1e-5 * tolerance);
+        if (std::isfinite(side.inner_error) && std::isfinite(outer_error) &&
+            (side.inner_error > 0) != (outer_error > 0)) {
+            const Root shift = find_root(error, from, side.inner_error, to, outer_error, 1e-5 * tolerance);
             if (std::fabs(shift.value) <= tolerance) {
                 LensSystem moved = with_group_moved(lens, shift.at);
                 if (!lens.allow_overlap) overlap = find_overlap(moved);
                 if (!overlap) return moved;
             }
         }
-        side.inner = outer;
+        side.inner_error = outer_error;
     }
     if (overlap)
         fail(lens, focus_distance,
              "would have to move its focusing group so far that surfaces " + std::to_string(overlap->first + 1) +
-                 " and " + std::to_string(overlap->second + 1) + " cross");
+                 " and " + std::to_string(overlap->second + 1) + " overlap");
     throw InputError("cannot focus at " + metres(focus_distance) + ": no position of the focusing group of lens \"" +
                      lens.name + "\" (surfaces " + std::to_string(first + 1) + " to " + std::to_string(last + 1) +
                      ") images it on the film");
@@ -190,9 +201,9 @@ LensSystem focused(const LensSystem& lens, double focus_distance) {
         throw InputError("cannot focus lens \"" + lens.name + "\": it is afocal, parallel light leaves it parallel");
     LensSystem open = lens;
     open.stop_semi_diameter = lens.stop().clear_semi_diameter;
-    LensSystem result = open.focusing.moves_group() ? moved_by_group(open, focus_distance)
-                        : open.is_rotational()      ? moved_as_a_whole(open, focus_distance)
-                                                    : film_moved(open, focus_distance);
+    LensSystem result = open.focusing.moves_group() ? focused_by_group(open, focus_distance)
+                        : open.is_rotational()      ? focused_as_a_whole(open, focus_distance)
+                                                    : focused_by_film(open, focus_distance);
     result.stop_semi_diameter = lens.stop_semi_diameter;
     result.focus_distance = focus_distance;
     if (!std::isfinite(result.film_distance))
@@ -212,7 +223,7 @@ std::optional<double> film_distance_at_infinity(LensSystem lens) {
     lens.film_distance = first_order(centred(lens), lens.wavelength_nm).back_focal_distance;
     if (!std::isfinite(lens.film_distance) || lens.film_distance == 0) return {};
     try {
-        return film_moved(lens, kInfinity).film_distance;
+        return focused_by_film(lens, kInfinity).film_distance;
     } catch (const InputError&) {
         return {};
     }

@@ -14,16 +14,19 @@ namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-/// All light of the object point on the chief ray of the film's centre, through a lens of any kind. Rays are
-/// parametrised by their intersection with the plane perpendicular to the chief ray at the front surface, over which
-/// the light is uniform.
+/// Ray bundle of the object point on the chief ray of the film's centre, through a lens of any kind. Rays are
+/// parametrised by their intersection with the plane perpendicular to the chief ray at the front surface (their entry),
+/// over which the light is uniform. The class has the members that entry_parts in bundle_quadrature.hpp requires.
 class CentralBundle {
 public:
+    /// Coordinates in that plane relative to the chief ray, mm.
     using Entry = Vec2<double>;
 
-    bool mirrored = false;
-    Entry middle = {0, 0}, reach;  ///< first-order bounds of what passes: centre and half sides
+    bool mirrored = false;  ///< true would state that the bundle is symmetric about x = 0
+    Entry middle = {0, 0}, reach;  ///< first-order bounds of the entries of rays that pass: centre and half sides
 
+    /// `inverse_distance`: 1 / distance from the object point to the front surface along the chief ray, 1/mm; 0 for an
+    /// object at infinity.
     CentralBundle(const LensSystem& lens, const ParabasalRays& rays, double inverse_distance)
         : path_(lens, LightDirection::to_film, lens.wavelength_nm, film_path_ends(lens, LightDirection::to_film)),
           chief_(rays.chief),
@@ -31,11 +34,12 @@ public:
           upwards_(cross(chief_.scene_direction, across_)),
           inverse_distance_(inverse_distance) {
         const double n = path_.entry_index, radius = lens.open_stop_radius();
-        const Matrix2 entry = (rays.stop_by_position + n * inverse_distance * rays.stop_by_direction).inverse();
-        reach = {radius * hypotenuse(entry.first.x, entry.first.y),
-                 radius * hypotenuse(entry.second.x, entry.second.y)};
+        const Matrix2 entry_by_stop = (rays.stop_by_position + n * inverse_distance * rays.stop_by_direction).inverse();
+        reach = {radius * hypotenuse(entry_by_stop.first.x, entry_by_stop.first.y),
+                 radius * hypotenuse(entry_by_stop.second.x, entry_by_stop.second.y)};
     }
 
+    /// Traces the rays with these entries to the film frame.
     template <int N>
     void trace(const Entry (&entries)[N], LensRays<double, N>& rays) const {
         for (int i = 0; i < N; ++i) {
@@ -47,6 +51,7 @@ public:
         trace_lens(path_.view(), rays);
     }
 
+    /// Sets `passed` to true for the rays that pass the lens.
     template <int N>
     void pass(const Entry (&entries)[N], bool (&passed)[N]) const {
         LensRays<double, N> rays;
@@ -57,16 +62,18 @@ public:
 private:
     LensPath<double> path_;
     ChiefRay chief_;
-    Vec3d across_, upwards_;
+    Vec3d across_, upwards_;  ///< axes of the entries, perpendicular to the chief ray
     double inverse_distance_;
 };
 
-/// z of the plane perpendicular to the z axis in which the rays make the smallest RMS spot: with x(z) = x0 + z m, both
-/// relative to their means, it is -sum(x0 m) / sum(m^2).
-double narrowest(const CentralBundle& bundle) {
+/// Returns z of the plane perpendicular to the z axis in which the rays make the smallest RMS spot, in the film frame,
+/// mm; NaN if no ray passes. With x(z) = x0 + z m, where x0 and m are relative to their means, it is -sum(x0 m) /
+/// sum(m^2).
+double smallest_spot_position(const CentralBundle& bundle) {
     constexpr BundleSampling kSampling = {24, 8};
     constexpr int kBlock = 16;
     const std::vector<EntryPart> parts = entry_parts(bundle, kSampling);
+    // A ray behind the lens: x and y at z = 0, and dx/dz and dy/dz.
     struct Line {
         double weight, position[2], slope[2];
     };
@@ -90,14 +97,14 @@ double narrowest(const CentralBundle& bundle) {
             }
         }
     }
-    double mixed = 0, square = 0;
+    double sum_x0_m = 0, sum_m_squared = 0;
     for (const Line& line : lines)
         for (int k = 0; k < 2; ++k) {
             const double slope = line.slope[k] - mean.slope[k] / mean.weight;
-            mixed += line.weight * (line.position[k] - mean.position[k] / mean.weight) * slope;
-            square += line.weight * slope * slope;
+            sum_x0_m += line.weight * (line.position[k] - mean.position[k] / mean.weight) * slope;
+            sum_m_squared += line.weight * slope * slope;
         }
-    return square > 0 ? -mixed / square : kNone;
+    return sum_m_squared > 0 ? -sum_x0_m / sum_m_squared : kNone;
 }
 
 }  // namespace
@@ -114,7 +121,7 @@ double focus_error(const LensSystem& lens, double focus_distance) {
     const double plane = camera_film_position(lens) - focus_distance;
     const double distance = (rays.chief.scene.z - plane) / rays.chief.scene_direction.z;
     if (!(distance > 0)) return kNone;
-    return narrowest({round, rays, 1 / distance}) - lens.film_distance;
+    return smallest_spot_position({round, rays, 1 / distance}) - lens.film_distance;
 }
 
 }  // namespace realcam

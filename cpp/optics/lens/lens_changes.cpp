@@ -19,6 +19,7 @@ namespace lens_changes_detail {
 
 namespace {
 
+/// Replaces one surface, and applies the changes of its thickness and stop size to the zoom positions.
 void replace(LensSystem& lens, int index, const Surface& surface) {
     Surface& before = lens.surfaces[static_cast<std::size_t>(index)];
     for (std::size_t i = 0; i < lens.zoom.surfaces.size(); ++i)
@@ -62,7 +63,7 @@ LensSystem with_iris(LensSystem lens, std::optional<int> blades, std::optional<d
     iris.rounding = rounding.value_or(iris.rounding);
     if (rotation_deg) iris.rotation_rad = *rotation_deg * std::numbers::pi / 180;
     if (iris.blades == 0 && !blades && (rounding || rotation_deg))
-        throw InputError("the diaphragm of " + lens.name + " is round; blade_rounding and blade_rotation want blades");
+        throw InputError("the diaphragm of " + lens.name + " is round; blade_rounding and blade_rotation need blades");
     return with_iris(std::move(lens), iris);
 }
 
@@ -93,14 +94,16 @@ LensSystem with_coating(LensSystem lens, const Coating& coating, const std::vect
 
 namespace {
 
-/// Prepends a motion to a surface's own placement. `goes_on`: the surfaces behind follow it.
-void put_before(Surface& surface, const Affine<double>& motion, bool goes_on) {
+/// Applies a motion, in the frame of the axis in front of the surface, before the surface's own placement.
+/// `moves_following`: the surfaces behind move with it.
+void prepend_motion(Surface& surface, const Affine<double>& motion, bool moves_following) {
     SurfacePlacement& own = surface.placement;
     own = SurfacePlacement::of(own.is_in_place() ? motion : motion * own.frame());
-    own.returns = !goes_on;
+    own.returns = !moves_following;
 }
 
-bool goes_on(const Surface& surface) {
+/// True if a placement of the surface that also moves the surfaces behind it can be set or extended.
+bool can_move_following(const Surface& surface) {
     return !surface.placement.returns || surface.placement.is_in_place();
 }
 
@@ -113,7 +116,7 @@ bool move_each_alone(LensSystem& lens, int first, int last, const Affine<double>
     // Frame of the axis in front of surface i, relative to that in front of the first surface.
     Affine<double> to_here;
     for (int i = first; i <= last; ++i) {
-        put_before(surface(i), inverse_motion(to_here) * motion * to_here, false);
+        prepend_motion(surface(i), inverse_motion(to_here) * motion * to_here, false);
         to_here = to_here * along_axis(surface(i).thickness);
     }
     return true;
@@ -122,26 +125,28 @@ bool move_each_alone(LensSystem& lens, int first, int last, const Affine<double>
 void move_element(LensSystem& lens, int first, int last, const Affine<double>& motion) {
     const auto surface = [&](int i) -> Surface& { return lens.surfaces[static_cast<std::size_t>(i)]; };
     const bool is_at_end = last + 1 == static_cast<int>(lens.surfaces.size());
-    const bool may_end = first == last || is_at_end || !goes_on(surface(last + 1));
-    if (may_end && move_each_alone(lens, first, last, motion)) return;
-    if (is_at_end || !goes_on(surface(first)) || !goes_on(surface(last + 1)))
+    // The surfaces' own placements suffice if no surface has to move back behind the last of them.
+    const bool may_move_alone = first == last || is_at_end || !can_move_following(surface(last + 1));
+    if (may_move_alone && move_each_alone(lens, first, last, motion)) return;
+    if (is_at_end || !can_move_following(surface(first)) || !can_move_following(surface(last + 1)))
         throw InputError("surfaces " + std::to_string(first + 1) + " to " + std::to_string(last + 1) +
-                         " cannot be moved together: their own placements, or that of the surface behind, leave no "
-                         "room for another");
+                         " cannot be moved together: their own placements, or that of the surface behind, cannot be "
+                         "combined with another motion");
+    // Frame of the axis behind the last of them, relative to that in front of the first.
     Affine<double> to_here;
     for (int i = first; i <= last; ++i) {
         if (!surface(i).placement.returns) to_here = to_here * surface(i).placement.frame();
         to_here = to_here * along_axis(surface(i).thickness);
     }
-    put_before(surface(first), motion, true);
-    put_before(surface(last + 1), inverse_motion(to_here) * inverse_motion(motion) * to_here, true);
+    prepend_motion(surface(first), motion, true);
+    prepend_motion(surface(last + 1), inverse_motion(to_here) * inverse_motion(motion) * to_here, true);
 }
 
 LensSystem with_element_tilted(const LensSystem& lens, int first, int last, const SurfacePlacement& placement,
                                double pivot) {
     check_surface_exists(lens, first);
     check_surface_exists(lens, last);
-    if (last < first) throw InputError("an element goes from a first to a last surface, which does not come before it");
+    if (last < first) throw InputError("the last surface of an element must not come before the first one");
     LensSystem result = lens;
     move_element(result, first, last,
                  pivot == 0 ? placement.frame() : along_axis(pivot) * placement.frame() * along_axis(-pivot));
@@ -151,8 +156,8 @@ LensSystem with_element_tilted(const LensSystem& lens, int first, int last, cons
 
 namespace {
 
-Affine<double> shift(Vec3d by) {
-    return {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, by};
+Affine<double> translation(Vec3d offset) {
+    return {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, offset};
 }
 
 /// Frame of the film's vertex on the last axis, before the film's own placement.
@@ -166,10 +171,10 @@ LensSystem with_lens_moved(const LensSystem& lens, const SurfacePlacement& move,
     LensSystem moved = lens;
     SurfacePlacement& front = moved.surfaces.front().placement;
     if (front.returns && !front.is_in_place())
-        throw InputError("the lens cannot be tilted or shifted: its first surface is moved alone");
+        throw InputError("the lens cannot be tilted or shifted: its first surface has a tilt or decentre of its own");
     const Affine<double> film = film_on_axis(lens) * lens.film_placement.frame();
-    const Vec3d about = film.origin - Vec3d{0, 0, pivot};
-    const Affine<double> motion = shift(about) * move.frame() * shift(-about);
+    const Vec3d centre = film.origin - Vec3d{0, 0, pivot};
+    const Affine<double> motion = translation(centre) * move.frame() * translation(-centre);
     front = SurfacePlacement::of(motion * front.frame());
     // The film keeps its position: its placement compensates the motion of the last axis.
     moved.film_placement = SurfacePlacement::of(inverse_motion(film_on_axis(moved)) * film);

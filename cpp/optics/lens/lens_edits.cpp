@@ -50,7 +50,8 @@ LensSystem with_film_radius(LensSystem lens, double radius_of_curvature) {
 }
 
 LensSystem scaled(const LensSystem& lens, double factor) {
-    if (!(factor > 0) || !std::isfinite(factor)) throw InputError("a lens is scaled by a positive, finite factor");
+    if (!(factor > 0) || !std::isfinite(factor))
+        throw InputError("the factor by which a lens is scaled must be positive and finite");
     return lens_edits_detail::edited_in_all_states(lens, [&](LensSystem l) {
         for (Surface& s : l.surfaces) {
             s.curvature /= factor;
@@ -77,29 +78,29 @@ LensSystem reversed(const LensSystem& lens, std::optional<double> film_distance)
     lens.require_rotational("turning a lens round");
     const std::size_t n = lens.surfaces.size();
     if (!medium_before(lens, n).is_air())
-        throw LensFileError("the lens cannot be turned round: what lies behind its last surface is not air");
+        throw LensFileError("the lens cannot be turned round: the medium behind its last surface is not air");
     return lens_edits_detail::edited_in_all_states(lens, [&](const LensSystem& l) {
-        LensSystem turned = l;
+        LensSystem result = l;
         for (std::size_t i = 0; i < n; ++i) {
-            Surface& s = turned.surfaces[i] = l.surfaces[n - 1 - i];
+            Surface& s = result.surfaces[i] = l.surfaces[n - 1 - i];
             s.curvature = -s.curvature;
-            s.form = s.form.turned();
+            s.form = s.form.negated();
             for (double& a : s.aspheric) a = -a;
             if (s.type == SurfaceType::refracting) s.material = medium_before(l, n - 1 - i);
             s.thickness = i + 1 < n ? l.surfaces[n - 2 - i].thickness : 0;
         }
         if (l.focusing.moves_group()) {
-            turned.focusing.group_first = static_cast<int>(n) - 1 - l.focusing.group_last;
-            turned.focusing.group_last = static_cast<int>(n) - 1 - l.focusing.group_first;
+            result.focusing.group_first = static_cast<int>(n) - 1 - l.focusing.group_last;
+            result.focusing.group_last = static_cast<int>(n) - 1 - l.focusing.group_first;
         }
-        turned.focusing.nearest_mm = 0;
-        turned.focus_distance = kInfinity;
-        turned.film_distance = film_distance.value_or(best_focus_distance(turned, turned.wavelength_nm, kInfinity));
-        if (!film_distance && !(turned.film_distance > 0))
+        result.focusing.nearest_mm = 0;
+        result.focus_distance = kInfinity;
+        result.film_distance = film_distance.value_or(best_focus_distance(result, result.wavelength_nm, kInfinity));
+        if (!film_distance && !(result.film_distance > 0))
             throw LensFileError(
                 "turned round, the lens makes no real image of infinity behind its last surface; a film distance is "
                 "required");
-        return turned;
+        return result;
     });
 }
 
@@ -107,11 +108,12 @@ LensSystem inserted(const LensSystem& lens, int index, const std::vector<Surface
                     std::optional<double> gap) {
     const int n = static_cast<int>(lens.surfaces.size()), count = static_cast<int>(surfaces.size());
     if (index < 0 || index > n)
-        throw InputError("surfaces are put in front of surface 0 to " + std::to_string(n - 1) +
-                         ", or behind the last (" + std::to_string(n) + "); " + std::to_string(index) + " is neither");
+        throw InputError("surfaces can be inserted in front of surface 0 to " + std::to_string(n - 1) + ", or at " +
+                         std::to_string(n) + " behind the last one; found " + std::to_string(index));
     if (surfaces.empty()) throw InputError("there are no surfaces to insert");
-    if (index == n && !gap) throw InputError("behind the last surface, the distance from it is required as well");
-    if (index == 0 && gap) throw InputError("in front of the first surface there is nothing to have a distance from");
+    if (index == n && !gap) throw InputError("behind the last surface, the distance from it is required");
+    if (index == 0 && gap)
+        throw InputError("in front of the first surface, a distance from the preceding surface is not possible");
     return lens_edits_detail::edited_in_all_states(lens, [&](LensSystem l) {
         const auto position = static_cast<std::size_t>(index);
         if (gap) l.surfaces[position - 1].thickness = *gap;
@@ -134,13 +136,13 @@ LensSystem removed(const LensSystem& lens, int first, int last) {
     check_surface_exists(lens, first);
     check_surface_exists(lens, last);
     const int n = static_cast<int>(lens.surfaces.size()), count = last - first + 1;
-    if (count < 1) throw InputError("surfaces are removed from a first to a last one, which does not come before it");
+    if (count < 1) throw InputError("the last surface to remove must not come before the first one");
     if (count == n) throw InputError("all surfaces would be removed");
     for (int i = first; i <= last; ++i)
-        if (const SurfacePlacement& of = lens.surfaces[static_cast<std::size_t>(i)].placement;
-            !of.returns && !of.is_in_place())
+        if (const SurfacePlacement& placement = lens.surfaces[static_cast<std::size_t>(i)].placement;
+            !placement.returns && !placement.is_in_place())
             throw InputError("surface " + std::to_string(i + 1) +
-                             " cannot be removed: its placement moves all that follow");
+                             " cannot be removed: its placement also moves the surfaces behind it");
     return lens_edits_detail::edited_in_all_states(lens, [&](LensSystem l) {
         double length = 0;
         for (int i = first; i <= last && i + 1 < n; ++i) length += l.surfaces[static_cast<std::size_t>(i)].thickness;
@@ -149,10 +151,11 @@ LensSystem removed(const LensSystem& lens, int first, int last) {
         l.surfaces.erase(l.surfaces.begin() + first, l.surfaces.begin() + last + 1);
         l.surfaces.back().thickness = 0;
         if (l.focusing.moves_group()) {
-            const auto kept_before = [&](int surface) { return surface - std::clamp(surface - first, 0, count); };
+            // New index of a surface, or of the one behind the removed surfaces.
+            const auto new_index = [&](int surface) { return surface - std::clamp(surface - first, 0, count); };
             FocusingRule& focusing = l.focusing;
-            focusing.group_first = kept_before(focusing.group_first);
-            focusing.group_last = kept_before(focusing.group_last + 1) - 1;
+            focusing.group_first = new_index(focusing.group_first);
+            focusing.group_last = new_index(focusing.group_last + 1) - 1;
             if (focusing.group_last < focusing.group_first) focusing.group_first = focusing.group_last = -1;
         }
         return l;

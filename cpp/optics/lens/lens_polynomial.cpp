@@ -20,16 +20,19 @@ LensPolynomial::LensPolynomial(const LensSystem& lens, const PupilView& pupil, d
     front_radius_ = lens.surfaces.front().clear_semi_diameter;
     last_rim_ = lens.surfaces.back().sag(last_radius_);
     front_rim_ = lens.surfaces.front().sag(front_radius_);
-    const std::vector<TracedRay> rays = traced_rays(lens, pupil, 0, 1500), others = traced_rays(lens, pupil, 1, 750);
-    if (rays.size() < 200 || others.size() < 100)
+    constexpr std::uint32_t kFitRays = 1500, kTestRays = 750;
+    constexpr std::size_t kMinFitRays = 200, kMinTestRays = 100;  // that pass the lens
+    const std::vector<TracedRay> rays = traced_rays(lens, pupil, 0, kFitRays),
+                                 others = traced_rays(lens, pupil, 1, kTestRays);
+    if (rays.size() < kMinFitRays || others.size() < kMinTestRays)
         throw InputError("too few rays pass lens \"" + lens.name + "\" to fit polynomials to it");
     choose_degree(rays, others);
-    drop_idle_terms(others);
+    drop_negligible_terms(others);
 }
 
 LensPolynomialView LensPolynomial::view() const {
-    return {floats_.data(),
-            products(degree_),
+    return {coefficients_.data(),
+            monomial_count(degree_),
             degree_,
             static_cast<float>(1 / film_radius_),
             static_cast<float>(1 / last_radius_),
@@ -40,15 +43,16 @@ LensPolynomialView LensPolynomial::view() const {
             static_cast<float>(front_rim_)};
 }
 
-std::vector<double> LensPolynomial::powers(const TracedRay& ray, int degree, double film_scale, double last_scale) {
+std::vector<double> LensPolynomial::monomials(const TracedRay& ray, int degree, double film_scale, double last_scale) {
     const Vec2d x = {film_scale * ray.film.x, film_scale * ray.film.y};
     const Vec2d p = {last_scale * ray.last.x, last_scale * ray.last.y};
     const double u = x.x * x.x + x.y * x.y, v = p.x * p.x + p.y * p.y, w = x.x * p.x + x.y * p.y;
-    std::vector<double> all;
+    std::vector<double> values;
     for (int i = 0; i <= degree; ++i)
         for (int j = 0; i + j <= degree; ++j)
-            for (int k = 0; i + j + k <= degree; ++k) all.push_back(std::pow(u, i) * std::pow(v, j) * std::pow(w, k));
-    return all;
+            for (int k = 0; i + j + k <= degree; ++k)
+                values.push_back(std::pow(u, i) * std::pow(v, j) * std::pow(w, k));
+    return values;
 }
 
 std::vector<LensPolynomial::TracedRay> LensPolynomial::traced_rays(const LensSystem& lens, const PupilView& pupil,
@@ -63,19 +67,21 @@ std::vector<LensPolynomial::TracedRay> LensPolynomial::traced_rays(const LensSys
         const PupilSample sample = sample_pupil(pupil, radius, 0, u.x, u.y);
         if (!(sample.weight > 0)) continue;
         LensRays<double, 1> ray;
-        const auto start = [&] {
+        const auto set_start = [&] {
             ray.origin.set(0, {static_cast<double>(radius), 0, lens.film_distance});
             ray.direction.set(0, static_cast<Vec3d>(sample.direction));
             ray.status[0] = 0;
         };
-        start();
+        set_start();
         const Vec3d inside = ray.direction[0];
         trace_lens(to_stop, ray);
         const Vec3d at_stop = ray.origin[0];
-        start();
+        set_start();
         trace_lens(path.view(), ray);
         if (ray.status[0] != 0) continue;
         const Vec3d direction = normalized(ray.direction[0]), origin = ray.origin[0];
+        // Ray parameters: from the front surface to the plane of the positions, and, negated, from the film to the
+        // plane of the last vertex.
         const double distance = (plane_ - origin.z) / direction.z, down = lens.film_distance / inside.z;
         found.push_back({{static_cast<double>(radius), 0},
                          {static_cast<double>(radius) - down * inside.x, -down * inside.y},
@@ -87,39 +93,38 @@ std::vector<LensPolynomial::TracedRay> LensPolynomial::traced_rays(const LensSys
 }
 
 void LensPolynomial::choose_degree(const std::vector<TracedRay>& rays, const std::vector<TracedRay>& others) {
-    for (int degree = 0; degree <= kHighestDegree; ++degree) {
+    for (int degree = 0; degree <= kMaxDegree; ++degree) {
         const std::vector<float> fitted = fit(rays, degree);
         const PolynomialError error = error_of(fitted, degree, others);
         // A higher degree must reduce the error by 20% to be worth its time.
         if (degree > 0 && !(error.rms < 0.8 * error_.rms)) continue;
-        floats_ = fitted;
+        coefficients_ = fitted;
         degree_ = degree;
         error_ = error;
     }
 }
 
 std::vector<float> LensPolynomial::fit(const std::vector<TracedRay>& rays, int degree) const {
-    const auto count = static_cast<std::size_t>(products(degree));
+    const auto count = static_cast<std::size_t>(monomial_count(degree));
     std::vector<std::vector<double>> columns(2 * count), targets(kVectors);
     for (const TracedRay& ray : rays) {
-        const std::vector<double> of_ray = powers(ray, degree, 1 / film_radius_, 1 / last_radius_);
-        for (const bool across : {true, false}) {
-            const double x = (across ? ray.film.x : ray.film.y) / film_radius_;
-            const double p = (across ? ray.last.x : ray.last.y) / last_radius_;
+        const std::vector<double> values = monomials(ray, degree, 1 / film_radius_, 1 / last_radius_);
+        for (const bool is_x : {true, false}) {
+            const double x = (is_x ? ray.film.x : ray.film.y) / film_radius_;
+            const double p = (is_x ? ray.last.x : ray.last.y) / last_radius_;
             for (std::size_t k = 0; k < count; ++k) {
-                columns[2 * k].push_back(of_ray[k] * x);
-                columns[2 * k + 1].push_back(of_ray[k] * p);
+                columns[2 * k].push_back(values[k] * x);
+                columns[2 * k + 1].push_back(values[k] * p);
             }
-            for (std::size_t t = 0; t < kVectors; ++t)
-                targets[t].push_back(across ? ray.vectors[t].x : ray.vectors[t].y);
+            for (std::size_t t = 0; t < kVectors; ++t) targets[t].push_back(is_x ? ray.vectors[t].x : ray.vectors[t].y);
         }
     }
     const auto factors = least_squares(columns, targets);
-    std::vector<float> all;
+    std::vector<float> coefficients;
     for (std::size_t k = 0; k < count; ++k)
         for (std::size_t t = 0; t < kVectors; ++t)
-            for (const std::size_t of_p : {0u, 1u}) all.push_back(static_cast<float>(factors[t][2 * k + of_p]));
-    return all;
+            for (const std::size_t i : {0u, 1u}) coefficients.push_back(static_cast<float>(factors[t][2 * k + i]));
+    return coefficients;
 }
 
 PolynomialError LensPolynomial::error_of(const std::vector<float>& coefficients, int degree,
@@ -132,11 +137,11 @@ PolynomialError LensPolynomial::error_of(const std::vector<float>& coefficients,
         const Vec2f found = evaluate(view, {static_cast<float>(ray.film.x), static_cast<float>(ray.film.y)},
                                      {static_cast<float>(ray.last.x), static_cast<float>(ray.last.y)})
                                 .direction;
-        const double off = focal_length_ * hypotenuse(static_cast<double>(found.x) - ray.vectors[1].x,
-                                                      static_cast<double>(found.y) - ray.vectors[1].y);
-        error.rms += off * off / static_cast<double>(rays.size());
-        if (off > error.worst) {
-            error.worst = off;
+        const double error_mm = focal_length_ * hypotenuse(static_cast<double>(found.x) - ray.vectors[1].x,
+                                                           static_cast<double>(found.y) - ray.vectors[1].y);
+        error.rms += error_mm * error_mm / static_cast<double>(rays.size());
+        if (error_mm > error.worst) {
+            error.worst = error_mm;
             error.worst_film_radius = ray.film.x;
         }
     }
@@ -144,15 +149,15 @@ PolynomialError LensPolynomial::error_of(const std::vector<float>& coefficients,
     return error;
 }
 
-void LensPolynomial::drop_idle_terms(const std::vector<TracedRay>& others) {
-    const double most = 1.01 * error_.rms;
-    const double stop_error = stop_rms(floats_, others);
-    for (float& coefficient : floats_) {
-        const float kept = coefficient;
+void LensPolynomial::drop_negligible_terms(const std::vector<TracedRay>& others) {
+    const double max_rms = 1.01 * error_.rms;
+    const double stop_error = stop_rms(coefficients_, others);
+    for (float& coefficient : coefficients_) {
+        const float original = coefficient;
         coefficient = 0;
-        const PolynomialError error = error_of(floats_, degree_, others);
-        if (error.rms > most || stop_rms(floats_, others) > 1.01 * stop_error)
-            coefficient = kept;
+        const PolynomialError error = error_of(coefficients_, degree_, others);
+        if (error.rms > max_rms || stop_rms(coefficients_, others) > 1.01 * stop_error)
+            coefficient = original;
         else
             error_ = error;
     }
@@ -165,11 +170,12 @@ double LensPolynomial::stop_rms(const std::vector<float>& coefficients, const st
     for (const TracedRay& ray : rays) {
         const LensPolynomialRay found = evaluate(view, {static_cast<float>(ray.film.x), static_cast<float>(ray.film.y)},
                                                  {static_cast<float>(ray.last.x), static_cast<float>(ray.last.y)});
-        const auto off = [](Vec2f a, Vec2d b, double scale) {
+        const auto squared_distance = [](Vec2f a, Vec2d b, double scale) {
             const double x = (static_cast<double>(a.x) - b.x) / scale, y = (static_cast<double>(a.y) - b.y) / scale;
             return x * x + y * y;
         };
-        sum += off(found.at_stop, ray.vectors[2], 1) + off(found.position, ray.vectors[0], front_radius_);
+        sum += squared_distance(found.at_stop, ray.vectors[2], 1) +
+               squared_distance(found.position, ray.vectors[0], front_radius_);
     }
     return std::sqrt(sum / static_cast<double>(rays.size()));
 }

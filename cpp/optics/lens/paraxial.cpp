@@ -32,19 +32,19 @@ ParaxialRay trace_paraxial(const LensSystem& lens, double wavelength_nm, Paraxia
 
 FirstOrder first_order(const LensSystem& lens, double wavelength_nm) {
     if (!lens.is_rotational()) {
-        const LensSystem alone = without_move(lens);
-        return alone.is_rotational() ? first_order(alone, wavelength_nm) : parabasal_data(lens, wavelength_nm).mean;
+        const LensSystem unmoved = without_move(lens);
+        return unmoved.is_rotational() ? first_order(unmoved, wavelength_nm) : parabasal_data(lens, wavelength_nm).mean;
     }
     const int count = static_cast<int>(lens.surfaces.size()), stop = lens.stop_index();
     const ParaxialRay marginal = trace_paraxial(lens, wavelength_nm, {1, 0}, 0, count);
     const ParaxialRay inclined = trace_paraxial(lens, wavelength_nm, {0, 1}, 0, count);
     FirstOrder data{};
-    const bool afocal = marginal.slope == 0;
+    const bool is_afocal = marginal.slope == 0;
     data.image_index = lens.indices(wavelength_nm).back();
-    data.effective_focal_length = afocal ? kInfinity : -1 / (data.image_index * marginal.slope);
-    data.back_focal_distance = afocal ? kInfinity : -marginal.height / marginal.slope;
+    data.effective_focal_length = is_afocal ? kInfinity : -1 / (data.image_index * marginal.slope);
+    data.back_focal_distance = is_afocal ? kInfinity : -marginal.height / marginal.slope;
     // A ray through the front focal point, in front of the vertex by -ffd, leaves parallel to the axis.
-    data.front_focal_distance = afocal ? -kInfinity : inclined.slope / marginal.slope;
+    data.front_focal_distance = is_afocal ? -kInfinity : inclined.slope / marginal.slope;
 
     // Height and slope at the stop are linear in those at the front vertex; the ray through the stop's centre crosses
     // the axis at the centre of the entrance pupil.
@@ -53,7 +53,7 @@ FirstOrder first_order(const LensSystem& lens, double wavelength_nm) {
     const double radius = lens.open_stop_radius();
     data.entrance_pupil_position = slope_at_stop.height / height_at_stop.height;
     data.entrance_pupil_diameter = radius > 0 ? 2 * radius / std::fabs(height_at_stop.height) : 0.0;
-    data.f_number = afocal ? kInfinity : std::fabs(data.effective_focal_length) / data.entrance_pupil_diameter;
+    data.f_number = is_afocal ? kInfinity : std::fabs(data.effective_focal_length) / data.entrance_pupil_diameter;
 
     const ParaxialRay chief = trace_paraxial(lens, wavelength_nm, {0, 1}, stop, count);
     const ParaxialRay edge = trace_paraxial(lens, wavelength_nm, {radius, 0}, stop, count);

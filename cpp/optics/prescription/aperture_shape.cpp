@@ -19,21 +19,21 @@ std::string ApertureShape::asymmetry() const {
 }
 
 ApertureShape ApertureShape::scaled(double factor) const {
-    const auto times = [factor](Vec2d v) { return Vec2d{factor * v.x, factor * v.y}; };
+    const auto scaled_vector = [factor](Vec2d v) { return Vec2d{factor * v.x, factor * v.y}; };
     ApertureShape result = *this;
-    result.half = times(half);
-    result.offset = times(offset);
-    for (Vec2d& corner : result.corners) corner = times(corner);
+    result.half = scaled_vector(half);
+    result.offset = scaled_vector(offset);
+    for (Vec2d& corner : result.corners) corner = scaled_vector(corner);
     for (Obscuration& piece : result.obscurations) {
-        piece.half = times(piece.half);
-        piece.offset = times(piece.offset);
+        piece.half = scaled_vector(piece.half);
+        piece.offset = scaled_vector(piece.offset);
     }
     return result;
 }
 
 ApertureBox ApertureShape::box(double rim) const {
     ApertureBox box{{-rim, -rim}, {rim, rim}};
-    const auto cut = [&](Vec2d low, Vec2d high) {
+    const auto restrict_box = [&](Vec2d low, Vec2d high) {
         box.low = {std::clamp(low.x, -rim, rim), std::clamp(low.y, -rim, rim)};
         box.high = {std::clamp(high.x, -rim, rim), std::clamp(high.y, -rim, rim)};
     };
@@ -43,16 +43,16 @@ ApertureBox ApertureShape::box(double rim) const {
             low = {std::min(low.x, offset.x + corner.x), std::min(low.y, offset.y + corner.y)};
             high = {std::max(high.x, offset.x + corner.x), std::max(high.y, offset.y + corner.y)};
         }
-        cut(low, high);
+        restrict_box(low, high);
     } else if (half.x > 0) {
-        cut({offset.x - half.x, offset.y - half.y}, {offset.x + half.x, offset.y + half.y});
+        restrict_box({offset.x - half.x, offset.y - half.y}, {offset.x + half.x, offset.y + half.y});
     }
     return box;
 }
 
 double ApertureShape::reach() const {
     double reach = 0;
-    const auto hold = [&](double x, double y) { reach = std::max(reach, hypotenuse(x, y)); };
+    const auto include = [&](double x, double y) { reach = std::max(reach, hypotenuse(x, y)); };
     switch (kind) {
         case ApertureOutline::circle:
             if (half.x > 0) reach = hypotenuse(offset.x, offset.y) + half.x;
@@ -60,11 +60,11 @@ double ApertureShape::reach() const {
         case ApertureOutline::ellipse:
             // An off-centre ellipse is bounded by the corners of its bounding box.
             if (offset == Vec2d{0, 0}) return std::max(half.x, half.y);
-            hold(std::fabs(offset.x) + half.x, std::fabs(offset.y) + half.y);
+            include(std::fabs(offset.x) + half.x, std::fabs(offset.y) + half.y);
             break;
-        case ApertureOutline::rectangle: hold(std::fabs(offset.x) + half.x, std::fabs(offset.y) + half.y); break;
+        case ApertureOutline::rectangle: include(std::fabs(offset.x) + half.x, std::fabs(offset.y) + half.y); break;
         case ApertureOutline::polygon:
-            for (const Vec2d& corner : corners) hold(offset.x + corner.x, offset.y + corner.y);
+            for (const Vec2d& corner : corners) include(offset.x + corner.x, offset.y + corner.y);
             break;
     }
     return reach;

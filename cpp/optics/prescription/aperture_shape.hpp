@@ -6,6 +6,7 @@
 
 namespace REALCAM_NAMESPACE {
 
+/// Outline of a surface's clear aperture.
 enum class ApertureOutline { circle, ellipse, rectangle, polygon };
 
 /// An opaque rectangle or ellipse on a surface. A circle is an ellipse with equal semi-axes; a spider arm is a
@@ -27,26 +28,31 @@ struct ApertureBox {
 /// Clear aperture of a surface inside the circle of its clear semi-diameter about the vertex. Lengths in mm.
 struct ApertureShape {
     ApertureOutline kind = ApertureOutline::circle;
-    Vec2d half = {0, 0};  ///< semi-axes or half widths; circle: both its radius, or 0 for the clear semi-diameter
+    /// Semi-axes of the ellipse, or half widths of the rectangle. Circle: both are its radius, or 0 for the clear
+    /// semi-diameter. Not used by a polygon.
+    Vec2d half = {0, 0};
     Vec2d offset = {0, 0};  ///< centre relative to the vertex; added to a polygon's corners
     std::vector<Vec2d> corners;  ///< polygon's corners, in order along its outline
-    std::vector<Obscuration> obscurations;
+    std::vector<Obscuration> obscurations;  ///< blocked parts inside the outline
 
     bool operator==(const ApertureShape&) const = default;
 
     /// True if the aperture is exactly the circle of the clear semi-diameter.
     bool is_plain() const { return kind == ApertureOutline::circle && half == Vec2d{0, 0} && obscurations.empty(); }
-    /// Reason why the aperture is not rotationally symmetric: "has a rectangular aperture"; empty if it is.
+    /// Returns the reason why the aperture is not rotationally symmetric, for example "has a rectangular aperture";
+    /// empty if it is.
     std::string asymmetry() const;
     /// Returns the shape with all lengths multiplied by `factor`.
     ApertureShape scaled(double factor) const;
-    /// Bounding box of the open area inside a rim of radius `rim` about the vertex, mm.
+    /// Returns the bounding box of the part of the outline inside a rim of radius `rim` about the vertex, mm.
+    /// Obscurations do not reduce it.
     ApertureBox box(double rim) const;
-    /// Radius of the circle about the vertex that encloses the aperture, mm; 0 stands for the clear semi-diameter.
+    /// Returns the radius of a circle about the vertex that encloses the outline, mm; 0 if the outline is the circle of
+    /// the clear semi-diameter.
     double reach() const;
 };
 
-/// Returns `count` spider arms of the given width, from the vertex to `length`, mm, at equal angles. The first one
+/// Returns `count` spider arms of this width and length, mm, from the vertex outwards at equal angles. The first one
 /// makes the angle `angle_deg` with the x axis.
 std::vector<Obscuration> spider_arms(int count, double width, double length, double angle_deg);
 

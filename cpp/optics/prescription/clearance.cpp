@@ -11,25 +11,26 @@ namespace {
 
 /// Tolerance relative to the clear semi-diameter: faces that touch by design seem to overlap because printed radii and
 /// thicknesses are rounded to four digits or more.
-constexpr double kPrintedDigits = 1e-4;
+constexpr double kRoundingTolerance = 1e-4;
 
-/// A face of a run: the surfaces from one mirror (or the front) to the next one (or the end), which light passes in
-/// list order and in one direction. Faces of different runs may overlap, because light may pass the same glass again
-/// behind a mirror.
+/// A refracting or reflecting surface in a run of faces. A run consists of the surfaces from one mirror (or the front)
+/// to the next one (or the end), which light passes in list order and in one direction. Faces of different runs may
+/// overlap, because light may pass the same glass again behind a mirror.
 struct Face {
-    int index;
+    int index;  ///< index of the surface in the lens
     double vertex;  ///< z, mm
 };
 
-/// Returns the deepest overlap of two faces at distances `from` to `to` from the axis; its depth is negative if they
-/// are apart. Beyond its rim a face is edged flat, at the sag of the rim.
-FaceOverlap deepest(const LensSystem& lens, const Face& first, const Face& second, double direction, double from,
-                    double to) {
+/// Returns the deepest overlap of two faces at distances `from` to `to` from the axis, mm; its depth is negative if
+/// they are apart. Beyond its rim a face is edged flat, at the sag of the rim. `direction`: 1 if the light travels
+/// along +z, else -1.
+FaceOverlap deepest_overlap(const LensSystem& lens, const Face& first, const Face& second, double direction,
+                            double from, double to) {
     const Surface &a = lens.surfaces[static_cast<std::size_t>(first.index)],
                   &b = lens.surfaces[static_cast<std::size_t>(second.index)];
     const double rim = std::min(a.clear_semi_diameter, b.clear_semi_diameter);
     FaceOverlap result{first.index, second.index, from, -kInfinity};
-    const auto look_at = [&](double radius) {
+    const auto compare_at = [&](double radius) {
         const double gap = second.vertex + b.sag(std::min(radius, b.clear_semi_diameter)) - first.vertex -
                            a.sag(std::min(radius, a.clear_semi_diameter));
         if (-direction * gap > result.depth) result.radius = radius, result.depth = -direction * gap;
@@ -40,42 +41,42 @@ FaceOverlap deepest(const LensSystem& lens, const Face& first, const Face& secon
     const int steps = is_sphere(a) && is_sphere(b) ? 1 : 64;
     const double middle = std::clamp(rim, from, to);
     for (int i = 0; i <= steps; ++i) {
-        look_at(from + (middle - from) * i / steps);
-        look_at(middle + (to - middle) * i / steps);
+        compare_at(from + (middle - from) * i / steps);
+        compare_at(middle + (to - middle) * i / steps);
     }
     return result;
 }
 
 /// True if the smaller face of an element is concave: it may be sunk into the glass, which then extends past it to the
-/// rim of the larger face, as in the front element of a fisheye.
+/// rim of the larger face, as in the front element of a fisheye. `direction`: see deepest_overlap.
 bool is_sunk(const Surface& front, const Surface& back, double direction) {
     const bool is_back = back.clear_semi_diameter < front.clear_semi_diameter;
     const Surface& smaller = is_back ? back : front;
     return direction * smaller.sag(smaller.clear_semi_diameter) * (is_back ? 1 : -1) > 0;
 }
 
-/// Appends the overlaps of a run of faces until `overlaps` has `most` entries. `in_glass`: for each face, true if
-/// glass lies between it and the next one.
+/// Appends the overlaps of a run of faces until `overlaps` has `max_count` entries. `in_glass`: for each face, true if
+/// glass lies between it and the next one. `direction`: see deepest_overlap.
 void append_overlaps(const LensSystem& lens, const std::vector<Face>& run, const std::vector<bool>& in_glass,
-                     double direction, std::size_t most, std::vector<FaceOverlap>& overlaps) {
+                     double direction, std::size_t max_count, std::vector<FaceOverlap>& overlaps) {
     const auto surface = [&](std::size_t i) -> const Surface& {
         return lens.surfaces[static_cast<std::size_t>(run[i].index)];
     };
     for (std::size_t i = 0; i + 1 < run.size(); ++i) {
-        // Up to this radius the faces between the two keep them apart, provided these do not overlap themselves.
+        // Up to this radius other faces lie between the two. Their own overlaps are found in other pairs.
         double between = 0;
         for (std::size_t j = i + 1; j < run.size(); ++j) {
             const Surface &a = surface(i), &b = surface(j);
-            const bool element = j == i + 1 && in_glass[i] && !is_sunk(a, b, direction);
+            const bool is_element = j == i + 1 && in_glass[i] && !is_sunk(a, b, direction);
             const double from = std::max({between, a.inner_semi_diameter, b.inner_semi_diameter});
             // An element needs glass up to its larger rim; faces with air between them only must not overlap.
-            const double to = element ? std::max(a.clear_semi_diameter, b.clear_semi_diameter)
-                                      : std::min(a.clear_semi_diameter, b.clear_semi_diameter);
-            const double touch = kPrintedDigits * std::min(a.clear_semi_diameter, b.clear_semi_diameter);
+            const double to = is_element ? std::max(a.clear_semi_diameter, b.clear_semi_diameter)
+                                         : std::min(a.clear_semi_diameter, b.clear_semi_diameter);
+            const double tolerance = kRoundingTolerance * std::min(a.clear_semi_diameter, b.clear_semi_diameter);
             if (from < to) {
-                const FaceOverlap found = deepest(lens, run[i], run[j], direction, from, to);
-                if (found.depth > touch) overlaps.push_back(found);
-                if (overlaps.size() >= most) return;
+                const FaceOverlap found = deepest_overlap(lens, run[i], run[j], direction, from, to);
+                if (found.depth > tolerance) overlaps.push_back(found);
+                if (overlaps.size() >= max_count) return;
             }
             if (b.inner_semi_diameter == 0) between = std::max(between, b.clear_semi_diameter);
             if (between >= a.clear_semi_diameter) break;
@@ -85,40 +86,41 @@ void append_overlaps(const LensSystem& lens, const std::vector<Face>& run, const
 
 }  // namespace
 
-std::vector<FaceOverlap> find_overlaps(const LensSystem& lens, std::size_t most) {
+std::vector<FaceOverlap> find_overlaps(const LensSystem& lens, std::size_t max_count) {
     const std::vector<double> z = lens.vertices();
     std::vector<FaceOverlap> overlaps;
     std::vector<Face> run;
     std::vector<bool> in_glass;
     double direction = 1;
-    bool glass = false;
-    for (std::size_t i = 0; i < lens.surfaces.size() && overlaps.size() < most; ++i) {
+    bool is_glass = false;  // the medium behind the last surface
+    for (std::size_t i = 0; i < lens.surfaces.size() && overlaps.size() < max_count; ++i) {
         const Surface& surface = lens.surfaces[i];
         const bool is_moved = !surface.placement.is_in_place();
-        const bool alone = (is_moved && surface.placement.returns) || !surface.form.asymmetry().empty();
+        // A surface off the axis, or without rotational symmetry, is not compared with other faces.
+        const bool is_excluded = (is_moved && surface.placement.returns) || !surface.form.asymmetry().empty();
         if (is_moved && !surface.placement.returns) {
-            append_overlaps(lens, run, in_glass, direction, most, overlaps);
+            append_overlaps(lens, run, in_glass, direction, max_count, overlaps);
             run.clear();
             in_glass.clear();
             // A coordinate break that reverses the z axis also reverses the light's direction along it.
             if (i > 0 && surface.placement.frame().z.z < 0) direction = -direction;
         }
-        if (surface.bends_light() && alone) {
+        if (surface.bends_light() && is_excluded) {
             if (surface.type == SurfaceType::mirror) direction = -direction;
-            if (surface.type == SurfaceType::refracting) glass = !surface.material.is_air();
+            if (surface.type == SurfaceType::refracting) is_glass = !surface.material.is_air();
             if (!in_glass.empty()) in_glass.back() = false;
         }
-        if (!surface.bends_light() || alone) continue;
-        if (surface.type == SurfaceType::refracting) glass = !surface.material.is_air();
+        if (!surface.bends_light() || is_excluded) continue;
+        if (surface.type == SurfaceType::refracting) is_glass = !surface.material.is_air();
         run.push_back({static_cast<int>(i), z[i]});
-        in_glass.push_back(glass);
+        in_glass.push_back(is_glass);
         if (surface.type != SurfaceType::mirror) continue;
-        append_overlaps(lens, run, in_glass, direction, most, overlaps);
+        append_overlaps(lens, run, in_glass, direction, max_count, overlaps);
         run = {run.back()};
-        in_glass = {glass};
+        in_glass = {is_glass};
         direction = -direction;
     }
-    if (overlaps.size() < most) append_overlaps(lens, run, in_glass, direction, most, overlaps);
+    if (overlaps.size() < max_count) append_overlaps(lens, run, in_glass, direction, max_count, overlaps);
     return overlaps;
 }
 
@@ -137,7 +139,7 @@ bool film_crosses_lens(const LensSystem& lens) {
         const double reach = std::min(last.clear_semi_diameter, corner);
         constexpr int kSteps = 64;
         for (int k = 0; k <= kSteps; ++k)
-            if (distance - last.sag(reach * k / kSteps) < -kPrintedDigits * reach) return true;
+            if (distance - last.sag(reach * k / kSteps) < -kRoundingTolerance * reach) return true;
         return false;
     }
     return false;

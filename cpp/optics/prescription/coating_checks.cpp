@@ -7,6 +7,7 @@ namespace realcam {
 
 namespace {
 
+/// Throws InputError if a refractive index or wavelength is invalid. `what` names the material in the message.
 void check_material(const CoatingMaterial& material, const std::string& what) {
     for (std::size_t i = 0; i < material.points.size(); ++i) {
         const CoatingMaterial::Point& p = material.points[i];
@@ -36,11 +37,11 @@ void check_coating(const Coating& coating) {
         const std::string what = "layer " + std::to_string(i + 1);
         check_material(coating.layers[i].material, what);
         const double thickness = coating.layers[i].thickness_nm;
-        if (!(thickness >= 0 && thickness <= kThickestLayer_nm))
+        if (!(thickness >= 0 && thickness <= kMaxLayerThickness_nm))
             throw InputError("the thickness of " + what + " must lie between 0 and 1e6 nm");
     }
     const bool has_layers = coating.kind == CoatingKind::layers || coating.kind == CoatingKind::metal;
-    if (!has_layers && !coating.layers.empty()) throw InputError("this kind of coating has no layers");
+    if (!has_layers && !coating.layers.empty()) throw InputError("this kind of coating cannot have layers");
     if (coating.kind == CoatingKind::metal) check_material(coating.metal, "the metal");
     if (!(coating.reflectance >= 0 && coating.reflectance <= 1))
         throw InputError("the reflectance of a mirror must lie between 0 and 1");
@@ -48,12 +49,12 @@ void check_coating(const Coating& coating) {
 
 void check_coating_fits(const Surface& surface) {
     if (surface.coating.kind == CoatingKind::unknown) return;
-    if (!surface.bends_light()) throw InputError("a stop or an aperture is no surface that could be coated");
+    if (!surface.bends_light()) throw InputError("a stop or an aperture cannot be coated");
     const bool mirror = surface.type == SurfaceType::mirror;
     if (mirror && !surface.coating.is_for_mirrors())
-        throw InputError("a mirror's coating is a metal, with or without layers, or a reflectance");
+        throw InputError("the coating of a mirror must be a metal, with or without layers, or a reflectance");
     if (!mirror && surface.coating.is_for_mirrors())
-        throw InputError("a metal or a reflectance is a mirror's coating; this surface is to let light pass");
+        throw InputError("only a mirror can have a metal or a reflectance as its coating; this surface is refracting");
 }
 
 }  // namespace realcam

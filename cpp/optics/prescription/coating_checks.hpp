@@ -6,7 +6,7 @@
 namespace REALCAM_NAMESPACE {
 
 inline constexpr std::size_t kMaxCoatingLayers = 1000;
-inline constexpr double kThickestLayer_nm = 1e6;  ///< a millimetre: thicker layers show no interference
+inline constexpr double kMaxLayerThickness_nm = 1e6;  ///< a millimetre: thicker layers show no interference
 
 /// Throws InputError if a coating is invalid.
 void check_coating(const Coating& coating);

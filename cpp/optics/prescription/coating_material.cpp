@@ -18,8 +18,8 @@ std::complex<double> CoatingMaterial::index(double wavelength_nm) const {
     const auto above = std::upper_bound(points.begin() + 1, points.end() - 1, wavelength_nm,
                                         [](double nm, const Point& point) { return nm < point.wavelength_nm; });
     const Point &a = *(above - 1), &b = *above;
-    const double share = (wavelength_nm - a.wavelength_nm) / (b.wavelength_nm - a.wavelength_nm);
-    return {a.n + share * (b.n - a.n), a.k + share * (b.k - a.k)};
+    const double t = (wavelength_nm - a.wavelength_nm) / (b.wavelength_nm - a.wavelength_nm);
+    return {a.n + t * (b.n - a.n), a.k + t * (b.k - a.k)};
 }
 
 void CoatingMaterial::fail(double wavelength_nm, double first, double last) const {

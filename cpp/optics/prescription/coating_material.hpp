@@ -8,9 +8,10 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Refractive index n + i k, relative to air, of a film or a metal. In the convention exp(i (k x - omega t)), k > 0
-/// absorbs.
+/// Refractive index n + i k, relative to air, of a film or a metal, as a function of the wavelength. The time
+/// dependence is exp(-i omega t), so that k > 0 absorbs.
 struct CoatingMaterial {
+    /// Refractive index n + i k at one wavelength.
     struct Point {
         double wavelength_nm, n, k;
 
@@ -24,23 +25,28 @@ struct CoatingMaterial {
 
     bool operator==(const CoatingMaterial&) const = default;
 
+    /// Material without absorption.
     static CoatingMaterial transparent(Glass glass) { return {std::move(glass), {}, {}}; }
+    /// Material whose index is the same at all wavelengths.
     static CoatingMaterial constant(std::complex<double> index) {
         return {Glass::air(), {{kLineD_nm, index.real(), index.imag()}}, {}};
     }
 
     const std::string& name() const { return label.empty() ? glass.label : label; }
 
-    /// Throws InputError, naming the material, if the index is not known at this wavelength.
+    /// Returns n + i k. Throws InputError, naming the material, if the index is not known at this wavelength.
     std::complex<double> index(double wavelength_nm) const;
 
 private:
+    /// Formats a wavelength: "550 nm".
     static std::string nm(double wavelength_nm) { return std::to_string(std::lround(wavelength_nm)) + " nm"; }
+    /// Names the material in a message.
     std::string subject() const { return "the coating material" + (name().empty() ? "" : " \"" + name() + '"'); }
+    /// Throws InputError: `wavelength_nm` lies outside the known range `first` to `last`, nm.
     [[noreturn]] void fail(double wavelength_nm, double first, double last) const;
 };
 
-// Measured refractive indices n + ik of mirror metals, as clean evaporated films. Wavelengths in nm.
+// Measured refractive indices of mirror metals, as clean evaporated films.
 
 /// A. D. Rakic, "Algorithm for the determination of intrinsic optical constants of metal films: application to
 /// aluminum", Appl. Opt. 34, 4755 (1995), table 1.

@@ -3,13 +3,14 @@
 #include <string>
 #include <vector>
 
-#include "form_row.hpp"
+#include "form_kind.hpp"
 
 namespace REALCAM_NAMESPACE {
 
+/// The two kinds of Forbes polynomials, with u = r / radius and the curvature c of the base.
 enum class ForbesKind {
-    bfs,  ///< Q^bfs: departure from a sphere, u^2 (1 - u^2) / sqrt(1 - c^2 r^2) times a sum of Q_m(u^2)
-    con,  ///< Q^con: departure from a conic, u^4 times a sum of Q_m(u^2)
+    bfs,  ///< Q^bfs: departure from a sphere, u^2 (1 - u^2) / sqrt(1 - c^2 r^2) times a sum of a_m Q_m(u^2)
+    con,  ///< Q^con: departure from a conic, u^4 times a sum of a_m Q_m(u^2)
 };
 
 namespace forbes_detail {
@@ -17,10 +18,11 @@ namespace forbes_detail {
 /// Coefficients of a polynomial in one variable, the constant first.
 using Polynomial = std::vector<double>;
 
-inline Polynomial sum(const Polynomial& a, const Polynomial& b, double times_a, double times_b) {
+/// Returns factor_a a + factor_b b.
+inline Polynomial weighted_sum(const Polynomial& a, const Polynomial& b, double factor_a, double factor_b) {
     Polynomial result(std::max(a.size(), b.size()), 0.0);
-    for (std::size_t i = 0; i < a.size(); ++i) result[i] += times_a * a[i];
-    for (std::size_t i = 0; i < b.size(); ++i) result[i] += times_b * b[i];
+    for (std::size_t i = 0; i < a.size(); ++i) result[i] += factor_a * a[i];
+    for (std::size_t i = 0; i < b.size(); ++i) result[i] += factor_b * b[i];
     return result;
 }
 
@@ -34,14 +36,16 @@ inline Polynomial times_linear(const Polynomial& p, double a, double b) {
     return result;
 }
 
-/// Q_m^bfs by Forbes's recurrence, as polynomials in t = 2 w - 1; his factor 2 - 4 w is -2 t.
+/// Returns Q_m^bfs for m = 0 to count - 1 by Forbes's recurrence (Forbes 2007), as polynomials in t = 2 w - 1, w = u^2.
+/// f, g, h and the auxiliary polynomials P_m are named as there; its factor 2 - 4 w is -2 t.
 inline std::vector<Polynomial> bfs_polynomials(int count) {
     std::vector<Polynomial> p = {{2.0}, {2.0, -4.0}}, q;
     std::vector<double> f, g, h;
     for (int m = 0; m < count; ++m) {
         if (m >= 2)
-            p.push_back(sum(times_linear(p[static_cast<std::size_t>(m) - 1], 0, -2), p[static_cast<std::size_t>(m) - 2],
-                            1, -1));
+            p.push_back(weighted_sum(times_linear(p[static_cast<std::size_t>(m) - 1], 0, -2),
+                                     p[static_cast<std::size_t>(m) - 2], 1, -1));
+        // Element m - back of a list.
         const auto at = [m](const std::vector<double>& list, int back) {
             return list[static_cast<std::size_t>(m - back)];
         };
@@ -56,21 +60,22 @@ inline std::vector<Polynomial> bfs_polynomials(int count) {
             f.push_back(std::sqrt(m * (m + 1) + 3 - at(g, 1) * at(g, 1) - at(h, 2) * at(h, 2)));
         }
         Polynomial next = p[static_cast<std::size_t>(m)];
-        if (m >= 1) next = sum(next, q[static_cast<std::size_t>(m) - 1], 1, -at(g, 1));
-        if (m >= 2) next = sum(next, q[static_cast<std::size_t>(m) - 2], 1, -at(h, 2));
+        if (m >= 1) next = weighted_sum(next, q[static_cast<std::size_t>(m) - 1], 1, -at(g, 1));
+        if (m >= 2) next = weighted_sum(next, q[static_cast<std::size_t>(m) - 2], 1, -at(h, 2));
         for (double& c : next) c /= f.back();
         q.push_back(next);
     }
     return q;
 }
 
-/// Q_m^con is the Jacobi polynomial P_m^(0,4)(t).
+/// Returns Q_m^con for m = 0 to count - 1 as polynomials in t: the Jacobi polynomials P_m^(0,4)(t), by their three-term
+/// recurrence.
 inline std::vector<Polynomial> con_polynomials(int count) {
     std::vector<Polynomial> q = {{1.0}, {-2.0, 3.0}};
     for (int m = 2; m < count; ++m) {
         const double c = 2.0 * m + 4;
         const double divisor = 2 * m * (m + 4) * (c - 2);
-        q.push_back(sum(
+        q.push_back(weighted_sum(
             times_linear(q[static_cast<std::size_t>(m) - 1], (c - 1) * -16 / divisor, (c - 1) * c * (c - 2) / divisor),
             q[static_cast<std::size_t>(m) - 2], 1, -2 * (m - 1) * (m + 3) * c / divisor));
     }
@@ -79,7 +84,8 @@ inline std::vector<Polynomial> con_polynomials(int count) {
 
 }  // namespace forbes_detail
 
-/// Returns the weighted sum of Q_m(w), w = (r / radius)^2, as a polynomial in 2 w - 1: coefficients by ascending power.
+/// Returns the sum of coefficients[m] Q_m(w), w = (r / radius)^2, as a polynomial in 2 w - 1: its coefficients by
+/// ascending power.
 template <class T>
 std::vector<T> forbes_polynomial(ForbesKind kind, const std::vector<T>& coefficients) {
     const int count = static_cast<int>(coefficients.size());
@@ -91,11 +97,11 @@ std::vector<T> forbes_polynomial(ForbesKind kind, const std::vector<T>& coeffici
     return total;
 }
 
-/// G. W. Forbes, "Shape specification for axially symmetric optical surfaces", Opt. Express 15, 5218 (2007), with
-/// u = r / radius.
+/// Forbes terms of the sag: G. W. Forbes, "Shape specification for axially symmetric optical surfaces", Opt. Express
+/// 15, 5218 (2007). The methods are those of form_kind.hpp.
 struct ForbesTerms {
     ForbesKind kind = ForbesKind::bfs;
-    double radius = 1;  ///< mm
+    double radius = 1;  ///< normalisation radius, mm
     std::vector<double> coefficients;  ///< a_0, a_1, ..., mm
 
     static constexpr FormWords words = {
@@ -104,14 +110,14 @@ struct ForbesTerms {
 
     bool operator==(const ForbesTerms&) const = default;
 
-    int most() const { return kMaxForbesTerms; }
+    int max_coefficients() const { return kMaxForbesTerms; }
     template <class Surface>
     std::string error(const Surface& surface) const {
         if (kind == ForbesKind::con || (surface.conic == 0 && surface.form.has_conic_base())) return "";
         return "Forbes terms of the kind \"bfs\" depart from a sphere, so the conic must be 0";
     }
     void negate() { form_detail::negate_all(coefficients); }
-    /// The factor of w, w = (r / radius)^2, as a polynomial in 2 w - 1.
+    /// Sum of a_m Q_m as a polynomial in 2 w - 1, w = (r / radius)^2.
     std::vector<double> in_powers() const { return forbes_polynomial(kind, coefficients); }
     void add_sag(double& z, double x, double y, const ConicNumbers<double>& conic) const {
         const double r2 = x * x + y * y, w = r2 / (radius * radius),

@@ -11,9 +11,9 @@ Glass Glass::from_abbe_number(double n_d, double abbe_number) {
     check_all_finite({n_d, abbe_number});
     if (!(n_d >= 1)) throw InputError("a glass needs an index n_d of at least 1");
     if (!(abbe_number > 0)) throw InputError("a glass needs a positive Abbe number V_d");
-    const double spread = per_um2(kLineF_nm) - per_um2(kLineC_nm);
+    const double spread = inverse_square_um(kLineF_nm) - inverse_square_um(kLineC_nm);
     const double b = (n_d - 1) / (abbe_number * spread);
-    return {Formula::cauchy, {n_d - b * per_um2(kLineD_nm), b}, {}};
+    return {Formula::cauchy, {n_d - b * inverse_square_um(kLineD_nm), b}, {}};
 }
 
 Glass Glass::cauchy(std::vector<double> coefficients) {
@@ -37,24 +37,25 @@ Glass Glass::table(std::vector<TablePoint> points) {
     if (points.empty()) throw InputError("a glass table needs at least one (wavelength_nm, index)");
     for (const TablePoint& point : points) {
         check_all_finite({point.wavelength_nm, point.index});
-        if (!(point.wavelength_nm > 0)) throw InputError("wavelengths are positive numbers, in nm");
+        if (!(point.wavelength_nm > 0))
+            throw InputError("the wavelengths of a glass table must be positive numbers, in nm");
     }
     std::sort(points.begin(), points.end(),
               [](const TablePoint& a, const TablePoint& b) { return a.wavelength_nm < b.wavelength_nm; });
-    const auto twice = std::adjacent_find(
+    const auto repeated = std::adjacent_find(
         points.begin(), points.end(), [](const auto& a, const auto& b) { return a.wavelength_nm == b.wavelength_nm; });
-    if (twice != points.end()) throw InputError("a glass table gives a wavelength twice");
+    if (repeated != points.end()) throw InputError("a glass table gives a wavelength twice");
     return {Formula::table, {}, std::move(points)};
 }
 
 double Glass::index(double wavelength_nm) const {
     switch (formula_) {
-        case Formula::sellmeier: return sellmeier_index(1 / per_um2(wavelength_nm));
-        case Formula::table: return table_index(per_um2(wavelength_nm));
+        case Formula::sellmeier: return sellmeier_index(1 / inverse_square_um(wavelength_nm));
+        case Formula::table: return table_index(inverse_square_um(wavelength_nm));
         case Formula::cauchy: break;
     }
     double n = 0;
-    for (std::size_t i = coefficients_.size(); i-- > 0;) n = n * per_um2(wavelength_nm) + coefficients_[i];
+    for (std::size_t i = coefficients_.size(); i-- > 0;) n = n * inverse_square_um(wavelength_nm) + coefficients_[i];
     return n;
 }
 
@@ -80,18 +81,18 @@ void Glass::check_all_finite(const std::vector<double>& numbers) {
         if (!std::isfinite(number)) throw InputError("a glass needs finite numbers");
 }
 
-double Glass::sellmeier_index(double um2) const {
+double Glass::sellmeier_index(double square_um) const {
     double square = 1;
     for (std::size_t i = 0; i + 1 < coefficients_.size(); i += 2)
-        square += coefficients_[i] * um2 / (um2 - coefficients_[i + 1]);
+        square += coefficients_[i] * square_um / (square_um - coefficients_[i + 1]);
     return std::sqrt(square);
 }
 
 double Glass::table_index(double x) const {
     const std::size_t used = std::min<std::size_t>(4, points_.size());
-    // The points are sorted by wavelength, so x falls along them.
+    // Lagrange interpolation. The points are sorted by wavelength, so x falls along them.
     const auto next = std::lower_bound(points_.begin(), points_.end(), x, [](const TablePoint& p, double value) {
-        return per_um2(p.wavelength_nm) > value;
+        return inverse_square_um(p.wavelength_nm) > value;
     });
     const std::ptrdiff_t half = static_cast<std::ptrdiff_t>(used / 2);
     const std::ptrdiff_t last = static_cast<std::ptrdiff_t>(points_.size() - used);
@@ -102,8 +103,8 @@ double Glass::table_index(double x) const {
         double weight = 1;
         for (std::size_t j = 0; j < used; ++j) {
             if (j == i) continue;
-            const double other = per_um2(points_[static_cast<std::size_t>(first) + j].wavelength_nm);
-            weight *= (x - other) / (per_um2(p.wavelength_nm) - other);
+            const double other = inverse_square_um(points_[static_cast<std::size_t>(first) + j].wavelength_nm);
+            weight *= (x - other) / (inverse_square_um(p.wavelength_nm) - other);
         }
         n += weight * p.index;
     }

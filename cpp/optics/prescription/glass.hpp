@@ -15,30 +15,33 @@ inline constexpr double kLineC_nm = 656.2725;  ///< hydrogen, red
 /// An optical medium: refractive index relative to air at a wavelength in air.
 class Glass {
 public:
-    /// One term of the Sellmeier equation n^2 = 1 + sum B l^2 / (l^2 - C), l in um, C in um^2.
+    /// One term of the Sellmeier equation n^2 = 1 + sum B l^2 / (l^2 - C), with the wavelength l in um.
     struct SellmeierTerm {
-        double B, C;
+        double B, C;  ///< 1, um^2
     };
-    /// One measured point.
+    /// One measured refractive index.
     struct TablePoint {
         double wavelength_nm, index;
 
         bool operator==(const TablePoint&) const = default;
     };
 
+    /// Medium whose index is the same at all wavelengths.
     static Glass constant(double index) { return {Formula::cauchy, {index}, {}}; }
     static Glass air() { return constant(1.0); }
 
     /// Two-term Cauchy formula with this index at the d line and Abbe number V_d = (n_d - 1) / (n_F - n_C). Throws
     /// InputError for an index below 1 or an Abbe number that is not positive.
     static Glass from_abbe_number(double n_d, double abbe_number);
-    /// n = A + B / l^2 + C / l^4 + ..., l in um. Throws InputError if there is no coefficient, or one is not finite.
+    /// Cauchy's formula n = A + B / l^2 + C / l^4 + ..., l in um. Throws InputError if there is no coefficient, or one
+    /// is not finite.
     static Glass cauchy(std::vector<double> coefficients);
 
-    /// Throws InputError if there is no term, or a coefficient is not finite.
+    /// Sellmeier's equation. Throws InputError if there is no term, or a coefficient is not finite.
     static Glass sellmeier(const std::vector<SellmeierTerm>& terms);
-    /// Cubic interpolation in 1 / l^2 through the four nearest points (or all, if there are fewer). Throws InputError
-    /// if there is no point, two points have the same wavelength, or a number is invalid.
+    /// Table of measured indices, with cubic interpolation in 1 / l^2 through the four nearest points (or through all,
+    /// if there are fewer). Throws InputError if there is no point, two points have the same wavelength, or a number is
+    /// invalid.
     static Glass table(std::vector<TablePoint> points);
 
     /// Refractive index; NaN if the formula has no real value.
@@ -54,7 +57,7 @@ public:
 
     bool operator==(const Glass&) const = default;
 
-    /// Name given by the lens's author: a catalogue name, a number, or a pair; empty for air.
+    /// The medium as the lens's author specified it: a catalogue name, an index, or n_d and V_d; empty for air.
     std::string label;
 
     enum class Formula { cauchy, sellmeier, table };
@@ -67,23 +70,28 @@ public:
         std::string label;
     };
     Parts parts() const { return {formula_, coefficients_, points_, label}; }
+    /// Restores a glass from its parts, which are not checked.
     static Glass from_parts(Parts parts);
 
 private:
     Glass(Formula formula, std::vector<double> coefficients, std::vector<TablePoint> points)
         : formula_(formula), coefficients_(std::move(coefficients)), points_(std::move(points)) {}
 
+    /// Throws InputError if a number is infinite or NaN.
     static void check_all_finite(const std::vector<double>& numbers);
 
-    static double per_um2(double wavelength_nm) { return 1e6 / (wavelength_nm * wavelength_nm); }
+    /// Returns 1 / l^2 in um^-2, the variable of Cauchy's formula.
+    static double inverse_square_um(double wavelength_nm) { return 1e6 / (wavelength_nm * wavelength_nm); }
 
-    double sellmeier_index(double um2) const;
+    /// Index by Sellmeier's equation; `square_um`: l^2 in um^2.
+    double sellmeier_index(double square_um) const;
 
+    /// Index by interpolation in the table; `x`: 1 / l^2 in um^-2.
     double table_index(double x) const;
 
     Formula formula_;
-    std::vector<double> coefficients_;
-    std::vector<TablePoint> points_;
+    std::vector<double> coefficients_;  ///< see Parts
+    std::vector<TablePoint> points_;  ///< by ascending wavelength
 };
 
 }  // namespace REALCAM_NAMESPACE

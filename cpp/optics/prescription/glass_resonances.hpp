@@ -5,8 +5,9 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Range between the nearest resonances of Sellmeier's formula on either side of the d line, nm. At a resonance the
-/// glass is opaque, and beyond it the formula's values are no index of the glass. Returns (0, inf) for other formulas.
+/// Returns the range between the nearest resonances of Sellmeier's formula on either side of the d line, nm. At a
+/// resonance the glass is opaque, and beyond it the formula does not describe the glass. Returns (0, inf) for other
+/// formulas.
 WavelengthRange between_resonances(const Glass& glass);
 
 /// Throws InputError, naming the surface and the glass, if a glass of the lens is not known at this wavelength: outside

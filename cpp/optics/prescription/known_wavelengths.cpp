@@ -6,8 +6,8 @@ namespace realcam {
 
 namespace known_wavelengths_detail {
 
-std::string nm_text(double wavelength) {
-    std::string text = std::to_string(std::round(10 * wavelength) / 10);
+std::string nm_text(double wavelength_nm) {
+    std::string text = std::to_string(std::round(10 * wavelength_nm) / 10);
     text.erase(text.find_last_not_of('0') + 1);
     return text.back() == '.' ? text.substr(0, text.size() - 1) : text;
 }
@@ -20,6 +20,7 @@ std::string glass_text(const LensSystem& lens, std::size_t surface) {
 
 namespace {
 
+/// Formats a range for the message "... requested", with its verb.
 std::string range_text(WavelengthRange range) {
     return range.first == range.last ? nm_text(range.first) + " nm is"
                                      : nm_text(range.first) + " to " + nm_text(range.last) + " nm are";

@@ -22,7 +22,8 @@ std::string mm(double v) {
 
 namespace {
 
-void check_figure(const Surface& s, std::size_t i) {
+/// Checks curvature, conic and aspheric coefficients. `i`, here and below: index of the surface, for messages.
+void check_base_shape(const Surface& s, std::size_t i) {
     if (!std::isfinite(s.curvature) || !std::isfinite(s.conic))
         fail(i, "radius of curvature and conic must be finite numbers (leave the radius out for a plane)");
     if (std::fabs(s.conic) > kLargestConic) fail(i, "the conic must lie between -1e6 and 1e6");
@@ -31,9 +32,10 @@ void check_figure(const Surface& s, std::size_t i) {
     for (double a : s.aspheric)
         if (!std::isfinite(a)) fail(i, "an aspheric coefficient is not a finite number");
     if (s.aspheric.size() > static_cast<std::size_t>(kMaxAsphericTerms))
-        fail(i, "aspheric coefficients go up to r^" + std::to_string(2 * kMaxAsphericTerms + 2));
+        fail(i, "aspheric coefficients are supported up to r^" + std::to_string(2 * kMaxAsphericTerms + 2));
 }
 
+/// Checks the clear semi-diameters, and the sag inside them.
 void check_rim(const Surface& s, std::size_t i) {
     if (!(s.clear_semi_diameter > 0) || !std::isfinite(s.clear_semi_diameter))
         fail(i, "the clear semi-diameter is " + mm(s.clear_semi_diameter) + "; expected a positive length");
@@ -43,7 +45,7 @@ void check_rim(const Surface& s, std::size_t i) {
     for (double a : s.aspheric) {
         power *= s.clear_semi_diameter * s.clear_semi_diameter;
         if (std::fabs(a) > kLargestCoefficient || std::fabs(a) * power > kLongest)
-            fail(i, "an aspheric coefficient is too large: it is past 1e37, or its term past 1e9 mm at the rim");
+            fail(i, "an aspheric coefficient is too large: it exceeds 1e37, or its term exceeds 1e9 mm at the rim");
     }
     if (!(s.inner_semi_diameter >= 0) || s.inner_semi_diameter >= s.clear_semi_diameter)
         fail(i, "the inner semi-diameter must be at least 0 and less than the clear semi-diameter");
@@ -75,6 +77,7 @@ std::string placement_error(const SurfacePlacement& placement) {
     return "";
 }
 
+/// Checks the refractive index at the ends of the visible spectrum and at the design wavelength.
 void check_material(const Surface& s, std::size_t i, double design_wavelength_nm) {
     for (double wavelength : {380.0, design_wavelength_nm, 780.0}) {
         const double n = s.material.index(wavelength);
@@ -84,6 +87,7 @@ void check_material(const Surface& s, std::size_t i, double design_wavelength_nm
     }
 }
 
+/// Checks the coating, and that it suits the type of the surface.
 void check_surface_coating(const Surface& s, std::size_t i) {
     try {
         check_coating(s.coating);
@@ -93,6 +97,7 @@ void check_surface_coating(const Surface& s, std::size_t i) {
     }
 }
 
+/// Checks that there is exactly one aperture stop.
 void check_stop(const LensSystem& lens) {
     const int first = lens.stop_index();
     if (first < 0) throw LensFileError("the lens has no surface of type \"stop\"; expected exactly one");
@@ -123,7 +128,7 @@ void check_surfaces(const LensSystem& lens) {
     for (std::size_t i = 0; i < lens.surfaces.size(); ++i) {
         const Surface& s = lens.surfaces[i];
         if (s.type == SurfaceType::mirror) direction = -direction, last_mirror = i;
-        check_figure(s, i);
+        check_base_shape(s, i);
         check_rim(s, i);
         check_thickness(s, i, is_on_axis ? direction : 0);
         if (const std::string why = placement_error(s.placement); !why.empty()) fail(i, why);
@@ -133,14 +138,14 @@ void check_surfaces(const LensSystem& lens) {
     check_stop(lens);
     if (is_on_axis && direction < 0 && !(lens.film_distance < 0))
         fail(last_mirror,
-             "the lens has an odd number of mirrors, so its light never reaches a film behind it; the film must lie "
-             "before it, at a film_distance_mm below 0");
+             "the lens has an odd number of mirrors, so its light does not reach a film behind it; the film must lie "
+             "in front of the last surface, at a film_distance_mm below 0");
     if (lens.allow_overlap) return;
     if (const auto overlap = find_overlap(lens))
         fail(static_cast<std::size_t>(overlap->first),
              "crosses surface " + std::to_string(overlap->second + 1) + ", by " + short_mm(overlap->depth) + " at " +
                  short_mm(overlap->radius) +
-                 " from the axis; faces must stay apart up to their rims (allow_overlap admits it)");
+                 " from the axis; faces must not overlap inside their rims (unless allow_overlap is set)");
 }
 
 void check_iris(const IrisShape& iris) {
@@ -154,8 +159,8 @@ void check_iris(const IrisShape& iris) {
 
 void check_film_reach(const LensSystem& lens, double corner) {
     // The film must stay short of a full hemisphere, at whose edge it is parallel to the axis.
-    constexpr double kReach = 0.995;
-    if (!(corner <= kReach * std::fabs(lens.film_radius_of_curvature)))
+    constexpr double kMaxSine = 0.995;
+    if (!(corner <= kMaxSine * std::fabs(lens.film_radius_of_curvature)))
         throw LensFileError(
             "the film's radius of curvature, " + lens_checks_detail::short_mm(lens.film_radius_of_curvature) +
             ", is too short: the film reaches out to " + lens_checks_detail::short_mm(corner) + " from the axis");
@@ -180,20 +185,22 @@ void check_zoom(const LensSystem& lens) {
     const ZoomRange& zoom = lens.zoom;
     if (zoom.positions.empty()) return;
     const int last = static_cast<int>(lens.surfaces.size()) - 1, count = static_cast<int>(zoom.positions.size());
-    if (zoom.current < 0 || zoom.current >= count) throw LensFileError("the lens is in a zoom position that it lacks");
+    if (zoom.current < 0 || zoom.current >= count)
+        throw LensFileError("the current zoom position of the lens does not exist");
     for (std::size_t i = 0; i < zoom.surfaces.size(); ++i)
         if (zoom.surfaces[i] < 0 || zoom.surfaces[i] >= last || (i > 0 && zoom.surfaces[i] <= zoom.surfaces[i - 1]))
-            throw LensFileError("zooming changes thicknesses of surfaces 1 to " + std::to_string(last) +
-                                "; what is behind the last one is the position's film distance");
+            throw LensFileError(
+                "zooming can change the thicknesses of surfaces 1 to " + std::to_string(last) +
+                ", in ascending order; the distance behind the last surface is a position's film distance");
     for (std::size_t i = 0; i < zoom.positions.size(); ++i) {
         const ZoomPosition& position = zoom.positions[i];
         const std::string where = "in zoom position \"" + position.name + "\" ";
         for (std::size_t j = 0; j < i; ++j)
             if (zoom.positions[j].name == position.name)
-                throw LensFileError("two zoom positions are called \"" + position.name + '"');
+                throw LensFileError("two zoom positions have the name \"" + position.name + '"');
         if (position.name.empty()) throw LensFileError("a zoom position has no name");
         if (position.thicknesses.size() != zoom.surfaces.size())
-            throw LensFileError(where + "not all thicknesses are given that zooming changes");
+            throw LensFileError(where + "the number of thicknesses is not that of the surfaces that zooming moves");
         if (!(position.film_distance > 0) || !(position.film_distance <= kLongest))
             throw LensFileError(where + "the film must lie behind the last surface, at most 1e9 mm away");
         if (!(position.stop_semi_diameter >= 0) || !(position.focus_distance > 0))
@@ -224,7 +231,7 @@ std::string film_distance_error(const LensSystem& lens) {
     if (!lens.allow_overlap && film_crosses_lens(lens))
         return "the film, " + lens_checks_detail::short_mm(lens.film_distance) +
                " behind the last vertex of the lens, cuts through its last face; it must lie behind that face's rim "
-               "(allow_overlap admits it)";
+               "(unless allow_overlap is set)";
     return "";
 }
 

@@ -39,28 +39,29 @@ double LensSystem::last_vertex() const {
     return z;
 }
 
-std::vector<double> LensSystem::indices(double wavelength) const {
+std::vector<double> LensSystem::indices(double wavelength_nm) const {
     std::vector<double> n(surfaces.size() + 1, 1.0);
     for (std::size_t i = 0; i < surfaces.size(); ++i) {
         const Surface& s = surfaces[i];
-        n[i + 1] = s.type == SurfaceType::refracting ? s.material.index(wavelength) : n[i];
+        n[i + 1] = s.type == SurfaceType::refracting ? s.material.index(wavelength_nm) : n[i];
+        // The limits are beyond those of any medium. The comparisons also catch NaN.
         if (!(n[i + 1] > 0.1) || !(n[i + 1] < 100))
             throw InputError("the material of surface " + std::to_string(i + 1) +
                              (s.material.label.empty() ? "" : " (" + s.material.label + ")") +
-                             " has no refractive index at " + std::to_string(std::lround(wavelength)) + " nm");
+                             " has no refractive index at " + std::to_string(std::lround(wavelength_nm)) + " nm");
     }
     return n;
 }
 
 LensSystem at_zoom_position(LensSystem lens, int position) {
-    const ZoomPosition& to = lens.zoom.positions[static_cast<std::size_t>(position)];
+    const ZoomPosition& target = lens.zoom.positions[static_cast<std::size_t>(position)];
     for (std::size_t i = 0; i < lens.zoom.surfaces.size(); ++i)
-        lens.surfaces[static_cast<std::size_t>(lens.zoom.surfaces[i])].thickness = to.thicknesses[i];
+        lens.surfaces[static_cast<std::size_t>(lens.zoom.surfaces[i])].thickness = target.thicknesses[i];
     Surface& stop = lens.surfaces[static_cast<std::size_t>(lens.stop_index())];
-    if (to.stop_semi_diameter > 0) stop.clear_semi_diameter = to.stop_semi_diameter;
+    if (target.stop_semi_diameter > 0) stop.clear_semi_diameter = target.stop_semi_diameter;
     lens.stop_semi_diameter = stop.clear_semi_diameter;
-    lens.film_distance = to.film_distance;
-    lens.focus_distance = to.focus_distance;
+    lens.film_distance = target.film_distance;
+    lens.focus_distance = target.focus_distance;
     lens.zoom.current = position;
     return lens;
 }
@@ -97,9 +98,9 @@ SurfaceFrames surface_frames(const LensSystem& lens) {
 }
 
 Affine<double> frame_of_next(const LensSystem& lens, int index) {
-    const Surface &here = surface_of(lens, index), &next = surface_of(lens, index + 1);
-    const Affine<double> to_next = along_axis(here.thickness) * next.placement.frame();
-    return here.placement.returns ? inverse_motion(here.placement.frame()) * to_next : to_next;
+    const Surface &surface = surface_of(lens, index), &next = surface_of(lens, index + 1);
+    const Affine<double> to_next = along_axis(surface.thickness) * next.placement.frame();
+    return surface.placement.returns ? inverse_motion(surface.placement.frame()) * to_next : to_next;
 }
 
 }  // namespace realcam

@@ -11,9 +11,10 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// One position of the zoom ring, with the lens at rest: wide open, and not refocused. Lengths in mm.
+/// One position of the zoom ring, with the lens at rest: wide open, and with the focus that the prescription specifies
+/// for this position. Lengths in mm.
 struct ZoomPosition {
-    std::string name;
+    std::string name;  ///< unique among the positions, for example "wide"
     std::vector<double> thicknesses;  ///< thicknesses behind ZoomRange::surfaces, in their order
     double film_distance = 0;  ///< last vertex to film
     double focus_distance = std::numeric_limits<double>::infinity();  ///< object plane to film
@@ -24,17 +25,18 @@ struct ZoomPosition {
 
 /// Thicknesses that the zoom ring changes. `positions` is empty for a lens of fixed focal length.
 struct ZoomRange {
-    std::vector<int> surfaces;  ///< surfaces whose thicknesses change, also by focusing; from 0, ascending
+    std::vector<int> surfaces;  ///< indices from 0, ascending, of the surfaces behind which the thickness changes by
+                                ///< zooming, or by moving the focusing group
     std::vector<ZoomPosition> positions;
     int current = 0;  ///< index of the lens's current position
 
     bool operator==(const ZoomRange&) const = default;
 };
 
-/// Blades of an iris diaphragm, independent of its opening. blades = 0: a round diaphragm.
+/// Shape of the blades of an iris diaphragm, independent of its opening.
 struct IrisShape {
-    int blades = 0;
-    double rounding = 0;      ///< 0: straight edges; 1: the opening is a circle
+    int blades = 0;  ///< number of blades; 0: a round diaphragm
+    double rounding = 0;  ///< curvature of the edges times the apothem. 0: straight edges; 1: the opening is a circle
     double rotation_rad = 0;  ///< angle of the first blade, from the x axis towards y
 
     bool operator==(const IrisShape&) const = default;
@@ -45,9 +47,9 @@ inline constexpr int kMaxSurfaces = 256;
 
 // Limits of a prescription's numbers. No real lens exceeds them, and squares of larger numbers, or of their sums, leave
 // the range of float32.
-inline constexpr double kLongest = 1e9;  ///< any length, mm
-inline constexpr double kShortestRadius = 1e-6;  ///< radius of curvature or clear semi-diameter, mm
-inline constexpr double kLargestConic = 1e6;
+inline constexpr double kLongest = 1e9;  ///< largest absolute value of any length, mm
+inline constexpr double kShortestRadius = 1e-6;  ///< smallest radius of curvature or clear semi-diameter, mm
+inline constexpr double kLargestConic = 1e6;  ///< largest absolute value of a conic constant
 /// Largest coefficient of an asphere, whatever its unit. Float32 rays need no such limit, but some pictures through
 /// lenses past it are NaN.
 inline constexpr double kLargestCoefficient = 1e37;
@@ -67,54 +69,62 @@ struct FocusingRule {
 ///
 /// Lens frame: z along the axis, origin at the front vertex, light from the scene travels to +z. Lengths in mm.
 struct LensSystem {
-    std::string name;
-    std::string title;
-    std::string source;
-    std::vector<Surface> surfaces;
+    std::string name;  ///< identifier in messages and lists
+    std::string title;  ///< full name for display; may be empty
+    std::string source;  ///< publication or patent of the design; may be empty
+    std::vector<Surface> surfaces;  ///< from the front (scene side) to the film
     double wavelength_nm = kLineD_nm;  ///< design wavelength: the default of calculations
     double film_width = 36, film_height = 24;
     double film_distance = 0;  ///< last vertex to film
-    double film_radius_of_curvature = kInfinity;  ///< mm; above 0: the centre lies behind the film
+    double film_radius_of_curvature = kInfinity;  ///< positive if the centre lies behind the film; infinite: flat
     SurfacePlacement film_placement;  ///< relative to the last axis, at film_distance behind the last vertex
-    double focus_distance = kInfinity;  ///< object plane to film
-    double stop_semi_diameter = 0;  ///< radius of the circle with the diaphragm's open area
+    double focus_distance = kInfinity;  ///< object plane in focus to film
+    double stop_semi_diameter = 0;  ///< setting of the diaphragm: radius of the circle with the area of its opening
     IrisShape iris;
     FocusingRule focusing;
     ZoomRange zoom;
-    bool allow_overlap =
-        false;  ///< faces may overlap inside their rims: for experiments, as such a lens cannot be made
+    /// True: faces may overlap inside their rims. For experiments, as such a lens cannot be made.
+    bool allow_overlap = false;
 
     bool operator==(const LensSystem&) const = default;
 
+    /// Index of the aperture stop in `surfaces`; -1 if there is none.
     int stop_index() const;
+    /// The aperture stop, which must exist.
     const Surface& stop() const { return surfaces[static_cast<std::size_t>(stop_index())]; }
+    /// True if the diaphragm is fully open.
     bool is_wide_open() const { return stop_semi_diameter >= stop().clear_semi_diameter; }
     /// Radius of the stop's opening, limited by its rim, mm.
     double open_stop_radius() const { return std::min(stop_semi_diameter, stop().clear_semi_diameter); }
 
-    /// Reason why this is not a centred lens of revolution, naming the first surface at fault: "surface 3 is tilted";
-    /// empty if it is one.
+    /// Returns the reason why this is not a centred lens of revolution, naming the first surface that breaks the
+    /// symmetry, for example "surface 3 is tilted"; empty if it is one.
     std::string asymmetry() const;
+    /// True if this is a centred lens of revolution.
     bool is_rotational() const { return asymmetry().empty(); }
     /// Throws InputError unless this is a centred lens of revolution: "`what` needs a centred lens of revolution;
     /// surface 3 is tilted".
     void require_rotational(const std::string& what) const;
 
-    /// z of each vertex along the axis; tilts and decentres are ignored.
+    /// z of each vertex along the axis, mm; tilts and decentres are ignored.
     std::vector<double> vertices() const;
+    /// z of the last vertex, mm.
     double last_vertex() const;
+    /// z of the film's vertex, mm.
     double film_position() const { return last_vertex() + film_distance; }
 
-    /// Refractive indices of the n + 1 media: before the first surface, between the surfaces, behind the last. Throws
-    /// InputError if a glass has no valid index at this wavelength: near a resonance a formula can give any value.
-    std::vector<double> indices(double wavelength) const;
+    /// Returns the refractive indices of the n + 1 media (before the first surface, between the surfaces, behind the
+    /// last) at a wavelength in nm. Throws InputError if a glass has no valid index at this wavelength: near a
+    /// resonance a formula can give any value.
+    std::vector<double> indices(double wavelength_nm) const;
 };
 
 /// Returns the centred lens of revolution with the yz section of each surface: no tilts or decentres of surfaces or
 /// film, and no asymmetric form terms or apertures. It serves for numbers that characterise the lens.
 LensSystem centred(LensSystem lens);
 
-/// Returns the lens at rest in the zoom position of this index: wide open, and focused as the position specifies.
+/// Returns the lens at rest in the zoom position of this index (from 0): wide open, and focused as the position
+/// specifies.
 LensSystem at_zoom_position(LensSystem lens, int position);
 
 /// True if all surfaces are surfaces of revolution about one common axis. The film's placement is ignored.
@@ -129,10 +139,11 @@ struct SurfaceFrames {
     Affine<double> last_axis;  ///< axis behind the last surface, with origin at its vertex; the film is placed along it
 };
 
+/// Returns the frames of all surfaces, including tilts and decentres.
 SurfaceFrames surface_frames(const LensSystem& lens);
 
-/// Transform from the frame of surface `index` + 1 to that of surface `index`. Exactly a translation by the thickness
-/// if neither surface is moved.
+/// Returns the transform from the frame of surface `index` + 1 to that of surface `index`. It is exactly a translation
+/// by the thickness if neither surface is tilted or decentred.
 Affine<double> frame_of_next(const LensSystem& lens, int index);
 
 }  // namespace REALCAM_NAMESPACE

@@ -19,18 +19,21 @@ namespace {
 
 using form_detail::polynomial;
 
-/// Even aspheric terms from the fourth power on; `squared` is r^2, or y^2 for a toroid.
+/// Returns the sum of the even aspheric terms, mm. `squared`: r^2, or y^2 for a toroid, mm^2.
 double even_terms(const Surface& surface, double squared) {
     return squared * squared * polynomial(surface.aspheric, squared);
 }
 
+/// Returns the sag of the base shape with the even aspheric terms, mm.
 double base_sag(const Surface& surface, double x, double y) {
     const double c = surface.curvature, q = (1 + surface.conic) * c * c;
     const SurfaceForm& form = surface.form;
     if (form.base == BaseForm::toroid) {
         const double section = c * y * y / (1 + std::sqrt(1 - q * y * y)) + even_terms(surface, y * y);
-        const double rest = 1 - form.curvature_x * section, across = form.curvature_x * x;
-        return (section * (1 + rest) + across * x) / (1 + std::sqrt(rest * rest - across * across));
+        // A circle about the line of rotation; its radius is reduced by the sag of the section. Lengths in units of 1 /
+        // curvature_x.
+        const double radius = 1 - form.curvature_x * section, across = form.curvature_x * x;
+        return (section * (1 + radius) + across * x) / (1 + std::sqrt(radius * radius - across * across));
     }
     const double r2 = x * x + y * y, terms = even_terms(surface, r2);
     if (form.base == BaseForm::conic) return c * r2 / (1 + std::sqrt(1 - q * r2)) + terms;
@@ -62,15 +65,15 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
 
-struct Turn {
+struct CosSin {
     double cos, sin;
 };
 
-/// Cosine and sine, exact for right angles, which occur in fold mirrors.
-Turn turn_by(double degrees) {
+/// Returns cosine and sine of an angle, exact for right angles, which occur in fold mirrors.
+CosSin cos_sin(double degrees) {
     int quarters = 0;
-    const double rest = std::remquo(degrees, 90.0, &quarters);
-    const double c = std::cos(rest * kDegree), s = std::sin(rest * kDegree);
+    const double remainder = std::remquo(degrees, 90.0, &quarters);
+    const double c = std::cos(remainder * kDegree), s = std::sin(remainder * kDegree);
     switch (quarters & 3) {
         case 0: return {c, s};
         case 1: return {-s, c};
@@ -79,7 +82,7 @@ Turn turn_by(double degrees) {
     }
 }
 
-/// Angle in degrees, exact for 0 and all right angles.
+/// Returns the angle in degrees of this sine and cosine, exact for 0 and all right angles.
 double degrees_of(double sin, double cos) {
     if (sin == 0) return cos < 0 ? 180 : 0;
     if (cos == 0) return std::copysign(90.0, sin);
@@ -89,7 +92,7 @@ double degrees_of(double sin, double cos) {
 }  // namespace
 
 Affine<double> SurfacePlacement::frame() const {
-    const Turn a = turn_by(tilt_deg.x), b = turn_by(tilt_deg.y), c = turn_by(tilt_deg.z);
+    const CosSin a = cos_sin(tilt_deg.x), b = cos_sin(tilt_deg.y), c = cos_sin(tilt_deg.z);
     const Affine<double> about_x{{1, 0, 0}, {0, a.cos, a.sin}, {0, -a.sin, a.cos}, decentre},
         about_y{{b.cos, 0, -b.sin}, {0, 1, 0}, {b.sin, 0, b.cos}, {0, 0, 0}},
         about_z{{c.cos, c.sin, 0}, {-c.sin, c.cos, 0}, {0, 0, 1}, {0, 0, 0}};
@@ -101,8 +104,8 @@ SurfacePlacement SurfacePlacement::of(const Affine<double>& frame) {
     result.decentre = frame.origin;
     const double cos_y = hypotenuse(frame.x.x, frame.y.x);
     result.tilt_deg.y = degrees_of(frame.z.x, cos_y);
-    constexpr double kLocked = 1e-12;
-    if (cos_y < kLocked) {
+    constexpr double kGimbalLock = 1e-12;  // cosine of the tilt about y
+    if (cos_y < kGimbalLock) {
         result.tilt_deg.x = degrees_of(frame.y.z, frame.y.y);
         return result;
     }

@@ -9,6 +9,7 @@ namespace {
 
 using form_detail::any_of;
 
+/// True if a coefficient is not 0.
 bool any_xy(const std::vector<XyTerm>& terms) {
     return std::any_of(terms.begin(), terms.end(), [](const XyTerm& term) { return term.coefficient != 0; });
 }
@@ -16,15 +17,15 @@ bool any_xy(const std::vector<XyTerm>& terms) {
 }  // namespace
 
 bool SurfaceForm::has_terms() const {
-    bool any = !radial.empty() || !xy.empty();
-    over_terms(*this, [&](const auto&) { any = true; });
-    return any;
+    bool found = !radial.empty() || !xy.empty();
+    over_terms(*this, [&](const auto&) { found = true; });
+    return found;
 }
 
 bool SurfaceForm::is_none() const {
-    bool any = base != BaseForm::conic || any_of(radial) || any_xy(xy);
-    over_terms(*this, [&](const auto& terms) { any |= any_of(terms.coefficients); });
-    return !any;
+    bool found = base != BaseForm::conic || any_of(radial) || any_xy(xy);
+    over_terms(*this, [&](const auto& terms) { found |= any_of(terms.coefficients); });
+    return !found;
 }
 
 SurfaceForm SurfaceForm::scaled(double factor) const {
@@ -40,7 +41,7 @@ SurfaceForm SurfaceForm::scaled(double factor) const {
     return result;
 }
 
-SurfaceForm SurfaceForm::turned() const {
+SurfaceForm SurfaceForm::negated() const {
     SurfaceForm result = *this;
     result.curvature_x = -curvature_x;
     form_detail::negate_all(result.radial);

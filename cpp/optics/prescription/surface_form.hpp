@@ -13,42 +13,46 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Base shape to which the other terms of the sag are added. The radius and conic of Surface belong to the section in
-/// the yz plane.
+/// Base shape to which the other terms of the sag are added. Surface::curvature and Surface::conic are those of the
+/// section in the yz plane.
 enum class BaseForm {
     conic,  ///< conic of revolution
     biconic,  ///< (c_x x^2 + c_y y^2) / (1 + sqrt(1 - (1 + k_x) c_x^2 x^2 - (1 + k_y) c_y^2 y^2))
     toroid,  ///< the section in the yz plane, including its even terms of y, rotated about a line parallel to y
 };
 
-/// Sag of a surface beyond a conic of revolution and its even aspheric terms. All parts are added.
+/// Description of the part of a surface's sag that is not a conic of revolution with even aspheric terms: another base
+/// shape, and further terms, which are all added.
 struct SurfaceForm {
     BaseForm base = BaseForm::conic;
-    double curvature_x = 0;  ///< biconic: in the xz plane; toroid: 1 / distance from the vertex to the line; 1/mm
-    double conic_x = 0;  ///< biconic: in the xz plane
-    std::vector<double> radial;  ///< coefficients of r, r^2, r^3, ..., 1, mm^-1, mm^-2, ...
-    std::vector<XyTerm> xy;
+    /// Biconic: curvature in the xz plane; toroid: 1 / distance from the vertex to the line of rotation; 1/mm.
+    double curvature_x = 0;
+    double conic_x = 0;  ///< biconic: conic constant in the xz plane
+    std::vector<double> radial;  ///< coefficients of r, r^2, r^3, ...; their units are 1, mm^-1, mm^-2, ...
+    std::vector<XyTerm> xy;  ///< terms of x^i y^j
     std::optional<ZernikeTerms> zernike;
     std::optional<ForbesTerms> forbes;
     std::optional<SuperconicTerms> superconic;
 
     bool operator==(const SurfaceForm&) const = default;
 
+    /// True if the base is a conic of revolution.
     bool has_conic_base() const { return base == BaseForm::conic; }
     /// True if the form has terms of any kind, even if all coefficients are 0.
     bool has_terms() const;
-    /// True if the surface is a conic of revolution with at most even aspheric terms.
+    /// True if this form adds nothing: the base is a conic of revolution, and all coefficients are 0.
     bool is_none() const;
     /// Returns the form with all lengths multiplied by `factor`.
     SurfaceForm scaled(double factor) const;
     /// Returns the form with its sag negated.
-    SurfaceForm turned() const;
-    /// Reason why the form is not rotationally symmetric: "is toroidal"; empty if it is.
+    SurfaceForm negated() const;
+    /// Returns the reason why the form is not rotationally symmetric, for example "is toroidal"; empty if it is.
     std::string asymmetry() const;
 };
 
-/// The registry of forms: one row for each kind of terms. A row's type names its terms, checks them and converts them
-/// to what is traced (see form_row.hpp). Readers, writers, checks, derivatives and bindings go by this table.
+/// Registry of the kinds of terms: pointers to the optional members of SurfaceForm that hold them. The type of each
+/// member provides names, checks, the sag, and the conversion to the polynomials that are traced (the interface is
+/// described in form_kind.hpp). Readers, writers, checks, derivatives and bindings iterate over this list.
 inline constexpr std::tuple kFormTerms{&SurfaceForm::zernike, &SurfaceForm::forbes, &SurfaceForm::superconic};
 inline constexpr std::size_t kFormTermsCount = std::tuple_size_v<decltype(kFormTerms)>;
 
@@ -56,13 +60,13 @@ inline constexpr std::size_t kFormTermsCount = std::tuple_size_v<decltype(kFormT
 template <class Optional>
 using TermsIn = typename std::remove_cvref_t<Optional>::value_type;
 
-/// Calls f(optional) with the std::optional of each row of kFormTerms, whether the form has these terms or not.
+/// Calls f(optional) with the std::optional of each kind in kFormTerms, whether the form has these terms or not.
 template <class Form, class F>
 constexpr void over_rows(Form& form, F&& f) {
-    std::apply([&](auto... row) { (f(form.*row), ...); }, kFormTerms);
+    std::apply([&](auto... member) { (f(form.*member), ...); }, kFormTerms);
 }
 
-/// Calls f(terms) for each kind of terms that the form has.
+/// Calls f(terms) with the terms of each kind that the form has.
 template <class Form, class F>
 constexpr void over_terms(Form& form, F&& f) {
     over_rows(form, [&](auto& terms) {
@@ -71,10 +75,12 @@ constexpr void over_terms(Form& form, F&& f) {
 }
 
 namespace form_detail {
+/// Returns the names of a kind of terms.
 template <class Terms>
-constexpr const FormWords& words_of(std::optional<Terms> SurfaceForm::*) {
+constexpr const FormWords& names_of(std::optional<Terms> SurfaceForm::*) {
     return Terms::words;
 }
+/// True if `Variant` is the enumeration of the variants of a kind of terms.
 template <class Variant, class Terms>
 constexpr bool has_variant(std::optional<Terms> SurfaceForm::*) {
     if constexpr (requires { Terms::variant; })
@@ -83,13 +89,13 @@ constexpr bool has_variant(std::optional<Terms> SurfaceForm::*) {
 }
 }  // namespace form_detail
 
-/// True for the enumerations of the variants of terms. They have two enumerators.
+/// True if E is the enumeration of the variants of a kind of terms, such as ForbesKind. It then has two enumerators.
 template <class E>
 inline constexpr bool is_form_variant =
-    std::apply([](auto... row) { return (form_detail::has_variant<E>(row) || ...); }, kFormTerms);
+    std::apply([](auto... member) { return (form_detail::has_variant<E>(member) || ...); }, kFormTerms);
 
-/// The names of the rows of kFormTerms.
+/// Names of the kinds of terms, in the order of kFormTerms.
 inline constexpr std::array<FormWords, kFormTermsCount> kFormWords =
-    std::apply([](auto... row) { return std::array{form_detail::words_of(row)...}; }, kFormTerms);
+    std::apply([](auto... member) { return std::array{form_detail::names_of(member)...}; }, kFormTerms);
 
 }  // namespace REALCAM_NAMESPACE

@@ -6,16 +6,17 @@
 #include <utility>
 #include <vector>
 
-#include "form_row.hpp"
+#include "form_kind.hpp"
 
 namespace REALCAM_NAMESPACE {
 
+/// Order and normalisation of the Zernike polynomials.
 enum class ZernikeOrder {
     noll,  ///< Noll's order, each term with an RMS of 1 over the circle ("Zernike standard")
     fringe,  ///< the order of the University of Arizona, each term of amplitude 1 at the rim
 };
 
-/// Degree n and azimuthal order m of a Zernike term (m < 0: sine).
+/// Degree n and azimuthal order m of a Zernike term; its azimuthal factor is cos(m theta), or sin(|m| theta) if m < 0.
 struct ZernikeIndex {
     int n, m;
 };
@@ -25,8 +26,8 @@ inline ZernikeIndex zernike_index(ZernikeOrder order, int number) {
     if (order == ZernikeOrder::noll) {
         int n = 0;
         while ((n + 1) * (n + 2) / 2 < number) ++n;
-        const int place = number - n * (n + 1) / 2 - 1;  // position among the terms of degree n, from 0
-        const int m = n % 2 == 0 ? 2 * ((place + 1) / 2) : 2 * (place / 2) + 1;
+        const int position = number - n * (n + 1) / 2 - 1;  // among the terms of degree n, from 0
+        const int m = n % 2 == 0 ? 2 * ((position + 1) / 2) : 2 * (position / 2) + 1;
         return {n, number % 2 == 0 ? m : -m};
     }
     // Terms of equal n + |m| form a group: pairs of cosine and sine with m descending, the term with m = 0 last. Term
@@ -34,12 +35,12 @@ inline ZernikeIndex zernike_index(ZernikeOrder order, int number) {
     if (number == 37) return {12, 0};
     int group = 0;
     while ((group + 1) * (group + 1) < number) ++group;
-    const int place = number - group * group - 1, m = group - place / 2;
-    return {2 * group - m, place % 2 == 0 ? m : -m};
+    const int position = number - group * group - 1, m = group - position / 2;
+    return {2 * group - m, position % 2 == 0 ? m : -m};
 }
 
-/// Returns Zernike terms as a sum of x^i y^j, with x and y in units of the circle's radius and coefficients in mm.
-/// Sorted by j, then by i, both descending.
+/// Returns a sum of Zernike terms as a sum of terms of x^i y^j, with x and y in units of the circle's radius and
+/// coefficients in mm. Sorted by j, then by i, both descending.
 template <class T>
 std::vector<XyTermOf<T>> zernike_as_xy(ZernikeOrder order, const std::vector<T>& coefficients) {
     const auto factorial = [](int n) {
@@ -73,11 +74,12 @@ std::vector<XyTermOf<T>> zernike_as_xy(ZernikeOrder order, const std::vector<T>&
     return result;
 }
 
-/// Sum of Zernike polynomials over a circle. The azimuth counts from the x axis towards y.
+/// Zernike terms of the sag: a sum of Zernike polynomials over a circle about the vertex. The azimuth counts from the x
+/// axis towards y. The methods are those of form_kind.hpp.
 struct ZernikeTerms {
     ZernikeOrder order = ZernikeOrder::noll;
     double radius = 1;  ///< radius of the circle, mm
-    std::vector<double> coefficients;  ///< from the first term on, mm
+    std::vector<double> coefficients;  ///< coefficients of the terms 1, 2, ..., mm
 
     static constexpr FormWords words = {.key = "zernike",
                                         .name = "Zernike",
@@ -89,7 +91,9 @@ struct ZernikeTerms {
 
     bool operator==(const ZernikeTerms&) const = default;
 
-    int most() const { return order == ZernikeOrder::fringe ? 37 : (kMaxXyDegree + 1) * (kMaxXyDegree + 2) / 2; }
+    int max_coefficients() const {
+        return order == ZernikeOrder::fringe ? 37 : (kMaxXyDegree + 1) * (kMaxXyDegree + 2) / 2;
+    }
     template <class Surface>
     std::string error(const Surface&) const {
         return "";

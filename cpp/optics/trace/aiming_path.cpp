@@ -6,14 +6,14 @@ namespace realcam {
 
 AimingPath::AimingPath(const LensPath<double>& path) {
     const LensView<double> view = path.view();
-    const auto copy_of = [&](auto& list, const auto* from) {
-        if (from) list.assign(from, from + view.count);
+    const auto copy = [&](auto& list, const auto* array) {
+        if (array) list.assign(array, array + view.count);
     };
     kind_ = view.kind;
-    copy_of(steps_, view.surfaces);
-    copy_of(frames_, view.free.frames);
-    copy_of(freeforms_, view.free.freeforms);
-    copy_of(apertures_, view.free.apertures);
+    copy(surfaces_, view.surfaces);
+    copy(frames_, view.free.frames);
+    copy(freeforms_, view.free.freeforms);
+    copy(apertures_, view.free.apertures);
     iris_ = view.iris;
     frames_without_exit_ = frames_;
     for (FrameChanges<double>& frame : frames_without_exit_) frame.out = {};
@@ -21,32 +21,33 @@ AimingPath::AimingPath(const LensPath<double>& path) {
 
 namespace {
 
-void open_rim(SurfaceView<double>& step) {
-    step.rim_squared = std::numeric_limits<double>::max();
-    step.hole_squared = -1;
-    step.has_blades = false;
+/// Removes the rim, the central hole and the iris blades of a surface.
+void open_rim(SurfaceView<double>& surface) {
+    surface.rim_squared = std::numeric_limits<double>::max();
+    surface.hole_squared = -1;
+    surface.has_blades = false;
 }
 
 }  // namespace
 
 AimingPath AimingPath::open(const LensPath<double>& path) {
     AimingPath result(path);
-    for (SurfaceView<double>& step : result.steps_) open_rim(step);
+    for (SurfaceView<double>& surface : result.surfaces_) open_rim(surface);
     result.apertures_.clear();
     return result;
 }
 
 AimingPath AimingPath::with_open_stop(const LensPath<double>& path, int stop) {
     AimingPath result(path);
-    for (SurfaceView<double>& step : result.steps_)
-        if (step.surface_index == stop) open_rim(step);
+    for (SurfaceView<double>& surface : result.surfaces_)
+        if (surface.surface_index == stop) open_rim(surface);
     return result;
 }
 
 LensView<double> AimingPath::view() const {
     const auto data_of = [](const auto& list) { return list.empty() ? nullptr : list.data(); };
-    return {steps_.data(),
-            static_cast<int>(steps_.size()),
+    return {surfaces_.data(),
+            static_cast<int>(surfaces_.size()),
             kind_,
             iris_,
             {data_of(frames_), data_of(freeforms_), data_of(apertures_)}};

@@ -6,12 +6,12 @@ namespace realcam {
 
 namespace {
 
-/// Returns -1 if light reaches the film against the direction of the last axis, else 1.
-double direction_behind(const LensSystem& lens) {
+/// Returns -1 if light leaves the lens against the z direction of the last axis, else 1.
+double direction_at_film(const LensSystem& lens) {
     const std::vector<Crossing> crossings = crossings_of(lens);
     double sign = 1;
     for (std::size_t m = 0; m < crossings.size(); ++m) {
-        sign *= path_frames_detail::turn_before(lens, crossings, m);
+        sign *= path_frames_detail::axis_sign_before(lens, crossings, m);
         if (lens.surfaces[static_cast<std::size_t>(crossings[m].surface)].type == SurfaceType::mirror) sign = -sign;
     }
     return sign;
@@ -28,7 +28,8 @@ bool is_centred(const LensSystem& lens) {
 Affine<double> film_frame(const LensSystem& lens) {
     const Affine<double> film =
         surface_frames(lens).last_axis * along_axis(lens.film_distance) * lens.film_placement.frame();
-    if (direction_behind(lens) > 0) return film;
+    if (direction_at_film(lens) > 0) return film;
+    // Turned by 180 degrees about y.
     return film * Affine<double>{{-1, 0, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 0}};
 }
 

@@ -3,15 +3,16 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Frame of the film in the lens frame: the origin is the film's vertex, and light arrives with growing z.
+/// Returns the frame of the film, in the lens frame: its origin is the film's vertex, and light arrives along +z.
 Affine<double> film_frame(const LensSystem& lens);
 
-/// Path ends in the frame of the film, shifted such that the film stands at z = film_distance, and in the frame of the
-/// camera: its axes are parallel to the lens's, and its z axis passes through the film's centre, whose z is
-/// camera_film_position(). For a centred lens both are the lens frame, and the ends are empty.
+/// Returns the frames in which the rays of a camera enter and leave a path in this direction. On the film's side that
+/// is the frame of the film, shifted along its z axis such that the film lies at z = film_distance. On the scene's side
+/// it is the camera frame: its axes are parallel to those of the lens frame, and its z axis passes through the film's
+/// centre, whose z is camera_film_position(). For a centred lens both are the lens frame, and the ends are empty.
 PathEnds film_path_ends(const LensSystem& lens, LightDirection direction);
 
-/// Position of the film along the lens's axis, from the plane of the front vertex, mm.
+/// Returns the position of the film's centre along the z axis of the lens frame, mm from the front vertex.
 double camera_film_position(const LensSystem& lens);
 
 }  // namespace REALCAM_NAMESPACE

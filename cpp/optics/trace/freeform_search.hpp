@@ -5,35 +5,40 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Intersections of N rays with a freeform.
+// Intersection of rays with freeform surfaces, by the bracketed search of asphere.hpp. o is a ray's origin in the frame
+// of the surface's vertex, mm, p its optical direction, t the parameter of a point o + t p. `direction_sign` is +1 if
+// the ray must cross the surface towards the film, -1 if towards the scene.
+
+/// Intersections of N rays with a freeform surface.
 template <class T, int N>
 struct FreeformHits {
-    Lanes<T, N> parameter;
+    Lanes<T, N> parameter;  ///< ray parameter of the intersection, mm
     Lanes<T, N> slope_x, slope_y;  ///< slopes of the sag at the intersection
-    Lanes<T, N> slack;  ///< tolerance minus residual of the search; NaN: no bracket
+    Lanes<T, N> slack;  ///< tolerance minus residual of the search, mm; NaN: no bracket
 };
 
 namespace freeform_detail {
 
-/// True for rays within 3 degrees of the vertex plane, and for rays that travel backwards.
+/// True for rays within 3 degrees of the vertex plane (0.0025 is the square of the sine), and for rays that travel
+/// backwards.
 template <class T>
 REALCAM_INLINE bool goes_sideways(T direction_sign, Vec3<T> p) {
     return p.z * direction_sign * std::fabs(p.z) < T(0.0025) * dot(p, p);
 }
 
+/// True if a point lies outside the search region.
 template <class T>
 REALCAM_INLINE bool is_outside(const FreeformView<T>& form, T x, T y) {
-    const T far_x = std::fabs(x - form.middle_x), far_y = std::fabs(y - form.middle_y);
-    return (far_x > form.half_x) | (far_y > form.half_y) | (x * x + y * y > form.reach * form.reach);
+    const T distance_x = std::fabs(x - form.middle_x), distance_y = std::fabs(y - form.middle_y);
+    return (distance_x > form.half_x) | (distance_y > form.half_y) | (x * x + y * y > form.reach * form.reach);
 }
 
-/// Safeguarded Newton steps from brackets, as in improve_search, for an array of rays. Ends when no ray is still
-/// searching; rays whose bracket is NaN do not search.
+/// Searches for the intersections of N rays by safeguarded Newton steps, as in improve_search, starting with the
+/// brackets and estimates in `search`. Ends when every ray has reached its tolerance or has a bracket of NaN.
 template <class T, int N>
 REALCAM_HD inline void search_freeform(const FreeformView<T>& form, T direction_sign, const Vec3Lanes<T, N>& origin,
                                        const Vec3Lanes<T, N>& direction, AsphereSearch<T, N>& search,
                                        FreeformHits<T, N>& hits) {
-    constexpr T eps = std::numeric_limits<T>::epsilon();
     FreeformSags<T, N> sags;
     Lanes<T, N> x, y;
     for (int step = 0; step < kMaxAsphereSteps<T>; ++step) {
@@ -51,17 +56,17 @@ REALCAM_HD inline void search_freeform(const FreeformView<T>& form, T direction_
             const T t = search.t[i], gx = sags.slope_x[i], gy = sags.slope_y[i];
             const T f = o.z + t * p.z - sags.height[i], slope = p.z - gx * p.x - gy * p.y;
             const T axial =
-                std::fabs(o.z) + std::fabs(t * p.z) + sags.size[i] + T(0.0625) * (form.sag_max - form.sag_min);
+                std::fabs(o.z) + std::fabs(t * p.z) + sags.size[i] + kSagRangeWeight<T> * (form.sag_max - form.sag_min);
             const T lateral = std::fabs(gx) * (std::fabs(o.x) + std::fabs(t * p.x)) +
                               std::fabs(gy) * (std::fabs(o.y) + std::fabs(t * p.y));
-            const T most = kSteepest<T> * axial;
-            const T tolerance = T(4) * eps * (axial + select(lateral < most, lateral, most));
-            const bool right = slope * direction_sign >= T(0);
-            const T residual = select(right, std::fabs(f), std::numeric_limits<T>::max());
+            const T max_lateral = kSteepest<T> * axial;
+            const T tolerance = kRoundingErrors<T> * (axial + select(lateral < max_lateral, lateral, max_lateral));
+            const bool is_right_direction = slope * direction_sign >= T(0);
+            const T residual = select(is_right_direction, std::fabs(f), std::numeric_limits<T>::max());
             const T below = select(f <= T(0), t, search.below[i]), above = select(f > T(0), t, search.above[i]);
             const T newton = t - f / slope;
             const bool inside = (newton - below) * (above - newton) > T(0);
-            const T next = select(inside & right & !halve, newton, T(0.5) * (below + above));
+            const T next = select(inside & is_right_direction & !halve, newton, T(0.5) * (below + above));
             search.below[i] = below;
             search.above[i] = above;
             search.t[i] = select(residual <= tolerance, t, next);
@@ -75,30 +80,32 @@ REALCAM_HD inline void search_freeform(const FreeformView<T>& form, T direction_
     }
 }
 
-/// Finds a bracket on the ray inside the search region, between the planes that bound the sag there. Returns false if
-/// there is no crossing.
+/// Finds a bracket on the part of the ray inside the search region and between the planes that bound the sag there
+/// (find_bracket_on_ray). Returns false, with `t`, `below` and `above` unchanged, if there is no crossing.
 template <class T>
 REALCAM_HD inline bool find_bracket(const FreeformView<T>& form, T direction_sign, Vec3<T> o, Vec3<T> p, T& t, T& below,
                                     T& above) {
     T first = -std::numeric_limits<T>::max(), last = std::numeric_limits<T>::max();
-    const auto keep_between = [&](T at, T along, T low, T high) {
-        if (along == T(0)) {
-            if (at < low || at > high) last = -std::numeric_limits<T>::max();
+    // Restricts the ray parameters [first, last] to those at which low <= origin + t direction <= high, for one axis.
+    const auto restrict_to_slab = [&](T origin, T direction, T low, T high) {
+        if (direction == T(0)) {
+            if (origin < low || origin > high) last = -std::numeric_limits<T>::max();
             return;
         }
-        const T a = (low - at) / along, b = (high - at) / along, from = a < b ? a : b, to = a < b ? b : a;
+        const T a = (low - origin) / direction, b = (high - origin) / direction;
+        const T from = a < b ? a : b, to = a < b ? b : a;
         first = from > first ? from : first;
         last = to < last ? to : last;
     };
-    keep_between(o.x, p.x, form.middle_x - form.half_x, form.middle_x + form.half_x);
-    keep_between(o.y, p.y, form.middle_y - form.half_y, form.middle_y + form.half_y);
-    keep_between(o.z, p.z, form.sag_min, form.sag_max);
+    restrict_to_slab(o.x, p.x, form.middle_x - form.half_x, form.middle_x + form.half_x);
+    restrict_to_slab(o.y, p.y, form.middle_y - form.half_y, form.middle_y + form.half_y);
+    restrict_to_slab(o.z, p.z, form.sag_min, form.sag_max);
     const T across = p.x * p.x + p.y * p.y;
     if (across > T(0)) {
         const T middle = -(o.x * p.x + o.y * p.y) / across, x = o.x + middle * p.x, y = o.y + middle * p.y;
-        const T room = form.reach * form.reach - x * x - y * y;
-        if (!(room > T(0))) return false;
-        const T half = std::sqrt(room / across);
+        const T half_chord_squared = form.reach * form.reach - x * x - y * y;
+        if (!(half_chord_squared > T(0))) return false;
+        const T half = std::sqrt(half_chord_squared / across);
         first = middle - half > first ? middle - half : first;
         last = middle + half < last ? middle + half : last;
     }
@@ -106,18 +113,19 @@ REALCAM_HD inline bool find_bracket(const FreeformView<T>& form, T direction_sig
     // Slightly shortened: at the very edge the sag's slope is already that of its continuation.
     const T half = (T(1) - T(16) * std::numeric_limits<T>::epsilon()) * T(0.5) * (last - first);
     const auto sample = [&](T parameter) -> RaySample<T> {
-        const Vec3<T> at = o + parameter * p;
-        const Lanes<T, 1> x = {at.x}, y = {at.y};
+        const Vec3<T> point = o + parameter * p;
+        const Lanes<T, 1> x = {point.x}, y = {point.y};
         FreeformSags<T, 1> sag;
         freeform_sags<T, 1>(form, x, y, sag);
-        return {parameter, direction_sign * (at.z - sag.height[0]),
+        return {parameter, direction_sign * (point.z - sag.height[0]),
                 direction_sign * (p.z - sag.slope_x[0] * p.x - sag.slope_y[0] * p.y)};
     };
     return find_bracket_on_ray(T(0.5) * (first + last), half, direction_sign, sample, t, below, above);
 }
 
-/// Searches the surface itself along the whole ray, for rays that go sideways and for rays whose search failed or ended
-/// on the surface's continuation. If there is no crossing, a hit on the continuation remains.
+/// Searches for the intersection of one ray with the surface inside the search region, for sideways rays and for rays
+/// whose search failed or ended on the surface's continuation. Replaces the hit of the lane; if there is no crossing, a
+/// hit on the continuation remains.
 template <class T, int N>
 REALCAM_HD inline void search_inside(const FreeformView<T>& form, T direction_sign, Vec3<T> o, Vec3<T> p, int lane,
                                      FreeformHits<T, N>& hits) {
@@ -139,7 +147,7 @@ REALCAM_HD inline void search_inside(const FreeformView<T>& form, T direction_si
 
 }  // namespace freeform_detail
 
-/// Intersects N rays with a freeform. The slack of rays that have already ended is NaN.
+/// Intersects N rays with a freeform surface. The slack of rays whose status is not ok is NaN.
 template <class T, int N>
 REALCAM_HD inline void find_freeform_crossings(const SurfaceView<T>& surface, const FreeformView<T>& form,
                                                const LensRays<T, N>& rays, FreeformHits<T, N>& hits) {
@@ -169,7 +177,7 @@ REALCAM_HD inline void find_freeform_crossings(const SurfaceView<T>& surface, co
     }
 }
 
-/// The counterpart of asphere_hit for a freeform.
+/// Returns the hit of a finished search on a freeform surface, like asphere_hit.
 template <class T>
 REALCAM_INLINE SurfaceHit<T> freeform_hit(T direction_sign, Vec3<T> p, T t, T slope_x, T slope_y, T slack) {
     const Vec3<T> normal = normalized(Vec3<T>{-slope_x, -slope_y, T(1)});

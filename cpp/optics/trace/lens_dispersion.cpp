@@ -4,6 +4,7 @@ namespace realcam {
 
 WavelengthVariable variable_over(WavelengthRange range) {
     const auto pole = static_cast<double>(WavelengthVariable::kPole_nm);
+    // Values of 1 / (wavelength - pole), which is mapped linearly to [-1, 1], at the ends of the range.
     const double low = 1 / (range.last - pole), high = 1 / (range.first - pole);
     if (!(high - low > 1e-9)) return {0, 0};
     return {static_cast<float>(2 / (high - low)), static_cast<float>(-(high + low) / (high - low))};
@@ -31,11 +32,12 @@ void check_dispersion(const LensSystem& lens, WavelengthRange range) {
 
 std::vector<IndexCubic> index_cubics(const LensSystem& lens, const std::vector<Crossing>& crossings,
                                      const std::vector<double>& wavelengths_nm, WavelengthVariable variable) {
-    return cubics_over(lens, crossings, wavelengths_nm, variable,
-                       [](const Crossing& crossing, const std::vector<double>& indices) {
-                           const double n = crossing.index_before(indices), behind = crossing.index_behind(indices);
-                           return (behind - n) * (behind + n) / (n * n);
-                       });
+    return cubics_over(
+        lens, crossings, wavelengths_nm, variable, [](const Crossing& crossing, const std::vector<double>& indices) {
+            const double before = crossing.index_before(indices), behind = crossing.index_behind(indices);
+                           // Unlike n'^2 / n^2 - 1, this does not cancel for nearly equal indices.
+            return (behind - before) * (behind + before) / (before * before);
+        });
 }
 
 std::vector<IndexCubic> index_cubics(const LensSystem& lens, LightDirection direction,

@@ -10,8 +10,11 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Record of a trace, in addition to the rays. `NoRecord` is for rendering: rays that end are only marked, as vignetted
-/// whatever the cause, and their origin and direction are then undefined (NaN at worst).
+// Sequential ray trace through a lens, surface by surface, for N rays at once. In this folder o is a ray's origin in
+// the frame of the surface's vertex, mm, p its optical direction (see refraction.hpp), and t the parameter of o + t p.
+
+/// Record of a trace, in addition to the rays. `NoRecord` is for rendering: the status of a ray that ends is vignetted
+/// whatever the cause, and its origin and direction are then undefined (NaN at worst).
 struct NoRecord {
     static constexpr bool enabled = false;
 };
@@ -21,27 +24,33 @@ template <class T, int N>
 struct PathRecord {
     static constexpr bool enabled = true;
     Lanes<T, N> optical_path;  ///< sum of index times distance, mm; from the origin to the last surface hit
-    Lanes<int, N> surface_index;  ///< surface at which the ray ended, in the lens system's order
+    Lanes<int, N>
+        surface_index;  ///< surface at which the ray ended, else the last one; from 0 at the front of the lens
 };
 
-/// Rays with a larger parameter count as misses. Its square still fits in float32.
+/// Largest ray parameter of an intersection, mm; rays with a larger one count as misses. Its square still fits in
+/// float32.
 template <class T>
 inline constexpr T kFarthest = T(1e18);
 
-/// Takes one lane across a surface whose intersection is known: rim, hole, refraction, coating, status.
+/// Continues one ray behind a surface whose intersection `hit` is known: tests the rim and the hole, refracts the ray,
+/// multiplies its transmittance (Boundary::pass of a coated surface), and sets its origin, direction and status.
+/// `boundary`: what the media policy of trace_lens returned for this surface. `o`, `p`: origin and optical direction of
+/// the incoming ray. `failure`: RayStatus of a ray without an intersection.
 template <LensKind lens_kind, class T, int N, class Boundary, class Record>
 REALCAM_INLINE void cross_surface(const SurfaceView<T>& surface, const Boundary& boundary, LensRays<T, N>& rays,
                                   Record& record, int lane, Vec3<T> o, Vec3<T> p, SurfaceHit<T> hit, int failure) {
-    const Vec3<T> at = o + hit.parameter * p;
-    const T r2 = at.x * at.x + at.y * at.y;
+    const Vec3<T> point = o + hit.parameter * p;
+    const T r2 = point.x * point.x + point.y * point.y;
     const Refraction<T> refracted =
         refract(p, hit.normal, hit.along_normal, boundary.squared_index_change(lane), surface.direction_sign_out);
     if constexpr (Boundary::is_coated) boundary.pass(lane, hit.along_normal, sqrt_or_zero(refracted.radicand));
 
-    const int before = rays.status[lane];
-    const bool alive = before == static_cast<int>(RayStatus::ok);
+    const int status_before = rays.status[lane];
+    const bool alive = status_before == static_cast<int>(RayStatus::ok);
     const bool clear = (r2 <= surface.rim_squared) & ((lens_kind == LensKind::plain) | (r2 >= surface.hole_squared));
-    // A ray parallel to a plane meets it at infinity. Plain lenses already reject it by rim and near cap.
+    // A ray parallel to a plane meets it at infinity. In spherical lenses the tests of the rim and of SurfaceHit::met
+    // already reject it.
     constexpr bool always_near = lens_kind == LensKind::plain && !Record::enabled;
     const bool met = alive & hit.met() & (always_near | (std::fabs(hit.parameter) <= kFarthest<T>));
     const bool passes = met & clear & (refracted.radicand >= T(0));
@@ -50,18 +59,19 @@ REALCAM_INLINE void cross_surface(const SurfaceView<T>& surface, const Boundary&
                                  select(clear, static_cast<int>(RayStatus::total_internal_reflection),
                                         static_cast<int>(RayStatus::vignetted)),
                                  failure);
-        rays.origin.set(lane, select(met, at, o));
+        rays.origin.set(lane, select(met, point, o));
         rays.direction.set(lane, select(passes, refracted.direction, p));
-        rays.status[lane] = select(alive & !passes, cause, before);
+        rays.status[lane] = select(alive & !passes, cause, status_before);
         record.optical_path[lane] += select(met, surface.index_squared * hit.parameter, T(0));
         record.surface_index[lane] = select(alive, surface.surface_index, record.surface_index[lane]);
     } else {
-        rays.origin.set(lane, at);
+        rays.origin.set(lane, point);
         rays.direction.set(lane, refracted.direction);
-        rays.status[lane] = select(passes, before, static_cast<int>(RayStatus::vignetted));
+        rays.status[lane] = select(passes, status_before, static_cast<int>(RayStatus::vignetted));
     }
 }
 
+/// Traces N rays through a sphere or plane.
 template <LensKind lens_kind, class T, int N, class Boundary, class Record>
 REALCAM_HD inline void cross_sphere(const SurfaceView<T>& surface, const Boundary& boundary, LensRays<T, N>& rays,
                                     Record& record) {
@@ -75,6 +85,7 @@ REALCAM_HD inline void cross_sphere(const SurfaceView<T>& surface, const Boundar
     }
 }
 
+/// Traces N rays through a conic of revolution.
 template <class T, int N, class Boundary, class Record>
 REALCAM_HD inline void cross_conic(const SurfaceView<T>& surface, const Boundary& boundary, LensRays<T, N>& rays,
                                    Record& record) {
@@ -95,50 +106,52 @@ REALCAM_HD inline void cross_conic(const SurfaceView<T>& surface, const Boundary
 /// Intersections of N rays with an asphere.
 template <class T, int N>
 struct AsphereHits {
-    Lanes<T, N> parameter;
-    Lanes<T, N> slope;  ///< d height / d r, over r
-    Lanes<T, N> slack;  ///< tolerance minus residual of the search
+    Lanes<T, N> parameter;  ///< ray parameter of the intersection, mm
+    Lanes<T, N> slope;  ///< (d sag / d r) / r = 2 d sag / d (r^2), 1/mm
+    Lanes<T, N> slack;  ///< tolerance minus residual of the search, mm; negative or NaN: no intersection is found
 };
 
-/// Newton's method without a bracket, for the rays that cross the surface once. All other rays, and those that do not
-/// reach their tolerance, get a slack that is NaN or negative. Returns the number of these rays that are still alive.
+/// Intersects the rays that certainly cross the surface exactly once, by Newton's method without a bracket. With z as
+/// the variable, r^2 is a quadratic in z on the ray (HeightRay), and the root of f(z) = z - sag(r^2(z)) is searched
+/// for. All other rays, and those that do not reach their tolerance, get a slack that is NaN or negative. Returns the
+/// number of these rays whose status is ok.
 template <class T, int N>
 REALCAM_HD inline int find_single_crossings(const SurfaceView<T>& surface, const LensRays<T, N>& rays,
                                             AsphereHits<T, N>& hits) {
-    Lanes<T, N> per_height, plane, change, spread, height, inverse_rise;
+    // The members of the HeightRay of each lane, the current z, and about 1 / (df/dz) there.
+    Lanes<T, N> per_height, constant, linear, quadratic, height, inverse_rise;
     REALCAM_LANES
     for (int i = 0; i < N; ++i) {
         const HeightRay<T> ray = height_ray(surface, rays.origin[i], rays.direction[i]);
         T inverse = 0;
         const T z = start_height(surface, ray, inverse);
-        // NaN never meets its tolerance, but does not keep the other lanes searching.
+        // A height of NaN never reaches its tolerance, and does not prolong the loop of the other lanes either.
         height[i] = select(crosses_once(surface, ray), z, std::numeric_limits<T>::quiet_NaN());
         inverse_rise[i] = inverse;
         per_height[i] = ray.per_height;
-        plane[i] = ray.plane, change[i] = ray.change, spread[i] = ray.spread;
+        constant[i] = ray.constant, linear[i] = ray.linear, quadratic[i] = ray.quadratic;
     }
-    int left = 0;
+    int unresolved = 0;
     for (int count = 0; count < kHeightSteps; ++count) {
         int searching = 0;
-        left = 0;
+        unresolved = 0;
         REALCAM_LANES
         for (int i = 0; i < N; ++i) {
-            const HeightRay<T> ray{per_height[i], plane[i], change[i], spread[i]};
+            const HeightRay<T> ray{per_height[i], constant[i], linear[i], quadratic[i]};
             const Vec3<T> o = rays.origin[i];
-            // Evaluated at the point to which the ray will be moved: the normal has to belong to that point, however
-            // far away o is.
+            // The sag is evaluated at the rounded point to which the ray will be moved: the normal has to belong to
+            // that point, however far away o is.
             const T parameter = (height[i] - o.z) * per_height[i];
-            const Vec3<T> at = o + parameter * rays.direction[i];
-            const T z = at.z, from = o.z;
-            const Sag<T> sag = asphere_sag(surface, at.x * at.x + at.y * at.y);
+            const Vec3<T> point = o + parameter * rays.direction[i];
+            const T z = point.z, from = o.z;
+            const Sag<T> sag = asphere_sag(surface, point.x * point.x + point.y * point.y);
             const T f = z - sag.height, slope = T(2) * sag.derivative;
+            // df/dz. Its reciprocal is updated by a Newton step instead of a division.
             const T rise = T(1) - slope * surface.search_squared * ray.half_derivative(z);
-            // A Newton step for the reciprocal, instead of a division.
             const T inverse = inverse_rise[i] * (T(2) - rise * inverse_rise[i]);
-            // The tolerance of improve_search without its lateral part.
-            const T slack = T(4) * std::numeric_limits<T>::epsilon() *
-                                (std::fabs(from) + std::fabs(z - from) + sag.size +
-                                 T(0.0625) * (surface.sag_max - surface.sag_min)) -
+            // The tolerance of improve_search without its lateral part, and so a stricter one.
+            const T slack = kRoundingErrors<T> * (std::fabs(from) + std::fabs(z - from) + sag.size +
+                                                  kSagRangeWeight<T> * (surface.sag_max - surface.sag_min)) -
                             std::fabs(f);
             hits.parameter[i] = parameter;
             hits.slope[i] = slope;
@@ -147,15 +160,15 @@ REALCAM_HD inline int find_single_crossings(const SurfaceView<T>& surface, const
             inverse_rise[i] = inverse;
             const int alive = static_cast<int>(rays.status[i] == 0);
             searching |= alive & static_cast<int>(slack < T(0));
-            left += alive & static_cast<int>(!(slack >= T(0)));
+            unresolved += alive & static_cast<int>(!(slack >= T(0)));
         }
         if (searching == 0) break;
     }
-    return left;
+    return unresolved;
 }
 
-/// Bracketed search for the rays whose crossing is not yet found. They are compacted into consecutive lanes, so that a
-/// few rays take little time and many are vectorised.
+/// Searches, with brackets, for the intersections of the rays whose slack is still negative or NaN. These rays are
+/// compacted into consecutive lanes, so that a few rays take little time and many are vectorised.
 template <class T, int N>
 REALCAM_HD inline void search_in_brackets(const SurfaceView<T>& surface, const LensRays<T, N>& rays,
                                           AsphereHits<T, N>& hits) {
@@ -163,7 +176,7 @@ REALCAM_HD inline void search_in_brackets(const SurfaceView<T>& surface, const L
     AsphereSearch<T, N> search{};
     Vec3Lanes<T, N> origin{}, direction{};
     Lanes<T, N> outside{};
-    int lane_of[N], count = 0;
+    int lane_of[N], count = 0;  // lane in `rays` of each compacted ray, and their number
     for (int i = 0; i < N; ++i) {
         if (rays.status[i] != 0 || hits.slack[i] >= T(0)) continue;
         origin.set(count, rays.origin[i]);
@@ -177,9 +190,12 @@ REALCAM_HD inline void search_in_brackets(const SurfaceView<T>& surface, const L
         if (!(outside[i] > T(0))) continue;
         const bool found =
             find_bracket(surface, origin[i], direction[i], search.t[i], search.below[i], search.above[i]);
-        // A ray that passes outside the search radius hits the surface's continuation, and is vignetted there.
-        const bool through = outside[i] < kSideways<T> / 2;
-        if (!found && !through) search.t[i] = search.below[i] = search.above[i] = std::numeric_limits<T>::quiet_NaN();
+        // Without a bracket on the surface itself, the search goes on with that of begin_search. It ends on the
+        // surface's continuation outside the search radius, where the ray is vignetted. For sideways rays that bracket
+        // need not hold a crossing in the required direction: they count as misses.
+        const bool is_sideways = !(outside[i] < kSideways<T> / 2);
+        if (!found && is_sideways)
+            search.t[i] = search.below[i] = search.above[i] = std::numeric_limits<T>::quiet_NaN();
     }
     for (int step = 0; step < kMaxAsphereSteps<T>; ++step) {
         const bool halve = step >= kNewtonSteps && step % 2 == 0;
@@ -194,13 +210,14 @@ REALCAM_HD inline void search_in_brackets(const SurfaceView<T>& surface, const L
     }
     for (int i = 0; i < count; ++i) {
         const int lane = lane_of[i];
-        const Vec3<T> at = origin[i] + search.t[i] * direction[i];
+        const Vec3<T> point = origin[i] + search.t[i] * direction[i];
         hits.parameter[lane] = search.t[i];
-        hits.slope[lane] = T(2) * asphere_sag(surface, at.x * at.x + at.y * at.y).derivative;
+        hits.slope[lane] = T(2) * asphere_sag(surface, point.x * point.x + point.y * point.y).derivative;
         hits.slack[lane] = search.tolerance[i] - search.residual[i];
     }
 }
 
+/// Traces N rays through an even asphere.
 template <class T, int N, class Boundary, class Record>
 REALCAM_HD inline void cross_asphere(const SurfaceView<T>& surface, const Boundary& boundary, LensRays<T, N>& rays,
                                      Record& record) {
@@ -218,13 +235,14 @@ REALCAM_HD inline void cross_asphere(const SurfaceView<T>& surface, const Bounda
         const Vec3<T> o = rays.origin[i];
         const Vec3<T> p = rays.direction[i];
         const SurfaceHit<T> hit = asphere_hit(surface, o, p, hits.parameter[i], hits.slope[i], hits.slack[i]);
-        // Without a bracket the slack is NaN.
+        // A slack of NaN means that there is no bracket.
         const int failure = select(hits.slack[i] < T(0), static_cast<int>(RayStatus::no_convergence),
                                    static_cast<int>(RayStatus::missed));
         cross_surface<LensKind::rotational>(surface, boundary, rays, record, i, o, p, hit, failure);
     }
 }
 
+/// Traces N rays through a freeform surface.
 template <class T, int N, class Boundary, class Record>
 REALCAM_HD inline void cross_freeform(const SurfaceView<T>& surface, const FreeformView<T>& form,
                                       const Boundary& boundary, LensRays<T, N>& rays, Record& record) {
@@ -248,9 +266,9 @@ REALCAM_HD inline void cross_freeform(const SurfaceView<T>& surface, const Freef
     }
 }
 
-/// Blocks rays that hit an iris blade. The opening is bounded by n equal arcs of curvature q, whose midpoints have the
-/// distance h from the axis. A point is open if q (r^2 + h^2) + 2 (1 - q h) a - 2 h <= 0, where a is its largest extent
-/// towards any blade.
+/// Blocks rays that hit an iris blade: their status becomes vignetted. Origins lie in the plane of the stop. The
+/// opening is bounded by n equal arcs of curvature q, whose midpoints have the distance h from the axis. A point is
+/// open if q (r^2 + h^2) + 2 (1 - q h) a - 2 h <= 0, where a is its largest extent towards any blade.
 template <class T, int N>
 REALCAM_HD inline void cross_iris(const Iris<T>& iris, LensRays<T, N>& rays) {
     Lanes<T, N> extent;
@@ -273,6 +291,7 @@ REALCAM_HD inline void cross_iris(const Iris<T>& iris, LensRays<T, N>& rays) {
     }
 }
 
+/// Transforms the origins and directions of N rays to another frame.
 template <class T, int N>
 REALCAM_HD inline void change_frame(const FrameChange<T>& change, LensRays<T, N>& rays) {
     REALCAM_LANES
@@ -284,12 +303,15 @@ REALCAM_HD inline void change_frame(const FrameChange<T>& change, LensRays<T, N>
 
 /// Traces N rays through a lens, surface by surface.
 ///
-/// Origins are relative to the vertex of the first surface in the order of the light on entry, and to the vertex of the
-/// last one on return. Directions are optical ones in the lens frame, before and after (LensPath::entry_index). For
-/// lenses that are not centred, and for other frames, see LensPath.
-/// Rays whose status is not ok on entry stay ended. There is no branch on a lane, so that the compiler vectorises the
-/// loops. `lens_kind`: the lens's own, or one further down in the enumeration. `media`: OneWavelength, ManyWavelengths
-/// or CoatedMedia.
+/// Axes are those of the lens frame. On entry, origins are relative to the vertex of the first surface in the order of
+/// the light; on return, to that of the last one. Directions have the length of the refractive index of their medium,
+/// on entry LensPath::entry_index. For lenses that are not centred, and for other frames, see LensPath.
+///
+/// Rays whose status is not ok on entry are not traced. No branch depends on a lane, so that the compiler vectorises
+/// the loops.
+///
+/// `lens_kind`: the lens's own kind, or a more general one, which gives the same rays. `media`: policy that supplies
+/// the refractive indices and coatings of each surface: OneWavelength, ManyWavelengths or CoatedMedia.
 template <LensKind lens_kind, class T, int N, class Record = NoRecord, class Media = OneWavelength>
 REALCAM_HD inline void trace_lens(const LensView<T>& lens, LensRays<T, N>& rays, Record&& record = {},
                                   const Media& media = {}) {

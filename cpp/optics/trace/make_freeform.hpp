@@ -8,12 +8,14 @@
 
 namespace REALCAM_NAMESPACE {
 
+// Conversion of a surface's prescription to the FreeformView that is traced.
+
 namespace make_freeform_detail {
 
-/// Sets the search region: the rectangle that bounds the surface's opening and the circle of its rim, `margin` times as
-/// large.
+/// Sets the search region: the rectangle that bounds the surface's aperture, and the circle of its rim, both enlarged
+/// by the factor `margin`.
 template <class T>
-void set_rectangle(FreeformView<T>& view, const Surface& surface, double margin) {
+void set_search_rectangle(FreeformView<T>& view, const Surface& surface, double margin) {
     const double rim = surface.clear_semi_diameter;
     const ApertureBox box = surface.aperture_shape.box(rim);
     view.middle_x = static_cast<T>(0.5 * (box.low.x + box.high.x));
@@ -24,19 +26,21 @@ void set_rectangle(FreeformView<T>& view, const Surface& surface, double margin)
     view.inverse_reach = static_cast<T>(1 / (margin * rim));
 }
 
-/// Calls f(x, y) on a grid over the search region, including its edge.
+/// Calls f(x, y) at 65 x 65 points over the search region, including its edge.
 template <class T, class F>
-void over_region(const FreeformView<T>& view, F&& f) {
+void for_each_point_of_region(const FreeformView<T>& view, F&& f) {
     constexpr int kHalf = 32;
     for (int i = -kHalf; i <= kHalf; ++i)
         for (int j = -kHalf; j <= kHalf; ++j) {
-            const auto at = freeform_detail::inside_point(
+            const auto point = freeform_detail::inside_point(
                 view, view.middle_x + view.half_x * static_cast<T>(i) / static_cast<T>(kHalf),
                 view.middle_y + view.half_y * static_cast<T>(j) / static_cast<T>(kHalf));
-            f(at.x, at.y);
+            f(point.x, point.y);
         }
 }
 
+/// Sets the curvatures and conic factors of the base. `Number`, here and below: double, or dual numbers for derivatives
+/// with respect to the surface's numbers.
 template <class T, class Number>
 void set_base_shape(FreeformView<T>& view, const Surface& surface, const ShapeNumbers<Number>& numbers) {
     const BaseForm base = surface.form.base;
@@ -47,7 +51,9 @@ void set_base_shape(FreeformView<T>& view, const Surface& surface, const ShapeNu
     view.conic_factor_x = static_cast<T>(1 + (base == BaseForm::biconic ? numbers.conic_x : numbers.conic));
 }
 
-/// `size`: sum of the absolute values of all coefficients.
+/// Sets the radial terms, which include the even aspheric terms; those of a toroid are set as the terms of its section.
+/// `reach`: radius of the search region, the unit of lengths in the polynomials, mm. Adds the absolute values of the
+/// coefficients to `size`, mm.
 template <class T, class Number>
 void set_radial_terms(FreeformView<T>& view, const ShapeNumbers<Number>& numbers, double reach, double& size) {
     std::vector<Number> radial(kMaxRadialTerms, Number(0.0));
@@ -70,16 +76,16 @@ void set_radial_terms(FreeformView<T>& view, const ShapeNumbers<Number>& numbers
     }
 }
 
-/// Sets the terms of x and y and those of kFormTerms.
+/// Sets the terms of x and y, and those of the kinds in kFormTerms. `reach`, `size`: see set_radial_terms.
 template <class T, class Number>
 void set_polynomials(FreeformView<T>& view, const SurfaceForm& form, const ShapeNumbers<Number>& numbers, double reach,
                      double& size) {
     FormPolynomials<Number> sums{reach, {}, {}};
     sums.xy.add(numbers.xy, reach);
-    std::size_t row = 0;
+    std::size_t kind = 0;
     over_rows(form, [&](const auto& terms) {
-        if (terms) terms->add_to(sums, numbers.terms[row], {numbers.curvature, numbers.conic});
-        ++row;
+        if (terms) terms->add_to(sums, numbers.terms[kind], {numbers.curvature, numbers.conic});
+        ++kind;
     });
     for (const Number& coefficient : sums.even) {
         view.forbes[view.forbes_terms++] = static_cast<T>(coefficient);
@@ -99,15 +105,15 @@ void set_polynomials(FreeformView<T>& view, const SurfaceForm& form, const Shape
         }
 }
 
-/// Sets the bounds of the sag, sampled and widened by more than the sag of a surface that can be made changes between
-/// two samples.
+/// Sets the bounds of the sag in the search region. They are sampled, then widened by more than the sag of a surface
+/// that can be made changes between two samples. `reach`: radius of the region, mm.
 template <class T>
 void set_sag_bounds(FreeformView<T>& view, double reach) {
     double low = 0, high = 0;
-    over_region(view, [&](T x, T y) {
-        const Lanes<T, 1> at_x = {x}, at_y = {y};
+    for_each_point_of_region(view, [&](T x, T y) {
+        const Lanes<T, 1> xs = {x}, ys = {y};
         FreeformSags<T, 1> sag;
-        freeform_sags<T, 1>(view, at_x, at_y, sag);
+        freeform_sags<T, 1>(view, xs, ys, sag);
         low = std::min(low, static_cast<double>(sag.height[0]));
         high = std::max(high, static_cast<double>(sag.height[0]));
     });
@@ -118,8 +124,8 @@ void set_sag_bounds(FreeformView<T>& view, double reach) {
 
 }  // namespace make_freeform_detail
 
-/// Sets the base and the terms of a view whose search region is set and whose numbers of terms are 0. Its xy_degree is
-/// the least degree of the terms of x and y; -1: none is required.
+/// Sets the base and the terms of a view whose search region is set and whose numbers of terms are 0. On entry, its
+/// xy_degree is the smallest degree that the xy terms shall get, with coefficients of 0 if necessary, or -1.
 template <class T, class Number>
 void set_shape(FreeformView<T>& view, const Surface& surface, const ShapeNumbers<Number>& numbers) {
     using namespace make_freeform_detail;
@@ -139,11 +145,11 @@ FreeformView<T> freeform_view(const Surface& surface) {
     view.xy_degree = -1;
     bool is_finite = true;
     // 2% past the rim, so that a ray that just misses it is found to miss it, unless the surface ends before.
-    set_rectangle(view, surface, 1.02);
-    over_region(view, [&](T x, T y) {
+    set_search_rectangle(view, surface, 1.02);
+    for_each_point_of_region(view, [&](T x, T y) {
         is_finite &= std::isfinite(surface.sag(static_cast<double>(x), static_cast<double>(y)));
     });
-    if (!is_finite) set_rectangle(view, surface, 1);
+    if (!is_finite) set_search_rectangle(view, surface, 1);
     set_shape(view, surface, ShapeNumbers<double>(surface));
     set_sag_bounds(view, 1 / static_cast<double>(view.inverse_reach));
     return view;

@@ -9,27 +9,32 @@ namespace REALCAM_NAMESPACE {
 
 /// A caller's ray prepared for trace_lens.
 struct LensEntry {
-    Vec3d origin;          ///< relative to the same vertex as the caller's origin, mm
-    Vec3d direction;       ///< optical: a unit vector times the index
-    double optical_path;   ///< from the caller's origin to this one, mm
-    RayStatus status;      ///< ok or bad_input; with bad_input all other members are zero
+    Vec3d origin;  ///< relative to the same vertex as the caller's origin, mm
+    Vec3d direction;  ///< optical: a unit vector times the index
+    double optical_path;  ///< from the caller's origin to this one, mm
+    RayStatus status;  ///< ok or bad_input; with bad_input all other members are zero
 };
 
-/// Largest coordinate of an origin, mm; beyond it, squares would overflow in float32. A tenth of a light year.
+/// Largest coordinate of an origin, mm, a tenth of a light year; origins beyond it are bad input, because their squares
+/// would overflow in float32.
 inline constexpr double kFarthestOrigin = 1e18;
 
-/// Accepts any origin and a direction of any length, relative to the vertex of the first surface in the order of the
-/// light.
+/// Prepares a ray for trace_lens. `origin`: relative to the vertex of the first surface in the order of the light, mm;
+/// `direction`: of any length but 0; `index`: refractive index in front of that surface. Returns the status bad_input
+/// if the origin is not finite or farther away than kFarthestOrigin, or if the direction is zero, infinite or NaN.
 ///
 /// An origin farther away than `near` is moved along the ray to the point nearest to the vertex, because the quadratic
 /// of the first surface would square the distance. The fused multiply-add keeps the ray on the caller's line, even from
 /// the distance of a star.
 REALCAM_HD inline LensEntry enter_lens(Vec3d origin, Vec3d direction, double index, double near) {
     constexpr LensEntry bad = {{0, 0, 0}, {0, 0, 0}, 0, RayStatus::bad_input};
-    const auto largest = [](Vec3d v) { return std::fmax(std::fabs(v.x), std::fmax(std::fabs(v.y), std::fabs(v.z))); };
-    const double scale = largest(direction);
+    const auto largest_component = [](Vec3d v) {
+        return std::fmax(std::fabs(v.x), std::fmax(std::fabs(v.y), std::fabs(v.z)));
+    };
+    const double scale = largest_component(direction);
     // The sums find NaN, which fmax ignores.
-    const bool good = scale > 0 && scale <= std::numeric_limits<double>::max() && largest(origin) <= kFarthestOrigin &&
+    const bool good = scale > 0 && scale <= std::numeric_limits<double>::max() &&
+                      largest_component(origin) <= kFarthestOrigin &&
                       !std::isnan(direction.x + direction.y + direction.z) && !std::isnan(dot(origin, {1, 1, 1}));
     if (!good) return bad;
     // Squares of extremely long or short vectors leave the range of double: these vectors are first scaled to the order
@@ -52,16 +57,18 @@ template <class T>
 struct TraceRequest {
     LensView<T> lens;
     double entry_position, exit_position;  ///< z of the vertices to which origins are relative on entry and exit, mm
-    double entry_index;  ///< of the medium from which the rays enter
+    double entry_index;  ///< refractive index of the medium from which the rays enter
     double entry_reach;  ///< origins farther than this from the first vertex are moved nearer (enter_lens), mm
-    std::int64_t count;
+    std::int64_t count;  ///< number of rays
     const double *origins, *directions;  ///< count x 3, lens frame, mm; directions of any length
     double *out_origins, *out_directions;  ///< count x 3, lens frame, mm; unit directions
-    double* optical_path;  ///< count, mm
-    int *status, *surface_index;  ///< count; see PathRecord
+    double* optical_path;  ///< count; from the given origin to the last surface hit, mm
+    int* status;  ///< count; RayStatus values
+    int* surface_index;  ///< count; surface at which the ray ended (PathRecord); -1 for bad input
 };
 
-/// Traces N rays, starting at index `first`; fewer at the end of the arrays.
+/// Traces the N rays from index `first` on, or those that are left at the end of the arrays. The results of a ray with
+/// bad input are zero, and its surface index is -1.
 template <int N, class T>
 REALCAM_HD inline void trace_rays_of(const TraceRequest<T>& request, std::int64_t first) {
     LensRays<T, N> rays;
@@ -86,8 +93,8 @@ REALCAM_HD inline void trace_rays_of(const TraceRequest<T>& request, std::int64_
         double* o = request.out_origins + 3 * (first + k);
         double* d = request.out_directions + 3 * (first + k);
         const bool bad = rays.status[k] == static_cast<int>(RayStatus::bad_input);
-        const Vec3d at = static_cast<Vec3d>(rays.origin[k]);
-        o[0] = bad ? 0.0 : at.x, o[1] = bad ? 0.0 : at.y, o[2] = bad ? 0.0 : at.z + request.exit_position;
+        const Vec3d point = static_cast<Vec3d>(rays.origin[k]);
+        o[0] = bad ? 0.0 : point.x, o[1] = bad ? 0.0 : point.y, o[2] = bad ? 0.0 : point.z + request.exit_position;
         const Vec3d optical = static_cast<Vec3d>(rays.direction[k]);
         const double size = length(optical), unit = size > 0 ? 1 / size : 0.0;
         d[0] = unit * optical.x, d[1] = unit * optical.y, d[2] = unit * optical.z;

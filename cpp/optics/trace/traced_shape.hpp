@@ -9,18 +9,18 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Shape of a surface, prepared for tracing.
+/// Shape of a surface of any kind, prepared for tracing.
 template <class T>
 struct TracedShape {
-    SurfaceView<T> view;       ///< without media and position
+    SurfaceView<T> view;  ///< its shift, indices and direction signs are not set
     FreeformView<T> freeform;  ///< set if `view` is a SurfaceShape::freeform
 };
 
 namespace traced_shape_detail {
 
-/// Sets the search radius, and the sag's polynomials and bounds inside it. The search extends 2% past the rim, so that
-/// a ray that just misses it is found to miss it. The sag's bounds are sampled, and widened by more than the sag of a
-/// surface that can be made changes between two samples.
+/// Sets the search radius of an asphere, and the polynomials and bounds of its sag inside it. The search extends 2%
+/// past the rim, so that a ray that just misses it is found to miss it. The sag's bounds are sampled, and widened by
+/// more than the sag of a surface that can be made changes between two samples.
 template <class T>
 void set_search_region(SurfaceView<T>& view, const Surface& surface) {
     double reach = 1.02 * surface.clear_semi_diameter;
@@ -47,8 +47,9 @@ void set_search_region(SurfaceView<T>& view, const Surface& surface) {
     set_start(view, surface, terms);
 }
 
+/// Returns the view of a surface's shape and rim, without media and position.
 template <class T>
-SurfaceView<T> view_of(const Surface& surface) {
+SurfaceView<T> shape_view(const Surface& surface) {
     SurfaceView<T> view{};
     view.kind = !surface.form.is_none() ? SurfaceShape::freeform
                 : surface.is_asphere()  ? SurfaceShape::asphere
@@ -66,6 +67,7 @@ SurfaceView<T> view_of(const Surface& surface) {
     return view;
 }
 
+/// True if all numbers on which a TracedShape depends are equal.
 inline bool have_same_shape(const Surface& a, const Surface& b) {
     return a.curvature == b.curvature && a.conic == b.conic && a.clear_semi_diameter == b.clear_semi_diameter &&
            a.inner_semi_diameter == b.inner_semi_diameter && a.aspheric == b.aspheric && a.form == b.form &&
@@ -80,23 +82,23 @@ inline bool have_same_shape(const Surface& a, const Surface& b) {
 template <class T>
 TracedShape<T> traced_shape(const Surface& surface) {
     using namespace traced_shape_detail;
-    if (!surface.is_asphere() && surface.form.is_none()) return {view_of<T>(surface), {}};
-    constexpr std::size_t kKept = 64;
-    struct Kept {
+    if (!surface.is_asphere() && surface.form.is_none()) return {shape_view<T>(surface), {}};
+    constexpr std::size_t kMaxEntries = 64;
+    struct Entry {
         Surface surface;
         TracedShape<T> shape;
     };
-    thread_local std::list<Kept> latest;  // most recently used first
-    const auto found = std::find_if(latest.begin(), latest.end(),
-                                    [&](const Kept& kept) { return have_same_shape(kept.surface, surface); });
-    if (found != latest.end()) {
-        latest.splice(latest.begin(), latest, found);
+    thread_local std::list<Entry> cache;  // most recently used first
+    const auto found = std::find_if(cache.begin(), cache.end(),
+                                    [&](const Entry& entry) { return have_same_shape(entry.surface, surface); });
+    if (found != cache.end()) {
+        cache.splice(cache.begin(), cache, found);
     } else {
         const FreeformView<T> freeform = surface.form.is_none() ? FreeformView<T>{} : freeform_view<T>(surface);
-        latest.push_front({surface, {view_of<T>(surface), freeform}});
-        if (latest.size() > kKept) latest.pop_back();
+        cache.push_front({surface, {shape_view<T>(surface), freeform}});
+        if (cache.size() > kMaxEntries) cache.pop_back();
     }
-    return latest.front().shape;
+    return cache.front().shape;
 }
 
 }  // namespace REALCAM_NAMESPACE

@@ -79,7 +79,7 @@ TEST_CASE("a superconic without terms is its conic, and turns and scales as a su
     CHECK(plain.form.is_none());
     Surface surface = some_superconics().back(), turned = surface, scaled = surface;
     turned.curvature = -surface.curvature;
-    turned.form = surface.form.turned();
+    turned.form = surface.form.negated();
     CHECK(turned.sag(7) == -surface.sag(7));
     scaled.curvature = surface.curvature / 3;
     scaled.form = surface.form.scaled(3);

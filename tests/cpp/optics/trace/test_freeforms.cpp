@@ -341,13 +341,14 @@ TEST_CASE("a form that cannot be is refused with the surface's number") {
     };
     const Surface plain = refracting(30, 3, Glass::constant(1.5), 10);
     CHECK(refused(with_form(plain, toroid(5))) ==
-          "surface 2: is not there all over its clear aperture: its radii, conics or terms end it before");
+          "surface 2: does not extend over its whole clear aperture: its radii, conics or terms end it before");
     SurfaceForm form;
     form.xy = {{9, 6, 1e-9}};
-    CHECK(contains(refused(with_form(plain, form)), "terms of x and y have powers from 0, and 14 in all at most"));
+    CHECK(contains(refused(with_form(plain, form)),
+                   "the powers of terms of x and y must be at least 0, with a sum of at most 14"));
     form = {};
     form.curvature_x = 0.1;
-    CHECK(contains(refused(with_form(plain, form)), "is that of a biconic or a toroid"));
+    CHECK(contains(refused(with_form(plain, form)), "only a biconic or a toroid can have"));
     Surface window = plain;
     window.aperture_shape.kind = ApertureOutline::ellipse;
     window.aperture_shape.half = {3, 0};
