@@ -134,13 +134,13 @@ private:
     /// Change of white by the filter in the channel that shows it most, against a neutral filter that is equally
     /// bright.
     double filter_colour_codes() const {
-        if (!settings_.filter || settings_.filter->is_neutral()) return 0;
-        const FilmSpectrum spectrum(settings_.illuminant.value_or(Illuminant()), settings_.filter);
+        if (!settings_.lens_filter || settings_.lens_filter->is_neutral()) return 0;
+        const FilmSpectrum spectrum(settings_.illuminant.value_or(Illuminant()), settings_.lens_filter);
         const std::array<float, 9> film = spectrum.mean_film();
         double most = 0;
         for (std::size_t c = 0; c < 3; ++c) {
             const auto white = static_cast<double>(film[3 * c] + film[3 * c + 1] + film[3 * c + 2]);
-            most = std::max(most, std::fabs(code_of(white) - code_of(settings_.filter->luminous_transmittance())));
+            most = std::max(most, std::fabs(code_of(white) - code_of(settings_.lens_filter->luminous_transmittance())));
         }
         return most;
     }

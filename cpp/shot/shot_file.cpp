@@ -148,7 +148,7 @@ private:
         table_.checked(shot.blades ? "blades" : "blade_rounding", [&] { check_blades(shot); });
         table_.checked("spp", [&] { resolve_noise_goal(shot); });
         if (const std::string why = spectrum_error(shot.settings); !why.empty())
-            table_.fail(why, table_.find(shot.settings.illuminant ? "illuminant" : "filter"));
+            table_.fail(why, table_.find(shot.settings.illuminant ? "illuminant" : "lens_filter"));
         table_.checked(shot.settings.clamp >= 0 ? "spp" : "clamp_cd_m2", [&] { validate(shot.settings); });
     }
 

@@ -165,7 +165,8 @@ void to_illuminant(Table t, Key key, Request r) {
 }
 
 void to_filter(Table t, Key key, Request r) {
-    t.checked(key.name, [&] { r.settings.filter = spectrum_of(*t.find(key.name), &LensFilter::neutral, key.name); });
+    t.checked(key.name,
+              [&] { r.settings.lens_filter = spectrum_of(*t.find(key.name), &LensFilter::neutral, key.name); });
 }
 
 void to_iso_follows(Table t, Key key, Request r) {
@@ -307,7 +308,7 @@ std::vector<ShotKey> all_keys() {
         {"illuminant", "--illuminant", kPicture, "SPECTRUM", text, "a spectrum",
          "Spectrum of all light, for " + effects_that(&EffectInfo::has_wavelengths) + ": " +
              std::string(Illuminant::kWanted), "D65", {}, to_illuminant},
-        {"filter", "--filter", kPicture, "FILTER", text, "a filter",
+        {"lens_filter", "--lens-filter", kPicture, "FILTER", text, "a filter",
          "Filter in front of the lens: " + std::string(LensFilter::kWanted), "none", {}, to_filter},
         {"threads", "--threads", kPicture, "N", whole, "a whole number", "Number of threads; 0: all", "0", {},
          to_whole<&R::settings, &S::threads>},

@@ -229,12 +229,12 @@ const Setting kSettings[] = {
                 spectrum_from(word, &Illuminant::line,
                               "illuminant must be a name, a wavelength in nm or (wavelength_nm, power) pairs");
         }),
-    setting<[](S s) { return s.filter ? std::optional(s.filter->text()) : std::nullopt; }>(
-        "filter", "str | float | Sequence[tuple[float, float]] | None",
+    setting<[](S s) { return s.lens_filter ? std::optional(s.lens_filter->text()) : std::nullopt; }>(
+        "lens_filter", "str | float | Sequence[tuple[float, float]] | None",
         [](Draft& d, Word word) {
-            d.settings.filter = spectrum_from(
+            d.settings.lens_filter = spectrum_from(
                 word, &LensFilter::neutral,
-                "filter must be a text such as ND8, a transmittance or (wavelength_nm, transmittance) pairs");
+                "lens_filter must be a text such as ND8, a transmittance or (wavelength_nm, transmittance) pairs");
         }),
     setting<[](S s) { return name_of(s.pupil_sampling); }>(
         "pupil_sampling", "str",
@@ -286,7 +286,8 @@ RenderSettings changed(const RenderSettings& before, const py::dict& words) {
     settings.noise = draft.has_noise_goal ? std::optional(goal_of(draft.noise)) : std::nullopt;
     if (words.contains("effects") && !settings.effects.is_automatic && !settings.effects.have_wavelengths()) {
         if (!words.contains("illuminant")) settings.illuminant.reset();
-        if (!words.contains("filter") && settings.filter) settings.filter = settings.filter->neutral_equivalent();
+        if (!words.contains("lens_filter") && settings.lens_filter)
+            settings.lens_filter = settings.lens_filter->neutral_equivalent();
     }
     validate(settings);
     return settings;
@@ -329,7 +330,7 @@ threshold_codes; or names of optional effects (rc.effects() lists them; docs/dis
 Warns of what the lens cannot give of them.
 illuminant: of dispersion and diffraction, the spectrum of all light: "D65", "D50", "A", "FL2", a wavelength in nm,
 or (wavelength_nm, power) pairs; None: D65. As an attribute it is a text.
-filter: absorbing filter in front of the lens (docs/filters.md): "ND8" or 1/8 passes an eighth of the light, "ND0.9"
+lens_filter: absorbing filter in front of the lens (docs/filters.md): "ND8" or 1/8 passes an eighth of the light, "ND0.9"
 has the optical density 0.9, and (wavelength_nm, transmittance) pairs are a coloured filter, which needs dispersion
 or diffraction. None: no filter. As an attribute it is a text.
 pupil_sampling: where a full lens's rays are sent: "outline", where real rays were found to pass; to compare

@@ -9,7 +9,7 @@
 namespace realcam {
 
 LensEffects RenderSettings::lens_effects() const {
-    return {effects, spectral_light(), filter, ghost_choice(), pupil_sampling};
+    return {effects, spectral_light(), lens_filter, ghost_choice(), pupil_sampling};
 }
 
 std::optional<GhostChoice> RenderSettings::ghost_choice() const {
@@ -22,8 +22,8 @@ std::string spectrum_error(const RenderSettings& settings) {
     if (effects.have_wavelengths() || effects.is_automatic) return "";
     const std::string names = effects_that(&EffectInfo::has_wavelengths);
     if (settings.illuminant) return "illuminant belongs to the effects " + names + ", which are not switched on";
-    if (settings.filter && !settings.filter->is_neutral())
-        return "filter: a coloured filter needs one of the effects " + names + ", which are not switched on";
+    if (settings.lens_filter && !settings.lens_filter->is_neutral())
+        return "lens_filter: a coloured filter needs one of the effects " + names + ", which are not switched on";
     return "";
 }
 

@@ -58,7 +58,8 @@ struct RenderSettings {
     EffectChoice effects = kAutomaticEffects;
     PlanThresholds thresholds = {};  ///< for automatic effects
     std::optional<Illuminant> illuminant = {};  ///< for effects with wavelengths; std::nullopt: D65, the white of RGB
-    std::optional<LensFilter> filter = {};  ///< in front of the lens; a coloured one needs effects with wavelengths
+    std::optional<LensFilter> lens_filter =
+        {};  ///< in front of the lens; a coloured one needs effects with wavelengths
     std::optional<NoiseGoal> noise = {};  ///< instead of spp
     PupilSampling pupil_sampling = PupilSampling::outline;  ///< for a full lens
     LightTracing light_tracing = LightTracing::weighted;  ///< for a full lens
@@ -71,13 +72,13 @@ struct RenderSettings {
     }
     /// Factor of the exposure by the filter. If samples have wavelengths, it applies to each of them instead.
     double filter_transmittance() const {
-        return filter && !effects.have_wavelengths() ? filter->luminous_transmittance() : 1;
+        return lens_filter && !effects.have_wavelengths() ? lens_filter->luminous_transmittance() : 1;
     }
     /// Prepares the settings for a picture whose samples have no wavelengths: removes the illuminant, and replaces a
     /// coloured filter by the neutral one that is equally bright.
     void remove_spectra() {
         illuminant.reset();
-        if (filter) filter = filter->neutral_equivalent();
+        if (lens_filter) lens_filter = lens_filter->neutral_equivalent();
     }
     LensEffects lens_effects() const;
     std::optional<GhostChoice> ghost_choice() const;

@@ -33,7 +33,7 @@ def sky_picture(effects: object, **settings: object) -> np.ndarray:
 @pytest.mark.parametrize("effects", [(), "dispersion"])
 def test_a_neutral_filter_is_a_factor(effects: object, filter: object, passed: float) -> None:
     # The same rays and wavelengths in both pictures: only the rounding of float32 differs.
-    np.testing.assert_allclose(sky_picture(effects, filter=filter), passed * sky_picture(effects), rtol=2e-5)
+    np.testing.assert_allclose(sky_picture(effects, lens_filter=filter), passed * sky_picture(effects), rtol=2e-5)
 
 
 @pytest.mark.parametrize("curve", [RED, [(450.0, 0.8), (520.0, 0.1)], [(380.0, 0.5), (780.0, 0.5)]])
@@ -43,7 +43,7 @@ def test_white_behind_a_curve_has_its_colour(curve: list[tuple[float, float]]) -
     expected = film_curves(nm) @ passed
     # One sample of white is right in the mean only: 3000 samples of a standard deviation of about 0.5 leave 0.01. The
     # analytic observer has an error of a hundredth of the channel that sees the most.
-    found = rc.render(scenes.sky(), camera(), spp=64, effects="dispersion", filter=curve).pixels.mean(axis=(0, 1))
+    found = rc.render(scenes.sky(), camera(), spp=64, effects="dispersion", lens_filter=curve).pixels.mean(axis=(0, 1))
     white = rc.render(scenes.sky(), camera(), spp=64, effects="dispersion").pixels.mean(axis=(0, 1))
     np.testing.assert_allclose(found / white, expected, atol=0.02 * expected.max())
 
@@ -63,7 +63,7 @@ def test_a_narrow_band_takes_the_axial_colour_away() -> None:
         return float(np.sqrt((light * (x * x + y * y)).sum() / light.sum()))
 
     green = [(586.0, 0.0), (587.0, 1.0), (589.0, 1.0), (590.0, 0.0)]
-    assert width(filter=green) < 0.6 * width()
+    assert width(lens_filter=green) < 0.6 * width()
 
 
 def test_noise_of_white_is_removed_behind_a_filter_too() -> None:
@@ -76,18 +76,18 @@ def test_noise_of_white_is_removed_behind_a_filter_too() -> None:
         ).pixels  # fmt: skip
         return pixels.std(axis=(0, 1)) / pixels.mean(axis=(0, 1))
 
-    plain, yellow = unevenness(), unevenness(filter=[(470.0, 0.02), (520.0, 0.9)])
+    plain, yellow = unevenness(), unevenness(lens_filter=[(470.0, 0.02), (520.0, 0.9)])
     assert yellow[0] < 3 * plain[0] and yellow[1] < 3 * plain[1]
 
 
 def test_the_meter_sees_through_the_filter(tmp_path: Path) -> None:
     sky = scenes.sky(100.0)
     times = [
-        rc.Shot.load("demo", resolution=(12, 8), filter=filter, device="cpu").camera.exposure_time_s
+        rc.Shot.load("demo", resolution=(12, 8), lens_filter=filter, device="cpu").camera.exposure_time_s
         for filter in ("ND1", "ND8")
     ]
     assert times[1] == pytest.approx(8 * times[0], rel=1e-4)
-    session = rc.Session(sky, camera(), effects=(), filter="ND2")
+    session = rc.Session(sky, camera(), effects=(), lens_filter="ND2")
     assert session is not None
 
 
@@ -95,40 +95,40 @@ def test_the_planner_gives_a_coloured_filter_its_wavelengths() -> None:
     scene = scenes.scene_of(scenes.quad((0, 0, -3), 4, diffuse=0.5, emission=100))
     small = camera().replace(lens=rc.Lens.load("double-gauss-50mm").with_rings(f_number=16))
     plain = rc.plan(scene, small, quality="draft")
-    red = rc.plan(scene, small, quality="draft", filter=RED)
+    red = rc.plan(scene, small, quality="draft", lens_filter=RED)
     assert "dispersion" not in plain.effects
     assert "dispersion" in red.effects
     assert any("filter's colour" in decision.reason for decision in red.decisions)
 
 
 def test_settings_files_and_metadata(tmp_path: Path) -> None:
-    assert rc.RenderSettings(filter="ND8").filter == "0.125"
-    red = rc.RenderSettings(effects="dispersion", filter=RED)
-    assert red.filter == "560:0,600:0.5,640:0.9"
-    assert rc.RenderSettings(effects="dispersion", filter=red.filter) == red
+    assert rc.RenderSettings(lens_filter="ND8").lens_filter == "0.125"
+    red = rc.RenderSettings(effects="dispersion", lens_filter=RED)
+    assert red.lens_filter == "560:0,600:0.5,640:0.9"
+    assert rc.RenderSettings(effects="dispersion", lens_filter=red.lens_filter) == red
     # Without the effects that show its colour, the filter that is equally bright is left.
-    assert float(red.with_(effects=()).filter) == pytest.approx(0.17, abs=0.03)
-    image = rc.render(scenes.sky(), camera(), spp=1, effects=(), filter="ND4")
-    assert image.metadata()["realcam:filter"] == "0.25"
+    assert float(red.with_(effects=()).lens_filter) == pytest.approx(0.17, abs=0.03)
+    image = rc.render(scenes.sky(), camera(), spp=1, effects=(), lens_filter="ND4")
+    assert image.metadata()["realcam:lens_filter"] == "0.25"
     (tmp_path / "a.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
     base = 'format = 1\nscene = "a.obj"\nposition_m = [0, 0, 3]\nexposure_time_s = 1\n'
     for line, expected in (
-        ('filter = "ND8"', "0.125"),
-        ("filter = 0.5", "0.5"),
-        ("filter = [[500, 0], [600, 1]]", "500:0,600:1"),
+        ('lens_filter = "ND8"', "0.125"),
+        ("lens_filter = 0.5", "0.5"),
+        ("lens_filter = [[500, 0], [600, 1]]", "500:0,600:1"),
     ):
         (tmp_path / "shot.toml").write_text(base + line + "\n")
-        assert rc.Shot.load(tmp_path / "shot.toml").settings.filter == expected
+        assert rc.Shot.load(tmp_path / "shot.toml").settings.lens_filter == expected
 
 
 @pytest.mark.parametrize(
     ("filter", "message"),
     [
-        ("red", 'filter: "red": expected a neutral density'),
-        ("ND", 'filter: "ND": expected'),
-        ("ND0", 'filter: "ND0": expected'),
-        ("ND-0.3", 'filter: "ND-0.3": expected'),
-        (0, "filter: the transmittance must lie above 0 and be at most 1"),
+        ("red", 'lens_filter: "red": expected a neutral density'),
+        ("ND", 'lens_filter: "ND": expected'),
+        ("ND0", 'lens_filter: "ND0": expected'),
+        ("ND-0.3", 'lens_filter: "ND-0.3": expected'),
+        (0, "lens_filter: the transmittance must lie above 0 and be at most 1"),
         (1.5, "at most 1"),
         (float("nan"), "at most 1"),
         ("500:0.5", "at least two points"),
@@ -140,9 +140,9 @@ def test_settings_files_and_metadata(tmp_path: Path) -> None:
 )
 def test_mistakes_are_named(filter: object, message: str) -> None:
     with pytest.raises(rc.InputError, match=message):
-        rc.RenderSettings(effects="dispersion", filter=filter)  # type: ignore[arg-type]
+        rc.RenderSettings(effects="dispersion", lens_filter=filter)  # type: ignore[arg-type]
 
 
 def test_a_coloured_filter_needs_wavelengths() -> None:
     with pytest.raises(rc.InputError, match="a coloured filter needs one of the effects dispersion and diffraction"):
-        rc.RenderSettings(effects=(), filter=RED)
+        rc.RenderSettings(effects=(), lens_filter=RED)

@@ -138,7 +138,7 @@ void set_density(std::vector<Piece>& pieces) {
         piece.density = std::sqrt(squares);
         sum += piece.density;
     }
-    if (!(sum > 0)) throw InputError("filter: no light of the illuminant passes");
+    if (!(sum > 0)) throw InputError("lens_filter: no light of the illuminant passes");
     for (Piece& piece : pieces) piece.density /= sum;
 }
 
@@ -192,7 +192,7 @@ FilmSpectrum::FilmSpectrum(const Illuminant& illuminant, const std::optional<Len
         const std::array<double, 3> basis = basis_at(nm);
         WavelengthCell cell{static_cast<float>(nm), static_cast<float>(nm), {}};
         const double passed = filter ? filter->transmittance(nm) : 1;
-        if (!(passed > 0)) throw InputError("filter: no light of the illuminant passes");
+        if (!(passed > 0)) throw InputError("lens_filter: no light of the illuminant passes");
         for (std::size_t k = 0; k < 9; ++k) cell.film[k] = static_cast<float>(passed * basis[k % 3]);
         cells_ = {cell};
         return;

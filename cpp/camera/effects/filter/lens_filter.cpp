@@ -11,7 +11,7 @@ namespace realcam {
 namespace {
 
 [[noreturn]] void fail(const std::string& why) {
-    throw InputError("filter: " + why);
+    throw InputError("lens_filter: " + why);
 }
 
 /// Transmittance of "ND8" (filter factor) or "ND0.9" (optical density), which are told apart by the decimal point;
@@ -33,7 +33,7 @@ LensFilter LensFilter::neutral(double transmittance) {
 }
 
 LensFilter LensFilter::table(std::vector<SpectrumPoint> points) {
-    check_spectrum(points, "filter");
+    check_spectrum(points, "lens_filter");
     for (const SpectrumPoint& point : points)
         if (point.power > 1) fail("a transmittance must lie between 0 and 1");
     LensFilter filter;
@@ -51,7 +51,7 @@ LensFilter LensFilter::table(std::vector<SpectrumPoint> points) {
 }
 
 LensFilter LensFilter::parse(std::string_view text) {
-    if (text.find(':') != std::string_view::npos) return table(spectrum_points(text, "filter"));
+    if (text.find(':') != std::string_view::npos) return table(spectrum_points(text, "lens_filter"));
     const bool is_density = text.starts_with("ND") || text.starts_with("nd");
     const double transmittance = is_density ? neutral_density(text) : number_in(text);
     if (std::isnan(transmittance)) fail("\"" + std::string(text.substr(0, 60)) + "\": expected " + kWanted);
