@@ -133,13 +133,13 @@ private:
     }
 
     std::vector<LayerImage> develop_auxiliary_layers() override {
-        return developed_auxiliary_layers(view(), settings().layers, camera().exposure_time_s);
+        return developed_auxiliary_layers(view(), settings().layers, film_exposure_s());
     }
 
     std::shared_ptr<LiveFrame> start(const std::vector<SampleRange>& ranges, ToneCurve curve,
                                      std::shared_ptr<void> in_progress) override {
         // Later calls wait for the frame, so that the members which this thread uses do not change.
-        auto work = [this, ranges, curve, film = camera().film, dials = Dials{camera().exposure_time_s, camera().iso},
+        auto work = [this, ranges, curve, film = camera().film, dials = Dials{film_exposure_s(), camera().iso},
                      settings = settings(), token = std::move(in_progress)]() mutable {
             const std::shared_ptr<void> until_the_end = std::move(token);
             std::atomic<std::int64_t> done{0};
@@ -149,7 +149,7 @@ private:
             }
             if (is_stopped()) throw Cancelled();
             return arena(settings).execute([&] {
-                return developed_codes(view(film, settings), dials.exposure_time_s, dials.iso, curve,
+                return developed_codes(view(film, settings), dials.exposure_s, dials.iso, curve,
                                        parallel_ray_loop({}, kDevelopedAtOnce));
             });
         };
@@ -164,7 +164,7 @@ private:
 
     Image develop() override {
         Image image = arena(settings()).execute([&] {
-            return developed(view(), camera().exposure_time_s, parallel_ray_loop({}, kDevelopedAtOnce));
+            return developed(view(), film_exposure_s(), parallel_ray_loop({}, kDevelopedAtOnce));
         });
         image.stats = stats_;
         image.stats.device = name();
@@ -174,7 +174,7 @@ private:
     double least_lamp_share() const override {
         return realcam::least_lamp_share(scene_->placed().view(), camera_view_, *setup_, settings().lights_traced());
     }
-    std::vector<float> develop_traced() override { return traced_exposure(splats_, camera().exposure_time_s); }
+    std::vector<float> develop_traced() override { return traced_exposure(splats_, film_exposure_s()); }
 
     std::vector<std::int64_t> count_samples() override { return samples_of(film_); }
     PlacedCamera placed_camera() const override { return {camera_view_, scene_->placed().origin_m()}; }
@@ -186,7 +186,7 @@ private:
     bool is_stopped() const override { return stop_.flag(); }
 
     struct Dials {
-        double exposure_time_s, iso;
+        double exposure_s, iso;
     };
 
     FilmView view() const { return view(camera().film, settings()); }

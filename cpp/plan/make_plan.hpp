@@ -66,6 +66,7 @@ inline ResolvedFilm resolve_film(Session& session, const Assembly& scene, const 
     EffectChoice& effects = film.settings.effects;
     if (film.plans.empty()) {
         effects = without_plan(effects);
+        if (!effects.have_wavelengths()) film.settings.remove_spectra();
         return film;
     }
     film.warning.clear();
@@ -86,7 +87,7 @@ inline ResolvedFilm resolve_film(Session& session, const Assembly& scene, const 
             if (asked.effects.is_automatic && effect.needs_round_lens && !has_radial_pupil(camera.lens) &&
                 !(asked.effects.*effect.member))
                 effects.*effect.member = false;
-    if (!effects.have_wavelengths()) film.settings.illuminant.reset();
+    if (!effects.have_wavelengths()) film.settings.remove_spectra();
     return film;
 }
 

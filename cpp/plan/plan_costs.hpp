@@ -75,7 +75,7 @@ inline void plan_bounces(Session& session, const Assembly& scene, Camera camera,
     settings.noise.reset();
     settings.effects = {};
     settings.pupil_sampling = PupilSampling::outline;
-    settings.illuminant.reset();
+    settings.remove_spectra();
     settings.layers = {};
     const auto with = [&](int bounces) { return small_picture(session, scene, camera, settings, bounces, progress); };
     const std::vector<double> all = with(kMostBounces);
@@ -134,7 +134,7 @@ inline void measure_times(Session& session, const Assembly& scene, Camera camera
     const auto set = [&](const EffectChoice& effects) {
         settings.effects = effects;
         RenderSettings given = settings;
-        if (!effects.have_wavelengths()) given.illuminant.reset();
+        if (!effects.have_wavelengths()) given.remove_spectra();
         session.set(scene, camera, given, keep_going);
         session.add(1, progress);  // runs what a device does only once
     };

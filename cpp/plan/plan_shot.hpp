@@ -1,9 +1,12 @@
 #pragma once
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstdio>
 #include <string>
 
 #include "../camera/effects/direct_lens_path.hpp"
+#include "../camera/effects/dispersion/film_spectrum.hpp"
 #include "../optics/coating/coated_surface.hpp"
 #include "../render/settings/effect_names.hpp"
 #include "../render/settings/render_settings.hpp"
@@ -128,17 +131,33 @@ private:
                    "the stars of lamps bring " + codes(star) + " two pixels beside them");
     }
 
-    /// Decides on the colour of glass, coatings and ghosts. Coatings are evaluated at one wavelength unless dispersion
-    /// or diffraction samples others; ghosts are unless dispersion does.
+    /// Change of white by the filter in the channel that shows it most, against a neutral filter that is equally
+    /// bright.
+    double filter_colour_codes() const {
+        if (!settings_.lens_filter || settings_.lens_filter->is_neutral()) return 0;
+        const FilmSpectrum spectrum(settings_.illuminant.value_or(Illuminant()), settings_.lens_filter);
+        const std::array<float, 9> film = spectrum.mean_film();
+        double most = 0;
+        for (std::size_t c = 0; c < 3; ++c) {
+            const auto white = static_cast<double>(film[3 * c] + film[3 * c + 1] + film[3 * c + 2]);
+            most = std::max(most, std::fabs(code_of(white) - code_of(settings_.lens_filter->luminous_transmittance())));
+        }
+        return most;
+    }
+
+    /// Decides on the colour of glass, coatings, ghosts and the filter. Coatings and filter are evaluated at one
+    /// wavelength unless dispersion or diffraction samples others; ghosts are unless dispersion does.
     void decide_colour() {
         const double lateral = errors_.lateral_colour_px, axial = errors_.axial_colour_px;
         const double of_glass = std::max(lateral, axial);
         const double of_coatings = plan_.effects.diffraction ? 0.0 : coating_colour_codes_;
-        const double of_light = std::max(of_coatings, ghost_colour_codes_);
+        const double of_filter = plan_.effects.diffraction ? 0.0 : filter_colour_codes();
+        const double of_light = std::max({of_coatings, ghost_colour_codes_, of_filter});
         if (of_glass / settings_.thresholds.pixels < of_light / settings_.thresholds.codes)
             decide("dispersion", of_light, SizeUnit::codes,
-                   (of_coatings > ghost_colour_codes_ ? "what the coatings take has a colour of "
-                                                      : "ghosts have a colour of ") +
+                   (of_filter == of_light               ? "the filter's colour changes white by "
+                    : of_coatings > ghost_colour_codes_ ? "what the coatings take has a colour of "
+                                                        : "ghosts have a colour of ") +
                        codes(of_light));
         else
             decide("dispersion", of_glass, SizeUnit::pixels,

@@ -127,7 +127,7 @@ inline SceneFacts probe_scene(Session& session, const Assembly& scene, Camera ca
     settings.noise.reset();
     settings.effects = {};
     settings.pupil_sampling = PupilSampling::outline;
-    settings.illuminant.reset();
+    settings.remove_spectra();
     settings.layers = {Layer::depth_middle};
     const bool moves = scene.moves() || camera.moves();
     if (moves) settings.layers.add(Layer::motion);
@@ -160,6 +160,7 @@ inline SceneFacts probe_scene(Session& session, const Assembly& scene, Camera ca
                       facts);
     for (const SunLight& sun : scene.static_geometry->suns)
         add_light(camera_from_scene, -static_cast<Vec3d>(sun.direction), luminance_of(sun.illuminance), 0, true, facts);
+    for (SeenLight& light : facts.lights) light.illuminance_lux *= settings.filter_transmittance();
     facts.surroundings = wide_view(session, scene, camera, settings, progress);
     settings.layers = {Layer::depth_middle};
     drop_hidden(session, scene, camera, settings, scene_from_camera, facts.lights);

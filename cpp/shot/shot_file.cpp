@@ -147,8 +147,8 @@ private:
         }
         table_.checked(shot.blades ? "blades" : "blade_rounding", [&] { check_blades(shot); });
         table_.checked("spp", [&] { resolve_noise_goal(shot); });
-        if (const std::string why = illuminant_error(shot.settings); !why.empty())
-            table_.fail(why, table_.find("illuminant"));
+        if (const std::string why = spectrum_error(shot.settings); !why.empty())
+            table_.fail(why, table_.find(shot.settings.illuminant ? "illuminant" : "lens_filter"));
         table_.checked(shot.settings.clamp >= 0 ? "spp" : "clamp_cd_m2", [&] { validate(shot.settings); });
     }
 

@@ -138,10 +138,11 @@ void to_layers(Table t, Key key, Request r) {
     of_names(t, key, [&] { r.settings.layers = layers_named(names); });
 }
 
-/// Parses a spectrum: a name, a wavelength, or [wavelength, power] of each point of a table.
-Illuminant illuminant_of(const toml::node& node) {
-    if (const auto* name = node.as_string()) return Illuminant::parse(name->get());
-    if (node.is_number()) return Illuminant::line(node.value_or(0.0));
+/// Converts a text, a number or a table [[wavelength_nm, value], ...] to an Illuminant or a LensFilter.
+template <class Spectrum>
+Spectrum spectrum_of(const toml::node& node, Spectrum (*from_number)(double), const std::string& key) {
+    if (const auto* text = node.as_string()) return Spectrum::parse(text->get());
+    if (node.is_number()) return from_number(node.value_or(0.0));
     std::vector<SpectrumPoint> points;
     if (const toml::array* pairs = node.as_array()) {
         for (const toml::node& item : *pairs) {
@@ -154,13 +155,18 @@ Illuminant illuminant_of(const toml::node& node) {
         }
     }
     if (points.empty())
-        throw InputError(std::string("illuminant: expected ") + Illuminant::kWanted +
+        throw InputError(key + ": expected " + Spectrum::kWanted +
                          "; in a shot file a table is [[400, 0.5], [550, 1], [700, 0.2]]");
-    return Illuminant::table(std::move(points));
+    return Spectrum::table(std::move(points));
 }
 
 void to_illuminant(Table t, Key key, Request r) {
-    t.checked(key.name, [&] { r.settings.illuminant = illuminant_of(*t.find(key.name)); });
+    t.checked(key.name, [&] { r.settings.illuminant = spectrum_of(*t.find(key.name), &Illuminant::line, key.name); });
+}
+
+void to_filter(Table t, Key key, Request r) {
+    t.checked(key.name,
+              [&] { r.settings.lens_filter = spectrum_of(*t.find(key.name), &LensFilter::neutral, key.name); });
 }
 
 void to_iso_follows(Table t, Key key, Request r) {
@@ -302,6 +308,8 @@ std::vector<ShotKey> all_keys() {
         {"illuminant", "--illuminant", kPicture, "SPECTRUM", text, "a spectrum",
          "Spectrum of all light, for " + effects_that(&EffectInfo::has_wavelengths) + ": " +
              std::string(Illuminant::kWanted), "D65", {}, to_illuminant},
+        {"lens_filter", "--lens-filter", kPicture, "FILTER", text, "a filter",
+         "Filter in front of the lens: " + std::string(LensFilter::kWanted), "none", {}, to_filter},
         {"threads", "--threads", kPicture, "N", whole, "a whole number", "Number of threads; 0: all", "0", {},
          to_whole<&R::settings, &S::threads>},
     };

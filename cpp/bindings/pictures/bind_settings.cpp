@@ -56,19 +56,20 @@ std::vector<std::string> names_from(const py::object& names, const std::string& 
     return list;
 }
 
-/// Converts a name, a wavelength in nm, (wavelength_nm, power) pairs, or None.
-std::optional<Illuminant> light_from(const py::object& light) {
-    if (light.is_none()) return std::nullopt;
-    if (py::isinstance<py::str>(light)) return Illuminant::parse(light.cast<std::string>());
+/// Converts text, a number, (wavelength_nm, value) pairs, or None to an Illuminant or a LensFilter. `from_number`: the
+/// type's constructor from a number; `expected`: the accepted values, for the message of the error.
+template <class Spectrum>
+std::optional<Spectrum> spectrum_from(const py::object& value, Spectrum (*from_number)(double), const char* expected) {
+    if (value.is_none()) return std::nullopt;
+    if (py::isinstance<py::str>(value)) return Spectrum::parse(value.cast<std::string>());
     try {
-        if (!py::hasattr(light, "__len__")) return Illuminant::line(light.cast<double>());
+        if (!py::hasattr(value, "__len__")) return from_number(value.cast<double>());
         std::vector<SpectrumPoint> points;
-        for (const auto& [wavelength_nm, power] : light.cast<std::vector<std::pair<double, double>>>())
-            points.push_back({wavelength_nm, power});
-        return Illuminant::table(std::move(points));
+        for (const auto& [wavelength_nm, at] : value.cast<std::vector<std::pair<double, double>>>())
+            points.push_back({wavelength_nm, at});
+        return Spectrum::table(std::move(points));
     } catch (const py::cast_error&) {
-        refuse("illuminant must be a name, a wavelength in nm or (wavelength_nm, power) pairs; it is " +
-               short_repr(light));
+        refuse(std::string(expected) + "; it is " + short_repr(value));
     }
 }
 
@@ -223,7 +224,18 @@ const Setting kSettings[] = {
                                                    set_threshold<&PlanThresholds::codes>, "None"),
     setting<[](S s) { return s.illuminant ? std::optional(s.illuminant->text()) : std::nullopt; }>(
         "illuminant", "str | float | Sequence[tuple[float, float]] | None",
-        [](Draft& d, Word word) { d.settings.illuminant = light_from(word); }),
+        [](Draft& d, Word word) {
+            d.settings.illuminant =
+                spectrum_from(word, &Illuminant::line,
+                              "illuminant must be a name, a wavelength in nm or (wavelength_nm, power) pairs");
+        }),
+    setting<[](S s) { return s.lens_filter ? std::optional(s.lens_filter->text()) : std::nullopt; }>(
+        "lens_filter", "str | float | Sequence[tuple[float, float]] | None",
+        [](Draft& d, Word word) {
+            d.settings.lens_filter = spectrum_from(
+                word, &LensFilter::neutral,
+                "lens_filter must be a text such as ND8, a transmittance or (wavelength_nm, transmittance) pairs");
+        }),
     setting<[](S s) { return name_of(s.pupil_sampling); }>(
         "pupil_sampling", "str",
         [](Draft& d, Word word) {
@@ -248,7 +260,8 @@ std::string signature() {
 }
 
 /// Returns the settings with changes given by name. Settings that a change makes meaningless are removed: the noise
-/// goal if a number of samples is set, and the illuminant if no effect uses it. Throws InputError.
+/// goal if a number of samples is set, and the illuminant and the filter's colour if no effect uses them. Throws
+/// InputError.
 RenderSettings changed(const RenderSettings& before, const py::dict& words) {
     Draft draft = draft_of(before);
     RenderSettings& settings = draft.settings;
@@ -271,9 +284,11 @@ RenderSettings changed(const RenderSettings& before, const py::dict& words) {
     if (!draft.has_noise_goal && !draft.noise.says_nothing())
         throw InputError("noise, noise_codes, seconds and max_spp belong to spp=\"auto\"");
     settings.noise = draft.has_noise_goal ? std::optional(goal_of(draft.noise)) : std::nullopt;
-    if (words.contains("effects") && !words.contains("illuminant") && !settings.effects.is_automatic &&
-        !settings.effects.have_wavelengths())
-        settings.illuminant.reset();
+    if (words.contains("effects") && !settings.effects.is_automatic && !settings.effects.have_wavelengths()) {
+        if (!words.contains("illuminant")) settings.illuminant.reset();
+        if (!words.contains("lens_filter") && settings.lens_filter)
+            settings.lens_filter = settings.lens_filter->neutral_equivalent();
+    }
     validate(settings);
     return settings;
 }
@@ -315,6 +330,9 @@ threshold_codes; or names of optional effects (rc.effects() lists them; docs/dis
 Warns of what the lens cannot give of them.
 illuminant: of dispersion and diffraction, the spectrum of all light: "D65", "D50", "A", "FL2", a wavelength in nm,
 or (wavelength_nm, power) pairs; None: D65. As an attribute it is a text.
+lens_filter: absorbing filter in front of the lens (docs/filters.md): "ND8" or 1/8 passes an eighth of the light, "ND0.9"
+has the optical density 0.9, and (wavelength_nm, transmittance) pairs are a coloured filter, which needs dispersion
+or diffraction. None: no filter. As an attribute it is a text.
 pupil_sampling: where a full lens's rays are sent: "outline", where real rays were found to pass; to compare
 with it (docs/accuracy.md), "rear_element", "exit_pupil", or "pixel", where the pixel's earlier samples have
 passed.

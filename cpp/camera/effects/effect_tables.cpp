@@ -15,7 +15,7 @@ EffectTables::EffectTables(const LensSystem& lens, double film_radius, const Len
     const bool has_lens = last && last->effects_ == effects && last->lens_ == lens;
     const EffectTables* const same = has_lens && last->film_radius_ == film_radius ? last : nullptr;
     if (effects.illuminant)
-        set_wavelengths(FilmSpectrum(*effects.illuminant));
+        set_wavelengths(FilmSpectrum(*effects.illuminant, effects.filter));
     else if (effects.even_wavelengths)
         set_wavelengths(FilmSpectrum(*effects.even_wavelengths));
     if (effects.coatings) set_coatings(has_lens ? last : nullptr);
@@ -45,6 +45,12 @@ EffectViews EffectTables::views(double film_angle) const {
                             film_path.free};
         const std::array<float, 9> mean = spectrum_->mean_film();
         std::copy(mean.begin(), mean.end(), views.dispersion.film);
+        if (effects_.filter)
+            for (std::size_t c = 0; c < 3; ++c) {
+                constexpr float kDark = 1e-3f;  // channels without light have no control variate
+                const float white = mean[3 * c] + mean[3 * c + 1] + mean[3 * c + 2];
+                views.dispersion.white_scale[c] = white > kDark ? 1 / white : 0;
+            }
     }
     views.coatings = {data_of(coatings_), data_of(coatings_to_scene_), data_of(coatings_to_film_)};
     if (diffraction_) views.diffraction = diffraction_->view(film_angle);

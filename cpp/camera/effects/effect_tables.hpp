@@ -17,6 +17,7 @@ namespace REALCAM_NAMESPACE {
 /// Effects of the lens on light, beyond refraction at the design wavelength.
 struct LensEffects : Effects {
     std::optional<Illuminant> illuminant = {};  ///< for pictures whose samples have wavelengths
+    std::optional<LensFilter> filter = {};  ///< applies to the illuminant
     std::optional<GhostChoice> ghosts = {};
     PupilSampling pupil_sampling = PupilSampling::outline;
     std::optional<WavelengthRange> even_wavelengths = {};  ///< replaces the illuminant: uniform over these wavelengths

@@ -151,7 +151,7 @@ private:
             front().download_film(downloaded.data());
         }
         return developed_auxiliary_layers(on_host(fits() ? downloaded : film_, splats), settings().layers,
-                                          camera().exposure_time_s);
+                                          film_exposure_s());
     }
 
     std::shared_ptr<LiveFrame> start(const std::vector<SampleRange>& ranges, ToneCurve curve,
@@ -169,7 +169,7 @@ private:
         }
         const std::shared_ptr<DeviceFrame> frame =
             make_on_device<DeviceFrame>(front().ordinal(), camera().film, samples(), pool_);
-        frame->develop(front(), balance(), camera(), curve);
+        frame->develop(front(), balance(), film_exposure_s(), camera().iso, curve);
         return frame;
     }
 
@@ -181,10 +181,10 @@ private:
             const std::size_t pixels = static_cast<std::size_t>(width()) * static_cast<std::size_t>(height());
             image.exposure = exposures_.take(3 * pixels);
             image.depth = depths_.take(pixels);
-            front().develop(balance(), camera().exposure_time_s, image.exposure.data(), image.depth.data());
+            front().develop(balance(), film_exposure_s(), image.exposure.data(), image.depth.data());
         } else {
             const std::vector<SplatFilm> splats = front().download_splats();
-            image = developed(on_host(film_, splats), camera().exposure_time_s);
+            image = developed(on_host(film_, splats), film_exposure_s());
         }
         set_stats(stats_, all_counts(), stats_.seconds);
         image.stats = stats_;
@@ -198,7 +198,7 @@ private:
                                          settings().lights_traced());
     }
     std::vector<float> develop_traced() override {
-        return traced_exposure(front().download_splats(), camera().exposure_time_s);
+        return traced_exposure(front().download_splats(), film_exposure_s());
     }
 
     std::vector<std::int64_t> count_samples() override {
@@ -323,7 +323,7 @@ private:
         const std::int64_t columns = width(), rows = height();
         DeviceArray<float> exposure(static_cast<std::size_t>(3 * columns * rows)),
             depth(static_cast<std::size_t>(columns * rows));
-        front().develop_here(balance(), camera().exposure_time_s, exposure.data(), depth.data());
+        front().develop_here(balance(), film_exposure_s(), exposure.data(), depth.data());
         int stopped = 0;
         front().stop_flag().download(&stopped, front().stream());
         front().wait();

@@ -68,8 +68,9 @@ public:
     }
 
     /// Queues the development of the frame behind its exposure in the renderer's stream.
-    void develop(DeviceRenderer& renderer, const FilmControlVariates& balance, const Camera& camera, ToneCurve curve) {
-        renderer.develop_codes(balance, camera.exposure_time_s, camera.iso, curve, memory_->codes.data());
+    void develop(DeviceRenderer& renderer, const FilmControlVariates& balance, double exposure_s, double iso,
+                 ToneCurve curve) {
+        renderer.develop_codes(balance, exposure_s, iso, curve, memory_->codes.data());
         renderer.stop_flag().download(memory_->stopped.data(), renderer.stream());
         end_.record(renderer.stream());
     }

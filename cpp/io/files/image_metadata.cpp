@@ -73,6 +73,7 @@ ImageMetadata metadata_of(const Camera& camera, const RenderSettings& settings) 
     for (const std::string& name : names_of(settings.effects))
         metadata.effects += (metadata.effects.empty() ? "" : ",") + name;
     if (const auto light = settings.spectral_light()) metadata.illuminant = light->text();
+    if (settings.lens_filter) metadata.lens_filter = settings.lens_filter->text();
     if (any_is(settings.effects, &EffectInfo::needs_coatings)) metadata.coatings = coating_summary(camera.lens);
     return metadata;
 }
@@ -115,6 +116,7 @@ std::vector<std::pair<std::string, std::string>> ImageMetadata::entries() const 
     if (clamp_cd_m2 > 0) entries.emplace_back("realcam:clamp_cd_m2", number(clamp_cd_m2));
     if (!effects.empty()) entries.emplace_back("realcam:effects", effects);
     if (!illuminant.empty()) entries.emplace_back("realcam:illuminant", illuminant);
+    if (!lens_filter.empty()) entries.emplace_back("realcam:lens_filter", lens_filter);
     if (!coatings.empty()) entries.emplace_back("realcam:coatings", coatings);
     if (!plan.empty()) entries.emplace_back("realcam:plan", plan);
     if (!film.empty()) entries.emplace_back("realcam:film", film);

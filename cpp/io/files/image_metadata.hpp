@@ -31,6 +31,7 @@ struct ImageMetadata {
     double clamp_cd_m2 = 0;
     /// Names of effects, separated by commas, and the illuminant as text; may be empty.
     std::string effects, illuminant;
+    std::string lens_filter;  ///< LensFilter::text(); empty: no filter in front of the lens
     std::string coatings;  ///< coating_summary, with the effects coatings and ghosts; otherwise empty
     std::string plan;  ///< decisions of a planner and the values behind them; empty without a planner
     std::string film;      ///< in a frame: digest of its film's settings and of its number; empty in a still

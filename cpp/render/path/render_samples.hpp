@@ -28,7 +28,9 @@ REALCAM_INLINE void count_wavelengths(const DispersionView& view, const SampleWa
             const float weight = coated ? part * of.passed[step][lane] : part;
             const float cell_position = shared_cell_position(view, of.cell_position[lane], step);
             color = weight * film_color(view, cell_position, scene);
-            white = passed * weight * film_color(view, cell_position, {1, 1, 1});
+            const Color film = film_color(view, cell_position, {1, 1, 1});
+            white = passed * weight *
+                    Color{film.r * view.white_scale[0], film.g * view.white_scale[1], film.b * view.white_scale[2]};
             if (step > 0) away = of.away[step - 1][lane];
         }
         if (away == 0) {

@@ -46,7 +46,7 @@ double metered_exposure_time(Session& session, const Assembly& scene, Camera cam
             is_named ? settings.effects.coatings
                      : camera.model == CameraModel::full_lens && surfaces_with_unknown_coating(camera.lens).empty();
         settings.effects = effects;
-        settings.illuminant.reset();
+        settings.remove_spectra();
     }
     const double per_second = metered_exposure(take_picture(session, scene, camera, settings, progress));
     if (!(per_second > 0) || !std::isfinite(per_second))

@@ -199,6 +199,8 @@ protected:
     const Camera& camera() const { return camera_; }
     FilmRegion whole_film() const { return {0, 0, camera_.film.width, camera_.film.height}; }
     const RenderSettings& settings() const { return settings_; }
+    /// Exposure time, reduced by a neutral filter in front of the lens, s.
+    double film_exposure_s() const { return camera_.exposure_time_s * settings_.filter_transmittance(); }
     std::int64_t samples() const { return samples_; }  ///< largest number per pixel since the film was cleared
 
 private:

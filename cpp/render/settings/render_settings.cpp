@@ -9,7 +9,7 @@
 namespace realcam {
 
 LensEffects RenderSettings::lens_effects() const {
-    return {effects, spectral_light(), ghost_choice(), pupil_sampling};
+    return {effects, spectral_light(), lens_filter, ghost_choice(), pupil_sampling};
 }
 
 std::optional<GhostChoice> RenderSettings::ghost_choice() const {
@@ -17,11 +17,14 @@ std::optional<GhostChoice> RenderSettings::ghost_choice() const {
     return GhostChoice{effects.ghosts, effects.film_reflection ? effects.film_reflectance : 0, effects.ghost_share};
 }
 
-std::string illuminant_error(const RenderSettings& settings) {
+std::string spectrum_error(const RenderSettings& settings) {
     const EffectChoice& effects = settings.effects;
-    if (!settings.illuminant || effects.have_wavelengths() || effects.is_automatic) return "";
-    return "illuminant belongs to the effects " + effects_that(&EffectInfo::has_wavelengths) +
-           ", which are not switched on";
+    if (effects.have_wavelengths() || effects.is_automatic) return "";
+    const std::string names = effects_that(&EffectInfo::has_wavelengths);
+    if (settings.illuminant) return "illuminant belongs to the effects " + names + ", which are not switched on";
+    if (settings.lens_filter && !settings.lens_filter->is_neutral())
+        return "lens_filter: a coloured filter needs one of the effects " + names + ", which are not switched on";
+    return "";
 }
 
 void validate(const RenderSettings& settings) {
@@ -32,7 +35,7 @@ void validate(const RenderSettings& settings) {
     if (!(settings.clamp >= 0)) throw InputError("clamp must be 0 (none) or a radiance in cd/m^2");
     if (settings.threads < 0 || settings.threads > kMaxThreads)
         throw InputError("threads must be 0 (all) or a number up to " + std::to_string(kMaxThreads));
-    if (const std::string why = illuminant_error(settings); !why.empty()) throw InputError(why);
+    if (const std::string why = spectrum_error(settings); !why.empty()) throw InputError(why);
     if (settings.layers.has_any(kHalfLayers) && settings.layers.has(Layer::variance))
         throw InputError("layers: the variance and the halves of dual pixels cannot be had of one picture");
     if (settings.layers.has_any(kHalfLayers) && settings.light_tracing == LightTracing::alone)

@@ -5,6 +5,7 @@
 
 #include "../../camera/effects/dispersion/illuminant.hpp"
 #include "../../camera/effects/effects.hpp"
+#include "../../camera/effects/filter/lens_filter.hpp"
 #include "../../camera/effects/ghosts/ghost_view.hpp"
 #include "../../camera/film/camera.hpp"
 #include "../../camera/models/pupil_sampling.hpp"
@@ -57,6 +58,8 @@ struct RenderSettings {
     EffectChoice effects = kAutomaticEffects;
     PlanThresholds thresholds = {};  ///< for automatic effects
     std::optional<Illuminant> illuminant = {};  ///< for effects with wavelengths; std::nullopt: D65, the white of RGB
+    std::optional<LensFilter> lens_filter =
+        {};  ///< in front of the lens; a coloured one needs effects with wavelengths
     std::optional<NoiseGoal> noise = {};  ///< instead of spp
     PupilSampling pupil_sampling = PupilSampling::outline;  ///< for a full lens
     LightTracing light_tracing = LightTracing::weighted;  ///< for a full lens
@@ -66,6 +69,16 @@ struct RenderSettings {
     /// Illuminant of a picture whose samples have wavelengths; otherwise std::nullopt.
     std::optional<Illuminant> spectral_light() const {
         return effects.have_wavelengths() ? std::optional(illuminant.value_or(Illuminant())) : std::nullopt;
+    }
+    /// Factor of the exposure by the filter. If samples have wavelengths, it applies to each of them instead.
+    double filter_transmittance() const {
+        return lens_filter && !effects.have_wavelengths() ? lens_filter->luminous_transmittance() : 1;
+    }
+    /// Prepares the settings for a picture whose samples have no wavelengths: removes the illuminant, and replaces a
+    /// coloured filter by the neutral one that is equally bright.
+    void remove_spectra() {
+        illuminant.reset();
+        if (lens_filter) lens_filter = lens_filter->neutral_equivalent();
     }
     LensEffects lens_effects() const;
     std::optional<GhostChoice> ghost_choice() const;
@@ -82,8 +95,8 @@ inline void validate_spp(int spp) {
     if (spp < 1 || spp > (1 << 24)) throw InputError("spp must lie between 1 and 16777216");
 }
 
-/// Reason why an illuminant does not go with the effects; empty if it does.
-std::string illuminant_error(const RenderSettings& settings);
+/// Reason why the illuminant or a coloured filter does not go with the effects; empty if they do.
+std::string spectrum_error(const RenderSettings& settings);
 
 /// Throws InputError if settings are invalid or contradict each other.
 void validate(const RenderSettings& settings);

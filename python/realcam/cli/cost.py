@@ -18,7 +18,7 @@ ShotOptions = shot_options(
     "ShotOptions",
     without=(
         "resolution", "model", "spp", "noise", "noise_codes", "seconds", "max_spp", "transport", "clamp_cd_m2", "tone",
-        "layers", "effects", "quality", "threshold_px", "threshold_codes", "illuminant",
+        "layers", "effects", "quality", "threshold_px", "threshold_codes", "illuminant", "lens_filter",
     ),
 )  # fmt: skip
 

@@ -101,6 +101,10 @@ def shot_contents(source: ShotSource, controls: CameraControls, effects: list[st
     shot["effects"] = effects
     if RenderSettings(illuminant="D65").with_(effects=effects).illuminant is None:
         shot.pop("illuminant", None)  # applies only to effects that are off now
+        if "lens_filter" in shot:  # loses its colour with them
+            shot["lens_filter"] = (
+                RenderSettings(lens_filter=shot["lens_filter"].unwrap()).with_(effects=effects).lens_filter
+            )
     contents[path] = tomlkit.dumps(shot).encode()
     return contents
 

@@ -46,8 +46,8 @@ inline constexpr int kSharedWavelengths = 3;
 /// Range of wavelengths. All cells are sampled with the same probability.
 struct WavelengthCell {
     float first_nm, last_nm;
-    float film[9];  ///< matrix from scene colour to film colour, 3 x 3, row-major; its mean over all cells is the
-                    ///< identity
+    float film[9];  ///< matrix from scene colour to film colour, 3 x 3, row-major; without a filter, its mean over
+                    ///< all cells shows white as white
 };
 
 /// Wavelengths of a picture. Without dispersion, cell_count is 0.
@@ -59,7 +59,8 @@ struct DispersionView {
     const SurfaceView<float>* film_surfaces;  ///< the lens's surfaces for light towards the film
     FreeParts<float> film_free;  ///< their data for LensKind::any
     SampleSharing sharing{};
-    float film[9]{};  ///< mean of the cells' matrices, which keeps white white
+    float film[9]{};  ///< mean of the cells' matrices
+    float white_scale[3] = {1, 1, 1};  ///< inverse of the film colour of white through the filter; 0 if it is dark
 };
 
 /// SampleWavelengths::shares of a sample that counts for all wavelengths alike, in its own pixel.

@@ -62,12 +62,16 @@ struct Piece {
 
 /// Pieces of 0.5 nm, split at the points of a table. Simpson's rule is exact in each up to the division by the sum of
 /// the basis: the product of three linear functions is a cubic.
-std::vector<Piece> pieces_of(const Illuminant& illuminant) {
+std::vector<Piece> pieces_of(const Illuminant& illuminant, const std::optional<LensFilter>& filter) {
     std::vector<double> knots;
     for (double nm = kFirstWavelength_nm; nm <= kLastWavelength_nm; nm += 0.5) knots.push_back(nm);
-    for (const SpectrumPoint& point : illuminant.points())
-        if (point.wavelength_nm > kFirstWavelength_nm && point.wavelength_nm < kLastWavelength_nm)
-            knots.push_back(point.wavelength_nm);
+    const auto add_knots = [&](const std::vector<SpectrumPoint>& points) {
+        for (const SpectrumPoint& point : points)
+            if (point.wavelength_nm > kFirstWavelength_nm && point.wavelength_nm < kLastWavelength_nm)
+                knots.push_back(point.wavelength_nm);
+    };
+    add_knots(illuminant.points());
+    if (filter) add_knots(filter->points());
     std::sort(knots.begin(), knots.end());
     std::vector<Piece> pieces;
     for (std::size_t i = 0; i + 1 < knots.size(); ++i) {
@@ -77,7 +81,7 @@ std::vector<Piece> pieces_of(const Illuminant& illuminant) {
         // Evaluated slightly inside the ends: power jumps where a table begins or ends.
         const double inside = 1e-9 * (b - a);
         const auto add = [&](double nm, double weight) {
-            const Matrix m = matrix_at(nm, illuminant.power(nm));
+            const Matrix m = matrix_at(nm, illuminant.power(nm) * (filter ? filter->transmittance(nm) : 1));
             for (std::size_t k = 0; k < 9; ++k) piece.film[k] += weight * (b - a) / 6 * m[k];
         };
         add(a + inside, 1);
@@ -95,17 +99,23 @@ Matrix sum_of(const std::vector<Piece>& pieces) {
     return sum;
 }
 
-/// Makes the tables' integral under D65 the identity, from which it differs by a thousandth, and balances the film.
-void balance(std::vector<Piece>& pieces, const std::string& name) {
-    const Matrix to_identity = inverse(sum_of(pieces_of(Illuminant::named("D65"))));
-    for (Piece& piece : pieces) piece.film = product(to_identity, piece.film);
-    const Matrix sum = sum_of(pieces);
+/// Makes the tables' integral under D65 the identity, from which it differs by a thousandth, and balances the film to
+/// the illuminant without the filter.
+void balance(std::vector<Piece>& pieces, const Illuminant& illuminant, bool is_filtered) {
+    const Matrix to_identity = inverse(sum_of(pieces_of(Illuminant::named("D65"), {})));
+    const auto corrected = [&](std::vector<Piece> list) {
+        for (Piece& piece : list) piece.film = product(to_identity, piece.film);
+        return list;
+    };
+    pieces = corrected(std::move(pieces));
+    const std::vector<Piece> unfiltered = is_filtered ? corrected(pieces_of(illuminant, {})) : pieces;
+    const Matrix sum = sum_of(unfiltered);
     for (std::size_t row = 0; row < 3; ++row) {
         double most = 0;
-        for (const Piece& piece : pieces) most += std::fabs(row_sum(piece.film, row));
+        for (const Piece& piece : unfiltered) most += std::fabs(row_sum(piece.film, row));
         const double white = row_sum(sum, row);
         if (!(white > 0.02 * most))
-            throw InputError("illuminant: " + name.substr(0, 60) + " has too little " +
+            throw InputError("illuminant: " + illuminant.text().substr(0, 60) + " has too little " +
                              std::array{"red", "green", "blue"}[row] + " for a film that is to show white as white");
         for (Piece& piece : pieces)
             for (std::size_t column = 0; column < 3; ++column) piece.film[3 * row + column] /= white;
@@ -128,6 +138,7 @@ void set_density(std::vector<Piece>& pieces) {
         piece.density = std::sqrt(squares);
         sum += piece.density;
     }
+    if (!(sum > 0)) throw InputError("lens_filter: no light of the illuminant passes");
     for (Piece& piece : pieces) piece.density /= sum;
 }
 
@@ -173,19 +184,21 @@ std::vector<WavelengthCell> cells_of(const std::vector<Piece>& pieces, int count
 
 }  // namespace film_spectrum_detail
 
-FilmSpectrum::FilmSpectrum(const Illuminant& illuminant) {
+FilmSpectrum::FilmSpectrum(const Illuminant& illuminant, const std::optional<LensFilter>& filter) {
     using namespace film_spectrum_detail;
     if (illuminant.is_line()) {
         // After white balance all channels are equal: the spectrum of the scene colour at this wavelength.
         const double nm = illuminant.points()[0].wavelength_nm;
         const std::array<double, 3> basis = basis_at(nm);
         WavelengthCell cell{static_cast<float>(nm), static_cast<float>(nm), {}};
-        for (std::size_t k = 0; k < 9; ++k) cell.film[k] = static_cast<float>(basis[k % 3]);
+        const double passed = filter ? filter->transmittance(nm) : 1;
+        if (!(passed > 0)) throw InputError("lens_filter: no light of the illuminant passes");
+        for (std::size_t k = 0; k < 9; ++k) cell.film[k] = static_cast<float>(passed * basis[k % 3]);
         cells_ = {cell};
         return;
     }
-    std::vector<Piece> pieces = pieces_of(illuminant);
-    balance(pieces, illuminant.text());
+    std::vector<Piece> pieces = pieces_of(illuminant, filter);
+    balance(pieces, illuminant, filter.has_value());
     set_density(pieces);
     cells_ = cells_of(pieces, kCells);
 }

@@ -1,8 +1,10 @@
 #pragma once
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "../../../optics/prescription/known_wavelengths.hpp"
+#include "../filter/lens_filter.hpp"
 #include "dispersion_view.hpp"
 #include "illuminant.hpp"
 
@@ -11,7 +13,8 @@ namespace REALCAM_NAMESPACE {
 // Scenes are RGB. The colour of a surface or light is upsampled to a spectrum with the basis of Mallett and Yuksel
 // (2019), times that of the illuminant. For each wavelength, film and sRGB form a 3 x 3 matrix from the scene's colour
 // to the picture's. Its integral over the visible wavelengths is the identity for D65, sRGB's white. For any illuminant
-// the film is white-balanced: each channel is scaled so that white stays white.
+// the film is white-balanced: each channel is scaled so that white stays white. A filter in front of the lens scales
+// the matrix at each wavelength after this balance, so that its colour shows.
 
 namespace film_spectrum_detail {
 
@@ -39,8 +42,9 @@ class FilmSpectrum {
 public:
     static constexpr int kCells = 64 * kSharedWavelengths;
 
-    /// Throws InputError if the illuminant has too little of a colour for white to be balanced.
-    explicit FilmSpectrum(const Illuminant& illuminant);
+    /// Throws InputError if the illuminant has too little of a colour for white to be balanced, or no light of it
+    /// passes the filter.
+    explicit FilmSpectrum(const Illuminant& illuminant, const std::optional<LensFilter>& filter = {});
     /// Uniform over a range of wavelengths, for rays without a colour.
     explicit FilmSpectrum(WavelengthRange range);
 

@@ -14,6 +14,27 @@ struct SpectrumPoint {
     bool operator==(const SpectrumPoint&) const = default;
 };
 
+// A table of a spectrum in the one-word form that users write is "400:0.5,550:1,700:0.2": wavelengths in nm with powers
+// or transmittances. `subject` begins the messages of errors: "illuminant".
+
+/// Throws InputError for fewer than two points, wavelengths that are not strictly increasing, and values out of range.
+void check_spectrum(const std::vector<SpectrumPoint>& points, const std::string& subject);
+
+/// Parses a table. Throws InputError if a pair is not two numbers.
+std::vector<SpectrumPoint> spectrum_points(std::string_view text, const std::string& subject);
+
+/// Linear interpolation between the points, at a wavelength that they enclose.
+double spectrum_at(const std::vector<SpectrumPoint>& points, double wavelength_nm);
+
+/// Text from which spectrum_points makes these points.
+std::string spectrum_text(const std::vector<SpectrumPoint>& points);
+
+/// Parses a finite number; NaN if the text is not one.
+double number_in(std::string_view text);
+
+/// Shortest decimal text that parses to the same number.
+std::string shortest_text(double value);
+
 /// Spectrum of all light in a picture: a standard illuminant (D65, D50, A, FL2), a single line, or a table.
 class Illuminant {
 public:
@@ -26,8 +47,7 @@ public:
     static Illuminant named(std::string_view name);
     /// Throws InputError if the wavelength is not from 380 to 780 nm.
     static Illuminant line(double wavelength_nm);
-    /// Linear between its points, 0 outside. Throws InputError for fewer than two points, wavelengths that are not
-    /// strictly increasing, and values out of range.
+    /// Linear between its points, 0 outside. Throws what check_spectrum throws.
     static Illuminant table(std::vector<SpectrumPoint> points);
     /// Parses the one-word form that users write. Throws InputError if it is invalid.
     static Illuminant parse(std::string_view text);
@@ -55,10 +75,6 @@ private:
         {"D65", kIlluminantD65}, {"D50", kIlluminantD50}, {"A", kIlluminantA}, {"FL2", kIlluminantFL2}};
 
     [[noreturn]] static void fail(const std::string& why) { throw InputError("illuminant: " + why); }
-
-    /// Returns NaN if the text is not a finite number.
-    static double number_in(std::string_view text);
-    static std::string short_text(double value);
 
     std::string name_ = "D65";
     std::vector<SpectrumPoint> points_;  ///< one point for a line
