@@ -3,6 +3,8 @@
 
 #include "../platform.hpp"
 
+// Vectors of two and three components for CPU and GPU, with the usual operators and products.
+
 namespace REALCAM_NAMESPACE {
 
 template <class T>
@@ -62,16 +64,17 @@ template <class T>
 REALCAM_INLINE constexpr Vec3<T> cross(Vec3<T> a, Vec3<T> b) {
     return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
-/// Returns x and y of the point where a line through `origin` crosses the plane at z.
+/// Returns x and y of the intersection of a line through `origin` with the plane at this z. `direction` may have any
+/// length; its z must not be 0.
 template <class T>
 REALCAM_INLINE Vec2<T> crossing_at(T z, Vec3<T> origin, Vec3<T> direction) {
     const T distance = quotient(z - origin.z, direction.z);
     return {origin.x + distance * direction.x, origin.y + distance * direction.y};
 }
-/// Interpolates linearly between a and b.
+/// Interpolates linearly from a (t = 0) to b (t = 1).
 template <class T>
-REALCAM_INLINE constexpr Vec3<T> mix(Vec3<T> a, Vec3<T> b, T share_of_b) {
-    return (T(1) - share_of_b) * a + share_of_b * b;
+REALCAM_INLINE constexpr Vec3<T> mix(Vec3<T> a, Vec3<T> b, T t) {
+    return (T(1) - t) * a + t * b;
 }
 template <class T>
 REALCAM_INLINE T length(Vec3<T> a) {
