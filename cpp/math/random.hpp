@@ -121,6 +121,7 @@ REALCAM_INLINE void add_columns(std::uint32_t index, std::uint32_t& x, std::uint
     const auto add = [&]<int bit>(std::integral_constant<int, bit>) {
         constexpr std::uint32_t column_x = kSobol[pair - 1][0].columns[bit],
                                 column_y = kSobol[pair - 1][1].columns[bit];
+        // All ones if the index bit is set, otherwise 0.
         const auto mask = static_cast<std::uint32_t>(static_cast<std::int32_t>(index << (31 - bit)) >> 31);
         x ^= column_x & mask;
         y ^= column_y & mask;

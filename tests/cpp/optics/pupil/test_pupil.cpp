@@ -131,7 +131,7 @@ TEST_CASE("a pupil found near that of a similar state holds all that passes, and
             const Pupil pupil(state.lens, radius, {}, {}, &before);
             if (!pupil.is_moved()) continue;
             ++moved_pupils;
-            CHECK(pupil.follows());
+            CHECK(pupil.is_continuous());
             check_no_leaks(state, pupil);
             // It may keep the edge of the image where it was, by as much as the searches allow.
             const Pupil anew(state.lens, radius);
