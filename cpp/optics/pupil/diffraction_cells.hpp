@@ -7,9 +7,9 @@ namespace REALCAM_NAMESPACE {
 // times azimuth sectors over half a turn (the pattern is symmetric). Higher frequencies are represented by the edges of
 // the aperture. The unit of frequencies is one period over the width of the aperture.
 
-inline constexpr int kDiffractionAzimuths = 48;            ///< sectors over half a turn
-inline constexpr int kDiffractionFineRings = 144;          ///< rings at which the pattern is computed
-inline constexpr float kDiffractionFineStep = 1.0f / 24;   ///< width of a fine ring
+inline constexpr int kDiffractionAzimuths = 48;  ///< sectors over half a turn
+inline constexpr int kDiffractionFineRings = 144;  ///< rings at which the pattern is computed
+inline constexpr float kDiffractionFineStep = 1.0f / 24;  ///< width of a fine ring
 inline constexpr float kDiffractionReach = 6;  ///< largest frequency of the cells: the fine rings end there
 inline constexpr int kDiffractionThinRings = 60;  ///< innermost fine rings, which are stored one by one
 /// Number of fine rings that are merged into one stored ring further out, where details of the pattern are wider.
