@@ -59,6 +59,7 @@ template <class T>
 REALCAM_INLINE constexpr T select(bool condition, T a, T b) {
     return condition ? a : b;
 }
+/// Same for the components of vectors.
 template <class T>
 REALCAM_INLINE constexpr Vec3<T> select(bool condition, Vec3<T> a, Vec3<T> b) {
     return {condition ? a.x : b.x, condition ? a.y : b.y, condition ? a.z : b.z};

@@ -69,7 +69,7 @@ void check_keys(const std::vector<Key>& keys, const std::string& subject, Check&
 /// along arcs.
 template <class TransformAt>
 Motion sampled_motion(const std::vector<double>& times_s, TransformAt&& transform_at) {
-    constexpr int kMaxHalvings = 8;  // of the interval between two given times
+    constexpr int kMaxHalvings = 8;  // largest number of bisections between two given times
     // Tolerance relative to the lengths of the axes and the distance moved: 1/100 of the tolerance of key_steps.
     constexpr double kTolerance = 1e-5;
     Motion motion;

@@ -7,6 +7,7 @@
 
 namespace REALCAM_NAMESPACE {
 
+/// Vector of two components.
 template <class T>
 struct Vec2 {
     T x, y;
@@ -14,6 +15,7 @@ struct Vec2 {
     constexpr bool operator==(const Vec2&) const = default;
 };
 
+/// Vector, point, or colour of three components.
 template <class T>
 struct Vec3 {
     T x, y, z;
@@ -80,6 +82,7 @@ template <class T>
 REALCAM_INLINE T length(Vec3<T> a) {
     return std::sqrt(dot(a, a));
 }
+/// Returns the vector divided by its length, which must not be 0.
 template <class T>
 REALCAM_INLINE Vec3<T> normalized(Vec3<T> a) {
     return (T(1) / length(a)) * a;

@@ -23,7 +23,8 @@ struct AimedRay {
 /// Each coordinate of the entry point is a polynomial in x and y on the stop, in units of `reach`. The terms x^i y^j
 /// with i + j <= kDegree are ordered by i, then by j.
 struct StopMap {
-    static constexpr int kDegree = 10, kTerms = (kDegree + 1) * (kDegree + 2) / 2;
+    static constexpr int kDegree = 10;  ///< largest i + j
+    static constexpr int kTerms = (kDegree + 1) * (kDegree + 2) / 2;
     double reach;  ///< radius on the stop inside which the polynomials are valid, mm
     double x[kTerms], y[kTerms];  ///< coefficients of the entry point's coordinates, mm
 };

@@ -14,6 +14,7 @@ namespace aperture_diffraction_detail {
 
 namespace {
 
+/// z component of the cross product.
 double cross(Point a, Point b) {
     return a.x * b.y - a.y * b.x;
 }

@@ -64,6 +64,8 @@ public:
 private:
     Vec3d offset(Entry entry) const { return entry.x * across + entry.y * upwards; }
 
+    /// Sets all members but `across` and `upwards`, from the field angle or from the chief ray. Throw InputError as the
+    /// constructor does.
     void set_by_angle(const LensSystem& lens, double wavelength_nm, const FieldPoint& field);
     void set_by_chief_ray(const LensSystem& lens, const FieldPoint& field);
 };

@@ -129,6 +129,7 @@ EdgePoint edge_point(const PointBundle& bundle, const QuadratureArm& arm, double
     return {entries[0], bundle.as_wave(found[0]).slope};
 }
 
+/// Returns the mirror image of a point, at -x.
 EdgePoint mirrored(const EdgePoint& p) {
     return {{-p.entry.x, p.entry.y}, {-p.slope.x, p.slope.y}};
 }

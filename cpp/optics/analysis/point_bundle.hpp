@@ -41,7 +41,7 @@ public:
     Vec2<double> spot;  ///< half sides of the spot's bounding rectangle centred on the chief ray, mm
     Vec2<double> slope_low, slope_high;  ///< bounds of the slopes (WaveRay) of the rays that pass
 
-    static constexpr int kProbeRays = 40;
+    static constexpr int kProbeRays = 40;  ///< default of the constructor's `probe_rays`
 
     /// `film_distance`: from the last vertex to the film, mm. `probe_rays`: number of rays across the diameter of the
     /// stop that locate the light; if too few of them pass, a denser probe follows. Throws InputError if the field
@@ -85,7 +85,7 @@ public:
     double energy(Entry entry) const;
 
 private:
-    static constexpr int kDenseProbeRays = 200;
+    static constexpr int kDenseProbeRays = 200;  ///< rays across the stop of the denser probe
 
     /// Returns the smallest number of passing probe rays that locate the light: 3/80 probe_rays^2, about a twentieth of
     /// the rays over the whole stop, but at least 20.

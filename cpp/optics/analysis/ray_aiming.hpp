@@ -54,7 +54,7 @@ private:
         Vec2<double> at;  ///< point on the stop, mm
         Vec2<double> by_x, by_y;  ///< derivatives of `at` by the coordinates of the entry point
     };
-    static constexpr int kMaxSteps = 40, kMaxHalvings = 24;
+    static constexpr int kMaxSteps = 40, kMaxHalvings = 24;  ///< of Newton's method
     static constexpr double kTolerance = 2.5e-11, kEdgeMargin = 2 * kTolerance;  ///< relative to the stop's radius
 
     /// Traces the ray with this entry point through a view of the lens.

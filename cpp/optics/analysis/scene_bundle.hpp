@@ -79,6 +79,7 @@ public:
     }
 
 private:
+    /// Traces the rays with these entry points to the film.
     template <int N>
     void trace(const Entry (&entries)[N], LensRays<double, N>& rays) const {
         for (int i = 0; i < N; ++i) {

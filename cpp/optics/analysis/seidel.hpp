@@ -57,7 +57,9 @@ struct SeidelTable {
     double lagrange_invariant;  ///< H = n (u' y - u y'), u' and y' of the chief ray, mm
     double wavelength_nm;
 
+    /// Returns the transverse aberrations due to a row.
     TransverseAberrations transverse(const SeidelRow& row) const;
+    /// Returns the wavefront aberration due to a row.
     WaveCoefficients waves(const SeidelRow& row) const;
 };
 

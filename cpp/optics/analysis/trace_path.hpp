@@ -57,6 +57,7 @@ public:
     }
 
 private:
+    /// Returns the wavelength. Throws InputError if it is out of range.
     static double checked(double wavelength_nm) {
         if (!(wavelength_nm >= 100 && wavelength_nm <= 20000))
             throw InputError("the wavelength must lie between 100 and 20000 nm");

@@ -35,7 +35,7 @@ public:
     std::vector<double> gradient(const AdjointRequest& request, const RayLoop& loop = {}) const;
 
 private:
-    static constexpr int kLanes = 32;
+    static constexpr int kLanes = 32;  ///< rays that are traced together
     /// Sums of adjoints over rays, and working memory.
     struct Sums {
         std::vector<AdjointStep<kLanes>> steps;  ///< the entering rays, then one step per surface

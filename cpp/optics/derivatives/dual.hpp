@@ -22,6 +22,7 @@ namespace REALCAM_NAMESPACE {
 /// vector registers.
 template <int N>
 struct Dual {
+    /// Vector of N doubles with element-wise arithmetic.
     typedef double Derivatives __attribute__((vector_size(8 * N), aligned(8)));
 
     double value = 0;

@@ -15,7 +15,7 @@ enum class ExitFrame {
 /// Exit ray with the derivatives of its seven numbers: origin (mm), optical direction, and optical path from the start
 /// (mm). An optical direction has the length of the refractive index.
 struct RayDerivatives {
-    static constexpr int kNumbers = 7;
+    static constexpr int kNumbers = 7;  ///< origin (3), optical direction (3), optical path
     RayStatus status = RayStatus::ok;
     Vec3d origin{}, direction{};
     double path = 0;
@@ -37,7 +37,9 @@ public:
     DualPath(const LensSystem& lens, LightDirection direction, double wavelength_nm,
              std::vector<LensVariable> variables, ExitFrame exit, bool has_rims = true);
 
+    /// Number of variables.
     std::size_t variable_count() const { return variables_.size(); }
+    /// Number of surfaces that the light hits.
     int surface_count() const { return static_cast<int>(views_.size()); }
     // See LensPath.
     double entry_index() const { return entry_index_; }

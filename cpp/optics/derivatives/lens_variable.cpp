@@ -59,6 +59,7 @@ void check_form(const LensVariable& v, const SurfaceForm& form) {
     }
 }
 
+/// Throws InputError if the lens does not have the variable, or if it has no effect.
 void check(const LensSystem& lens, const LensVariable& v) {
     if (v.quantity == LensQuantity::film_distance) return;
     check_surface_exists(lens, v.surface);

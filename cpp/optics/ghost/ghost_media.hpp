@@ -19,6 +19,7 @@ struct alignas(16) GhostCoating : CoatingPolynomials<kWavelengthTerms> {
 /// single wavelength; more for a spectrum, in which each ray has its own wavelength.
 template <int kWavelengthTerms, int N>
 struct GhostMedia {
+    /// True for a spectrum.
     static constexpr bool disperses = kWavelengthTerms > kOneWavelengthTerms;
     using Uncoated = std::conditional_t<disperses, ManyWavelengths::Boundary, OneWavelength::Boundary<float>>;
 
@@ -49,6 +50,7 @@ struct GhostMedia {
         }
     };
 
+    /// Returns the interface at crossing `index`, whose surface is `surface`.
     template <class Surface>
     REALCAM_INLINE auto at(const Surface& surface, int index) const {
         if constexpr (disperses)

@@ -71,7 +71,7 @@ public:
     }
 
 private:
-    static constexpr double kStep = 1.0 / 20;
+    static constexpr double kStep = 1.0 / 20;  // between samples of the line
     static constexpr int kSteps = 35;  // up to a distance of 1.7, past the corners of the bounding rectangle
     static constexpr double kEdgeTolerance = 1e-9;
 

@@ -17,6 +17,7 @@ inline constexpr int kDiffractionThickness = 3;
 /// Number of stored rings.
 inline constexpr int kDiffractionRings =
     kDiffractionThinRings + (kDiffractionFineRings - kDiffractionThinRings) / kDiffractionThickness;
+/// Number of cells: stored ring * kDiffractionAzimuths + azimuth is the index of a cell.
 inline constexpr int kDiffractionCells = kDiffractionRings * kDiffractionAzimuths;
 
 /// Returns the stored ring that contains a fine ring.

@@ -15,7 +15,7 @@ namespace REALCAM_NAMESPACE {
 /// found by tracing real rays. Owns the memory of its PupilView, from which rays are sampled.
 class Pupil {
 public:
-    static constexpr int kRows = PupilRowSearch::kRows;
+    static constexpr int kRows = PupilRowSearch::kRows;  ///< rows of the table; there are kRows + 1 nodes
     static constexpr int kSectors = PupilRow::kSectors;  ///< sectors of a row, for m >= 0
     /// Upper bound of the number of ray blocks that the search takes for any lens: 270 searches for boxes (every eighth
     /// row, the rows around and beyond a dark one, the edge of the image, all rows, and half-way between them),
@@ -66,6 +66,7 @@ private:
     /// one.
     void set_image_edge(PupilRowSearch::RadiusSearch& search);
 
+    /// Converts a box to the type of nodes.
     static PupilNode node_of(const DirectionBox& box);
 
     /// Sets a minimum width for the boxes of the last nodes, because the search grid misses the thin ends of the
@@ -74,6 +75,7 @@ private:
 
     /// Search over the rows of the table.
     PupilRowSearch rows() const { return {search_, image_radius_}; }
+    /// Film radius at a position in rows, mm.
     double radius_at(double position) const { return rows().radius_at(position); }
 
     /// True if the boxes half-way between rows are where their neighbours predict them, or if the pupil is not small.

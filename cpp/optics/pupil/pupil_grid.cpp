@@ -10,6 +10,7 @@ namespace realcam {
 
 namespace {
 
+/// Returns the elements of a list at these indices.
 template <class T>
 std::vector<T> elements_at(const std::vector<std::size_t>& indices, const std::vector<T>& list) {
     std::vector<T> elements;
@@ -17,6 +18,7 @@ std::vector<T> elements_at(const std::vector<std::size_t>& indices, const std::v
     return elements;
 }
 
+/// Assigns elements to a list at these indices.
 template <class T>
 void assign_at(const std::vector<std::size_t>& indices, const std::vector<T>& elements, std::vector<T>& list) {
     for (std::size_t i = 0; i < indices.size(); ++i) list[indices[i]] = elements[i];

@@ -52,6 +52,7 @@ public:
 private:
     static constexpr int kBlock = PupilTracer::kBlock;
 
+    // Numbers of nodes, and index of a node in nodes_.
     int node_columns() const { return columns_ / kCellsPerPupilNode + 1; }
     int node_rows() const { return rows_ / kCellsPerPupilNode + 1; }
     std::size_t node_index(int column, int row) const {

@@ -192,6 +192,7 @@ namespace {
 
 constexpr int kAzimuths = PupilOutline::kAzimuths, kTurn = 2 * kAzimuths;
 
+/// z component of the cross product.
 double cross(Vec2<double> a, Vec2<double> b) {
     return a.x * b.y - a.y * b.x;
 }
@@ -228,6 +229,7 @@ bool move_edge(const OutlineHalves& outline, const DirectionBox& from, const Dir
     return true;
 }
 
+/// True if the region has a central obstruction.
 bool has_hole(const OutlineHalves& outline) {
     return outline[0].inner[0] > 0;
 }

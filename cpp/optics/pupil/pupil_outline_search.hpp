@@ -56,7 +56,8 @@ public:
                                                const std::vector<PupilOutline>& expected, double tolerance);
 
 private:
-    static constexpr int kBlock = PupilLens::kBlock, kScanLines = PupilOutline::kAzimuths + 1;
+    static constexpr int kBlock = PupilLens::kBlock;  ///< rays of a block
+    static constexpr int kScanLines = PupilOutline::kAzimuths + 1;  ///< scan lines of a request
     /// Number of scan lines of a group if all scan lines together do not fill a block. Then seven rays of each scan
     /// line are traced together, which are enough for three bisections.
     static constexpr int kSmallGroup = kBlock / 7;

@@ -49,7 +49,7 @@ public:
 
 private:
     static constexpr int kStride = 8;  ///< step of rows in search_from_axis
-    static constexpr int kMaxEdgeRounds = 32;
+    static constexpr int kMaxEdgeRounds = 32;  ///< largest number of divisions into thirds
 
     /// Searches the radii radius * factors[i] near `box`, the box of `radius`. `factors` must be in ascending order.
     RadiusSearch search_multiples(double radius, const DirectionBox& box, const std::vector<double>& factors) const;

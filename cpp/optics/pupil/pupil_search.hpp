@@ -53,7 +53,9 @@ private:
         PupilDirection highest{0, 0};  ///< midpoint of the passing directions in the highest row
     };
 
+    /// True if regions are symmetric in m, so that only their upper half is searched.
     bool is_symmetric() const { return film_map_ == FilmMap::radial; }
+    /// Returns the grid over the gridded part of a box.
     Grid grid_over(const DirectionBox& box) const { return Grid(film_map_, gridded_part(box)); }
 
     /// Returns the part of a box that a grid covers: the upper half for a symmetric region, otherwise the whole box.

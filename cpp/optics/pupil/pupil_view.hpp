@@ -113,7 +113,7 @@ struct PupilNode {
 /// images. Boxes are interpolated between nodes, and the sectors of a row are used for all film radii from node to
 /// node.
 struct PupilView {
-    static constexpr int kSectors = 32;
+    static constexpr int kSectors = 32;  ///< sectors of half a region
 
     const PupilNode* nodes;  ///< rows + 1
     const PupilSector* outline;  ///< rows x kSectors

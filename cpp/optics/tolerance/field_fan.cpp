@@ -9,7 +9,7 @@ namespace realcam {
 
 namespace {
 
-constexpr int kLanes = 16;
+constexpr int kLanes = 16;  ///< rays that are traced together
 
 }  // namespace
 

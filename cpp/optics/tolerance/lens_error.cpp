@@ -10,6 +10,7 @@ namespace realcam {
 
 namespace {
 
+/// One fringe.
 constexpr double kHalfWavelength_mm = 0.5e-6 * kFringeLine_nm;
 
 /// Applies an error of the radius of curvature.
@@ -59,10 +60,12 @@ void add_to(SurfacePlacement& placement, ErrorKind kind, double size) {
     }
 }
 
+/// True for tilts and decentres of a single surface.
 bool moves_surface(ErrorKind kind) {
     return kind >= ErrorKind::surface_tilt_x && kind <= ErrorKind::surface_decentre_y;
 }
 
+/// True for tilts and decentres of an element.
 bool moves_element(ErrorKind kind) {
     return kind >= ErrorKind::element_tilt_x && kind <= ErrorKind::element_decentre_y;
 }
