@@ -9,7 +9,7 @@ namespace REALCAM_NAMESPACE {
 /// Cell of an alias table, from which an index is drawn with a probability proportional to its weight by one look-up,
 /// whatever the size of the table (Walker 1977). Made by append_alias_table (sampling_tables.hpp).
 struct AliasEntry {
-    float own_probability;          ///< probability with which this cell yields its own index
+    float own_probability;  ///< probability with which this cell yields its own index
     std::int32_t alias;  ///< the index that it yields otherwise
 };
 
