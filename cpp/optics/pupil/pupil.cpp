@@ -17,8 +17,8 @@ Pupil::Pupil(const LensSystem& lens, double film_radius, PupilTracer tracer, con
     lens.require_rotational("the search for a pupil");
     if (!(film_radius > 0) || !(film_radius <= kLongest))
         throw InputError("the film's radius must be a positive length, of at most 1e9 mm");
-    is_moved_ = similar && find_near_similar(*similar);
-    if (!is_moved_) find_from_scratch();
+    was_found_near_similar_ = similar && find_near_similar(*similar);
+    if (!was_found_near_similar_) find_from_scratch();
 }
 
 void Pupil::find_from_scratch() {

@@ -42,7 +42,7 @@ public:
     /// micrometres, whose pupil moves by more than its own size from row to row.
     bool is_continuous() const { return is_continuous_; }
     /// True if the pupil was found near the edges of a similar one.
-    bool is_moved() const { return is_moved_; }
+    bool was_found_near_similar() const { return was_found_near_similar_; }
 
 private:
     /// Half-width in direction cosines below which a pupil may move by more than its own size from row to row.
@@ -117,7 +117,7 @@ private:
 
     PupilSearch search_;
     double film_radius_, image_radius_;  ///< mm
-    bool ends_inside_film_ = false, is_continuous_ = false, is_moved_ = false;
+    bool ends_inside_film_ = false, is_continuous_ = false, was_found_near_similar_ = false;
     std::vector<PupilNode> nodes_;
     DirectionBox last_box_{};  ///< box of the outermost lit radius
     /// Outlines in the boxes of the nodes: this pupil's own, or those of the similar one from which it was found.
