@@ -54,7 +54,7 @@ private:
         Vec2<double> at;  ///< point on the stop, mm
         Vec2<double> by_x, by_y;  ///< derivatives of `at` by the coordinates of the entry point
     };
-    static constexpr int kMaxSteps = 40, kMaxHalvings = 24;  ///< of Newton's method
+    static constexpr int kMaxSteps = 40, kMaxHalvings = 24;  ///< limits of the searches by Newton's method
     static constexpr double kTolerance = 2.5e-11, kEdgeMargin = 2 * kTolerance;  ///< relative to the stop's radius
 
     /// Traces the ray with this entry point through a view of the lens.
@@ -86,7 +86,7 @@ private:
     AimingPath open_, real_;  ///< the lens without and with rims
     double stop_bounding_radius_;  ///< radius of the circle around the stop's opening, which may have blades
     double stop_radius_;  ///< mm
-    double step_;  ///< of finite differences on the entry plane, mm
+    double step_;  ///< step of finite differences on the entry plane, mm
     Entry chief_{0, 0};  ///< entry point of the chief ray
     Vec3d frame_{0, 0, 0};  ///< origin of the object's frame, in the lens frame
 };
