@@ -168,7 +168,7 @@ void CameraSetup::check_light() const {
         throw InputError("no light passes " + lens +
                          " in this state: what it blocks in the middle is larger than what its stop leaves open, or "
                          "a surface is out of reach");
-    if (pupil_ && !pupil_->follows())
+    if (pupil_ && !pupil_->is_continuous())
         throw InputError("the stop of " + lens + ", a hole of radius " +
                          std::to_string(1000 * camera_.lens.stop_semi_diameter) +
                          " um, is too small for pictures through every surface; open it, or use another camera model");

@@ -40,7 +40,7 @@ public:
     /// Pupil of a lens without rotational symmetry; null for other cameras.
     const PupilGrid* pupil_grid() const { return pupil_grid_.get(); }
     /// True if the pupil does not depend on the earlier set-up that the search started from (PupilStart).
-    bool has_new_pupil() const { return !pupil_ || !pupil_->is_moved(); }
+    bool has_new_pupil() const { return !pupil_ || !pupil_->was_found_near_similar(); }
     FilmArea film_area() const;
     /// True if lights can be traced through every surface of the lens.
     bool traces_lights() const {

@@ -12,6 +12,7 @@ struct Color {
     constexpr bool operator==(const Color&) const = default;
 };
 
+/// Colour with three equal channels.
 REALCAM_INLINE constexpr Color grey(float v) {
     return {v, v, v};
 }
@@ -36,14 +37,17 @@ REALCAM_INLINE constexpr Color& operator+=(Color& a, Color b) {
 REALCAM_INLINE constexpr Color& operator*=(Color& a, Color b) {
     return a = a * b;
 }
-REALCAM_INLINE constexpr Color mix(Color a, Color b, float share_of_b) {
-    return (1.0f - share_of_b) * a + share_of_b * b;
+/// Interpolates linearly from a (t = 0) to b (t = 1).
+REALCAM_INLINE constexpr Color mix(Color a, Color b, float t) {
+    return (1.0f - t) * a + t * b;
 }
 
+/// Largest of the three channels.
 REALCAM_INLINE constexpr float largest(Color c) {
     const float rg = c.r > c.g ? c.r : c.g;
     return rg > c.b ? rg : c.b;
 }
+/// True if the channels sum to 0 or less, or to NaN.
 REALCAM_INLINE constexpr bool is_black(Color c) {
     return !(c.r + c.g + c.b > 0.0f);
 }
@@ -51,6 +55,7 @@ REALCAM_INLINE constexpr bool is_black(Color c) {
 REALCAM_INLINE constexpr float luminance(Color c) {
     return 0.2126f * c.r + 0.7152f * c.g + 0.0722f * c.b;
 }
+/// Returns a if the condition holds, else b, without a branch.
 REALCAM_INLINE constexpr Color select(bool condition, Color a, Color b) {
     return {condition ? a.r : b.r, condition ? a.g : b.g, condition ? a.b : b.b};
 }

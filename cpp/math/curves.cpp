@@ -8,18 +8,18 @@
 
 namespace realcam {
 
-OddCurve::OddCurve(std::vector<double> values, bool rises_where_values_do) : values_(std::move(values)) {
+OddCurve::OddCurve(std::vector<double> values, bool monotone) : values_(std::move(values)) {
     for (int k = 0; k < count(); ++k) {
         const double slope = slope_at(k);
-        slopes_.push_back(rises_where_values_do ? limited(k, slope) : slope);
+        slopes_.push_back(monotone ? monotone_slope(k, slope) : slope);
     }
 }
 
-OddCurve::Point OddCurve::between(int k, double share) const {
+OddCurve::Point OddCurve::between(int k, double t) const {
     const auto i = static_cast<std::size_t>(k);
-    const double from = slopes_[i], to = slopes_[i + 1], rise = values_[i + 1] - values_[i];
-    const double c = 3 * rise - 2 * from - to, d = from + to - 2 * rise;
-    return {values_[i] + share * (from + share * (c + share * d)), from + share * (2 * c + 3 * share * d)};
+    const double slope_0 = slopes_[i], slope_1 = slopes_[i + 1], rise = values_[i + 1] - values_[i];
+    const double c = 3 * rise - 2 * slope_0 - slope_1, d = slope_0 + slope_1 - 2 * rise;
+    return {values_[i] + t * (slope_0 + t * (c + t * d)), slope_0 + t * (2 * c + 3 * t * d)};
 }
 
 OddCurve::Point OddCurve::at(double position) const {
@@ -41,7 +41,7 @@ double OddCurve::slope_at(int k) const {
     return std::numeric_limits<double>::quiet_NaN();
 }
 
-double OddCurve::limited(int k, double slope) const {
+double OddCurve::monotone_slope(int k, double slope) const {
     for (const double rise : {value_at(k + 1) - value_at(k), value_at(k) - value_at(k - 1)}) {
         if (!std::isfinite(rise)) continue;
         slope = rise * slope > 0 ? std::copysign(std::min(std::fabs(slope), 3 * std::fabs(rise)), rise) : 0;
@@ -51,8 +51,9 @@ double OddCurve::limited(int k, double slope) const {
 
 namespace {
 
-/// Returns the slope at an end point, by the parabola through it and the two points beside it, limited so that the
-/// cubic stays monotone. `near`, `far`: slopes of the chords from the end on, over intervals of these widths.
+/// Returns the slope at an end point: that of the parabola through it and the next two points, limited so that the
+/// segment stays monotone. `near`, `far`: slopes of the first and the second chord from the end; `near_width` and
+/// `far_width` are their extents in x.
 double end_slope(double near_width, double near, double far_width, double far) {
     const double slope = ((2 * near_width + far_width) * near - near_width * far) / (near_width + far_width);
     if (slope * near <= 0) return 0;
@@ -72,7 +73,7 @@ MonotoneCurve::MonotoneCurve(std::vector<double> x, std::vector<double> y, Curve
         const double a = 2 * width(i) + width(i - 1), b = width(i) + 2 * width(i - 1);
         slopes_[i] = (a + b) / (a / before + b / after);
     }
-    if (ends == CurveEnds::rest || last == 0) return;
+    if (ends == CurveEnds::zero_slope || last == 0) return;
     if (last == 1) {
         slopes_[0] = slopes_[1] = chord(0);
         return;

@@ -11,17 +11,19 @@ struct GaussNode {
     double node, weight;
 };
 
-/// Returns node k, from 0, of n. Nodes decrease from 1 towards 0.
+/// Returns node k (from 0) of the rule with n nodes, which is exact for polynomials up to degree 2 n - 1. Nodes are in
+/// descending order.
 inline GaussNode gauss_node(int n, int k) {
+    // Root of the Legendre polynomial P_n by Newton's method, from Tricomi's estimate.
     double x = std::cos(std::numbers::pi * (k + 0.75) / (n + 0.5)), slope = 1;
-    for (int step = 0; step < 10; ++step) {  // from there, Newton's method has all digits after four
-        double last = 1, value = x;
+    for (int step = 0; step < 10; ++step) {  // four suffice for double precision
+        double previous = 1, value = x;  // P_(j - 2) and P_(j - 1)
         for (int j = 2; j <= n; ++j) {
-            const double next = ((2 * j - 1) * x * value - (j - 1) * last) / j;
-            last = value;
+            const double next = ((2 * j - 1) * x * value - (j - 1) * previous) / j;
+            previous = value;
             value = next;
         }
-        slope = n * (x * value - last) / (x * x - 1);
+        slope = n * (x * value - previous) / (x * x - 1);
         x -= value / slope;
     }
     return {0.5 * (1 + x), 1 / ((1 - x * x) * slope * slope)};

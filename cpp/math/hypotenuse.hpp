@@ -16,7 +16,7 @@ inline double hypotenuse(double x, double y) {
     }
 }
 
-/// The same in single precision, whose squares double holds without rounding.
+/// Single-precision overload. Squares of floats are exact in double precision.
 inline float hypotenuse(float x, float y) {
     if (std::isinf(x) || std::isinf(y)) return std::numeric_limits<float>::infinity();
     return static_cast<float>(std::sqrt(double{x} * double{x} + double{y} * double{y}));

@@ -5,13 +5,13 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Two successive keys at uniform times from 0 to 1, and a fraction of the interval between them.
+/// Position in an animation whose keys are at uniform times from 0 to 1.
 struct KeyInterval {
-    std::int32_t first;
-    float share;
+    std::int32_t first;  ///< index of the key at or before the time; the next key is `first` + 1
+    float share;         ///< fraction, from 0 to 1, of the interval between the two keys
 };
 
-/// Returns the interval of a time among `count` keys, which are at least 2.
+/// Returns the position of a time from 0 to 1 among `count` keys. There must be at least two keys.
 REALCAM_INLINE KeyInterval key_interval(float time, std::int32_t count) {
     const float position = time * static_cast<float>(count - 1);
     const auto whole = static_cast<std::int32_t>(position);

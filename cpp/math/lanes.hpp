@@ -3,6 +3,9 @@
 
 #include "vec3.hpp"
 
+// Arrays of lanes: code on blocks of N rays is written as loops over lanes, which compilers turn into vector
+// instructions. A GPU thread uses N = 1.
+
 namespace REALCAM_NAMESPACE {
 
 /// Array of N lanes aligned to a cache line, for vector loads. A GPU thread has one lane, which must not be
@@ -16,7 +19,8 @@ struct AlignedLanes {
 template <class T, int N>
 using Lanes = typename AlignedLanes<T, N>::type;
 
-/// Rounds `count` lanes of N up to whole vector registers: a loop to this number needs no scalar remainder.
+/// Returns `count`, at most N, rounded up to a multiple of the lanes of the widest vector register: a loop over that
+/// many lanes needs no scalar remainder loop.
 template <int N>
 REALCAM_INLINE constexpr int whole_vectors(int count) {
     constexpr int kWidest = 16;  // floats of AVX-512
@@ -38,7 +42,7 @@ struct Vec3Lanes {
     }
 };
 
-/// N pairs in structure-of-arrays form.
+/// N two-component vectors in structure-of-arrays form.
 template <class T, int N>
 struct Vec2Lanes {
     Lanes<T, N> x, y;
@@ -55,6 +59,7 @@ template <class T>
 REALCAM_INLINE constexpr T select(bool condition, T a, T b) {
     return condition ? a : b;
 }
+/// Same for the components of vectors.
 template <class T>
 REALCAM_INLINE constexpr Vec3<T> select(bool condition, Vec3<T> a, Vec3<T> b) {
     return {condition ? a.x : b.x, condition ? a.y : b.y, condition ? a.z : b.z};

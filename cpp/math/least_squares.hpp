@@ -9,15 +9,16 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Least-squares fit of each target by the columns, by the modified Gram-Schmidt method. All have the same length;
-/// entries of columns are of the order of 1. A column that is a linear combination of those before it has the factor 0.
-/// Returns, for each target, a factor for each column.
+/// Fits each target by a linear combination of the columns, by least squares (modified Gram-Schmidt method). Columns
+/// and targets must all have the same length, and the entries of columns should be of the order of 1. Returns a list of
+/// coefficients for each target, one for each column. A column that is linearly dependent on the columns before it has
+/// the coefficient 0.
 std::vector<std::vector<double>> least_squares(const std::vector<std::vector<double>>& columns,
                                                std::vector<std::vector<double>> targets);
 
-/// Returns the coefficients, constant first, of the least-squares polynomial for points (x, y), with x within [-1, 1].
-/// A power that is linearly dependent on lower ones at these x, because they are few or coincide, has the coefficient
-/// 0.
+/// Returns the coefficients, constant term first, of the polynomial of degree kTerms - 1 that fits the points (x, y) by
+/// least squares; x must lie within [-1, 1]. If there are fewer distinct x than coefficients, those of the highest
+/// powers are 0.
 template <std::size_t kTerms>
 std::array<double, kTerms> fit_polynomial(const std::vector<double>& x, std::vector<double> y) {
     std::vector<std::vector<double>> powers(1, std::vector<double>(x.size(), 1));
@@ -26,8 +27,8 @@ std::array<double, kTerms> fit_polynomial(const std::vector<double>& x, std::vec
         for (std::size_t i = 0; i < x.size(); ++i) powers[k][i] *= x[i];
     }
     std::array<double, kTerms> coefficients{};
-    const auto factors = least_squares(powers, {std::move(y)});
-    std::copy(factors[0].begin(), factors[0].end(), coefficients.begin());
+    const auto fits = least_squares(powers, {std::move(y)});
+    std::copy(fits[0].begin(), fits[0].end(), coefficients.begin());
     return coefficients;
 }
 

@@ -7,9 +7,9 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// 2 x 2 matrix, by rows.
+/// 2 x 2 matrix.
 struct Matrix2 {
-    Vec2<double> first, second;
+    Vec2<double> first, second;  ///< rows
 
     Vec2<double> operator*(Vec2<double> v) const {
         return {first.x * v.x + first.y * v.y, second.x * v.x + second.y * v.y};
@@ -28,12 +28,12 @@ struct Matrix2 {
     double determinant() const { return first.x * second.y - first.y * second.x; }
     double trace() const { return first.x + second.y; }
     Matrix2 transposed() const { return {{first.x, second.x}, {first.y, second.y}}; }
-    /// The determinant must not be 0.
+    /// Returns the inverse. The determinant must not be 0.
     Matrix2 inverse() const { return (1 / determinant()) * Matrix2{{second.y, -first.y}, {-second.x, first.x}}; }
 };
 
-/// Singular value decomposition m = left diag(larger, smaller) right^T, with rotations on both sides: the smaller value
-/// has the determinant's sign.
+/// Singular value decomposition m = left diag(larger, smaller) right^T, in which `left` and `right` are rotations. The
+/// smaller value therefore has the sign of the determinant.
 struct SingularValues {
     double larger, smaller;
     double left, right;  ///< angles of the rotations, rad

@@ -24,9 +24,9 @@ std::vector<double> sorted_once(std::vector<double> times) {
     return times;
 }
 
-std::string key_time_error(double time_s, const double* last) {
+std::string key_time_error(double time_s, const double* previous) {
     if (!(std::fabs(time_s) <= kMostSeconds)) return "a time must lie within 1e9 s";
-    return last && !(*last < time_s) ? "the times must rise" : "";
+    return previous && !(*previous < time_s) ? "the times must rise" : "";
 }
 
 std::vector<Affine<double>> uniform_keys(const Motion& motion, const TimeInterval& interval, int steps) {
@@ -36,42 +36,45 @@ std::vector<Affine<double>> uniform_keys(const Motion& motion, const TimeInterva
 }
 
 std::optional<int> key_steps(const Motion& motion, const TimeInterval& interval, std::span<const Vec3d> points) {
-    constexpr double kOfPath = 1e-3, kOfSize = 1e-5, kTooFar = 0.1;
-    // The path is checked at the motion's own keys, and at sevenths between them, which also lie at sevenths of every
-    // power of two of steps, and so near the middles of some.
+    // Tolerances, relative to the displacement and to the extent of the points, and the largest error relative to the
+    // displacement.
+    constexpr double kOfDisplacement = 1e-3, kOfExtent = 1e-5, kMaxError = 0.1;
+    // Positions are compared at the keys of the motion and at sevenths between them. For any power of two of steps
+    // these lie at sevenths of a step, some of them near its middle, where the error of linear interpolation is
+    // largest.
     std::vector<double> times = {interval.begin_s};
-    const auto look_until = [&](double end) {
+    const auto add_times_until = [&](double end) {
         const double begin = times.back();
         for (int k = 1; k <= 7; ++k) times.push_back(begin + (end - begin) * k / 7);
     };
-    for (const double key : motion.times_within(interval)) look_until(key);
-    if (interval.end_s > interval.begin_s) look_until(interval.end_s);
-    std::vector<Affine<double>> path;
-    for (const double time : times) path.push_back(motion.at(time));
-    const auto farthest = [&](const Affine<double>& a, const Affine<double>& b) {
-        double most = 0;
-        for (const Vec3d p : points) most = std::max(most, length(a.point(p) - b.point(p)));
-        return most;
+    for (const double key : motion.times_within(interval)) add_times_until(key);
+    if (interval.end_s > interval.begin_s) add_times_until(interval.end_s);
+    std::vector<Affine<double>> maps;
+    for (const double time : times) maps.push_back(motion.at(time));
+    const auto largest_distance = [&](const Affine<double>& a, const Affine<double>& b) {
+        double largest = 0;
+        for (const Vec3d p : points) largest = std::max(largest, length(a.point(p) - b.point(p)));
+        return largest;
     };
-    double path_length = 0, size = 0, reach = 0;
-    for (const auto& map : path) path_length = std::max(path_length, farthest(map, path[0]));
-    for (const Vec3d p : points) reach = std::max(reach, length(path[0].point(p)));
+    double displacement = 0, extent = 0, distance_from_origin = 0;
+    for (const auto& map : maps) displacement = std::max(displacement, largest_distance(map, maps[0]));
+    for (const Vec3d p : points) distance_from_origin = std::max(distance_from_origin, length(maps[0].point(p)));
     constexpr double kRounding = 1e-14;  // relative to the distance from the origin, for points at rest
-    if (path_length <= kRounding * reach) return 0;
-    for (const Vec3d p : points) size = std::max(size, length(path[0].direction(p - points[0])));
-    const double close = std::max(kOfPath * path_length, kOfSize * size);
+    if (displacement <= kRounding * distance_from_origin) return 0;
+    for (const Vec3d p : points) extent = std::max(extent, length(maps[0].direction(p - points[0])));
+    const double tolerance = std::max(kOfDisplacement * displacement, kOfExtent * extent);
     for (int steps = 1;; steps *= 2) {
         const std::vector<Affine<double>> keys = uniform_keys(motion, interval, steps);
-        const double wanted = steps < kMostKeySteps ? close : std::max(kTooFar * path_length, close);
-        double most = 0;
-        for (std::size_t i = 0; i < times.size() && most <= wanted; ++i) {
+        const double max_error = steps < kMaxKeySteps ? tolerance : std::max(kMaxError * displacement, tolerance);
+        double largest = 0;
+        for (std::size_t i = 0; i < times.size() && largest <= max_error; ++i) {
             const double position = (times[i] - interval.begin_s) / (interval.end_s - interval.begin_s) * steps;
             const auto k = static_cast<std::size_t>(std::clamp(std::floor(position), 0.0, steps - 1.0));
-            const double share = position - static_cast<double>(k);
-            most = std::max(most, farthest(path[i], mix(keys[k], keys[k + 1], share)));
+            const double fraction = position - static_cast<double>(k);
+            largest = std::max(largest, largest_distance(maps[i], mix(keys[k], keys[k + 1], fraction)));
         }
-        if (most <= wanted) return steps;
-        if (steps == kMostKeySteps) return std::nullopt;
+        if (largest <= max_error) return steps;
+        if (steps == kMaxKeySteps) return std::nullopt;
     }
 }
 

@@ -3,8 +3,11 @@
 
 #include "../platform.hpp"
 
+// Vectors of two and three components for CPU and GPU, with the usual operators and products.
+
 namespace REALCAM_NAMESPACE {
 
+/// Vector of two components.
 template <class T>
 struct Vec2 {
     T x, y;
@@ -12,6 +15,7 @@ struct Vec2 {
     constexpr bool operator==(const Vec2&) const = default;
 };
 
+/// Vector, point, or colour of three components.
 template <class T>
 struct Vec3 {
     T x, y, z;
@@ -62,21 +66,23 @@ template <class T>
 REALCAM_INLINE constexpr Vec3<T> cross(Vec3<T> a, Vec3<T> b) {
     return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
-/// Returns x and y of the point where a line through `origin` crosses the plane at z.
+/// Returns x and y of the intersection of a line through `origin` with the plane at this z. `direction` may have any
+/// length; its z must not be 0.
 template <class T>
 REALCAM_INLINE Vec2<T> crossing_at(T z, Vec3<T> origin, Vec3<T> direction) {
     const T distance = quotient(z - origin.z, direction.z);
     return {origin.x + distance * direction.x, origin.y + distance * direction.y};
 }
-/// Interpolates linearly between a and b.
+/// Interpolates linearly from a (t = 0) to b (t = 1).
 template <class T>
-REALCAM_INLINE constexpr Vec3<T> mix(Vec3<T> a, Vec3<T> b, T share_of_b) {
-    return (T(1) - share_of_b) * a + share_of_b * b;
+REALCAM_INLINE constexpr Vec3<T> mix(Vec3<T> a, Vec3<T> b, T t) {
+    return (T(1) - t) * a + t * b;
 }
 template <class T>
 REALCAM_INLINE T length(Vec3<T> a) {
     return std::sqrt(dot(a, a));
 }
+/// Returns the vector divided by its length, which must not be 0.
 template <class T>
 REALCAM_INLINE Vec3<T> normalized(Vec3<T> a) {
     return (T(1) / length(a)) * a;

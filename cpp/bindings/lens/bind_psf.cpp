@@ -63,9 +63,9 @@ Psf psf_by_fft(const LensSystem& lens, const PsfRequest& request) {
     {
         const Unlocked unlocked;
         const RayLoop loop = parallel_ray_loop(heed_signals);
-        auto [parts, started] = psf_detail::start(lens, request, loop);
+        auto [parts, started] = psf_detail::prepare(lens, request, loop);
         psf = std::move(started);
-        for (const psf_detail::Part& part : parts) pupils.push_back(psf_pupil(part, psf, loop));
+        for (const psf_detail::ColourPart& part : parts) pupils.push_back(psf_pupil(part, psf, loop));
     }
     const py::object inverse = py::module_::import("numpy.fft").attr("ifft2");
     double ideal = 0;

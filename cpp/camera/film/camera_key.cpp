@@ -112,7 +112,7 @@ std::optional<double> value_at(Keys all, const Ring& ring, double time_s) {
         times.push_back(keys[i]->time_s);
         scaled.push_back(ring.scale(value(i)));
     }
-    const CurveEnds ends = is_smooth ? CurveEnds::rest : CurveEnds::free;
+    const CurveEnds ends = is_smooth ? CurveEnds::zero_slope : CurveEnds::free;
     return ring.from_scale(MonotoneCurve(std::move(times), std::move(scaled), ends).at(time_s));
 }
 

@@ -14,6 +14,7 @@ namespace aperture_diffraction_detail {
 
 namespace {
 
+/// z component of the cross product.
 double cross(Point a, Point b) {
     return a.x * b.y - a.y * b.x;
 }
@@ -33,56 +34,59 @@ double normal_angle(Point from, Point to) {
 
 namespace {
 
-/// Difference of two angles in turns, from -1/2 to 1/2.
-double turn_between(double from, double to) {
+/// Returns the difference of two angles in turns, from -1/2 to 1/2.
+double angle_between(double from, double to) {
     const double turn = to - from;
     return turn - std::round(turn);
 }
 
-/// Threshold in turns: a corner lies between a side and the second one after it if their directions differ by more.
-/// Nine straight blades turn by 1/9 at a corner; a circle of 128 sides turns by 2/128 over two sides.
-constexpr double kCorner = 12.0 / 360;
+/// Smallest change of direction between the two neighbours of a side, in turns, at which the side cuts off a corner. At
+/// a corner of nine straight blades the direction changes by 1/9, and over two sides of a circle of 128 sides by 2/128.
+constexpr double kCornerAngle = 12.0 / 360;
 
+/// Side of a polygon.
 struct Side {
     Point from, to;
-    double angle;  ///< direction of the outward normal, turns
+    double angle;  ///< azimuth of the outward normal, turns
     bool begins_at_corner = false, ends_at_corner = false;
 
     Side(Point from, Point to) : from(from), to(to), angle(normal_angle(from, to)) {}
     double length() const { return hypotenuse(to.x - from.x, to.y - from.y); }
 };
 
-/// Returns the sides of a polygon, with sharp corners. The polygon's points lie beside the corners of the true edge, so
-/// that a short side cuts each corner off: it is dropped, and its neighbours are extended until they intersect.
+/// Returns the sides of a polygon after restoring its corners. The points of the polygon lie on the true edge, beside
+/// its corners, so that a short side cuts each corner off. These sides are dropped, and their neighbours are extended
+/// until they intersect.
 std::vector<Side> sides_of(const std::vector<Point>& polygon) {
     const std::size_t count = polygon.size();
     std::vector<Side> sides;
     for (std::size_t k = 0; k < count; ++k) sides.emplace_back(polygon[k], polygon[(k + 1) % count]);
-    const auto turn_over = [&](std::size_t k) {
-        return std::fabs(turn_between(sides[(k + count - 1) % count].angle, sides[(k + 1) % count].angle));
+    const auto bend_at = [&](std::size_t k) {
+        return std::fabs(angle_between(sides[(k + count - 1) % count].angle, sides[(k + 1) % count].angle));
     };
     std::vector<bool> cuts_corner(count);
     for (std::size_t k = 0; k < count; ++k) {
-        const double turn = turn_over(k);
+        const double turn = bend_at(k);
         cuts_corner[k] =
-            turn > kCorner && turn >= turn_over((k + 1) % count) && turn > turn_over((k + count - 1) % count);
+            turn > kCornerAngle && turn >= bend_at((k + 1) % count) && turn > bend_at((k + count - 1) % count);
     }
-    std::vector<Side> sharp;
+    std::vector<Side> result;
     for (std::size_t k = 0; k < count; ++k) {
         Side &before = sides[(k + count - 1) % count], &after = sides[(k + 1) % count];
         if (!cuts_corner[k]) continue;
-        const Point along = before.to - before.from, other = after.to - after.from;
-        const double t = cross(after.from - before.from, other) / cross(along, other);
-        const Point corner = {before.from.x + t * along.x, before.from.y + t * along.y};
+        const Point along_before = before.to - before.from, along_after = after.to - after.from;
+        const double t = cross(after.from - before.from, along_after) / cross(along_before, along_after);
+        const Point corner = {before.from.x + t * along_before.x, before.from.y + t * along_before.y};
         before.to = after.from = corner;
         before.ends_at_corner = after.begins_at_corner = true;
     }
     for (std::size_t k = 0; k < count; ++k)
-        if (!cuts_corner[k] && sides[k].length() > 0) sharp.push_back(sides[k]);
-    return sharp;
+        if (!cuts_corner[k] && sides[k].length() > 0) result.push_back(sides[k]);
+    return result;
 }
 
-/// Appends the sides as edges with the normals at both ends; the normal turns uniformly along a smooth edge.
+/// Appends the sides of a polygon to `edges`, with their normals at both ends. On a smooth edge, the normal at the
+/// point between two sides is the mean of their normals; it rotates uniformly along a side.
 void add_edges(const std::vector<Side>& sides, std::vector<ApertureDiffraction::Edge>& edges) {
     const std::size_t count = sides.size();
     // Length of the smooth edge that contains a side: to the next corner in both directions.
@@ -99,8 +103,8 @@ void add_edges(const std::vector<Side>& sides, std::vector<ApertureDiffraction::
     }
     for (std::size_t k = 0; k < count; ++k) {
         const Side& side = sides[k];
-        double before = 0.5 * turn_between(sides[(k + count - 1) % count].angle, side.angle),
-               after = 0.5 * turn_between(side.angle, sides[(k + 1) % count].angle);
+        double before = 0.5 * angle_between(sides[(k + count - 1) % count].angle, side.angle),
+               after = 0.5 * angle_between(side.angle, sides[(k + 1) % count].angle);
         if (side.begins_at_corner) before = side.ends_at_corner ? 0 : after;
         if (side.ends_at_corner) after = side.begins_at_corner ? 0 : before;
         const double begin = side.angle - before;
@@ -110,8 +114,9 @@ void add_edges(const std::vector<Side>& sides, std::vector<ApertureDiffraction::
     }
 }
 
-/// Adds |F|^2 along one direction at the centres of the rings. By Gauss's theorem for exp(-2 pi i f u.x) over the
-/// aperture, F is the sum over the sides of i / (2 pi f) (u x e) sinc(f u.e) exp(-2 pi i f u.m).
+/// Adds |F|^2 of frequencies in one direction u (at `angle`, rad) to `power`, at the centres of the fine rings. F is
+/// the Fourier transform of the aperture, the integral of exp(-2 pi i f u.x). By Gauss's theorem it is the sum over the
+/// sides of i / (2 pi f) (u x e) sinc(f u.e) exp(-2 pi i f u.m), where e is the side and m its midpoint.
 void add_power_along(const std::vector<Side>& sides, double angle, std::array<double, kDiffractionFineRings>& power) {
     constexpr double kPi = std::numbers::pi;
     const Point u = {std::cos(angle), std::sin(angle)};
@@ -133,13 +138,13 @@ void add_power_along(const std::vector<Side>& sides, double angle, std::array<do
         double sum_re = 0, sum_im = 0;
 #pragma omp simd reduction(+ : sum_re, sum_im)
         for (std::size_t k = 0; k < count; ++k) {
-            // sin x / x, with an error below 1e-7 up to the largest x, 0.4.
+            // sinc = sin x / x with x^2 = f^2 along[k]; the error is below 1e-7 up to the largest x, 0.4.
             const double x2 = f * f * along[k], sinc = 1 - x2 * (1.0 / 6 - x2 * (1.0 / 120 - x2 * (1.0 / 5040)));
             sum_re += across[k] * sinc * re[k];
             sum_im += across[k] * sinc * im[k];
-            const double turned = re[k] * step_re[k] - im[k] * step_im[k];
+            const double next_re = re[k] * step_re[k] - im[k] * step_im[k];
             im[k] = re[k] * step_im[k] + im[k] * step_re[k];
-            re[k] = turned;
+            re[k] = next_re;
         }
         power[ring] += (sum_re * sum_re + sum_im * sum_im) / (4 * kPi * kPi * f * f);
     }
@@ -164,9 +169,9 @@ ApertureDiffraction diffraction_of(const PupilEdges& edges) {
         for (Point& point : polygon)
             point = {(point.x - 0.5 * (low.x + high.x)) / result.width,
                      (point.y - 0.5 * (low.y + high.y)) / result.width};
-        const std::vector<Side> own = sides_of(polygon);
-        add_edges(own, result.edges);
-        sides.insert(sides.end(), own.begin(), own.end());
+        const std::vector<Side> sides_of_polygon = sides_of(polygon);
+        add_edges(sides_of_polygon, result.edges);
+        sides.insert(sides.end(), sides_of_polygon.begin(), sides_of_polygon.end());
     }
     for (const Side& side : sides) {
         area += 0.5 * cross(side.from, side.to);
@@ -183,14 +188,14 @@ ApertureDiffraction diffraction_of(const PupilEdges& edges) {
             add_power_along(sides, kPi * (azimuth + half) / kDiffractionAzimuths, power);
         for (int ring = 0; ring < kDiffractionFineRings; ++ring) {
             const double f = (ring + 0.5) * kFineStep;
-            const double share =
+            const double fraction =
                 power[static_cast<std::size_t>(ring)] * f * kFineStep * kPi / kDiffractionAzimuths / area;
-            result.cells[static_cast<std::size_t>(cell_of_fine_ring(ring) * kDiffractionAzimuths + azimuth)] += share;
-            sum += share;
+            result.cells[static_cast<std::size_t>(stored_ring_of(ring) * kDiffractionAzimuths + azimuth)] += fraction;
+            sum += fraction;
         }
     }
     result.found_share = sum + result.edge_share;
-    for (double& share : result.cells) share *= (1 - result.edge_share) / sum;
+    for (double& fraction : result.cells) fraction *= (1 - result.edge_share) / sum;
     return result;
 }
 

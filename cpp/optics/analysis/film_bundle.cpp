@@ -16,39 +16,41 @@ LensSystem with_round_stop(LensSystem lens) {
 
 namespace {
 
-/// Approximate bounds of the light of a film point, from rays close to its chief ray.
+/// Returns approximate bounds of the light of a film point, extrapolated from rays close to its chief ray (parabasal
+/// rays) to the edge of the stop.
 EntryRectangle rectangle_about(const ChiefRay& chief, const ParabasalRays& rays, double index, double stop_radius,
-                               const FilmSurface<double>& film, Vec2<double> at) {
-    const Matrix2 by_stop = rays.stop_by_film_direction.inverse();
-    const Vec3d x = film.direction(at, {1, 0, 0}), y = film.direction(at, {0, 1, 0});
+                               const FilmSurface<double>& film, Vec2<double> film_point) {
+    const Matrix2 direction_by_stop = rays.stop_by_film_direction.inverse();
+    const Vec3d x = film.direction(film_point, {1, 0, 0}), y = film.direction(film_point, {0, 1, 0});
     const Vec3d direction = -index * chief.film_direction;
     return {{dot(direction, x), dot(direction, y)},
-            {stop_radius * hypotenuse(by_stop.first.x, by_stop.first.y),
-             stop_radius * hypotenuse(by_stop.second.x, by_stop.second.y)}};
+            {stop_radius * hypotenuse(direction_by_stop.first.x, direction_by_stop.first.y),
+             stop_radius * hypotenuse(direction_by_stop.second.x, direction_by_stop.second.y)}};
 }
 
-/// Returns segments between the edges on neighbouring radial scan lines. An interval of light on only one of the two
-/// lines is closed by a segment along that line.
+/// Returns the outline of the light as segments that join its edges on neighbouring radial scan lines. An interval that
+/// exists on only one of the two lines is closed by a segment along that line.
 std::vector<std::array<Vec2<double>, 2>> outline_of(const FilmBundle& light, const std::vector<QuadratureArm>& arms) {
-    std::vector<std::array<Vec2<double>, 2>> pieces;
+    std::vector<std::array<Vec2<double>, 2>> segments;
     const auto towards_film = [&](const QuadratureArm& arm, double r) {
         const Vec2<double> entry = arm.at(light, r);
         return Vec2<double>{-entry.x, -entry.y};
     };
     for (std::size_t s = 0; s < arms.size(); ++s) {
         const QuadratureArm &here = arms[s], &next = arms[(s + 1) % arms.size()];
-        const std::size_t both = std::min(here.intervals.size(), next.intervals.size());
-        for (std::size_t i = 0; i < both; ++i) {
+        const std::size_t paired = std::min(here.intervals.size(), next.intervals.size());
+        for (std::size_t i = 0; i < paired; ++i) {
             const RadialInterval &a = here.intervals[i], &b = next.intervals[i];
-            if (a.from != 0 || b.from != 0) pieces.push_back({towards_film(here, a.from), towards_film(next, b.from)});
-            pieces.push_back({towards_film(here, a.to), towards_film(next, b.to)});
+            if (a.from != 0 || b.from != 0)
+                segments.push_back({towards_film(here, a.from), towards_film(next, b.from)});
+            segments.push_back({towards_film(here, a.to), towards_film(next, b.to)});
         }
         for (const QuadratureArm* longer : {&here, &next})
-            for (std::size_t i = both; i < longer->intervals.size(); ++i)
-                pieces.push_back(
+            for (std::size_t i = paired; i < longer->intervals.size(); ++i)
+                segments.push_back(
                     {towards_film(*longer, longer->intervals[i].from), towards_film(*longer, longer->intervals[i].to)});
     }
-    return pieces;
+    return segments;
 }
 
 }  // namespace
@@ -69,8 +71,8 @@ FilmPupil film_pupil(const LensSystem& lens, double wavelength_nm, Vec2<double> 
     for (const QuadratureArm& arm : arms)
         for (const RadialInterval& interval : arm.intervals)
             squares += interval.to * interval.to - interval.from * interval.from;
-    const double each = std::numbers::pi / static_cast<double>(arms.size());
-    return {each * light.reach.x * light.reach.y * squares, outline_of(light, arms)};
+    const double area_factor = std::numbers::pi / static_cast<double>(arms.size());
+    return {area_factor * light.reach.x * light.reach.y * squares, outline_of(light, arms)};
 }
 
 }  // namespace realcam

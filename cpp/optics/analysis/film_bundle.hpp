@@ -11,33 +11,36 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Exit pupil as seen from a film point, in optical direction cosines across the film's normal: x and y of light
-/// travelling towards the film.
+/// Exit pupil as seen from a film point, in optical direction cosines of light that travels towards the film: x and y
+/// components in the tangent plane of the film.
 struct FilmPupil {
     /// Irradiance for unit radiance of the whole scene: the area of the pupil. At the centre of a lens of revolution it
     /// is pi sin^2(theta').
     double irradiance = 0;
-    std::vector<std::array<Vec2<double>, 2>> outline;  ///< segments of the edge of what passes
+    std::vector<std::array<Vec2<double>, 2>> outline;  ///< segments of the edge of the light, each with its end points
 };
 
-/// Computes the pupil with real rays at one wavelength; its edges are found on radial scan lines about the chief ray,
-/// and the diaphragm has its real shape. The result is empty, with an irradiance of 0, if no ray of the film point
-/// reaches the stop's centre.
+/// Computes the exit pupil of a film point (mm) by real rays at one wavelength. Its edges are found on radial scan
+/// lines about the chief ray; the diaphragm has its real shape, with blades. Returns an empty outline and an irradiance
+/// of 0 if no ray of the film point reaches the centre of the stop.
 FilmPupil film_pupil(const LensSystem& lens, double wavelength_nm, Vec2<double> film, const RayLoop& loop = {});
 
-/// Returns the lens with a round stop of the same area, so that its light is rotationally symmetric.
+/// Returns the lens with its iris replaced by a circular stop of the same area, so that its light is rotationally
+/// symmetric.
 LensSystem with_round_stop(LensSystem lens);
 
-/// All light that reaches one film point, parametrised by the optical direction cosines of its rays in the film's
-/// tangent plane, in which it is uniform (pupil_view.hpp).
+/// All light that reaches one film point (a Bundle of bundle_quadrature.hpp). The entry point of a ray consists of its
+/// optical direction cosines, towards the scene, in the tangent plane of the film. In these the light is uniform
+/// (pupil_view.hpp).
 class FilmBundle {
 public:
     using Entry = Vec2<double>;
 
-    Entry middle, reach;  ///< approximate bounds of what passes: centre and half sides
+    Entry middle, reach;  ///< approximate bounds of the entry points that pass: centre and half-sides
     bool mirrored;  ///< true: symmetric in x
 
-    /// `path`: from the film frame to the scene (film_path_ends); it must outlive this object.
+    /// `path`: from the film frame to the scene (film_path_ends); it must outlive this object. `at`: film point, mm;
+    /// `in`: initial `middle` and `reach`.
     FilmBundle(const LensPath<double>& path, FilmSurface<double> film, Vec2<double> at, EntryRectangle in,
                bool mirrored = false)
         : middle(in.middle),
@@ -48,7 +51,7 @@ public:
           film_(film),
           at_(at) {}
 
-    /// For each entry: true if its ray passes the lens.
+    /// Sets passed[i] to true if the ray with entry point i passes the lens.
     template <int N>
     void pass(const Entry (&entries)[N], bool (&passed)[N]) const {
         LensRays<double, N> rays;
@@ -56,16 +59,16 @@ public:
         for (int i = 0; i < N; ++i) passed[i] = rays.status[i] == 0;
     }
 
-    /// Traces rays through the lens to the scene.
+    /// Traces the rays with these entry points through the lens to the scene.
     template <int N>
     void trace(const Entry (&entries)[N], LensRays<double, N>& rays) const {
-        const Vec3d from = film_.point(at_);
+        const Vec3d origin = film_.point(at_);
         for (int i = 0; i < N; ++i) {
             const auto [l, m] = entries[i];
-            const double rest = index_ * index_ - l * l - m * m;
-            rays.origin.set(i, from);
-            rays.direction.set(i, film_.direction(at_, {l, m, -sqrt_or_zero(rest)}));
-            rays.status[i] = rest > 0 ? 0 : static_cast<int>(RayStatus::missed);
+            const double squared_z = index_ * index_ - l * l - m * m;
+            rays.origin.set(i, origin);
+            rays.direction.set(i, film_.direction(at_, {l, m, -sqrt_or_zero(squared_z)}));
+            rays.status[i] = squared_z > 0 ? 0 : static_cast<int>(RayStatus::missed);
         }
         trace_lens(view_, rays);
     }

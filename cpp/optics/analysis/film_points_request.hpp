@@ -4,17 +4,18 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Distribution of a spot's rays over the entry rectangle.
+/// Distribution of entry points over a rectangle.
 enum class EntryPattern {
-    even,  ///< additive sequence of M. Roberts (2018) in two dimensions: uniform for any number of rays
-    grid,  ///< square grid
+    even,  ///< two-dimensional additive sequence R2 of M. Roberts (2018): uniform for any number of rays
+    grid,  ///< rectangular grid
 };
 
-/// Film points of the light of one object point, by many rays that are not aimed at the stop. They fill a rectangle of
-/// the entry plane (ObjectPoint), over which the light is uniform; only those that pass are recorded.
+/// Request for the film points of many rays of one object point (a dense spot diagram). The rays are not aimed at the
+/// stop: their entry points fill a rectangle of the entry plane (see ObjectPoint), over which the light is uniform, and
+/// only rays that pass the lens are recorded.
 template <class T>
 struct FilmPointsRequest {
-    LensView<T> lens;
+    LensView<T> lens;  ///< relative to the first vertex
     Vec3<T> centre;  ///< centre of the entry plane, relative to the first vertex, mm
     Vec3<T> towards;  ///< unit vector: ray through the entry plane's centre
     Vec3<T> across, upwards;  ///< axes of the entry plane
@@ -23,17 +24,18 @@ struct FilmPointsRequest {
     T index;  ///< refractive index of the medium from which the rays enter
     T film;  ///< z of the film plane relative to the last vertex, mm
     EntryPattern pattern;
-    std::int64_t columns;  ///< points per row of the grid
-    std::int64_t first, count;  ///< range of rays to trace
-    float* points;  ///< x and y of the rays that pass, mm from the axis; room for `count`
+    std::int64_t columns;  ///< points per row and per column of EntryPattern::grid
+    std::int64_t first, count;  ///< index of the first ray of the pattern to trace, and number of rays
+    float* points;  ///< result: x and y of the rays that pass, mm from the axis; must have room for `count` points
     std::int64_t passed;  ///< incremented by the number of rays that pass
 };
 
 namespace film_points_detail {
 
-/// Positions of N rays from index `first` on in the rectangle; each coordinate lies between -1 and 1.
+/// Computes the positions of rays `first` to `first` + N - 1 of the pattern in the rectangle; coordinates are from -1
+/// to 1.
 template <int N, class T>
-REALCAM_HD inline void points_of(const FilmPointsRequest<T>& request, std::int64_t first, T (&x)[N], T (&y)[N]) {
+REALCAM_HD inline void pattern_points(const FilmPointsRequest<T>& request, std::int64_t first, T (&x)[N], T (&y)[N]) {
     if (request.pattern == EntryPattern::grid) {
         const T step = T(2) / static_cast<T>(request.columns);
         for (int k = 0; k < N; ++k) {
@@ -43,7 +45,7 @@ REALCAM_HD inline void points_of(const FilmPointsRequest<T>& request, std::int64
         }
         return;
     }
-    // Multiples of 1 / g and 1 / g^2, g the real root of g^3 = g + 1, in steps of 2^-32.
+    // Multiples of 1 / g and 1 / g^2 modulo 1, in units of 2^-32, where g is the real root of g^3 = g + 1.
     const auto from = static_cast<std::uint32_t>(first);
     REALCAM_LANES
     for (int k = 0; k < N; ++k) {
@@ -55,20 +57,21 @@ REALCAM_HD inline void points_of(const FilmPointsRequest<T>& request, std::int64
 
 }  // namespace film_points_detail
 
-/// Traces all rays of a request, N at a time.
+/// Traces all rays of a request, N at a time, and stores the film points of those that pass. `lens_kind`: the kind of
+/// the lens, or a more general one.
 template <LensKind lens_kind, int N, class T>
 inline void find_film_points(FilmPointsRequest<T>& request) {
     const FilmPointsRequest<T> r = request;
     LensRays<T, N> rays;
     Lanes<T, N> x, y;
-    float* to = r.points;
-    for (std::int64_t done = 0; done < r.count; done += N) {
-        const int used = static_cast<int>(r.count - done < N ? r.count - done : N);
-        film_points_detail::points_of<N>(r, r.first + done, x, y);
+    float* next_point = r.points;
+    for (std::int64_t traced = 0; traced < r.count; traced += N) {
+        const int used_lanes = static_cast<int>(r.count - traced < N ? r.count - traced : N);
+        film_points_detail::pattern_points<N>(r, r.first + traced, x, y);
         REALCAM_LANES
         for (int k = 0; k < N; ++k) {
-            const T across = r.middle.x + r.reach.x * x[k], along = r.middle.y + r.reach.y * y[k];
-            const Vec3<T> offset = across * r.across + along * r.upwards;
+            const T right = r.middle.x + r.reach.x * x[k], up = r.middle.y + r.reach.y * y[k];
+            const Vec3<T> offset = right * r.across + up * r.upwards;
             const Vec3<T> direction = r.towards + r.inverse_distance * offset;
             const T scale =
                 r.index / std::sqrt(direction.x * direction.x + direction.y * direction.y + direction.z * direction.z);
@@ -83,13 +86,13 @@ inline void find_film_points(FilmPointsRequest<T>& request) {
             x[k] = at.x;
             y[k] = at.y;
         }
-        for (int k = 0; k < used; ++k) {
-            to[0] = static_cast<float>(x[k]);
-            to[1] = static_cast<float>(y[k]);
-            to += 2 * static_cast<std::int64_t>(rays.status[k] == 0);
+        for (int k = 0; k < used_lanes; ++k) {
+            next_point[0] = static_cast<float>(x[k]);
+            next_point[1] = static_cast<float>(y[k]);
+            next_point += 2 * static_cast<std::int64_t>(rays.status[k] == 0);
         }
     }
-    request.passed += (to - r.points) / 2;
+    request.passed += (next_point - r.points) / 2;
 }
 
 }  // namespace REALCAM_NAMESPACE

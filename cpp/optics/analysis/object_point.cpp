@@ -65,7 +65,7 @@ void ObjectPoint::set_by_angle(const LensSystem& lens, double wavelength_nm, con
     if (!std::isfinite(pupil))
         throw InputError("lens \"" + lens.name +
                          "\" is telecentric on the object's side: its entrance pupil lies at infinity, so that no "
-                         "field angle names a point");
+                         "field angle determines an object point");
     const double cosine = std::cos(field.angle_rad);
     centre = {0, 0, pupil};
     towards = {0, std::sin(field.angle_rad), cosine};

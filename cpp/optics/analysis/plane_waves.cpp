@@ -20,16 +20,17 @@ PlaneWaves with_mirror_images(const PlaneWaves& light) {
 }
 
 double largest_phase(const PointBundle& bundle, Vec2<double> centre, double half_window) {
-    const auto part = [&](double low, double high, double from_chief, double spot) {
+    const auto phase_along = [&](double low, double high, double from_chief, double spot) {
         return 0.5 * (high - low) * (std::fabs(from_chief) + half_window + spot);
     };
-    return bundle.wave_number * hypotenuse(part(bundle.slope_low.x, bundle.slope_high.x, centre.x, bundle.spot.x),
-                                           part(bundle.slope_low.y, bundle.slope_high.y, centre.y, bundle.spot.y));
+    return bundle.wave_number *
+           hypotenuse(phase_along(bundle.slope_low.x, bundle.slope_high.x, centre.x, bundle.spot.x),
+                      phase_along(bundle.slope_low.y, bundle.slope_high.y, centre.y, bundle.spot.y));
 }
 
 BundleSampling sampling_for(double phase) {
-    const double more = std::cbrt(phase);
-    return {std::max(160, static_cast<int>(phase + 8 * more + 16)), static_cast<int>(0.25 * phase + 4 * more + 8)};
+    const double margin = std::cbrt(phase);
+    return {std::max(160, static_cast<int>(phase + 8 * margin + 16)), static_cast<int>(0.25 * phase + 4 * margin + 8)};
 }
 
 PointBundle::Entry LocalWave::entry_at(Vec2<double> slope) const {
@@ -70,11 +71,11 @@ PlaneWaves plane_waves(const PointBundle& bundle, BundleSampling sampling, const
 PlaneWaveSum::PlaneWaveSum(FilmGrid grid, double wave_number)
     : grid_(grid),
       wave_number_(wave_number),
-      half_((static_cast<std::size_t>(grid.size) / 2 + 1 + kWidth - 1) / kWidth * kWidth),
+      half_((static_cast<std::size_t>(grid.size) / 2 + 1 + kVectorWidth - 1) / kVectorWidth * kVectorWidth),
       rows_(static_cast<std::size_t>(grid.size)),
       sums_(rows_ * 4 * half_),  // re cos, im cos, re sin, im sin of each row
-      cos_(kWaves * half_),
-      sin_(kWaves * half_) {}
+      cos_(kMaxWaves * half_),
+      sin_(kMaxWaves * half_) {}
 
 void PlaneWaveSum::add(const PlaneWaves& light, const RayLoop& loop) {
     const std::vector<PlaneWave>& waves = light.waves;
@@ -82,8 +83,8 @@ void PlaneWaveSum::add(const PlaneWaves& light, const RayLoop& loop) {
     // among the threads.
     constexpr std::size_t kItems = 64;
     const auto row_from = [](std::size_t item) { return (item + kItems - 1) / kItems; };
-    for (std::size_t from = 0; from < waves.size(); from += kWaves) {
-        const std::size_t count = std::min(kWaves, waves.size() - from);
+    for (std::size_t from = 0; from < waves.size(); from += kMaxWaves) {
+        const std::size_t count = std::min(kMaxWaves, waves.size() - from);
         tabulate(waves.data() + from, count);
         loop.for_all(rows_ * kItems, [&](std::size_t first, std::size_t last) {
             add_to_rows(waves.data() + from, count, light.mirrored, row_from(first), row_from(last));
@@ -111,7 +112,7 @@ void PlaneWaveSum::tabulate(const PlaneWave* waves, std::size_t count) {
         }
     }
     // Waves are added in whole groups; the last one is padded with zeros.
-    const std::size_t end = (count + kAtOnce - 1) / kAtOnce * kAtOnce;
+    const std::size_t end = (count + kUnroll - 1) / kUnroll * kUnroll;
     std::fill(cos_.begin() + static_cast<std::ptrdiff_t>(count * half_),
               cos_.begin() + static_cast<std::ptrdiff_t>(end * half_), 0.0);
     std::fill(sin_.begin() + static_cast<std::ptrdiff_t>(count * half_),
@@ -120,29 +121,30 @@ void PlaneWaveSum::tabulate(const PlaneWave* waves, std::size_t count) {
 
 void PlaneWaveSum::add_to_rows(const PlaneWave* waves, std::size_t count, bool mirrored, std::size_t first,
                                std::size_t last) {
-    double re[kWaves] = {}, im[kWaves] = {}, step_re[kWaves] = {}, step_im[kWaves] = {};
+    double re[kMaxWaves] = {}, im[kMaxWaves] = {}, step_re[kMaxWaves] = {}, step_im[kMaxWaves] = {};
     for (std::size_t w = 0; w < count; ++w) {
         step_re[w] = std::cos(wave_number_ * waves[w].slope.y * grid_.pitch);
         step_im[w] = std::sin(wave_number_ * waves[w].slope.y * grid_.pitch);
     }
     // Phases advance from row to row by a rotation, and are recomputed at fixed rows, whatever range of rows is
     // requested: the sums do not depend on the division among threads.
-    for (std::size_t row = first / kTurns * kTurns; row < last; ++row) {
-        if (row % kTurns == 0) start(waves, count, row, re, im);
+    for (std::size_t row = first / kRowsPerRestart * kRowsPerRestart; row < last; ++row) {
+        if (row % kRowsPerRestart == 0) set_phases(waves, count, row, re, im);
         double* sums = sums_.data() + row * 4 * half_;
-        for (std::size_t w = 0; row >= first && w < count; w += kAtOnce) {
-            add_four(re + w, im + w, cos_.data() + w * half_, sums, sums + half_);
-            if (!mirrored) add_four(re + w, im + w, sin_.data() + w * half_, sums + 2 * half_, sums + 3 * half_);
+        for (std::size_t w = 0; row >= first && w < count; w += kUnroll) {
+            add_group(re + w, im + w, cos_.data() + w * half_, sums, sums + half_);
+            if (!mirrored) add_group(re + w, im + w, sin_.data() + w * half_, sums + 2 * half_, sums + 3 * half_);
         }
-        for (std::size_t w = 0; w < kWaves; ++w) {
-            const double turned = re[w] * step_re[w] - im[w] * step_im[w];
+        for (std::size_t w = 0; w < kMaxWaves; ++w) {
+            const double next_re = re[w] * step_re[w] - im[w] * step_im[w];
             im[w] = re[w] * step_im[w] + im[w] * step_re[w];
-            re[w] = turned;
+            re[w] = next_re;
         }
     }
 }
 
-void PlaneWaveSum::start(const PlaneWave* waves, std::size_t count, std::size_t row, double* re, double* im) const {
+void PlaneWaveSum::set_phases(const PlaneWave* waves, std::size_t count, std::size_t row, double* re,
+                              double* im) const {
     const double y = grid_.centre.y + grid_.offset(static_cast<int>(row));
     for (std::size_t w = 0; w < count; ++w) {
         const double path = waves[w].path + waves[w].slope.x * grid_.centre.x + waves[w].slope.y * y;
@@ -151,13 +153,14 @@ void PlaneWaveSum::start(const PlaneWave* waves, std::size_t count, std::size_t 
     }
 }
 
-void PlaneWaveSum::add_four(const double* re, const double* im, const double* of_x, double* re_sums,
-                            double* im_sums) const {
+void PlaneWaveSum::add_group(const double* re, const double* im, const double* x_factors, double* re_sums,
+                             double* im_sums) const {
     const std::size_t half = half_;
     const double r0 = re[0], r1 = re[1], r2 = re[2], r3 = re[3], i0 = im[0], i1 = im[1], i2 = im[2], i3 = im[3];
 #pragma omp simd
     for (std::size_t a = 0; a < half; ++a) {
-        const double x0 = of_x[a], x1 = of_x[half + a], x2 = of_x[2 * half + a], x3 = of_x[3 * half + a];
+        const double x0 = x_factors[a], x1 = x_factors[half + a], x2 = x_factors[2 * half + a],
+                     x3 = x_factors[3 * half + a];
         re_sums[a] += r0 * x0 + r1 * x1 + r2 * x2 + r3 * x3;
         im_sums[a] += i0 * x0 + i1 * x1 + i2 * x2 + i3 * x3;
     }

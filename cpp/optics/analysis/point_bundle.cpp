@@ -14,15 +14,15 @@
 namespace realcam {
 
 PointBundle::PointBundle(const LensSystem& lens, double wavelength_nm, const FieldPoint& field, double film_distance,
-                         const RayLoop& loop, int look)
+                         const RayLoop& loop, int probe_rays)
     : mirrored(lens.is_rotational() && !field.film && (lens.iris.blades == 0 || lens.is_wide_open())),
-      object(in_known_glass(lens, wavelength_nm), wavelength_nm, field),
+      object(with_known_glasses(lens, wavelength_nm), wavelength_nm, field),
       path_(lens, LightDirection::to_film, wavelength_nm, film_path_ends(lens, LightDirection::to_film)),
       open_(AimingPath::open(path_)),
       real_(AimingPath::real(path_)) {
     index = lens.indices(wavelength_nm).back();
     wave_number = 2e6 * std::numbers::pi * index / wavelength_nm;
-    const FieldRays rays = look_for(lens, wavelength_nm, field, look, loop);
+    const FieldRays rays = probe(lens, wavelength_nm, field, probe_rays, loop);
     plane_ = rays.on_film(rays.chief, film_distance).z;
     chief_entry = rays.chief.entry;
     const FilmRay at_chief = on_film(rays.chief.origin, rays.chief.direction, rays.chief.path);
@@ -32,7 +32,7 @@ PointBundle::PointBundle(const LensSystem& lens, double wavelength_nm, const Fie
     curvature_ = wavefront_detail::reference_curvature(lens, wavelength_nm, rays, film_distance, ExitPupil::real);
     if (!std::isfinite(curvature_))
         throw InputError("psf: the exit pupil of lens \"" + lens.name + "\" lies in the film plane");
-    measure(rays, look);
+    measure(rays, probe_rays);
 }
 
 WaveRay PointBundle::as_wave(const FilmRay& ray) const {
@@ -51,25 +51,25 @@ double PointBundle::energy(Entry entry) const {
     return std::pow(1 + (entry.x * entry.x + entry.y * entry.y) * d * d, -1.5);
 }
 
-const LensSystem& PointBundle::in_known_glass(const LensSystem& lens, double wavelength_nm) {
+const LensSystem& PointBundle::with_known_glasses(const LensSystem& lens, double wavelength_nm) {
     check_wavelength_in_glasses(lens, wavelength_nm, "psf");
     return lens;
 }
 
-FieldRays PointBundle::look_for(const LensSystem& lens, double wavelength_nm, const FieldPoint& field, int look,
-                                const RayLoop& loop) {
+FieldRays PointBundle::probe(const LensSystem& lens, double wavelength_nm, const FieldPoint& field, int probe_rays,
+                             const RayLoop& loop) {
     try {
-        FieldRays rays = field_rays(lens, wavelength_nm, field, square_grid(look, loop), loop);
+        FieldRays rays = field_rays(lens, wavelength_nm, field, square_grid(probe_rays, loop), loop);
         std::size_t passing = 0;
         for (std::size_t i = 0; i < rays.rays.size(); ++i) passing += rays.passes(i);
-        if (passing >= few(look)) return rays;
+        if (passing >= min_passing(probe_rays)) return rays;
     } catch (const InputError&) {
         // If a denser probe cannot help, field_rays throws the same error again below.
     }
-    return field_rays(lens, wavelength_nm, field, square_grid(kCloseLook, loop), loop);
+    return field_rays(lens, wavelength_nm, field, square_grid(kDenseProbeRays, loop), loop);
 }
 
-void PointBundle::measure(const FieldRays& rays, int look) {
+void PointBundle::measure(const FieldRays& rays, int probe_rays) {
     Entry low = {kInfinity, kInfinity}, high = {-kInfinity, -kInfinity};
     slope_low = low, slope_high = high;
     spot = centroid = {0, 0};
@@ -77,9 +77,9 @@ void PointBundle::measure(const FieldRays& rays, int look) {
     for (std::size_t i = 0; i < rays.rays.size(); ++i) {
         if (!rays.passes(i)) continue;
         const AimedRay& ray = rays.rays[i];
-        const auto widen = [](Vec2<double>& least, Vec2<double>& most, Vec2<double> v) {
-            least = {std::min(least.x, v.x), std::min(least.y, v.y)};
-            most = {std::max(most.x, v.x), std::max(most.y, v.y)};
+        const auto widen = [](Vec2<double>& lowest, Vec2<double>& highest, Vec2<double> v) {
+            lowest = {std::min(lowest.x, v.x), std::min(lowest.y, v.y)};
+            highest = {std::max(highest.x, v.x), std::max(highest.y, v.y)};
         };
         widen(low, high, ray.entry);
         const FilmRay found = from_chief(true, ray.origin, ray.direction, ray.path);
@@ -91,9 +91,9 @@ void PointBundle::measure(const FieldRays& rays, int look) {
     centroid = {centroid.x / weight, centroid.y / weight};
     middle = {0.5 * (low.x + high.x), 0.5 * (low.y + high.y)};
     // Margin beyond the outermost rays: half a cell on either side, and a small one in case all rays lie on one line.
-    const double beyond = 1 + 2.0 / look, hair = 1e-3 * hypotenuse(high.x - low.x, high.y - low.y);
+    const double beyond = 1 + 2.0 / probe_rays, min_margin = 1e-3 * hypotenuse(high.x - low.x, high.y - low.y);
     if (mirrored) middle.x = centroid.x = 0;
-    reach = {beyond * 0.5 * (high.x - low.x) + hair, beyond * 0.5 * (high.y - low.y) + hair};
+    reach = {beyond * 0.5 * (high.x - low.x) + min_margin, beyond * 0.5 * (high.y - low.y) + min_margin};
 }
 
 FilmRay PointBundle::on_film(Vec3d origin, Vec3d direction, double path) const {
@@ -112,14 +112,16 @@ FilmRay PointBundle::from_chief(bool passes, Vec3d origin, Vec3d direction, doub
 
 namespace {
 
-constexpr int kEdgeParts = 8;
+/// Number of segments of a smooth edge between two neighbouring scan lines.
+constexpr int kSegmentsPerEdge = 8;
 
-/// A point on the edge of the light: its entry and its slope.
+/// Point on the edge of the light, with the slope of its wave.
 struct EdgePoint {
     PointBundle::Entry entry;
     Vec2<double> slope;
 };
 
+/// Traces the ray at distance r of a scan line.
 EdgePoint edge_point(const PointBundle& bundle, const QuadratureArm& arm, double r) {
     const PointBundle::Entry entries[1] = {arm.at(bundle, r)};
     FilmRay found[1];
@@ -127,14 +129,15 @@ EdgePoint edge_point(const PointBundle& bundle, const QuadratureArm& arm, double
     return {entries[0], bundle.as_wave(found[0]).slope};
 }
 
+/// Returns the mirror image of a point, at -x.
 EdgePoint mirrored(const EdgePoint& p) {
     return {{-p.entry.x, p.entry.y}, {-p.slope.x, p.slope.y}};
 }
 
-/// Interpolates between the middle two of four equally spaced points, by the cubic through them.
-EdgePoint between(const std::array<EdgePoint, 4>& p, double share) {
-    const double t = share, weight[4] = {-t * (t - 1) * (t - 2) / 6, (t + 1) * (t - 1) * (t - 2) / 2,
-                                         -(t + 1) * t * (t - 2) / 2, (t + 1) * t * (t - 1) / 6};
+/// Interpolates between the middle two of four equally spaced points, by the cubic through them; t from 0 to 1.
+EdgePoint between(const std::array<EdgePoint, 4>& p, double t) {
+    const double weight[4] = {-t * (t - 1) * (t - 2) / 6, (t + 1) * (t - 1) * (t - 2) / 2, -(t + 1) * t * (t - 2) / 2,
+                              (t + 1) * t * (t - 1) / 6};
     EdgePoint point{{0, 0}, {0, 0}};
     for (int k = 0; k < 4; ++k) {
         const EdgePoint& from = p[static_cast<std::size_t>(k)];
@@ -144,38 +147,39 @@ EdgePoint between(const std::array<EdgePoint, 4>& p, double share) {
     return point;
 }
 
-/// Returns segments between the edges on neighbouring radial scan lines. They are subdivided if the edge continues to
-/// either side: the area of a polygon of 32 straight segments would be 0.6% too small. An interval of light on only one
-/// of the two lines is closed by a segment along that line.
-std::vector<EdgePiece> edge_of(const PointBundle& bundle, const std::vector<QuadratureArm>& half) {
+/// Returns the edge of the light as segments that join its points on neighbouring radial scan lines. Where the edge
+/// continues on both sides, it is subdivided by cubic interpolation: the area of a polygon of 32 straight segments
+/// would be 0.6% too small. An interval that exists on only one of the two lines is closed by a segment along that
+/// line. `lines`: scan lines; those of a mirrored bundle cover half of it.
+std::vector<EdgePiece> edge_segments(const PointBundle& bundle, const std::vector<QuadratureArm>& lines) {
     // Inner and outer edge of each interval. If the light begins at the centre, the inner edges coincide there.
     using Edges = std::vector<std::array<EdgePoint, 2>>;
     std::vector<Edges> arms;
-    for (const QuadratureArm& arm : half) {
+    for (const QuadratureArm& arm : lines) {
         Edges edges;
         for (const RadialInterval& interval : arm.intervals)
             edges.push_back({edge_point(bundle, arm, interval.from), edge_point(bundle, arm, interval.to)});
         arms.push_back(std::move(edges));
     }
     if (bundle.mirrored)
-        for (std::size_t s = half.size(); s-- > 0;) {
+        for (std::size_t s = lines.size(); s-- > 0;) {
             Edges edges = arms[s];
             for (auto& edge : edges) edge = {mirrored(edge[0]), mirrored(edge[1])};
             arms.push_back(std::move(edges));
         }
-    std::vector<EdgePiece> pieces;
+    std::vector<EdgePiece> segments;
     const auto add = [&](const EdgePoint& a, const EdgePoint& b) {
         if (a.entry.x != b.entry.x || a.entry.y != b.entry.y)
-            pieces.push_back({{a.entry, b.entry}, {a.slope, b.slope}});
+            segments.push_back({{a.entry, b.entry}, {a.slope, b.slope}});
     };
     for (std::size_t s = 0; s < arms.size(); ++s) {
         const auto at = [&](std::size_t k) -> const Edges& { return arms[(s + k) % arms.size()]; };
         const Edges &before = at(arms.size() - 1), &here = at(0), &next = at(1), &beyond = at(2);
-        const std::size_t both = std::min(here.size(), next.size());
-        const std::size_t smooth = std::min({before.size(), both, beyond.size()});
-        for (std::size_t i = 0; i < both; ++i)
+        const std::size_t paired = std::min(here.size(), next.size());
+        const std::size_t smooth = std::min({before.size(), paired, beyond.size()});
+        for (std::size_t i = 0; i < paired; ++i)
             for (std::size_t side : {0, 1}) {
-                const int parts = i < smooth ? kEdgeParts : 1;
+                const int parts = i < smooth ? kSegmentsPerEdge : 1;
                 EdgePoint from = here[i][side];
                 for (int k = 1; k <= parts; ++k) {
                     const EdgePoint to = k == parts
@@ -187,14 +191,14 @@ std::vector<EdgePiece> edge_of(const PointBundle& bundle, const std::vector<Quad
                 }
             }
         for (const Edges* longer : {&here, &next})
-            for (std::size_t i = both; i < longer->size(); ++i) add((*longer)[i][0], (*longer)[i][1]);
+            for (std::size_t i = paired; i < longer->size(); ++i) add((*longer)[i][0], (*longer)[i][1]);
     }
-    return pieces;
+    return segments;
 }
 
-/// Returns the distance behind the film plane at which two close rays on either side of the chief ray cross, mm. Their
-/// offset is a thousandth of the bundle's reach: the error from aberrations falls off with its square, and rounding
-/// stays below 1e-10 of the focus.
+/// Returns the distance behind the film plane at which two rays close to the chief ray, on opposite sides of it, cross,
+/// mm; NaN if one of them does not reach the film. Their distance from the chief ray is a thousandth of the bundle's
+/// half-side: the error due to aberrations decreases with its square, and rounding stays below 1e-10 of the focus.
 double close_focus(const PointBundle& bundle, bool tangential) {
     const double step = 1e-3 * std::max(bundle.reach.x, bundle.reach.y);
     const PointBundle::Entry chief = bundle.chief_entry;
@@ -215,7 +219,7 @@ double close_focus(const PointBundle& bundle, bool tangential) {
 TracedBundle traced_bundle(const PointBundle& bundle, BundleSampling sampling, const RayLoop& loop) {
     const std::vector<QuadratureArm> arms = quadrature_arms(bundle, sampling.arms, loop);
     const std::vector<EntryPart> parts = entry_parts(bundle, arms, sampling.nodes);
-    TracedBundle result{{}, edge_of(bundle, arms), close_focus(bundle, true), close_focus(bundle, false)};
+    TracedBundle result{{}, edge_segments(bundle, arms), close_focus(bundle, true), close_focus(bundle, false)};
     loop.append_all(result.rays, parts.size(), [&](std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i) {
             const PointBundle::Entry entries[1] = {parts[i].entry};

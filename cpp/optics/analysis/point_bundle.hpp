@@ -8,50 +8,52 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// A ray of one object point at the film plane.
+/// Ray of one object point at the film plane.
 struct FilmRay {
-    bool passes;
-    Vec2<double> at;  ///< mm from the chief ray
-    Vec3d direction;  ///< unit
-    double path;  ///< optical path to `at` less that of the chief ray, over the index behind the lens, mm
+    bool passes;  ///< true if the ray reaches the film plane; other members are undefined if it does not
+    Vec2<double> at;  ///< film point, mm from that of the chief ray
+    Vec3d direction;  ///< unit vector
+    double path;  ///< (optical path of the ray - that of the chief ray) / index behind the lens, mm
 };
 
-/// A ray as a plane wave on the film, relative to the sphere that converges from the exit pupil to the chief ray's film
-/// point.
+/// Ray as a plane wave on the film, relative to the spherical wave that converges from the exit pupil to the film point
+/// of the chief ray.
 struct WaveRay {
-    Vec2<double> slope;  ///< gradient of the path along the film: the ray's direction cosines less the sphere's
-    double path;  ///< at the chief ray's film point, mm
+    Vec2<double>
+        slope;  ///< gradient of the path along the film: direction cosines of the ray minus those of the sphere
+    double path;  ///< at the film point of the chief ray, mm
 };
 
-/// All light of one object point at one wavelength, parametrised by its rays' intersection with the entry plane
-/// (ObjectPoint::Entry), over which it is uniform; the lens maps what passes to the film.
+/// All light of one object point at one wavelength (a Bundle of bundle_quadrature.hpp). The entry point of a ray is its
+/// intersection with the entry plane (ObjectPoint::Entry), over which the light is uniform, except for `energy`.
 class PointBundle {
 public:
     using Entry = ObjectPoint::Entry;
 
-    bool mirrored;  ///< true: the light is symmetric in x, which diaphragm blades may prevent
+    bool mirrored;  ///< true: the light is symmetric in x; false also if the iris has blades
     ObjectPoint object;
-    Entry chief_entry;  ///< entry of the chief ray
+    Entry chief_entry;  ///< entry point of the chief ray
     Vec2<double> chief;  ///< film point of the chief ray, mm from the axis
     double index;  ///< refractive index behind the lens
     double wave_number;  ///< 2 pi index / wavelength, 1/mm
-    Entry middle, reach;  ///< approximate bounds in the entry plane of what passes: centre and half sides
+    Entry middle, reach;  ///< approximate bounds of the entry points that pass: centre and half-sides, mm
     Vec2<double> centroid;  ///< centroid of the spot, mm from the chief ray
     Vec2<double> spot;  ///< half sides of the spot's bounding rectangle centred on the chief ray, mm
-    Vec2<double> slope_low, slope_high;  ///< bounds of the slopes of the rays that pass
+    Vec2<double> slope_low, slope_high;  ///< bounds of the slopes (WaveRay) of the rays that pass
 
-    static constexpr int kLook = 40;
+    static constexpr int kProbeRays = 40;  ///< default of the constructor's `probe_rays`
 
-    /// `look`: the number of probe rays across the stop that locate the light; if too few of them pass, a denser probe
-    /// follows. Throws InputError if the field point or the wavelength is invalid, or no light reaches the film.
+    /// `film_distance`: from the last vertex to the film, mm. `probe_rays`: number of rays across the diameter of the
+    /// stop that locate the light; if too few of them pass, a denser probe follows. Throws InputError if the field
+    /// point or the wavelength is invalid or no light reaches the film, and Cancelled if `loop` is cancelled.
     PointBundle(const LensSystem& lens, double wavelength_nm, const FieldPoint& field, double film_distance,
-                const RayLoop& loop = {}, int look = kLook);
+                const RayLoop& loop = {}, int probe_rays = kProbeRays);
 
-    /// z of the plane on which rays land, mm behind the last vertex: the film, or for a curved film the plane through
-    /// the chief ray's film point.
+    /// z of the film plane, mm behind the last vertex. For a curved film it is the plane through the film point of the
+    /// chief ray.
     double plane() const { return plane_; }
 
-    /// For each entry: true if its ray passes the lens.
+    /// Sets passed[i] to true if the ray with entry point i passes the lens.
     template <int N>
     void pass(const Entry (&entries)[N], bool (&passed)[N]) const {
         LensRays<double, N> rays;
@@ -60,7 +62,8 @@ public:
         for (int i = 0; i < N; ++i) passed[i] = rays.status[i] == 0;
     }
 
-    /// Traces rays through the lens without its rims, so that the neighbours of a ray exist, too.
+    /// Traces the rays with these entry points through the lens without rims, so that the neighbours of a ray at the
+    /// edge of the light reach the film, too.
     template <int N>
     void trace(const Entry (&entries)[N], FilmRay (&found)[N]) const {
         LensRays<double, N> rays;
@@ -72,29 +75,35 @@ public:
                                   record.optical_path[i] + path_.entry_index * object.path_difference(entries[i]));
     }
 
-    /// Returns the plane wave with the ray's path and direction at its film point, less those of the sphere there. The
-    /// sphere's curvature on the film is the same for all rays and changes no intensity. The remaining differences are
-    /// small, and their curvature is negligible as long as the film is far from the exit pupil.
+    /// Converts a ray to a plane wave: path and direction of the ray at its film point, minus those of the sphere
+    /// there. The sphere is common to all rays and does not change intensities. The differences are small, and the
+    /// curvature of the wave is negligible as long as the film is far from the exit pupil.
     WaveRay as_wave(const FilmRay& ray) const;
 
-    /// Energy per area of the entry plane, relative to its centre: uniform in solid angle.
+    /// Returns the energy per area of the entry plane, relative to that at its centre. The light of the object point is
+    /// uniform in solid angle.
     double energy(Entry entry) const;
 
 private:
-    static constexpr int kCloseLook = 200;
+    static constexpr int kDenseProbeRays = 200;  ///< rays across the stop of the denser probe
 
-    /// Least number of passing probe rays: a twentieth of those over the whole stop, but at least 20, to locate the
-    /// light.
-    static std::size_t few(int look) { return static_cast<std::size_t>(std::max(3 * look * look / 80, 20)); }
+    /// Returns the smallest number of passing probe rays that locate the light: 3/80 probe_rays^2, about a twentieth of
+    /// the rays over the whole stop, but at least 20.
+    static std::size_t min_passing(int probe_rays) {
+        return static_cast<std::size_t>(std::max(3 * probe_rays * probe_rays / 80, 20));
+    }
 
-    static const LensSystem& in_known_glass(const LensSystem& lens, double wavelength_nm);
+    /// Returns the lens. Throws InputError if the index of a glass is not known at the wavelength.
+    static const LensSystem& with_known_glasses(const LensSystem& lens, double wavelength_nm);
 
-    /// Probe rays over the whole stop; denser ones if the lens lets few pass.
-    static FieldRays look_for(const LensSystem& lens, double wavelength_nm, const FieldPoint& field, int look,
-                              const RayLoop& loop);
+    /// Traces probe rays over the whole stop, and denser ones if few of them pass.
+    static FieldRays probe(const LensSystem& lens, double wavelength_nm, const FieldPoint& field, int probe_rays,
+                           const RayLoop& loop);
 
-    void measure(const FieldRays& rays, int look);
+    /// Sets `middle`, `reach`, `centroid`, `spot`, and the bounds of slopes from probe rays.
+    void measure(const FieldRays& rays, int probe_rays);
 
+    /// Starts N rays at their entry points.
     template <int N>
     void start(const Entry (&entries)[N], LensRays<double, N>& rays) const {
         for (int i = 0; i < N; ++i) {
@@ -104,41 +113,46 @@ private:
         }
     }
 
+    /// Converts a ray behind the lens to one on the film plane, relative to the axis. `path`: optical path to `origin`,
+    /// mm.
     FilmRay on_film(Vec3d origin, Vec3d direction, double path) const;
+    /// Same, relative to the chief ray.
     FilmRay from_chief(bool passes, Vec3d origin, Vec3d direction, double path) const;
 
     LensPath<double> path_;
-    AimingPath open_, real_;
+    AimingPath open_, real_;  ///< the lens without and with rims
     double plane_;
-    double chief_path_, curvature_;  ///< 1 / distance from the exit pupil to the chief ray's film point
-    Vec3d chief_direction_;
+    double chief_path_;  ///< optical path of the chief ray to the film / index, mm
+    double curvature_;  ///< 1 / distance from the exit pupil to the film point of the chief ray, 1/mm
+    Vec3d chief_direction_;  ///< unit vector
 };
 
-/// A ray of a bundle, with the fraction of the light that it represents.
+/// Ray of a bundle, with the fraction of the light that it represents.
 struct BundleRay {
-    PointBundle::Entry entry;  ///< on the entry plane, mm
+    PointBundle::Entry entry;  ///< point of the entry plane, mm
     double energy;  ///< fraction of the energy of all rays
-    Vec2<double> at;  ///< on the film, mm from the chief ray
-    Vec3d direction;  ///< unit, behind the lens
+    Vec2<double> at;  ///< film point, mm from that of the chief ray
+    Vec3d direction;  ///< unit vector, behind the lens
     WaveRay wave;
-    double amplitude;  ///< root of the energy per area of slopes, times a common factor
+    double amplitude;  ///< square root of the energy per area of slopes; 0 if that is not defined
 };
 
-/// Segment of the edge of what passes: its two end points.
+/// Segment of the edge of the light.
 struct EdgePiece {
-    std::array<PointBundle::Entry, 2> entry;
-    std::array<Vec2<double>, 2> slope;
+    std::array<PointBundle::Entry, 2> entry;  ///< end points on the entry plane, mm
+    std::array<Vec2<double>, 2> slope;  ///< their slopes (WaveRay)
 };
 
-/// Ray bundle of one object point at one wavelength, with the edge of what passes and the foci about the chief ray.
+/// Ray bundle of one object point at one wavelength, with the edge of the light and the foci about the chief ray.
 struct TracedBundle {
     std::vector<BundleRay> rays;
     std::vector<EdgePiece> edge;
-    double tangential_focus, sagittal_focus;  ///< foci of rays close to the chief ray, mm behind the film plane
+    double tangential_focus,
+        sagittal_focus;  ///< foci of rays close to the chief ray, mm behind the film plane; NaN if there is none
 };
 
-/// Traces rays at Gauss's nodes on radial scan lines over what passes. If a bundle is its own mirror image, the second
-/// half of the rays are the mirror images of the first.
+/// Traces the rays of a quadrature over a bundle (entry_parts). For a mirrored bundle, the second half of the result's
+/// rays are the mirror images of the first half.
 TracedBundle traced_bundle(const PointBundle& bundle, BundleSampling sampling, const RayLoop& loop = {});
 
 }  // namespace REALCAM_NAMESPACE

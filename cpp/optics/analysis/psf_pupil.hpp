@@ -3,15 +3,18 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Plane waves of a colour at equal steps of slope, the input of a Fourier transform. Its size x size sums at pitch_um,
-/// |.|^2 times `scale`, are the colour's contribution to the PSF, with the array's centre at index 0, and periodic.
+/// Plane waves of one colour at equally spaced slopes: the input of a two-dimensional Fourier transform of size x size.
+/// The squared magnitude of its output times `scale` is the contribution of the colour to the PSF, at points `pitch_um`
+/// apart. The output is periodic, and has the centre of the PSF at index 0.
 struct PsfPupil {
     int size;
-    std::vector<std::complex<double>> values;  ///< row by row, from slope 0 on: step k at index k modulo size
+    std::vector<std::complex<double>> values;  ///< row by row; slope k * step is at index k modulo size
     double scale;
 };
 
-/// Cells that the edge of the light cuts count by the fraction of them that passes.
-PsfPupil psf_pupil(const psf_detail::Part& part, const Psf& psf, const RayLoop& loop = {});
+/// Computes the plane waves of a colour. Cells of the grid of slopes that the edge of the light cuts count by the
+/// fraction of them that passes. Throws InputError if the wavefront is too steep for the method, and Cancelled if
+/// `loop` is cancelled.
+PsfPupil psf_pupil(const psf_detail::ColourPart& part, const Psf& psf, const RayLoop& loop = {});
 
 }  // namespace REALCAM_NAMESPACE

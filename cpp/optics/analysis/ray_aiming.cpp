@@ -19,7 +19,7 @@ RayAimer::RayAimer(const LensSystem& lens, double wavelength_nm, const FieldPoin
       stop_(lens.stop_index()),
       open_(AimingPath::open(path_)),
       real_(AimingPath::real(path_)),
-      reach_(stop_reach(lens)),
+      stop_bounding_radius_(stop_reach(lens)),
       stop_radius_(lens.open_stop_radius()) {
     const FirstOrder data = first_order(lens, wavelength_nm);
     step_ = 1e-6 * data.entrance_pupil_diameter;
@@ -31,18 +31,18 @@ RayAimer::RayAimer(const LensSystem& lens, double wavelength_nm, const FieldPoin
 }
 
 AimedRay RayAimer::operator()(Vec2<double> target) const {
-    const std::optional<Entry> entry = aimed_from_chief(off_the_edge(target));
+    const std::optional<Entry> entry = aimed_from_chief(moved_inside_edge(target));
     if (!entry) {
         constexpr double nan = std::numeric_limits<double>::quiet_NaN();
         return {RayStatus::no_convergence, {nan, nan}, {nan, nan, nan}, {nan, nan, nan}, nan};
     }
-    return through(real_.view(), *entry);
+    return traced(real_.view(), *entry);
 }
 
-Vec2<double> RayAimer::off_the_edge(Vec2<double> target) const {
-    const double share = hypotenuse(target.x, target.y) / reach_;
-    const double inwards = std::fabs(share - 1) < kEdge ? (1 - kEdge) / share : 1.0;
-    return {inwards * target.x, inwards * target.y};
+Vec2<double> RayAimer::moved_inside_edge(Vec2<double> target) const {
+    const double fraction = hypotenuse(target.x, target.y) / stop_bounding_radius_;
+    const double factor = std::fabs(fraction - 1) < kEdgeMargin ? (1 - kEdgeMargin) / fraction : 1.0;
+    return {factor * target.x, factor * target.y};
 }
 
 AimRequest RayAimer::request(const StopMap& map) const {
@@ -54,17 +54,17 @@ AimRequest RayAimer::request(const StopMap& map) const {
             object.upwards,
             object.inverse_distance,
             path_.entry_index,
-            kMiss * stop_radius_,
+            kTolerance * stop_radius_,
             &map,
             0,
             nullptr,
             nullptr};
 }
 
-AimedRay RayAimer::through(LensView<double> view, Entry entry) const {
+AimedRay RayAimer::traced(LensView<double> view, Entry entry) const {
     LensRays<double, 1> ray;
-    const Vec3d start = object.at(entry) - Vec3d{0, 0, path_.entry_position};
-    ray.origin.set(0, start);
+    const Vec3d origin = object.at(entry) - Vec3d{0, 0, path_.entry_position};
+    ray.origin.set(0, origin);
     ray.direction.set(0, path_.entry_index * object.direction(entry));
     ray.status[0] = 0;
     PathRecord<double, 1> record{};
@@ -94,15 +94,15 @@ std::optional<RayAimer::Probe> RayAimer::probe(const ObjectPoint& from, Entry en
 }
 
 std::optional<RayAimer::Entry> RayAimer::aimed(const ObjectPoint& from, Vec2<double> target, Entry entry) const {
-    std::optional<Probe> here = probe(from, entry);
-    if (!here) return {};
+    std::optional<Probe> current = probe(from, entry);
+    if (!current) return {};
     for (int i = 0; i < kMaxSteps; ++i) {
-        const double error = miss(*here, target);
-        if (error <= kMiss * stop_radius_) return entry;
-        const double dx = target.x - here->at.x, dy = target.y - here->at.y;
-        const double determinant = here->by_x.x * here->by_y.y - here->by_y.x * here->by_x.y;
-        Entry change = {(dx * here->by_y.y - dy * here->by_y.x) / determinant,
-                        (dy * here->by_x.x - dx * here->by_x.y) / determinant};
+        const double error = miss(*current, target);
+        if (error <= kTolerance * stop_radius_) return entry;
+        const double dx = target.x - current->at.x, dy = target.y - current->at.y;
+        const double determinant = current->by_x.x * current->by_y.y - current->by_y.x * current->by_x.y;
+        Entry change = {(dx * current->by_y.y - dy * current->by_y.x) / determinant,
+                        (dy * current->by_x.x - dx * current->by_x.y) / determinant};
         std::optional<Probe> next;
         for (int halving = 0; halving <= kMaxHalvings; ++halving) {
             next = probe(from, {entry.x + change.x, entry.y + change.y});
@@ -112,7 +112,7 @@ std::optional<RayAimer::Entry> RayAimer::aimed(const ObjectPoint& from, Vec2<dou
         }
         if (!next) return {};
         entry = {entry.x + change.x, entry.y + change.y};
-        here = next;
+        current = next;
     }
     return {};
 }
@@ -121,8 +121,8 @@ std::optional<RayAimer::Entry> RayAimer::aimed_from_chief(Vec2<double> target) c
     for (const int parts : {1, 4, 16}) {
         std::optional<Entry> entry = chief_;
         for (int k = 1; k <= parts && entry; ++k) {
-            const double share = static_cast<double>(k) / parts;
-            entry = aimed(object, {share * target.x, share * target.y}, *entry);
+            const double fraction = static_cast<double>(k) / parts;
+            entry = aimed(object, {fraction * target.x, fraction * target.y}, *entry);
         }
         if (entry) return entry;
     }
@@ -137,17 +137,17 @@ void RayAimer::find_chief_ray(const LensSystem& lens, const FieldPoint& field) {
 }
 
 void RayAimer::follow_chief_ray(const LensSystem& lens, double wavelength_nm, const FieldPoint& field) {
-    constexpr double kLargest = 0.09, kSmallest = 1e-3;  // rad
-    double reached = 0, step = std::min(kLargest, std::fabs(field.angle_rad));
-    while (std::fabs(field.angle_rad) > reached) {
-        const double next = std::min(reached + step, std::fabs(field.angle_rad));
-        FieldPoint between = field;
-        between.angle_rad = std::copysign(next, field.angle_rad);
-        const ObjectPoint from(lens, wavelength_nm, between);
+    constexpr double kMaxStep = 0.09, kMinStep = 1e-3;  // rad
+    double current_angle = 0, step = std::min(kMaxStep, std::fabs(field.angle_rad));
+    while (std::fabs(field.angle_rad) > current_angle) {
+        const double next = std::min(current_angle + step, std::fabs(field.angle_rad));
+        FieldPoint intermediate = field;
+        intermediate.angle_rad = std::copysign(next, field.angle_rad);
+        const ObjectPoint from(lens, wavelength_nm, intermediate);
         if (const std::optional<Entry> entry = aimed(from, {0, 0}, chief_)) {
             chief_ = *entry;
-            reached = next;
-        } else if ((step *= 0.5) < kSmallest) {
+            current_angle = next;
+        } else if ((step *= 0.5) < kMinStep) {
             throw InputError("no ray at a field angle of " + object_point_detail::degrees(field.angle_rad) +
                              " reaches the middle of the stop of lens \"" + lens.name + "\"");
         }
@@ -156,9 +156,9 @@ void RayAimer::follow_chief_ray(const LensSystem& lens, double wavelength_nm, co
 
 namespace {
 
-/// Fits a map from stop to entry plane to rays aimed one by one at Gauss's nodes, which distinguish polynomials of up
-/// to twice the degree. Returns std::nullopt if some points of the stop cannot be reached, so that the map cannot be
-/// extrapolated to them.
+/// Fits a map from the stop to the entry plane to rays that are aimed one by one at Gauss nodes. Returns std::nullopt
+/// if some of these points cannot be reached, because the map cannot be extrapolated to them. `reach`: radius of the
+/// map, mm.
 std::optional<StopMap> stop_map(const RayAimer& aim, double reach, const RayLoop& loop) {
     const std::vector<PupilPoint> nodes = gauss_rings(8);
     std::vector<AimedRay> rays;
@@ -177,11 +177,11 @@ std::optional<StopMap> stop_map(const RayAimer& aim, double reach, const RayLoop
             for (int b = 0; a + b <= StopMap::kDegree; ++b, product *= nodes[i].y) powers[term++].push_back(product);
         }
     }
-    const auto factors = least_squares(powers, std::move(entries));
+    const auto coefficients = least_squares(powers, std::move(entries));
     StopMap map{};
     map.reach = reach;
-    std::copy(factors[0].begin(), factors[0].end(), map.x);
-    std::copy(factors[1].begin(), factors[1].end(), map.y);
+    std::copy(coefficients[0].begin(), coefficients[0].end(), map.x);
+    std::copy(coefficients[1].begin(), coefficients[1].end(), map.y);
     return map;
 }
 
@@ -189,15 +189,15 @@ std::optional<StopMap> stop_map(const RayAimer& aim, double reach, const RayLoop
 
 std::vector<AimedRay> aim_all(const RayAimer& aim, const std::vector<PupilPoint>& pattern, double reach,
                               const RayLoop& loop) {
-    constexpr std::size_t kMany = 1000;  // fitting the map takes as long as aiming some 500 rays
+    constexpr std::size_t kMinForMap = 1000;  // fitting the map takes as long as aiming some 500 rays
     std::vector<AimedRay> rays;
-    const std::optional<StopMap> map = pattern.size() < kMany ? std::nullopt : stop_map(aim, reach, loop);
+    const std::optional<StopMap> map = pattern.size() < kMinForMap ? std::nullopt : stop_map(aim, reach, loop);
     loop.append_all(rays, pattern.size(), [&](std::size_t first, std::size_t last) {
         const auto target = [&](std::size_t i) { return Vec2<double>{reach * pattern[i].x, reach * pattern[i].y}; };
         if (map) {
             std::vector<Vec2<double>> targets;
             targets.reserve(last - first);
-            for (std::size_t i = first; i < last; ++i) targets.push_back(aim.off_the_edge(target(i)));
+            for (std::size_t i = first; i < last; ++i) targets.push_back(aim.moved_inside_edge(target(i)));
             AimRequest request = aim.request(*map);
             request.count = static_cast<std::int64_t>(targets.size());
             request.targets = targets.data();

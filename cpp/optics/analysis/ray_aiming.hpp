@@ -14,31 +14,33 @@ namespace REALCAM_NAMESPACE {
 
 /// Finds the rays of one object point through given points on the real aperture stop.
 ///
-/// Newton's method in the two coordinates of the entry plane, with the Jacobian by differences; a step that does not
-/// come nearer is halved. The chief ray is followed from the axis out to its field angle in steps of at most 5 degrees,
-/// so that of several rays through the stop's centre the one that belongs to the lens's image is found. The other rays
-/// start from the chief ray; if that fails, they go out to their target in 4, then in 16 steps. Each search has at most
-/// 40 Newton steps of at most 24 halvings, and fails if its ray is then not within 2.5e-11 of the stop's radius. Points
-/// on the very edge of the stop's opening are replaced by ones 5e-11 further in, so that no rounding blocks the ray,
-/// here or where it is traced again.
+/// It uses Newton's method in the two coordinates of the entry plane (see ObjectPoint), with the Jacobian by finite
+/// differences. A step that does not reduce the distance from the target is halved. The chief ray is followed from the
+/// axis to its field angle in steps of at most 5 degrees: if there are several rays through the stop's centre, this
+/// finds the one that belongs to the image. Searches for other rays start from the chief ray; if this fails, they
+/// approach their target in 4, then in 16 steps. A search takes at most 40 Newton steps with at most 24 halvings each,
+/// and fails if its ray then misses the target by more than 2.5e-11 of the stop's radius. Targets on the edge of the
+/// stop's opening are moved inside by 5e-11 of its radius, so that rounding does not block the ray, here or when it is
+/// traced again.
 class RayAimer {
 public:
     using Entry = ObjectPoint::Entry;
 
-    /// Throws InputError if the field point is invalid, or no ray from it reaches the stop's centre.
+    /// Throws InputError if the field point is invalid, or if no ray of it reaches the stop's centre.
     RayAimer(const LensSystem& lens, double wavelength_nm, const FieldPoint& field);
 
-    /// Real ray through the stop's centre, even if a rim or an obstruction blocks it.
-    AimedRay chief_ray() const { return through(open_.view(), chief_); }
+    /// Returns the real ray through the stop's centre, even if a rim or an obstruction blocks it.
+    AimedRay chief_ray() const { return traced(open_.view(), chief_); }
 
-    /// Returns the ray through a point on the stop, mm, in the real lens: blocked rays have the status that ended them.
+    /// Returns the ray through a point on the stop (mm) in the real lens. If the lens blocks it, its status says how;
+    /// if there is no ray, the status is no_convergence.
     AimedRay operator()(Vec2<double> target) const;
 
-    /// Returns the actual target for a point on the stop, mm: moved inwards if it lies on the very edge of the opening.
-    Vec2<double> off_the_edge(Vec2<double> target) const;
+    /// Returns a target (mm) on the stop, moved inside if it lies on the edge of the opening.
+    Vec2<double> moved_inside_edge(Vec2<double> target) const;
 
-    /// Returns a request, without rays, for aiming them together as accurately as one by one. Valid as long as this
-    /// object and the map.
+    /// Returns a request for aiming many rays together, as accurately as one by one; its count, targets, and rays are
+    /// still to be set. It is valid as long as this object and the map.
     AimRequest request(const StopMap& map) const;
 
     ObjectPoint object;
@@ -47,42 +49,51 @@ public:
     Vec3d in_lens_frame(Vec3d point) const { return point + frame_; }
 
 private:
+    /// A ray traced to the stop.
     struct Probe {
         Vec2<double> at;  ///< point on the stop, mm
-        Vec2<double> by_x, by_y;  ///< derivatives of `at` by the entry
+        Vec2<double> by_x, by_y;  ///< derivatives of `at` by the coordinates of the entry point
     };
-    static constexpr int kMaxSteps = 40, kMaxHalvings = 24;
-    static constexpr double kMiss = 2.5e-11, kEdge = 2 * kMiss;  ///< relative to the stop's radius
+    static constexpr int kMaxSteps = 40, kMaxHalvings = 24;  ///< limits of the searches by Newton's method
+    static constexpr double kTolerance = 2.5e-11, kEdgeMargin = 2 * kTolerance;  ///< relative to the stop's radius
 
-    AimedRay through(LensView<double> view, Entry entry) const;
+    /// Traces the ray with this entry point through a view of the lens.
+    AimedRay traced(LensView<double> view, Entry entry) const;
 
-    /// Returns std::nullopt if the ray, or one of its two neighbours, does not reach the stop.
+    /// Traces the ray of an object point with this entry point to the stop, and two close neighbours for the
+    /// derivatives. Returns std::nullopt if one of them does not reach the stop.
     std::optional<Probe> probe(const ObjectPoint& from, Entry entry) const;
 
+    /// Distance of a ray from its target, mm.
     static double miss(const Probe& probe, Vec2<double> target) {
         return hypotenuse(probe.at.x - target.x, probe.at.y - target.y);
     }
 
+    /// Returns the entry point of the ray through `target` by Newton's method from `entry` on; std::nullopt if it
+    /// fails.
     std::optional<Entry> aimed(const ObjectPoint& from, Vec2<double> target, Entry entry) const;
 
-    /// Starts from the chief ray at once. If that fails, goes outwards to the target in shorter and shorter steps.
+    /// Same from the chief ray on, in one step; if this fails, in 4, then in 16 steps.
     std::optional<Entry> aimed_from_chief(Vec2<double> target) const;
 
+    /// Finds the chief ray from the centre of the entry plane on. Throws InputError if there is none.
     void find_chief_ray(const LensSystem& lens, const FieldPoint& field);
+    /// Follows the chief ray from the axis to the field angle. Throws InputError if this fails.
     void follow_chief_ray(const LensSystem& lens, double wavelength_nm, const FieldPoint& field);
 
     LensPath<double> path_;
-    int stop_;
-    AimingPath open_, real_;
-    double reach_;  ///< radius of the circle around the stop's opening, which may have blades
-    double stop_radius_, step_;
-    Entry chief_{0, 0};
+    int stop_;  ///< index of the stop
+    AimingPath open_, real_;  ///< the lens without and with rims
+    double stop_bounding_radius_;  ///< radius of the circle around the stop's opening, which may have blades
+    double stop_radius_;  ///< mm
+    double step_;  ///< step of finite differences on the entry plane, mm
+    Entry chief_{0, 0};  ///< entry point of the chief ray
     Vec3d frame_{0, 0, 0};  ///< origin of the object's frame, in the lens frame
 };
 
-/// Returns the rays through all points of a pattern on the stop, in units of `reach`. Large patterns are aimed
-/// together, starting from a fitted map from stop to entry plane, and as accurately as one by one; rays for which this
-/// fails are aimed one by one. Passes on what `loop` throws to stop it.
+/// Returns the rays through all points of a pattern on the stop; `reach`: the unit of the pattern's points, mm. Rays of
+/// large patterns are aimed together by a map that is fitted from the stop to the entry plane (StopMap), and as
+/// accurately as one by one; rays for which this fails are aimed one by one. Throws Cancelled if `loop` is cancelled.
 std::vector<AimedRay> aim_all(const RayAimer& aim, const std::vector<PupilPoint>& pattern, double reach,
                               const RayLoop& loop = {});
 

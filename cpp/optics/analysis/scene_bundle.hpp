@@ -7,35 +7,41 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// A ray in front of the lens, relative to its front vertex, or in the camera frame (film_path_ends).
+/// Ray in front of the lens, in mm, relative to the front vertex or in the camera frame (film_path_ends).
 struct SceneRay {
-    Vec3d origin, direction;
+    Vec3d origin;
+    Vec3d direction;  ///< unit vector, from the lens to the scene
 };
 
-/// Unit vectors perpendicular to a direction; x is the x axis if the direction lies in the y-z plane.
+/// Frame of a plane perpendicular to a ray. If the ray lies in the y-z plane, its x is the x axis.
 struct AcrossRay {
-    Vec3d x, y;
+    Vec3d x, y;  ///< unit vectors
 
+    /// `unit`: direction of the ray, a unit vector.
     explicit AcrossRay(Vec3d unit) {
         const Vec3d axis = std::fabs(unit.x) < 0.9 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0};
         x = normalized(axis - dot(axis, unit) * unit);
         y = cross(x, unit);
     }
+    /// Returns the coordinates of a vector in the plane.
     Vec2<double> of(Vec3d v) const { return {dot(v, x), dot(v, y)}; }
+    /// Returns the vector with these coordinates in the plane.
     Vec3d at(Vec2<double> v) const { return v.x * x + v.y * y; }
 };
 
-/// All light of a scene point that reaches the film, parametrised by its intersection with a plane perpendicular to one
-/// of its rays. Over it the light is uniform, except for the obliquity of the other rays.
+/// All light of a scene point that reaches the film (a Bundle of bundle_quadrature.hpp). The entry point of a ray is
+/// its intersection with a plane perpendicular to one of the rays. Over this plane the light is uniform, except for the
+/// obliquity of the other rays (see `light`).
 class SceneBundle {
 public:
-    using Entry = Vec2<double>;  ///< mm from the origin of `ray`, in the axes of AcrossRay
+    using Entry = Vec2<double>;  ///< entry point: mm from the origin of `ray`, in the axes of AcrossRay
 
-    Entry middle, reach;  ///< bounds of what passes: centre and half sides
+    Entry middle, reach;  ///< approximate bounds of the entry points that pass: centre and half-sides
     bool mirrored;  ///< true: symmetric in x
 
     /// `path`: to the film, ending in the film frame (film_path_ends); it must outlive this object. `ray`: from the
-    /// lens to the point, unit direction. `distance`: from the ray's origin to the point, infinity allowed.
+    /// lens to the scene point. `distance`: from the ray's origin to the point, mm; may be infinite. `in`: initial
+    /// `middle` and `reach`.
     SceneBundle(const LensPath<double>& path, FilmSurface<double> film, const SceneRay& ray, double distance,
                 EntryRectangle in, bool mirrored)
         : middle(in.middle),
@@ -48,7 +54,7 @@ public:
           across_(ray.direction),
           inverse_distance_(1 / distance) {}
 
-    /// For each entry: true if its ray passes the lens.
+    /// Sets passed[i] to true if the ray with entry point i passes the lens.
     template <int N>
     void pass(const Entry (&entries)[N], bool (&passed)[N]) const {
         LensRays<double, N> rays;
@@ -56,7 +62,7 @@ public:
         for (int i = 0; i < N; ++i) passed[i] = rays.status[i] == 0;
     }
 
-    /// Film points of the entries' rays, mm; NaN if the lens blocks the ray.
+    /// Computes the film points of the rays with these entry points, mm; NaN if the lens blocks the ray.
     template <int N>
     void land(const Entry (&entries)[N], Vec2<double> (&points)[N]) const {
         constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
@@ -66,12 +72,14 @@ public:
             points[i] = rays.status[i] == 0 ? film_.landing(rays.origin[i], rays.direction[i]) : Entry{kNone, kNone};
     }
 
-    /// Light per area of the entry plane, relative to its centre: uniform in solid angle.
+    /// Returns the density of light at an entry point, per area of the entry plane and relative to that at its centre.
+    /// The light of the scene point is uniform in solid angle.
     double light(Entry entry) const {
         return std::pow(1 + (entry.x * entry.x + entry.y * entry.y) * inverse_distance_ * inverse_distance_, -1.5);
     }
 
 private:
+    /// Traces the rays with these entry points to the film.
     template <int N>
     void trace(const Entry (&entries)[N], LensRays<double, N>& rays) const {
         for (int i = 0; i < N; ++i) {

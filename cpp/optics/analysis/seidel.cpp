@@ -27,15 +27,16 @@ struct ParaxialPair {
     ParaxialRay marginal, chief;
 };
 
+/// Returns the marginal and the chief ray of a field point. Throws InputError for what seidel() refuses.
 ParaxialPair entering_rays(const LensSystem& lens, double wavelength_nm, const FieldPoint& field) {
     for (std::size_t i = 0; i < lens.surfaces.size(); ++i)
         if (!lens.surfaces[i].form.is_none())
-            throw InputError("third-order sums know conics and even aspheres alone, and surface " +
-                             std::to_string(i + 1) + " has other terms");
+            throw InputError("third-order sums require conics and even aspheres; surface " + std::to_string(i + 1) +
+                             " has other terms");
     const FirstOrder data = first_order(lens, wavelength_nm);
     const double pupil = data.entrance_pupil_position, radius = 0.5 * data.entrance_pupil_diameter;
     if (!(std::fabs(field.angle_rad) < 0.5 * std::numbers::pi))
-        throw InputError("third-order sums need a field angle of less than 90 deg; it is " +
+        throw InputError("third-order sums require a field angle of less than 90 deg; found " +
                          object_point_detail::degrees(field.angle_rad));
     const ObjectPoint object(lens, wavelength_nm, {0, field.object_distance});
     const double tangent = std::tan(field.angle_rad);
@@ -43,29 +44,33 @@ ParaxialPair entering_rays(const LensSystem& lens, double wavelength_nm, const F
     return {{radius - slope * pupil, slope}, {-pupil * tangent, tangent}};
 }
 
-SeidelRow row_of(const Surface& surface, double before, double after, ParaxialRay marginal, ParaxialRay chief,
-                 double invariant, double index_ratio_change) {
+/// Computes the contribution of a surface. `before`, `after`: signed refractive indices; `marginal`, `chief`: the rays
+/// in front of it; `invariant`: H; `index_ratio_change`: D(dn/n).
+SeidelRow surface_row(const Surface& surface, double before, double after, ParaxialRay marginal, ParaxialRay chief,
+                      double invariant, double index_ratio_change) {
     const double c = surface.curvature, y = marginal.height, y_chief = chief.height;
     SeidelRow row{};
     row.marginal = refract_paraxial(marginal, c, before, after);
     row.chief = refract_paraxial(chief, c, before, after);
     const double a = before * (marginal.slope + y * c), b = before * (chief.slope + y_chief * c);
-    const double change = row.marginal.slope / after - marginal.slope / before;
-    const double inverse = 1 / after - 1 / before;
-    const double figure = 0.125 * surface.conic * c * c * c + (surface.aspheric.empty() ? 0.0 : surface.aspheric[0]);
-    const double sag = 8 * figure * (after - before) * y;
+    const double slope_change = row.marginal.slope / after - marginal.slope / before;
+    const double inverse_index_change = 1 / after - 1 / before;
+    const double aspheric_coefficient =
+        0.125 * surface.conic * c * c * c + (surface.aspheric.empty() ? 0.0 : surface.aspheric[0]);
+    const double aspheric_term = 8 * aspheric_coefficient * (after - before) * y;
     row.marginal_invariant = a;
     row.chief_invariant = b;
-    row.sums[0] = -a * a * y * change + sag * y * y * y;
-    row.sums[1] = -a * b * y * change + sag * y * y * y_chief;
-    row.sums[2] = -b * b * y * change + sag * y * y_chief * y_chief;
-    row.sums[3] = -invariant * invariant * c * inverse;
+    row.sums[0] = -a * a * y * slope_change + aspheric_term * y * y * y;
+    row.sums[1] = -a * b * y * slope_change + aspheric_term * y * y * y_chief;
+    row.sums[2] = -b * b * y * slope_change + aspheric_term * y * y_chief * y_chief;
+    row.sums[3] = -invariant * invariant * c * inverse_index_change;
     // b/a (S_III + S_IV) without the quotient, which is undefined if the marginal ray hits the surface along its
     // normal: D(u/n) = a D(1/n^2) - y c D(1/n), and b y = H + a y'.
     row.sums[4] = -b * b * b * y * (1 / after - 1 / before) * (1 / after + 1 / before) +
-                  b * y_chief * c * inverse * (b * y + invariant) + sag * y_chief * y_chief * y_chief;
+                  b * y_chief * c * inverse_index_change * (b * y + invariant) +
+                  aspheric_term * y_chief * y_chief * y_chief;
     row.colour = {a * y * index_ratio_change, b * y * index_ratio_change};
-    row.petzval_curvature = c * inverse;
+    row.petzval_curvature = c * inverse_index_change;
     return row;
 }
 
@@ -88,7 +93,8 @@ SeidelTable seidel(const LensSystem& lens, double wavelength_nm, const FieldPoin
         if (surface.type == SurfaceType::mirror) sign = -sign;
         const double after = sign * n[i + 1];
         const double dispersion = (n_short[i + 1] - n_long[i + 1]) / n[i + 1] - (n_short[i] - n_long[i]) / n[i];
-        table.surfaces.push_back(row_of(surface, before, after, marginal, chief, table.lagrange_invariant, dispersion));
+        table.surfaces.push_back(
+            surface_row(surface, before, after, marginal, chief, table.lagrange_invariant, dispersion));
         marginal = table.surfaces.back().marginal;
         chief = table.surfaces.back().chief;
         steepest = std::max(steepest, std::fabs(marginal.slope));
@@ -96,10 +102,11 @@ SeidelTable seidel(const LensSystem& lens, double wavelength_nm, const FieldPoin
         marginal.height += surface.thickness * marginal.slope;
         chief.height += surface.thickness * chief.slope;
     }
-    // A smaller slope is the rounding error of 0.
+    // A slope that is smaller than this is a rounding error of 0.
     if (!(std::fabs(marginal.slope) > 1e-12 * steepest))
-        throw InputError("lens \"" + lens.name +
-                         "\" is afocal for this object: its image lies at infinity, and transverse aberrations do too");
+        throw InputError(
+            "lens \"" + lens.name +
+            "\" is afocal for this object: its image lies at infinity, and its transverse aberrations are infinite");
     for (SeidelRow& row : table.surfaces) row.petzval_curvature *= sign * n.back();
     return table;
 }

@@ -11,12 +11,13 @@ namespace realcam {
 
 namespace {
 
-SpotSize size_about(const Spot& spot, Vec2<double> middle, const RayLoop& loop) {
+/// Returns the size of a spot about a point (mm).
+SpotSize size_about(const Spot& spot, Vec2<double> centre, const RayLoop& loop) {
     double sum = 0, weight = 0, largest = 0;
     loop.in_order(spot.points.size(), [&](std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i) {
             if (!spot.rays.passes(i)) continue;
-            const double radius = hypotenuse(spot.points[i].x - middle.x, spot.points[i].y - middle.y);
+            const double radius = hypotenuse(spot.points[i].x - centre.x, spot.points[i].y - centre.y);
             sum += spot.rays.pattern[i].weight * radius * radius;
             weight += spot.rays.pattern[i].weight;
             largest = std::max(largest, radius);
@@ -43,10 +44,10 @@ Spot spot_of(FieldRays rays, double film_distance, const RayLoop& loop) {
             const bool passes = spot.rays.passes(i);
             spot.points.push_back(passes ? on_film(spot.rays.rays[i]) : Vec2<double>{nan, nan});
             if (!passes) continue;
-            const double share = spot.rays.pattern[i].weight;
-            spot.centroid.x += share * spot.points[i].x;
-            spot.centroid.y += share * spot.points[i].y;
-            weight += share;
+            const double ray_weight = spot.rays.pattern[i].weight;
+            spot.centroid.x += ray_weight * spot.points[i].x;
+            spot.centroid.y += ray_weight * spot.points[i].y;
+            weight += ray_weight;
         }
     });
     spot.centroid = {spot.centroid.x / weight, spot.centroid.y / weight};

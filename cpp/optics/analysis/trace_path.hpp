@@ -6,23 +6,25 @@
 
 namespace REALCAM_NAMESPACE {
 
+/// Floating-point type in which rays are traced.
 enum class Precision { float32, float64 };
 
 /// Results of a trace: arrays of `count` rays that the caller owns.
 struct TracedRays {
-    double* origins;  ///< count x 3, mm, lens frame: on the last surface hit
-    double* directions;  ///< count x 3, unit
-    double* optical_path;  ///< count, mm: sum of index times distance up to the origin
-    int* status;  ///< count, RayStatus
-    int* surface_index;  ///< count: the last surface hit or missed, from 0; -1 for bad input
+    double* origins;  ///< count x 3: point on the last surface hit, mm, lens frame
+    double* directions;  ///< count x 3: unit vectors
+    double* optical_path;  ///< count: sum of index times distance from the start to `origins`, mm
+    int* status;  ///< count: RayStatus
+    int* surface_index;  ///< count: index (from 0) of the last surface hit or missed; -1 for RayStatus::bad_input
 };
 
-/// The first `surface_count` surfaces that the light meets (negative: all), prepared for trace requests. Owns the data
-/// of their views.
+/// Part of a lens, prepared for tracing requests of rays in precision T: the first surfaces that the light hits. Owns
+/// the data of their views.
 template <class T>
 class TracePath {
 public:
-    /// Throws InputError for a wavelength outside 100 to 20000 nm, or more surfaces than the lens has.
+    /// `surface_count`: number of surfaces, in the order of the light; negative: all. Throws InputError if the
+    /// wavelength is not from 100 to 20000 nm, or if the lens does not have that many surfaces.
     TracePath(const LensSystem& lens, LightDirection direction, double wavelength_nm, int surface_count)
         : path_(lens, direction, checked(wavelength_nm)) {
         const int all = static_cast<int>(lens.surfaces.size());
@@ -33,6 +35,8 @@ public:
         exit_position_ = lens.vertices()[static_cast<std::size_t>(last)];
     }
 
+    /// Returns a request to trace `count` rays; `origins` and `directions` have three numbers per ray. It is valid as
+    /// long as this object and the arrays.
     TraceRequest<T> request(std::int64_t count, const double* origins, const double* directions,
                             const TracedRays& out) const {
         LensView<T> view = path_.view();
@@ -53,6 +57,7 @@ public:
     }
 
 private:
+    /// Returns the wavelength. Throws InputError if it is out of range.
     static double checked(double wavelength_nm) {
         if (!(wavelength_nm >= 100 && wavelength_nm <= 20000))
             throw InputError("the wavelength must lie between 100 and 20000 nm");
@@ -61,7 +66,7 @@ private:
 
     LensPath<T> path_;
     int count_;
-    double exit_position_;
+    double exit_position_;  ///< z of the last surface's vertex, mm
 };
 
 }  // namespace REALCAM_NAMESPACE

@@ -32,10 +32,10 @@ BundleTransmission bundle_transmission(const LensSystem& lens, double wavelength
     double weight = 0;
     for (std::size_t i = 0; i < count; ++i) {
         if (!result.rays.passes(i)) continue;
-        const double share = result.rays.pattern[i].weight;
-        weight += share;
-        result.mean_traced += share * result.traced[i];
-        result.mean_averaged += share * result.averaged[i];
+        const double ray_weight = result.rays.pattern[i].weight;
+        weight += ray_weight;
+        result.mean_traced += ray_weight * result.traced[i];
+        result.mean_averaged += ray_weight * result.averaged[i];
     }
     result.mean_traced /= weight;
     result.mean_averaged /= weight;
@@ -54,21 +54,21 @@ double unobstructed_share(LensSystem lens, double wavelength_nm) {
     const double radius = lens.open_stop_radius();
     const auto passes = [&](double area) { return aim({radius * std::sqrt(area), 0}).status == RayStatus::ok; };
     constexpr int kSteps = 128;
-    double open = 0;
-    bool before = passes(0);
+    double unobstructed = 0;
+    bool passes_start = passes(0);
     for (int i = 1; i <= kSteps; ++i) {
         double low = static_cast<double>(i - 1) / kSteps, high = static_cast<double>(i) / kSteps;
         const double start = low, end = high;
-        const bool now = passes(end);
-        while (now != before && high - low > 1e-9) {
+        const bool passes_end = passes(end);
+        while (passes_end != passes_start && high - low > 1e-9) {
             const double middle = (low + high) / 2;
-            (passes(middle) == before ? low : high) = middle;
+            (passes(middle) == passes_start ? low : high) = middle;
         }
-        if (before && now) open += end - start;
-        if (before != now) open += before ? low - start : end - high;
-        before = now;
+        if (passes_start && passes_end) unobstructed += end - start;
+        if (passes_start != passes_end) unobstructed += passes_start ? low - start : end - high;
+        passes_start = passes_end;
     }
-    return open;
+    return unobstructed;
 }
 
 double t_stop(const LensSystem& lens, double wavelength_nm) {

@@ -5,22 +5,22 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Centre of the reference sphere.
+/// Centre of the reference sphere of a wavefront.
 enum class SphereCentre {
     chief,  ///< intersection of the chief ray with the film
     centroid,  ///< centroid of the spot on the film
 };
 
-/// Exit pupil, whose distance from the centre is the radius of the reference sphere. For a lens that is not a lens of
-/// revolution, or a field specified by its film point, there is only one: the image of the stop by rays close to the
-/// chief ray.
+/// Exit pupil, whose distance from the centre is the radius of the reference sphere. The choice has no effect for a
+/// lens without rotational symmetry, and for a field specified by its film point: the exit pupil is then the image of
+/// the stop by rays close to the chief ray.
 enum class ExitPupil {
-    real,  ///< crossing of the chief ray with the axis, as in CODE V's listings; on the axis, as below
-    paraxial,  ///< crossing of the chief ray with the plane of the paraxial exit pupil, as in OpticStudio
+    real,      ///< intersection of the chief ray with the axis, as in CODE V; for a field on the axis as `paraxial`
+    paraxial,  ///< intersection of the chief ray with the plane of the paraxial exit pupil, as in OpticStudio
 };
 
-/// Terms fitted to the optical path difference by least squares over the open stop, in the stop's coordinates x, y, and
-/// subtracted.
+/// Terms that are fitted to the optical path difference by least squares over the rays that pass, in the coordinates x,
+/// y of the stop, and subtracted.
 enum class Removed {
     nothing,
     tilt,  ///< 1, x, y
@@ -39,19 +39,21 @@ struct Wavefront {
     std::vector<double> opd;  ///< W in waves; NaN if the ray does not pass
     Vec3d centre;  ///< centre of the reference sphere, mm, relative to the last vertex
     double reference_curvature;  ///< 1/mm; positive if the light travels from the pupil to the centre; 0: plane
-    double rms;  ///< RMS of W about its mean over the open stop, waves
-    double peak_to_valley;  ///< waves
+    double rms;  ///< RMS of W about its mean over the open part of the stop, waves
+    double peak_to_valley;  ///< largest minus smallest W, waves
     double strehl;  ///< |mean of exp(2 pi i W)|^2
     double strehl_marechal;  ///< exp(-(2 pi rms)^2), Marechal's approximation in the form of V. N. Mahajan, 1983
 };
 
 namespace wavefront_detail {
 
-/// Inverse distance from the exit pupil to the chief ray's film point, along the ray, 1/mm.
+/// Returns the inverse distance from the exit pupil to the film point of the chief ray, along the ray, 1/mm.
 double reference_curvature(const LensSystem& lens, double wavelength_nm, const FieldRays& rays, double film_distance,
                            ExitPupil exit_pupil);
 
-/// Solves the normal equations of a least-squares fit, a symmetric positive matrix of order n, by Cholesky's method.
+/// Solves the normal equations a x = b of a least-squares fit by Cholesky's method. `a` must be symmetric and positive
+/// definite; only its first n rows and columns, and only the lower triangle, are used. Elements of x from n on are
+/// those of b.
 template <std::size_t N>
 std::array<double, N> solve_normal(std::array<std::array<double, N>, N> a, std::array<double, N> b, std::size_t n) {
     for (std::size_t j = 0; j < n; ++j) {
@@ -75,8 +77,8 @@ std::array<double, N> solve_normal(std::array<std::array<double, N>, N> a, std::
 
 /// Computes the wavefront of the rays of one object point, with its reference sphere centred on a film whose vertex
 /// lies `film_distance` mm behind the last vertex. Throws InputError if there is no reference sphere (the exit pupil
-/// lies in the film, or a ray passes the centre at more than the sphere's radius), or if a fit has too few rays. Passes
-/// on what `loop` throws to stop it.
+/// lies in the film, or a ray passes the centre at more than the sphere's radius), or if a fit has too few rays, and
+/// Cancelled if `loop` is cancelled.
 Wavefront wavefront_of(const LensSystem& lens, double wavelength_nm, FieldRays rays, double film_distance,
                        SphereCentre centre, Removed removed, ExitPupil exit_pupil = ExitPupil::real,
                        const RayLoop& loop = {});

@@ -10,8 +10,8 @@ namespace realcam {
 
 namespace {
 
-/// Contribution of a frame to the derivative by the variable in a lane. `adjoints`: those of the frame's origin and
-/// axes.
+/// Returns the contribution of a frame to the derivative by the variable in a lane. `adjoints`: adjoints of the frame's
+/// origin and axes.
 template <class Frame>
 double sum_of_frame(const Vec3d* adjoints, const Frame& frame, std::size_t lane) {
     double sum = 0;
@@ -20,6 +20,8 @@ double sum_of_frame(const Vec3d* adjoints, const Frame& frame, std::size_t lane)
     return sum;
 }
 
+/// Returns the contribution of a surface to the derivative by the variable in a lane. `adjoints`: adjoints of the
+/// surface's numbers (SurfaceNumber).
 double sum_of_surface(const double* adjoints, const DualSurface& surface, std::size_t lane) {
     const SurfaceView<Dual8>& view = surface.view;
     double sum = adjoints[kFrameOrigin + 2] * view.shift.by[lane] + adjoints[kCurvature] * view.curvature.by[lane] +
@@ -36,6 +38,7 @@ double sum_of_surface(const double* adjoints, const DualSurface& surface, std::s
     return sum;
 }
 
+/// Returns the frame change without derivatives.
 FrameChange<double> value(const DualFrame& frame) {
     return {value(frame.origin), value(frame.x), value(frame.y), value(frame.z), frame.changes};
 }
@@ -54,14 +57,14 @@ AdjointPath::AdjointPath(const LensSystem& lens, LightDirection direction, doubl
 
 std::vector<double> AdjointPath::gradient(const AdjointRequest& request, const RayLoop& loop) const {
     // Partial sums over blocks of fixed size, added in order, make the result independent of the number of threads.
-    constexpr std::size_t kPart = 1024;
-    const std::size_t width = path_.variable_count(), parts = (request.count + kPart - 1) / kPart;
+    constexpr std::size_t kRaysPerPart = 1024;
+    const std::size_t width = path_.variable_count(), parts = (request.count + kRaysPerPart - 1) / kRaysPerPart;
     std::vector<double> sums(width * parts), gradient(width);
     loop.for_all(parts, [&](std::size_t first, std::size_t last) {
         for (std::size_t part = first; part < last; ++part) {
-            Sums of_part;
-            add_rays(request, kPart * part, std::min(request.count, kPart * (part + 1)), of_part);
-            add_variables(of_part, sums.data() + width * part);
+            Sums part_sums;
+            add_rays(request, kRaysPerPart * part, std::min(request.count, kRaysPerPart * (part + 1)), part_sums);
+            add_variables(part_sums, sums.data() + width * part);
         }
     });
     for (std::size_t i = 0; i < sums.size(); ++i) gradient[i % width] += sums[i];
@@ -86,8 +89,8 @@ void AdjointPath::add_rays(const AdjointRequest& request, std::size_t first, std
         surface.dual_count = static_cast<int>(duals.size());
         surface.form_sums = sums.forms[k].data();
     }
-    for (std::size_t at = first; at < last; at += kLanes)
-        add_block(request, at, static_cast<int>(std::min<std::size_t>(kLanes, last - at)), sums);
+    for (std::size_t ray = first; ray < last; ray += kLanes)
+        add_block(request, ray, static_cast<int>(std::min<std::size_t>(kLanes, last - ray)), sums);
 }
 
 // target_clones compiles only inlined code for each instruction set, hence `flatten`.
@@ -119,15 +122,15 @@ __attribute__((flatten)) REALCAM_CLONES void AdjointPath::add_block(const Adjoin
     }
     steps[0].origin = rays.origin, steps[0].direction = rays.direction;
     const FreeParts<double> free{data(path_.frames_), data(path_.freeforms_), data(path_.apertures_)};
-    LensView<double> one{nullptr, 1, path_.kind_, path_.iris_};
+    LensView<double> one_surface{nullptr, 1, path_.kind_, path_.iris_};
     for (std::size_t k = 0; k < count; ++k) {
-        one.surfaces = &path_.views_[k];
-        one.free = free.from(static_cast<int>(k));
-        trace_lens(one, rays);
+        one_surface.surfaces = &path_.views_[k];
+        one_surface.free = free.from(static_cast<int>(k));
+        trace_lens(one_surface, rays);
         steps[k + 1].origin = rays.origin, steps[k + 1].direction = rays.direction;
     }
 
-    // Lanes of rays that have ended repeat a ray that passes, with adjoints of 0.
+    // Lanes of rays that have ended are filled with a ray that passes, with adjoints of 0.
     int passing = 0;
     while (passing < kLanes && rays.status[passing] != 0) ++passing;
     for (int i = 0; i < used; ++i)
@@ -156,6 +159,7 @@ __attribute__((flatten)) REALCAM_CLONES void AdjointPath::add_block(const Adjoin
         const Vec3d of_o = vector(request.of_origins, ray), of_unit = vector(request.of_directions, ray);
         const double inverse = 1 / length(p);
         const Vec3d unit = inverse * (p.x * axes[0] + p.y * axes[1] + p.z * axes[2]);
+        // The exit direction is normalised: only the part of its adjoint perpendicular to it has an effect.
         const Vec3d of_p = inverse * (of_unit - dot(of_unit, unit) * unit);
         adjoints.origin.set(i, {dot(axes[0], of_o), dot(axes[1], of_o), dot(axes[2], of_o)});
         adjoints.direction.set(i, {dot(axes[0], of_p), dot(axes[1], of_p), dot(axes[2], of_p)});
@@ -163,15 +167,18 @@ __attribute__((flatten)) REALCAM_CLONES void AdjointPath::add_block(const Adjoin
         const Vec3d of_frame[4] = {of_o, o.x * of_o + p.x * of_p, o.y * of_o + p.y * of_p, o.z * of_o + p.z * of_p};
         for (int part = 0; part < 4; ++part) sums.exit[part] += of_frame[part];
     }
-    for (std::size_t k = count; k-- > 0;) pull_surface(sums.surfaces[k], steps[k], steps[k + 1], adjoints);
+    for (std::size_t k = count; k-- > 0;) pull_back_surface(sums.surfaces[k], steps[k], steps[k + 1], adjoints);
     for (int i = 0; i < used; ++i) {
         if (rays.status[i] != 0) continue;
         const std::size_t ray = first + static_cast<std::size_t>(i);
-        const Vec3d given = vector(request.directions, ray), p = steps[0].direction[i];
+        const Vec3d direction = vector(request.directions, ray), p = steps[0].direction[i];
         const Vec3d of_o = adjoints.origin[i], of_p = adjoints.direction[i];
-        const double size = length(given), of_path = request.of_paths[ray];
-        const Vec3d unit = (1 / size) * given;
-        const double distance = dot(steps[0].origin[i] - from[i], unit) / size;  // to the start of the trace
+        const double size = length(direction), of_path = request.of_paths[ray];
+        const Vec3d unit = (1 / size) * direction;
+        const double distance =
+            dot(steps[0].origin[i] - from[i], unit) / size;  // to the start of the trace, in lengths of `direction`
+        // The given direction determines the optical direction, index * unit, and the point at which the trace starts,
+        // from[i] + distance * direction.
         write(request.by_origins, ray, of_o);
         write(request.by_directions, ray,
               (index / size) * (of_p - dot(of_p, unit) * unit) + distance * of_o + index * distance * of_path * unit);
@@ -191,17 +198,17 @@ void AdjointPath::add_variables(const Sums& sums, double* by) const {
             const DualSurface& surface = path_.duals_[k][d];
             for (std::size_t lane = 0; lane < kDualLanes; ++lane) {
                 if (surface.variables[lane] < 0) continue;
-                double& to = by[surface.variables[lane]];
-                to += sum_of_surface(adjoints, surface, lane);
-                if (!surface.form.empty()) to += sums.forms[k][d].by[lane];
+                double& derivative = by[surface.variables[lane]];
+                derivative += sum_of_surface(adjoints, surface, lane);
+                if (!surface.form.empty()) derivative += sums.forms[k][d].by[lane];
             }
         }
     }
     for (std::size_t v = 0; v < path_.variable_count(); ++v) {
-        const std::size_t eight = v / kDualLanes, lane = v % kDualLanes;
-        by[v] += sum_of_frame(sums.exit, path_.exits_[eight], lane) +
-                 sums.entry_position * path_.entry_positions_[eight].by[lane] +
-                 sums.entry_index * path_.entry_indices_[eight].by[lane];
+        const std::size_t block = v / kDualLanes, lane = v % kDualLanes;
+        by[v] += sum_of_frame(sums.exit, path_.exits_[block], lane) +
+                 sums.entry_position * path_.entry_positions_[block].by[lane] +
+                 sums.entry_index * path_.entry_indices_[block].by[lane];
     }
 }
 

@@ -4,14 +4,15 @@
 
 namespace REALCAM_NAMESPACE {
 
-// Reverse-mode differentiation. The adjoints of the rays behind a surface are the derivatives of a scalar function by
-// these rays. From them follow the adjoints of the rays before the surface and of the surface's own numbers. The
-// adjoint of a vector is a vector of derivatives; `of_x` is the adjoint of x. Host code only: nvcc lacks the vector
-// types of dual numbers.
+// Reverse-mode differentiation (backpropagation) of the ray trace, surface by surface. The adjoint of a quantity x is
+// the derivative of a scalar function by x; it is called `of_x`, and is a vector if x is one. From the adjoints of the
+// rays behind a surface, the functions below compute those of the rays in front of it and those of the surface's own
+// numbers. In a surface's frame, o and p are origin and optical direction of a ray (a direction of the length of the
+// refractive index). Host code only: nvcc lacks the vector types of dual numbers.
 
-/// Indices of a surface's numbers in its list of adjoints.
+/// Numbers of a surface that have adjoints, as indices of AdjointStep::sums.
 enum SurfaceNumber : int {
-    kFrameOrigin = 0,  ///< three numbers each: frame of the surface relative to the previous one
+    kFrameOrigin = 0,  ///< frame of the surface relative to the previous one: origin and axes, three numbers each
     kFrameX = 3,
     kFrameY = 6,
     kFrameZ = 9,
@@ -31,29 +32,35 @@ struct RayAdjoints {
     Lanes<double, N> path;
 };
 
-/// N rays behind a surface, in its frame, and the sums of the adjoints of its numbers, lane by lane.
+/// N rays behind a surface, in its frame, and for each number of the surface the sum of its adjoints over rays,
+/// separately for each lane.
 template <int N>
 struct AdjointStep {
     Vec3Lanes<double, N> origin, direction;
     Lanes<double, N> sums[kSurfaceNumbers];
 
+    /// Adds to the adjoint of a number.
     void add(int number, int lane, double of_number) { sums[number][lane] += of_number; }
+    /// Adds to the adjoints of three consecutive numbers, from `first` on.
     void add(int first, int lane, Vec3d of_vector) {
         add(first, lane, of_vector.x), add(first + 1, lane, of_vector.y), add(first + 2, lane, of_vector.z);
     }
 };
 
-// A point of a surface S = 0, where the gradient of S points towards the film. `bend` returns the adjoint of the point,
-// given that of the gradient. `add_numbers` adds the adjoints of the surface's own numbers, given that of the gradient
-// and `fall`, the derivative of the function by -S.
+// The classes of points below describe a point of a surface S = 0, where the gradient of S points towards the film:
+//   gradient()                    gradient of S at the point
+//   point_adjoint(of_gradient)    adjoint of the point due to that of the gradient
+//   add_numbers(of_gradient, fall, step, lane)  adds the adjoints of the surface's own numbers to `step`; `fall` is the
+//                                 derivative of the scalar function by -S
 
+/// Point of a sphere or conic.
 struct ConicPoint {
-    double curvature, conic_factor;
-    Vec3d at;
+    double curvature, conic_factor;  ///< c and 1 + k
+    Vec3d at;  ///< position in the surface's frame, mm
 
-    /// S = z - c/2 (x^2 + y^2 + (1 + k) z^2)
+    /// Gradient of S = z - c/2 (x^2 + y^2 + (1 + k) z^2).
     Vec3d gradient() const { return {-curvature * at.x, -curvature * at.y, 1 - curvature * conic_factor * at.z}; }
-    Vec3d bend(Vec3d of_gradient) const {
+    Vec3d point_adjoint(Vec3d of_gradient) const {
         return -curvature * Vec3d{of_gradient.x, of_gradient.y, conic_factor * of_gradient.z};
     }
     template <int N>
@@ -64,10 +71,12 @@ struct ConicPoint {
     }
 };
 
+/// Point of an even asphere.
 struct AspherePoint {
-    double curvature, conic_factor;
-    Vec3d at;
-    double w, root;  ///< r^2, and the square root in the conic's sag
+    double curvature, conic_factor;  ///< c and 1 + k
+    Vec3d at;  ///< position in the surface's frame, mm
+    double w;  ///< r^2
+    double root;  ///< sqrt(1 - (1 + k) c^2 w) in the conic's sag
     double slope, change;  ///< twice the first and twice the second derivative of the sag by w
 
     AspherePoint(const SurfaceView<double>& surface, Vec3d point)
@@ -76,7 +85,7 @@ struct AspherePoint {
         const double steepness = conic_factor * curvature * curvature;
         root = std::sqrt(1 - steepness * w);
         const double per_w = surface.inverse_search_squared, u = w * per_w, from_middle = u - 0.5;
-        double p = 0, p1 = 0, p2 = 0;  // polynomial, first derivative, half the second derivative
+        double p = 0, p1 = 0, p2 = 0;  // polynomial, its first, and half its second derivative
         REALCAM_UNROLL
         for (int i = kMaxAsphericTerms - 1; i >= 0; --i) {
             p2 = p2 * from_middle + p1;
@@ -89,11 +98,11 @@ struct AspherePoint {
                  2 * per_w * per_w * (2 * p + 4 * u * p1 + 2 * u * u * p2);
     }
 
-    /// S = z - sag
+    /// Gradient of S = z - sag.
     Vec3d gradient() const { return {-slope * at.x, -slope * at.y, 1}; }
-    Vec3d bend(Vec3d of_gradient) const {
-        const double turn = 2 * change * (at.x * of_gradient.x + at.y * of_gradient.y);
-        return {-slope * of_gradient.x - turn * at.x, -slope * of_gradient.y - turn * at.y, 0};
+    Vec3d point_adjoint(Vec3d of_gradient) const {
+        const double factor = 2 * change * (at.x * of_gradient.x + at.y * of_gradient.y);
+        return {-slope * of_gradient.x - factor * at.x, -slope * of_gradient.y - factor * at.y, 0};
     }
     template <int N>
     void add_numbers(Vec3d of_gradient, double fall, AdjointStep<N>& step, int lane) const {
@@ -102,7 +111,7 @@ struct AspherePoint {
         step.add(kCurvature, lane, 0.5 * fall * (w + conic_factor * sag * sag) * inverse - across * cube);
         step.add(kConicFactor, lane,
                  0.5 * curvature * (fall * sag * sag * inverse - across * curvature * curvature * w * cube));
-        double power = w;  // r^2, then r^4, ...: derivative of each term by w, over half its power
+        double power = w;  // r^2, then r^4, ...: derivative of each term by w, divided by half its power
         REALCAM_UNROLL
         for (int i = 0; i < kMaxAsphericTerms; ++i) {
             step.add(kAspheric + i, lane, power * (fall * w - 2 * (i + 2) * across));
@@ -111,26 +120,28 @@ struct AspherePoint {
     }
 };
 
-/// Sag and slopes of a freeform at (x, y), with the derivatives carried by the freeform's numbers and by x and y.
+/// Returns sag and slopes of a freeform at (x, y), with derivatives in the lanes of the surface's numbers and of x and
+/// y.
 FreeformSags<Dual8, 1> dual_sags(const DualSurface& surface, const Lanes<Dual8, 1>& x, const Lanes<Dual8, 1>& y);
 
-/// Point of a freeform. Adjoints of its numbers are summed for the variables in the lanes of its dual surfaces.
+/// Point of a freeform. Instead of adjoints of its many numbers, the derivatives by its variables are summed, one in
+/// each lane of its dual surfaces.
 struct FreeformPoint {
-    const DualSurface* duals;
-    int count;
+    const DualSurface* duals;  ///< the surface's dual surfaces, which hold eight variables each
+    int count;  ///< number of dual surfaces
     Dual8* sums;  ///< one per dual surface; `by` accumulates the adjoints of its lanes
-    Vec3d at;
-    FreeformSags<Dual8, 1> first;  ///< with derivatives by x and y in lanes 0 and 1
+    Vec3d at;  ///< position in the surface's frame, mm
+    FreeformSags<Dual8, 1> first;  ///< sag and slopes of the first dual surface; lanes 0 and 1: derivatives by x and y
 
-    FreeformPoint(const DualSurface* of, int number, Dual8* to, Vec3d point)
-        : duals(of), count(number), sums(to), at(point) {
+    FreeformPoint(const DualSurface* dual_surfaces, int dual_count, Dual8* adjoint_sums, Vec3d point)
+        : duals(dual_surfaces), count(dual_count), sums(adjoint_sums), at(point) {
         Lanes<Dual8, 1> x = {at.x}, y = {at.y};
         x[0].by[0] = y[0].by[1] = 1;
         first = dual_sags(duals[0], x, y);
     }
 
     Vec3d gradient() const { return {-first.slope_x[0].value, -first.slope_y[0].value, 1}; }
-    Vec3d bend(Vec3d of_gradient) const {
+    Vec3d point_adjoint(Vec3d of_gradient) const {
         const Dual8::Derivatives sum = of_gradient.x * first.slope_x[0].by + of_gradient.y * first.slope_y[0].by;
         return {-sum[0], -sum[1], 0};
     }
@@ -145,25 +156,26 @@ struct FreeformPoint {
     }
 };
 
-/// Converts the adjoints of one ray from behind a surface to before it, in the surface's frame. `o` and `p`: origin and
-/// direction of the ray before the surface.
+/// Converts the adjoints of one ray from behind a surface to in front of it, in the surface's frame, and adds those of
+/// the surface's numbers to `step`. `o` and `p`: origin and optical direction of the ray in front of the surface;
+/// `step` contains the ray behind it.
 ///
-/// Because S(o + t p) = 0, t changes by -dS / (gradient . p). All other terms are the derivative of Snell's law
-/// (refract), whose square roots are read off the refracted ray.
+/// Because S(o + t p) = 0, the ray parameter t changes by -dS / (gradient . p). The other terms are the derivative of
+/// Snell's law (refract), whose square root is the normal component of the refracted ray.
 template <int N, class SurfacePoint>
-inline void pull_crossing(const SurfacePoint& point, const SurfaceView<double>& surface, Vec3d o, Vec3d p,
-                          RayAdjoints<N>& adjoints, AdjointStep<N>& step, int lane) {
+inline void pull_back_intersection(const SurfacePoint& point, const SurfaceView<double>& surface, Vec3d o, Vec3d p,
+                                   RayAdjoints<N>& adjoints, AdjointStep<N>& step, int lane) {
     const Vec3d behind = step.direction[lane], of_behind = adjoints.direction[lane];
     const double of_path = adjoints.path[lane];
     const Vec3d gradient = point.gradient();
     const double inverse = 1 / length(gradient);
     const Vec3d normal = inverse * gradient;
     const double along = dot(p, normal), along_behind = dot(behind, normal), change = along_behind - along;
-    // At the critical angle the derivative is infinite, and is taken as 0.
+    // At the critical angle the derivative is infinite; it is replaced by 0.
     const double share = select(along_behind != 0, dot(of_behind, normal) / along_behind, 0.0);
     const Vec3d of_normal = change * (of_behind - share * p);
     const Vec3d of_gradient = inverse * (of_normal - dot(of_normal, normal) * normal);
-    const Vec3d of_at = adjoints.origin[lane] + point.bend(of_gradient);
+    const Vec3d of_at = adjoints.origin[lane] + point.point_adjoint(of_gradient);
     const double squared = dot(p, p), t = dot(step.origin[lane] - o, p) / squared;
     const double fall = (dot(of_at, p) + surface.index_squared * of_path) / dot(gradient, p);
     const Vec3d of_o = of_at - fall * gradient;
@@ -175,10 +187,11 @@ inline void pull_crossing(const SurfacePoint& point, const SurfaceView<double>& 
     point.add_numbers(of_gradient, fall, step, lane);
 }
 
-/// Converts adjoints from the frame of a surface to that of the previous one, in which the rays `from` and `along` are.
+/// Converts adjoints from the frame of a surface to that of the previous surface, and adds those of the frame's numbers
+/// to `step`. `from`, `along`: origins and directions of the rays in the previous frame.
 template <int N>
-inline void pull_frame(const FrameChange<double>& frame, const Vec3Lanes<double, N>& from,
-                       const Vec3Lanes<double, N>& along, RayAdjoints<N>& adjoints, AdjointStep<N>& step) {
+inline void pull_back_frame(const FrameChange<double>& frame, const Vec3Lanes<double, N>& from,
+                            const Vec3Lanes<double, N>& along, RayAdjoints<N>& adjoints, AdjointStep<N>& step) {
     REALCAM_LANES
     for (int i = 0; i < N; ++i) {
         const Vec3d of_o = adjoints.origin[i], of_p = adjoints.direction[i];
@@ -193,19 +206,20 @@ inline void pull_frame(const FrameChange<double>& frame, const Vec3Lanes<double,
     }
 }
 
-/// A surface with the data for its adjoints.
+/// Surface with the data for its adjoints.
 struct AdjointSurface {
-    SurfaceView<double> view;  ///< kind as its variables need; shift is 0 if the frame changes
-    FrameChange<double> before;
-    const DualSurface* duals;  ///< dual surfaces, for a freeform
+    SurfaceView<double> view;  ///< its kind is the one that the variables require; shift is 0 if the frame changes
+    FrameChange<double> before;  ///< from the frame of the previous surface to that of this one
+    const DualSurface* duals;  ///< dual surfaces of a freeform
     int dual_count;
-    Dual8* form_sums;
+    Dual8* form_sums;  ///< see FreeformPoint::sums
 };
 
-/// Converts the adjoints of N rays from behind a surface to before it. `before`: the rays behind the previous surface.
+/// Converts the adjoints of N rays from behind a surface to behind the previous surface, and adds those of the
+/// surface's numbers to `step`. `before`: the rays behind the previous surface; `step`: the rays behind this surface.
 template <int N>
-inline void pull_surface(const AdjointSurface& surface, const AdjointStep<N>& before, AdjointStep<N>& step,
-                         RayAdjoints<N>& adjoints) {
+inline void pull_back_surface(const AdjointSurface& surface, const AdjointStep<N>& before, AdjointStep<N>& step,
+                              RayAdjoints<N>& adjoints) {
     const SurfaceView<double> view = surface.view;
     const FrameChange<double> frame = surface.before;
     Vec3Lanes<double, N> o, p;
@@ -226,21 +240,21 @@ inline void pull_surface(const AdjointSurface& surface, const AdjointStep<N>& be
     if (view.kind == SurfaceShape::freeform) {
         for (int i = 0; i < N; ++i) {
             const FreeformPoint point(surface.duals, surface.dual_count, surface.form_sums, step.origin[i]);
-            pull_crossing(point, view, o[i], p[i], adjoints, step, i);
+            pull_back_intersection(point, view, o[i], p[i], adjoints, step, i);
         }
     } else if (view.kind == SurfaceShape::asphere) {
         REALCAM_LANES
         for (int i = 0; i < N; ++i)
-            pull_crossing(AspherePoint(view, step.origin[i]), view, o[i], p[i], adjoints, step, i);
+            pull_back_intersection(AspherePoint(view, step.origin[i]), view, o[i], p[i], adjoints, step, i);
     } else {
-        // A sphere is a conic with the factor 1, and its gradient has the length 1.
+        // A sphere is a conic with the conic factor 1.
         REALCAM_LANES
         for (int i = 0; i < N; ++i)
-            pull_crossing(ConicPoint{view.curvature, view.conic_factor, step.origin[i]}, view, o[i], p[i], adjoints,
-                          step, i);
+            pull_back_intersection(ConicPoint{view.curvature, view.conic_factor, step.origin[i]}, view, o[i], p[i],
+                                   adjoints, step, i);
     }
     if (frame.changes) {
-        pull_frame(frame, before.origin, before.direction, adjoints, step);
+        pull_back_frame(frame, before.origin, before.direction, adjoints, step);
         return;
     }
     REALCAM_LANES

@@ -4,8 +4,9 @@
 
 #include "../../math/vec3.hpp"
 
-// Attribute of the hot functions: gcc compiles a version for each of several instruction sets, and the loader picks
-// one. clang would require the attribute in the declarations, too, and cannot combine it with `flatten`.
+// Attribute of functions that take most of the time: gcc compiles a version for each of several instruction sets, and
+// the loader selects one. It is not used with clang, which requires the attribute in declarations, too, and cannot
+// combine it with `flatten`.
 #if defined(__x86_64__) && defined(__linux__) && !defined(__clang__)
 #define REALCAM_CLONES __attribute__((target_clones("avx512f", "avx2", "default")))
 #else
@@ -14,24 +15,26 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// A number with its derivatives by N variables: forward-mode differentiation. Comparisons use only the value, so that
-/// branches are taken as for a plain number.
+/// Dual number: a value with its derivatives by N variables, for forward-mode differentiation. Comparisons use only the
+/// value, so that branches are taken as for a plain number.
 ///
-/// Host code only: the derivatives are a vector type of gcc and clang, which maps to one or more registers on any
-/// machine.
+/// This type is for host code only: the derivatives are a vector type of gcc and clang, which is stored in one or more
+/// vector registers.
 template <int N>
 struct Dual {
+    /// Vector of N doubles with element-wise arithmetic.
     typedef double Derivatives __attribute__((vector_size(8 * N), aligned(8)));
 
     double value = 0;
-    Derivatives by = {};
+    Derivatives by = {};  ///< by[i]: derivative by variable i
 
     Dual() = default;
-    // Implicit, because the core writes `T sum = 0`.
+    // The constructor is not explicit, because templates of the core contain expressions such as `T sum = 0`. The
+    // derivatives are 0.
     __attribute__((always_inline)) inline Dual(double v) : value(v) {}
     __attribute__((always_inline)) inline Dual(double v, const Derivatives& derivatives) : value(v), by(derivatives) {}
 
-    /// Returns the dual number of f(value), given f and its derivative `slope`.
+    /// Applies a function to this number: `f` and `slope` are its value and derivative at `value`.
     __attribute__((always_inline)) inline Dual mapped(double f, double slope) const { return {f, slope * by}; }
 
     friend __attribute__((always_inline)) inline Dual operator+(const Dual& a, const Dual& b) {
@@ -68,12 +71,13 @@ struct Dual {
         return a.value >= b.value;
     }
 
-    /// The infinite slope at 0 is taken as 0: for the distance from the axis, at the axis, that is the mean over
-    /// directions.
+    /// Square root. Its derivative at 0, which is infinite, is replaced by 0. For the distance from the axis this is
+    /// the mean of the derivatives in all directions.
     friend __attribute__((always_inline)) inline Dual sqrt(const Dual& a) {
         const double root = std::sqrt(a.value);
         return a.mapped(root, root > 0 ? 0.5 / root : 0);
     }
+    // Versions of functions in platform.hpp.
     friend __attribute__((always_inline)) inline Dual sqrt_or_zero(const Dual& a) {
         return a.value > 0 ? sqrt(a) : Dual(0);
     }
@@ -81,11 +85,13 @@ struct Dual {
     friend __attribute__((always_inline)) inline Dual fabs(const Dual& a) { return a.value < 0 ? -a : a; }
 };
 
+/// Returns the value without derivatives.
 template <int N>
 double plain_value(const Dual<N>& a) {
     return a.value;
 }
 
+/// True if the value and all derivatives are 0.
 template <int N>
 bool is_constant_zero(const Dual<N>& a) {
     bool is_zero = a.value == 0;
@@ -93,12 +99,14 @@ bool is_constant_zero(const Dual<N>& a) {
     return is_zero;
 }
 
-/// More specialised than the template for plain numbers, so that overload resolution prefers it.
+/// Length of a vector of dual numbers. It is more specialised than the template in vec3.hpp, so that overload
+/// resolution prefers it; its sqrt is the one above.
 template <int N>
 __attribute__((always_inline)) inline Dual<N> length(Vec3<Dual<N>> a) {
     return sqrt(dot(a, a));
 }
 
+/// Returns the values of a vector's components, without derivatives.
 template <int N>
 __attribute__((always_inline)) inline Vec3d value(const Vec3<Dual<N>>& v) {
     return {v.x.value, v.y.value, v.z.value};

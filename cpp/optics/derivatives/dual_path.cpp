@@ -8,17 +8,20 @@ namespace realcam {
 
 namespace {
 
-constexpr int kRayLanes = 6;
+constexpr int kRayLanes = 6;  ///< lanes of derivatives by the incoming ray
 
+/// Calls f(number, index) for the six numbers of a ray.
 template <class F>
-void over_ray(Vec3<Dual8>& o, Vec3<Dual8>& p, F&& f) {
+void for_ray_numbers(Vec3<Dual8>& o, Vec3<Dual8>& p, F&& f) {
     f(o.x, 0), f(o.y, 1), f(o.z, 2), f(p.x, 3), f(p.y, 4), f(p.z, 5);
 }
 
+/// Sag of a surface and its derivatives by x and y, in dual numbers.
 struct SagWithSlopes {
     Dual8 height, slope_x, slope_y;
 };
 
+/// Evaluates an asphere or a freeform at x and y of `at`.
 REALCAM_INLINE SagWithSlopes sag_at(const DualSurface& surface, const Vec3<Dual8>& at) {
     if (surface.view.kind == SurfaceShape::asphere) {
         const Dual8 r2 = at.x * at.x + at.y * at.y;
@@ -39,7 +42,7 @@ REALCAM_INLINE SagWithSlopes sag_at(const DualSurface& surface, const Vec3<Dual8
     return {sag.height[0], sag.slope_x[0], sag.slope_y[0]};
 }
 
-/// Ray-surface intersection in dual numbers, given its point `at` in double.
+/// Returns the ray-surface intersection in dual numbers, given its point `at` in double.
 REALCAM_INLINE SurfaceHit<Dual8> hit_of(const DualSurface& surface, const Vec3<Dual8>& o, const Vec3<Dual8>& p,
                                         Vec3d at) {
     const SurfaceView<Dual8>& view = surface.view;
@@ -54,9 +57,9 @@ REALCAM_INLINE SurfaceHit<Dual8> hit_of(const DualSurface& surface, const Vec3<D
     const Vec3d from = value(o), direction = value(p);
     const Dual8 known = dot(at - from, direction) / dot(direction, direction);
     const Vec3<Dual8> near = o + known * p;
-    const SagWithSlopes there = sag_at(surface, near);
-    const double rise = direction.z - there.slope_x.value * direction.x - there.slope_y.value * direction.y;
-    const Dual8 parameter = known - (near.z - there.height) / Dual8(rise);
+    const SagWithSlopes near_sag = sag_at(surface, near);
+    const double rise = direction.z - near_sag.slope_x.value * direction.x - near_sag.slope_y.value * direction.y;
+    const Dual8 parameter = known - (near.z - near_sag.height) / Dual8(rise);
     const SagWithSlopes sag = sag_at(surface, o + parameter * p);
     return freeform_hit(view.direction_sign_in, p, parameter, sag.slope_x, sag.slope_y, Dual8(1));
 }
@@ -110,20 +113,20 @@ void DualPath::add_surfaces(const LensSystem& lens, const std::vector<DualLens>&
         is_placed |= v.quantity == LensQuantity::tilt || v.quantity == LensQuantity::decentre;
     leaves_along_axis_ = !is_placed;
     const auto surface = [&](std::size_t k) { return views_[k].surface_index; };
-    std::vector<DualSurface> plain;
+    std::vector<DualSurface> constants;
     for (std::size_t k = 0; k < views_.size(); ++k) {
         std::vector<LensVariable> own;
         for (const LensVariable& v : variables_)
             if (v.surface == surface(k)) own.push_back(v);
-        plain.emplace_back(views_[k], lens.surfaces[static_cast<std::size_t>(surface(k))], own);
-        duals_.push_back({plain.back()});
+        constants.emplace_back(views_[k], lens.surfaces[static_cast<std::size_t>(surface(k))], own);
+        duals_.push_back({constants.back()});
     }
-    std::vector<int> taken(views_.size(), kRayLanes);  // occupied lanes of each surface's last dual surface
+    std::vector<int> used_lanes(views_.size(), kRayLanes);  // occupied lanes of each surface's last dual surface
     for (std::size_t first = 0; first < variables_.size() || first == 0; first += kDualLanes) {
         const DualLens& dual = lenses[first / kDualLanes];
         for (std::size_t k = 0; k < views_.size(); ++k) {
             const int here = surface(k), before = k == 0 ? here : surface(k - 1);
-            DualSurface seeded = plain[k];
+            DualSurface seeded = constants[k];
             for (int lane = 0; lane < kDualLanes && first + static_cast<std::size_t>(lane) < variables_.size();
                  ++lane) {
                 const std::size_t v = first + static_cast<std::size_t>(lane);
@@ -145,16 +148,16 @@ void DualPath::add_surfaces(const LensSystem& lens, const std::vector<DualLens>&
             }
             if (first == 0) {
                 // Values without derivatives, which all dual surfaces of this surface share.
-                plain[k] = seeded;
-                plain[k].clear_lanes();
-                duals_[k] = {plain[k]};
+                constants[k] = seeded;
+                constants[k].clear_lanes();
+                duals_[k] = {constants[k]};
             }
             for (const int lane : seeded.lanes()) {
-                if (taken[k] == kDualLanes) {
-                    duals_[k].push_back(plain[k]);
-                    taken[k] = 0;
+                if (used_lanes[k] == kDualLanes) {
+                    duals_[k].push_back(constants[k]);
+                    used_lanes[k] = 0;
                 }
-                duals_[k].back().take_lane(taken[k]++, seeded, lane);
+                duals_[k].back().copy_lane(used_lanes[k]++, seeded, lane);
             }
         }
     }
@@ -182,15 +185,16 @@ RayStatus DualPath::trace(Vec3d origin, Vec3d direction, Tape& tape, int surface
         step.direction = ray.direction[0];
         step.path = record.optical_path[0];
         step.by.resize(duals_[k].size());
-        for (std::size_t i = 0; i < duals_[k].size(); ++i) write(duals_[k][i], i == 0, o, p, step.origin, step.by[i]);
+        for (std::size_t i = 0; i < duals_[k].size(); ++i)
+            differentiate(duals_[k][i], i == 0, o, p, step.origin, step.by[i]);
     }
     return tape.status_;
 }
 
-REALCAM_CLONES void DualPath::write(const DualSurface& surface, bool has_ray, Vec3d from, Vec3d along, Vec3d at,
-                                    Tape::Derivatives& by) const {
+REALCAM_CLONES void DualPath::differentiate(const DualSurface& surface, bool has_ray_lanes, Vec3d from, Vec3d along,
+                                            Vec3d at, Tape::Derivatives& by) const {
     Vec3<Dual8> o = static_cast<Vec3<Dual8>>(from), p = static_cast<Vec3<Dual8>>(along);
-    if (has_ray) {
+    if (has_ray_lanes) {
         o.x.by[0] = o.y.by[1] = o.z.by[2] = 1;
         p.x.by[3] = p.y.by[4] = p.z.by[5] = 1;
     }
@@ -235,7 +239,7 @@ REALCAM_CLONES void DualPath::derivatives_behind(const Tape& tape, int surfaces,
                 for (int i = 1; i < kRayLanes; ++i) sum += change[i][lane] * by[i];
                 sum[6] += change[6][lane];
                 double* to = &ray.by_variable[kNumbers * static_cast<std::size_t>(v)];
-                for (int row = 0; row < RayDerivatives::kNumbers; ++row) to[row] += sum[row];
+                for (int number = 0; number < RayDerivatives::kNumbers; ++number) to[number] += sum[number];
             }
         }
         const Numbers* by_ray = step.by.front().of;
@@ -247,18 +251,18 @@ REALCAM_CLONES void DualPath::derivatives_behind(const Tape& tape, int surfaces,
         }
         for (int j = 0; j < kRayLanes; ++j) by[j] = next[j];
     }
-    for (int row = 0; row < RayDerivatives::kNumbers; ++row)
-        for (int j = 0; j < kRayLanes; ++j) ray.by_start[row][j] = by[j][row];
+    for (int number = 0; number < RayDerivatives::kNumbers; ++number)
+        for (int j = 0; j < kRayLanes; ++j) ray.by_start[number][j] = by[j][number];
     // The start origin is relative to a vertex that may move, and the start direction is as long as an index that may
     // change.
     const Vec3d p = tape.start_direction_;
     for (std::size_t v = 0; v < count; ++v) {
-        const double moves = entry_positions_[v / kDualLanes].by[v % kDualLanes];
-        const double grows = entry_indices_[v / kDualLanes].by[v % kDualLanes] / entry_index_;
-        if (moves == 0 && grows == 0) continue;
-        const Numbers sum = grows * (p.x * by[3] + p.y * by[4] + p.z * by[5]) - moves * by[2];
+        const double position_rate = entry_positions_[v / kDualLanes].by[v % kDualLanes];
+        const double index_rate = entry_indices_[v / kDualLanes].by[v % kDualLanes] / entry_index_;
+        if (position_rate == 0 && index_rate == 0) continue;
+        const Numbers sum = index_rate * (p.x * by[3] + p.y * by[4] + p.z * by[5]) - position_rate * by[2];
         double* to = &ray.by_variable[kNumbers * v];
-        for (int row = 0; row < RayDerivatives::kNumbers; ++row) to[row] += sum[row];
+        for (int number = 0; number < RayDerivatives::kNumbers; ++number) to[number] += sum[number];
     }
 }
 
@@ -272,21 +276,21 @@ void DualPath::derivatives(const Tape& tape, RayDerivatives& ray) const {
             ray.by_variable[kNumbers * v + 2] += exits_[v / kDualLanes].origin.z.by[v % kDualLanes];
         return;
     }
-    RayDerivatives turned = ray;
+    RayDerivatives transformed = ray;
     for (std::size_t first = 0; first < count || first == 0; first += kDualLanes) {
         const Affine<Dual8>& frame = exits_[first / kDualLanes];
         Vec3<Dual8> o = static_cast<Vec3<Dual8>>(ray.origin), p = static_cast<Vec3<Dual8>>(ray.direction);
         const std::size_t lanes = std::min<std::size_t>(count - first, kDualLanes);
-        over_ray(o, p, [&](Dual8& number, int row) {
+        for_ray_numbers(o, p, [&](Dual8& number, int index) {
             for (std::size_t lane = 0; lane < lanes; ++lane)
-                number.by[lane] = ray.by_variable[kNumbers * (first + lane) + static_cast<std::size_t>(row)];
+                number.by[lane] = ray.by_variable[kNumbers * (first + lane) + static_cast<std::size_t>(index)];
         });
         o = frame.point(o);
         p = frame.direction(p);
-        turned.origin = value(o), turned.direction = value(p);
-        over_ray(o, p, [&](const Dual8& number, int row) {
+        transformed.origin = value(o), transformed.direction = value(p);
+        for_ray_numbers(o, p, [&](const Dual8& number, int index) {
             for (std::size_t lane = 0; lane < lanes; ++lane)
-                turned.by_variable[kNumbers * (first + lane) + static_cast<std::size_t>(row)] = number.by[lane];
+                transformed.by_variable[kNumbers * (first + lane) + static_cast<std::size_t>(index)] = number.by[lane];
         });
     }
     const Affine<Dual8>& frame = exits_.front();
@@ -295,10 +299,10 @@ void DualPath::derivatives(const Tape& tape, RayDerivatives& ray) const {
         for (int half : {0, 3}) {
             const Vec3d turn =
                 ray.by_start[half][j] * x + ray.by_start[half + 1][j] * y + ray.by_start[half + 2][j] * z;
-            turned.by_start[half][j] = turn.x, turned.by_start[half + 1][j] = turn.y;
-            turned.by_start[half + 2][j] = turn.z;
+            transformed.by_start[half][j] = turn.x, transformed.by_start[half + 1][j] = turn.y;
+            transformed.by_start[half + 2][j] = turn.z;
         }
-    ray = std::move(turned);
+    ray = std::move(transformed);
 }
 
 }  // namespace realcam

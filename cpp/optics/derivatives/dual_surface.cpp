@@ -16,7 +16,7 @@ constexpr double kDegree = std::numbers::pi / 180;
 
 /// Calls f(a's number, b's number) for all differentiable numbers of two surface views.
 template <class A, class B, class F>
-void over_numbers(A& a, B& b, F&& f) {
+void for_numbers(A& a, B& b, F&& f) {
     f(a.shift, b.shift);
     f(a.curvature, b.curvature);
     f(a.direction_sign_in, b.direction_sign_in);
@@ -29,8 +29,9 @@ void over_numbers(A& a, B& b, F&& f) {
     for (int i = 0; i < kMaxAsphericTerms; ++i) f(a.aspheric[i], b.aspheric[i]);
 }
 
+/// Same for two freeforms.
 template <class A, class B, class F>
-void over_form_numbers(A& a, B& b, F&& f) {
+void for_form_numbers(A& a, B& b, F&& f) {
     f(a.middle_x, b.middle_x), f(a.middle_y, b.middle_y), f(a.half_x, b.half_x), f(a.half_y, b.half_y);
     f(a.reach, b.reach), f(a.inverse_reach, b.inverse_reach), f(a.term_size, b.term_size);
     f(a.curvature_x, b.curvature_x), f(a.curvature_y, b.curvature_y);
@@ -43,27 +44,31 @@ void over_form_numbers(A& a, B& b, F&& f) {
     for (int i = 0; i < kXyCoefficients; ++i) f(a.xy[i], b.xy[i]);
 }
 
+/// Same for two vectors.
 template <class A, class B, class F>
-void over_vector_numbers(A& a, B& b, F&& f) {
+void for_vector_numbers(A& a, B& b, F&& f) {
     f(a.x, b.x), f(a.y, b.y), f(a.z, b.z);
 }
 
+/// Same for two dual surfaces: their views, forms, and frames.
 template <class A, class B, class F>
-void over_all_numbers(A& a, B& b, F&& f) {
-    over_numbers(a.view, b.view, f);
-    for (std::size_t i = 0; i < a.form.size(); ++i) over_form_numbers(a.form[i], b.form[i], f);
-    over_vector_numbers(a.before.origin, b.before.origin, f);
-    over_vector_numbers(a.before.x, b.before.x, f);
-    over_vector_numbers(a.before.y, b.before.y, f);
-    over_vector_numbers(a.before.z, b.before.z, f);
+void for_all_numbers(A& a, B& b, F&& f) {
+    for_numbers(a.view, b.view, f);
+    for (std::size_t i = 0; i < a.form.size(); ++i) for_form_numbers(a.form[i], b.form[i], f);
+    for_vector_numbers(a.before.origin, b.before.origin, f);
+    for_vector_numbers(a.before.x, b.before.x, f);
+    for_vector_numbers(a.before.y, b.before.y, f);
+    for_vector_numbers(a.before.z, b.before.z, f);
 }
 
+/// Returns a translation along z.
 Affine<Dual8> along_axis(const Dual8& distance) {
     Affine<Dual8> frame;
     frame.origin.z = distance;
     return frame;
 }
 
+/// Returns the inverse of a rotation with translation.
 Affine<Dual8> inverse(const Affine<Dual8>& motion) {
     const Vec3<Dual8>&x = motion.x, &y = motion.y, &z = motion.z;
     Affine<Dual8> inverse{{x.x, y.x, z.x}, {x.y, y.y, z.y}, {x.z, y.z, z.z}, {0.0, 0.0, 0.0}};
@@ -71,12 +76,12 @@ Affine<Dual8> inverse(const Affine<Dual8>& motion) {
     return inverse;
 }
 
-/// SurfacePlacement::frame in dual numbers, which also has exact cosines and sines for right angles.
+/// SurfacePlacement::frame in dual numbers. Cosines and sines of right angles are exact, as they are there.
 Affine<Dual8> frame_of(const Vec3<Dual8>& decentre, const Vec3<Dual8>& tilt_deg) {
-    struct Turn {
+    struct CosSin {
         Dual8 cos, sin;
     };
-    const auto turn = [](const Dual8& degrees) -> Turn {
+    const auto cos_sin = [](const Dual8& degrees) -> CosSin {
         const Vec3d y = SurfacePlacement{{0, 0, 0}, {degrees.value, 0, 0}, false}.frame().y;
         return {degrees.mapped(y.y, -y.z * kDegree), degrees.mapped(y.z, y.y * kDegree)};
     };
@@ -86,21 +91,23 @@ Affine<Dual8> frame_of(const Vec3<Dual8>& decentre, const Vec3<Dual8>& tilt_deg)
         return !any;
     };
     if (is_zero(tilt_deg.x) && is_zero(tilt_deg.y) && is_zero(tilt_deg.z)) return {.origin = decentre};
-    const Turn a = turn(tilt_deg.x), b = turn(tilt_deg.y), c = turn(tilt_deg.z);
+    const CosSin a = cos_sin(tilt_deg.x), b = cos_sin(tilt_deg.y), c = cos_sin(tilt_deg.z);
     const Affine<Dual8> about_x{{1.0, 0.0, 0.0}, {0.0, a.cos, a.sin}, {0.0, -a.sin, a.cos}, decentre},
         about_y{{b.cos, 0.0, -b.sin}, {0.0, 1.0, 0.0}, {b.sin, 0.0, b.cos}, {0.0, 0.0, 0.0}},
         about_z{{c.cos, c.sin, 0.0}, {-c.sin, c.cos, 0.0}, {0.0, 0.0, 1.0}, {0.0, 0.0, 0.0}};
     return about_x * about_y * about_z;
 }
 
+/// Returns component 0 to 2 of a vector.
 Dual8& component(Vec3<Dual8>& v, int axis) {
     return axis == 0 ? v.x : axis == 1 ? v.y : v.z;
 }
 
-/// Sets the derivative of `lane` to that by a variable of the shape. Returns false for other variables.
+/// Sets the derivative in `lane` to 1 for the shape's number that is the variable. Returns false if the variable is not
+/// a number of the shape.
 bool seed(ShapeNumbers<Dual8>& numbers, const LensVariable& variable, int lane) {
-    const auto at = [](std::vector<Dual8>& list, int place) -> Dual8& {
-        const auto index = static_cast<std::size_t>(place);
+    const auto at = [](std::vector<Dual8>& list, int element) -> Dual8& {
+        const auto index = static_cast<std::size_t>(element);
         if (list.size() <= index) list.resize(index + 1, 0.0);
         return list[index];
     };
@@ -198,44 +205,45 @@ Affine<Dual8> DualLens::film(const LensSystem& lens) const {
 DualSurface::DualSurface(const SurfaceView<double>& from, const Surface& surface,
                          const std::vector<LensVariable>& shape)
     : DualSurface() {
-    SurfaceView<double> wide = from;
+    SurfaceView<double> converted = from;
     std::vector<int> aspheric;
     for (const LensVariable& v : shape)
         if (v.quantity == LensQuantity::aspheric) aspheric.push_back(v.number);
-    if (wide.kind == SurfaceShape::sphere || wide.kind == SurfaceShape::conic) {
+    if (converted.kind == SurfaceShape::sphere || converted.kind == SurfaceShape::conic) {
         const auto is_conic = [](const LensVariable& v) { return v.quantity == LensQuantity::conic; };
-        if (std::any_of(shape.begin(), shape.end(), is_conic)) wide.kind = SurfaceShape::conic;
+        if (std::any_of(shape.begin(), shape.end(), is_conic)) converted.kind = SurfaceShape::conic;
         if (!aspheric.empty()) {
             const double reach = 1.02 * surface.clear_semi_diameter;
-            wide.kind = SurfaceShape::asphere;
-            wide.search_squared = reach * reach;
-            wide.inverse_search_squared = 1 / wide.search_squared;
+            converted.kind = SurfaceShape::asphere;
+            converted.search_squared = reach * reach;
+            converted.inverse_search_squared = 1 / converted.search_squared;
         }
     }
-    over_numbers(view, wide, [](Dual8& to, double number) { to = number; });
-    view.kind = wide.kind;
-    view.surface_index = wide.surface_index;
-    if (wide.kind != SurfaceShape::freeform) return;
-    // The shape's numbers, with a derivative wherever one will be seeded, so that all terms are present.
+    for_numbers(view, converted, [](Dual8& to, double number) { to = number; });
+    view.kind = converted.kind;
+    view.surface_index = converted.surface_index;
+    if (converted.kind != SurfaceShape::freeform) return;
+    // The shape's numbers, with derivatives by all its variables, so that set_shape creates all terms that they
+    // require.
     ShapeNumbers<Dual8> numbers(surface);
     for (const LensVariable& v : shape) seed(numbers, v, 0);
     const FreeformView<double> freeform = freeform_view<double>(surface);
     FreeformView<Dual8>& terms = form.emplace_back();
-    over_form_numbers(terms, freeform, [](Dual8& to, double number) { to = number; });
+    for_form_numbers(terms, freeform, [](Dual8& to, double number) { to = number; });
     terms.xy_degree = -1;
     set_shape(terms, surface, numbers);
-    over_form_numbers(terms, terms, [](Dual8& number, const Dual8&) { number.by = Dual8::Derivatives{}; });
+    for_form_numbers(terms, terms, [](Dual8& number, const Dual8&) { number.by = Dual8::Derivatives{}; });
 }
 
 void DualSurface::clear_lanes() {
-    over_all_numbers(*this, *this, [](Dual8& number, const Dual8&) { number.by = Dual8::Derivatives{}; });
+    for_all_numbers(*this, *this, [](Dual8& number, const Dual8&) { number.by = Dual8::Derivatives{}; });
     variables.assign(kDualLanes, -1);
     powers.assign(kDualLanes, 0);
 }
 
 std::vector<int> DualSurface::lanes() const {
     bool used[kDualLanes] = {};
-    over_all_numbers(*this, *this, [&](const Dual8& number, const Dual8&) {
+    for_all_numbers(*this, *this, [&](const Dual8& number, const Dual8&) {
         for (int lane = 0; lane < kDualLanes; ++lane) used[lane] |= number.by[lane] != 0;
     });
     std::vector<int> list;
@@ -244,8 +252,8 @@ std::vector<int> DualSurface::lanes() const {
     return list;
 }
 
-void DualSurface::take_lane(int lane, const DualSurface& from, int from_lane) {
-    over_all_numbers(*this, from, [&](Dual8& to, const Dual8& number) { to.by[lane] = number.by[from_lane]; });
+void DualSurface::copy_lane(int lane, const DualSurface& from, int from_lane) {
+    for_all_numbers(*this, from, [&](Dual8& to, const Dual8& number) { to.by[lane] = number.by[from_lane]; });
     const auto to = static_cast<std::size_t>(lane), other = static_cast<std::size_t>(from_lane);
     variables[to] = from.variables[other];
     powers[to] = from.powers[other];
@@ -265,7 +273,7 @@ void seed_shape(DualSurface& dual, const Surface& surface, const LensVariable& v
     seeded.inverse_reach = form.inverse_reach.value;
     seeded.xy_degree = form.xy_degree;
     set_shape(seeded, surface, numbers);
-    over_form_numbers(form, seeded, [lane](Dual8& to, const Dual8& from) { to.by[lane] = from.by[lane]; });
+    for_form_numbers(form, seeded, [lane](Dual8& to, const Dual8& from) { to.by[lane] = from.by[lane]; });
 }
 
 }  // namespace realcam

@@ -13,26 +13,26 @@ GhostPath ghost_path(const LensSystem& lens, double wavelength_nm, GhostPair pai
     for (const int i : {pair.first, pair.second})
         if (!is_film(lens, i) && lens.surfaces[static_cast<std::size_t>(i)].type != SurfaceType::refracting)
             throw InputError("surface " + std::to_string(i) +
-                             " is no refracting one; a ghost is light that a refracting surface reflects");
+                             " does not refract; a ghost is light that a refracting surface reflects");
     const LensSystem with_film = with_film_mirror(lens, 1, kLongest);
     const auto surface = [&](int i) -> const Surface& { return with_film.surfaces[static_cast<std::size_t>(i)]; };
     const std::vector<double> n = with_film.indices(wavelength_nm), z = with_film.vertices();
     ParaxialRay rays[] = {{1, 0}, {0, 1}};
     double direction_sign = 1;  // sign of the light's direction along z
-    double at = 0;              // z of the last vertex crossed
+    double last_z = 0;              // z of the last vertex crossed
     std::vector<GhostPath::Meeting> meetings;
     for (const Crossing& crossing : crossings_of(lens, pair)) {
-        const double here = z[static_cast<std::size_t>(crossing.surface)];
+        const double z_here = z[static_cast<std::size_t>(crossing.surface)];
         const double before = direction_sign * crossing.index_before(n);
         if (crossing.is_reflected || surface(crossing.surface).type == SurfaceType::mirror)
             direction_sign = -direction_sign;
         const double behind = direction_sign * crossing.index_behind(n);
         for (ParaxialRay& ray : rays) {
-            ray.height += (here - at) * ray.slope;
+            ray.height += (z_here - last_z) * ray.slope;
             ray = refract_paraxial(ray, surface(crossing.surface).vertex_curvature(), before, behind);
         }
         if (!is_film(lens, crossing.surface)) meetings.push_back({crossing.surface, rays[0].height, rays[1].height});
-        at = here;
+        last_z = z_here;
     }
     return {-1 / rays[0].slope, -rays[0].height / rays[0].slope, rays[0], rays[1], meetings};
 }

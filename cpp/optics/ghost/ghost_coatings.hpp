@@ -7,9 +7,10 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Returns the coatings at the crossings of one or several ghost paths. `coatings`: fit_coatings of the same crossings;
-/// `wavelengths_nm`, `variable`: as in cubics_over, with a single wavelength if kWavelengthTerms is 1. Throws
-/// InputError if a glass has no index at one of the wavelengths.
+/// Returns the coatings at the surface crossings of one or several ghost paths, with the index changes that reflection
+/// at a coating requires. `coatings`: fit_coatings of the same crossings; `wavelengths_nm`, `variable`: as in
+/// cubics_over, with a single wavelength if kWavelengthTerms is 1. Throws InputError if a glass has no index at one of
+/// the wavelengths.
 template <int kWavelengthTerms>
 std::vector<GhostCoating<kWavelengthTerms>> ghost_coatings(
     const LensSystem& lens, const std::vector<Crossing>& crossings,

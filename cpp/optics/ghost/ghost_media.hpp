@@ -4,36 +4,39 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Coating at one crossing of a ghost path. At a reflection the polynomials are those of (1 - reflectance) / (Fresnel
-/// transmittance).
+/// Coating at one surface crossing of a ghost path. At a reflection, the polynomials are fits of (1 - reflectance) /
+/// (Fresnel transmittance of the bare surface).
 template <int kWavelengthTerms>
 struct alignas(16) GhostCoating : CoatingPolynomials<kWavelengthTerms> {
     // Index changes to the medium on the other side of the surface, which a reflected ray does not enter:
     IndexCubic other_change;      ///< n'^2 / n^2 - 1
     IndexCubic other_difference;  ///< n'^2 - n^2
-    std::int32_t is_reflected;
-    std::int32_t unused[3];
+    std::int32_t is_reflected;  ///< 1: the ghost is reflected here; 0: it is transmitted
+    std::int32_t unused[3];     ///< pads the size to a multiple of 16 bytes
 };
 
-/// Coated media along a ghost path. `kWavelengthTerms`: kOneWavelengthTerms for a single wavelength; more for a
-/// spectrum, with one wavelength for each ray.
+/// Media and coatings along a ghost path, as a policy of trace_lens. `kWavelengthTerms`: kOneWavelengthTerms for a
+/// single wavelength; more for a spectrum, in which each ray has its own wavelength.
 template <int kWavelengthTerms, int N>
 struct GhostMedia {
+    /// True for a spectrum.
     static constexpr bool disperses = kWavelengthTerms > kOneWavelengthTerms;
     using Uncoated = std::conditional_t<disperses, ManyWavelengths::Boundary, OneWavelength::Boundary<float>>;
 
     const IndexCubic* indices;  ///< in the order of the light; not read for one wavelength
     const GhostCoating<kWavelengthTerms>* coatings;
     const float* variable;  ///< the WavelengthVariable of each ray; not read for one wavelength
-    PassedPower<N>& passed;
+    PassedPower<N>& passed;  ///< updated: power of each ray, for both polarisations
 
+    /// Interface between two media at one crossing.
     struct Boundary : Uncoated {
         GhostCoating<kWavelengthTerms> coating;
         const float* variable;
         PassedPower<N>& passed;
         static constexpr bool is_coated = true;
 
-        /// See CoatedMedia.
+        /// Multiplies the power of a ray by the transmittance, or at a reflection the reflectance, of the coating.
+        /// `before`, `behind`: see CoatedMedia.
         REALCAM_INLINE void pass(int lane, float before, float behind) const {
             const float in = std::fabs(before), x = disperses ? variable[lane] : 0.0f;
             const bool reflects = coating.is_reflected != 0;
@@ -47,6 +50,7 @@ struct GhostMedia {
         }
     };
 
+    /// Returns the interface at crossing `index`, whose surface is `surface`.
     template <class Surface>
     REALCAM_INLINE auto at(const Surface& surface, int index) const {
         if constexpr (disperses)

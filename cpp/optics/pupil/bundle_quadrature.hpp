@@ -8,40 +8,49 @@
 #include "../../math/vec3.hpp"
 #include "../trace/ray_loop.hpp"
 
+// Numerical integration over ray bundles, and search for their edges. A bundle is all light of one object point or film
+// point, parametrised by the entry points of its rays: coordinates in which the density of the light is uniform. The
+// type `Bundle` must have
+//   Vec2<double> middle, reach;  // approximate bounds of the entry points that pass: centre and half-sides
+//   bool mirrored;               // true if the bundle is symmetric under x -> -x; then only its half x > 0 is sampled
+//   template <int N> void pass(const Vec2<double> (&entries)[N], bool (&passed)[N]) const;  // traces N rays
+// as FilmBundle, PointBundle, and SceneBundle do.
+
 namespace REALCAM_NAMESPACE {
 
-/// Resolution of an integral over a ray bundle: number of radial arms about its centre, and of Gauss nodes
-/// on each lit interval.
+/// Resolution of an integral over a ray bundle.
 struct BundleSampling {
-    int arms, nodes;
+    int arms;  ///< radial scan lines from the centre of the bundle, over the full circle
+    int nodes;  ///< Gauss nodes on each interval of a scan line that passes
 };
 
-/// A ray of an integral over a bundle. Its entry is a point in the coordinates in which the bundle's density is
-/// uniform.
+/// A ray of an integral over a bundle.
 struct EntryPart {
-    Vec2<double> entry;
-    double area;  ///< quadrature weight, in the squared unit of the entry
+    Vec2<double> entry;  ///< entry point of the ray
+    double area;  ///< quadrature weight: area of entry points that the ray represents
 };
 
-/// A lit interval of an arm: distances from the bundle's centre in units of its half-sides `reach`.
+/// Interval of a radial scan line in which light passes.
 struct RadialInterval {
-    double from, to;
+    double from, to;  ///< distances from the bundle's centre, in units of its half-sides
 };
 
 namespace bundle_quadrature_detail {
 
-/// A radial scan line from the centre of a bundle outwards, with distances in units of the bundle's half-sides.
+/// Search along a radial scan line, from the centre of a bundle outwards. Distances are in units of the bundle's
+/// half-sides.
 template <class Bundle>
 class ScanLine {
 public:
     ScanLine(const Bundle& bundle, double angle) : bundle_(bundle), cos_(std::cos(angle)), sin_(std::sin(angle)) {}
 
+    /// Entry point at distance r.
     Vec2<double> at(double r) const {
         return {bundle_.middle.x + r * cos_ * bundle_.reach.x, bundle_.middle.y + r * sin_ * bundle_.reach.y};
     }
 
-    /// Returns the lit intervals. Samples in steps of a twentieth of the half-side, so that narrower intervals may be
-    /// missed; edges are found within 1e-9 of it.
+    /// Returns the intervals in which light passes, outwards. The line is sampled in steps of kStep, so that narrower
+    /// intervals may be missed. Edges are accurate to kEdgeTolerance.
     std::vector<RadialInterval> intervals() const {
         Vec2<double> entries[kSteps];
         bool passes[kSteps];
@@ -62,13 +71,14 @@ public:
     }
 
 private:
-    static constexpr int kSteps = 35;
-    static constexpr double kStep = 1.0 / 20;  // up to 1.7: past the corners of the rectangle
+    static constexpr double kStep = 1.0 / 20;  // between samples of the line
+    static constexpr int kSteps = 35;  // up to a distance of 1.7, past the corners of the bounding rectangle
+    static constexpr double kEdgeTolerance = 1e-9;
 
-    /// Finds the edge by division into quarters, between a point like the previous sample and one like the next
-    /// (`beyond`).
+    /// Finds the edge between `low` and `high`, where light passes at exactly one of the two, by repeated division into
+    /// quarters. `beyond`: true if light passes at `high`.
     double edge(double low, double high, bool beyond) const {
-        while (high - low > 1e-9) {
+        while (high - low > kEdgeTolerance) {
             Vec2<double> entries[3];
             bool passes[3];
             const double part = 0.25 * (high - low);
@@ -86,42 +96,45 @@ private:
 
 }  // namespace bundle_quadrature_detail
 
-/// An arm of the polar quadrature with its lit intervals.
+/// A radial scan line (arm) of the polar quadrature.
 struct QuadratureArm {
-    double cos, sin;
-    std::vector<RadialInterval> intervals;
+    double cos, sin;  ///< direction of the line, in units of the half-sides
+    std::vector<RadialInterval> intervals;  ///< in which light passes, outwards
 
+    /// Entry point at distance r.
     template <class Bundle>
     Vec2<double> at(const Bundle& bundle, double r) const {
         return {bundle.middle.x + r * cos * bundle.reach.x, bundle.middle.y + r * sin * bundle.reach.y};
     }
 };
 
-/// Returns arms at equally spaced angles, in the order of their angles from -90 degrees on. For a bundle that is its
-/// own mirror image, only the half of x > 0 is returned; `count` is that of the whole bundle.
+/// Returns scan lines at equally spaced angles, in ascending order from -90 degrees. `count`: their number over the
+/// full circle, rounded up to an even number. For a mirrored bundle only the half with x > 0 is returned. Throws
+/// Cancelled if `loop` is cancelled.
 template <class Bundle>
 std::vector<QuadratureArm> quadrature_arms(const Bundle& bundle, int count, const RayLoop& loop = {}) {
     using namespace bundle_quadrature_detail;
-    const std::size_t half = static_cast<std::size_t>(count + 1) / 2, arms = bundle.mirrored ? half : 2 * half;
-    const double between = std::numbers::pi / static_cast<double>(half);
-    std::vector<QuadratureArm> lit(arms);
+    const std::size_t half_count = static_cast<std::size_t>(count + 1) / 2,
+                      arms = bundle.mirrored ? half_count : 2 * half_count;
+    const double spacing = std::numbers::pi / static_cast<double>(half_count);
+    std::vector<QuadratureArm> arms_found(arms);
     loop.for_all(arms, [&](std::size_t first, std::size_t last) {
         for (std::size_t s = first; s < last; ++s) {
-            const double angle = between * (static_cast<double>(s) + 0.5) - 0.5 * std::numbers::pi;
-            lit[s] = {std::cos(angle), std::sin(angle), ScanLine(bundle, angle).intervals()};
+            const double angle = spacing * (static_cast<double>(s) + 0.5) - 0.5 * std::numbers::pi;
+            arms_found[s] = {std::cos(angle), std::sin(angle), ScanLine(bundle, angle).intervals()};
         }
     });
-    return lit;
+    return arms_found;
 }
 
-/// A rectangle in the entry coordinates of a bundle.
+/// Rectangle of entry points of a bundle.
 struct EntryRectangle {
-    Vec2<double> middle, reach;  ///< `reach`: half-sides
+    Vec2<double> middle, reach;  ///< centre and half-sides
 };
 
-/// Returns a rectangle that contains all light of a bundle: the bundle's own, extended to the edges found on arms.
-/// Between two of 128 arms a corner of the light protrudes further; hence the margin. The protrusion is 1.3% of the
-/// half-side where two rims cut out a pointed oval, and 1.8% for a pentagonal stop.
+/// Returns a rectangle that contains all entry points that pass: the bundle's own rectangle, extended to the edges
+/// found on 128 scan lines, with a margin. The margin covers corners of the light between two scan lines. They protrude
+/// by 1.3% of the half-side if two rims form a pointed oval, and by 1.8% for a pentagonal stop.
 template <class Bundle>
 EntryRectangle lit_rectangle(const Bundle& bundle, const RayLoop& loop = {}) {
     constexpr int kArms = 128;
@@ -138,15 +151,15 @@ EntryRectangle lit_rectangle(const Bundle& bundle, const RayLoop& loop = {}) {
     return {{0.5 * (low.x + high.x), 0.5 * (low.y + high.y)}, {0.5 * (high.x - low.x), 0.5 * (high.y - low.y)}};
 }
 
-/// Returns quadrature rays for integrals over the light that passes the lens: Gauss nodes on each lit interval of each
-/// arm, wherever rims, blades and obstructions put its edges. So edges cause no error, and smooth functions need few
-/// rays. In a half bundle each ray has twice its area, to stand for its mirror image.
+/// Returns the rays of a quadrature over the light that passes the lens: `nodes` Gauss-Legendre nodes on each interval
+/// of each scan line. Because the intervals end at the edges of the light, edges cause no error, and smooth functions
+/// need few rays. In a mirrored bundle each ray has twice its area, to represent its mirror image, too.
 template <class Bundle>
 std::vector<EntryPart> entry_parts(const Bundle& bundle, const std::vector<QuadratureArm>& arms, int nodes) {
     std::vector<GaussNode> rule;
     for (int i = 0; i < nodes; ++i) rule.push_back(gauss_node(nodes, i));
-    const double circle = bundle.reach.x * bundle.reach.y * 2 * std::numbers::pi;
-    const double area = circle / static_cast<double>(arms.size());
+    const double full_turn = bundle.reach.x * bundle.reach.y * 2 * std::numbers::pi;
+    const double area = full_turn / static_cast<double>(arms.size());
     std::vector<EntryPart> parts;
     for (const QuadratureArm& arm : arms)
         for (const RadialInterval& interval : arm.intervals)
@@ -157,6 +170,7 @@ std::vector<EntryPart> entry_parts(const Bundle& bundle, const std::vector<Quadr
     return parts;
 }
 
+/// Same for scan lines that are searched first.
 template <class Bundle>
 std::vector<EntryPart> entry_parts(const Bundle& bundle, BundleSampling sampling, const RayLoop& loop = {}) {
     return entry_parts(bundle, quadrature_arms(bundle, sampling.arms, loop), sampling.nodes);

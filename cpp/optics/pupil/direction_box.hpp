@@ -6,19 +6,22 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Optical direction cosines of a ray that travels from the film to the scene.
+/// Direction of a ray from the film to the scene: x and y of its unit vector times the refractive index (optical
+/// direction cosines).
 struct PupilDirection {
     double l, m;
 };
 
-/// Bounding box of a set of directions.
+/// Bounding box of a set of directions, in optical direction cosines.
 struct DirectionBox {
     double l_min, l_max, m_min, m_max;
 
-    static DirectionBox none() {
-        constexpr double kFar = std::numeric_limits<double>::infinity();
-        return {kFar, -kFar, kFar, -kFar};
+    /// Returns the box of an empty set of directions.
+    static DirectionBox empty() {
+        constexpr double kInf = std::numeric_limits<double>::infinity();
+        return {kInf, -kInf, kInf, -kInf};
     }
+    /// Returns the box with this centre.
     static DirectionBox around(PupilDirection d, double half_width, double half_height) {
         return {d.l - half_width, d.l + half_width, d.m - half_height, d.m + half_height};
     }
@@ -26,28 +29,34 @@ struct DirectionBox {
     double half_width() const { return 0.5 * (l_max - l_min); }
     double half_height() const { return 0.5 * (m_max - m_min); }
 
-    DirectionBox with(PupilDirection d) const {
+    /// Returns the smallest box that contains this box and a direction.
+    DirectionBox extended_to(PupilDirection d) const {
         return {std::min(l_min, d.l), std::max(l_max, d.l), std::min(m_min, d.m), std::max(m_max, d.m)};
     }
+    /// Returns the smallest box that contains both boxes.
     DirectionBox joined_with(const DirectionBox& other) const {
         return {std::min(l_min, other.l_min), std::max(l_max, other.l_max), std::min(m_min, other.m_min),
                 std::max(m_max, other.m_max)};
     }
+    /// Moves the left and right sides outwards by `width`, and the upper and lower sides by `height`.
     DirectionBox grown_by(double width, double height) const {
         return {l_min - width, l_max + width, m_min - height, m_max + height};
     }
-    /// True if each side lies inside the searched box, or the searched box reaches the widest one on that side.
-    bool lies_in(const DirectionBox& searched, const DirectionBox& widest) const {
+    /// True if each side lies strictly inside the box `searched`, or if `searched` extends to the box `widest` of all
+    /// possible directions on that side.
+    bool is_enclosed_by(const DirectionBox& searched, const DirectionBox& widest) const {
         return (l_min > searched.l_min || searched.l_min <= widest.l_min) &&
                (l_max < searched.l_max || searched.l_max >= widest.l_max) &&
                (m_min > searched.m_min || searched.m_min <= widest.m_min) &&
                (m_max < searched.m_max || searched.m_max >= widest.m_max);
     }
-    /// Linear extrapolation: this box, moved on from `before` by `steps` times the step between the two.
-    DirectionBox moved_on_from(const DirectionBox& before, double steps) const {
-        const auto ahead = [steps](double now, double then) { return now + steps * (now - then); };
-        return {ahead(l_min, before.l_min), ahead(l_max, before.l_max), ahead(m_min, before.m_min),
-                ahead(m_max, before.m_max)};
+    /// Extrapolates linearly: moves each side on by `steps` times its change from the previous box to this one.
+    DirectionBox extrapolated_from(const DirectionBox& previous, double steps) const {
+        const auto extrapolate = [steps](double current, double earlier) {
+            return current + steps * (current - earlier);
+        };
+        return {extrapolate(l_min, previous.l_min), extrapolate(l_max, previous.l_max),
+                extrapolate(m_min, previous.m_min), extrapolate(m_max, previous.m_max)};
     }
 };
 

@@ -11,107 +11,118 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Pupil of a rotationally symmetric lens: the directions that pass it, for every film radius. Found by tracing real
-/// rays; owns the memory of its view.
+/// Pupil of a rotationally symmetric lens: for every film radius, the region of directions in which rays pass the lens,
+/// found by tracing real rays. Owns the memory of its PupilView, from which rays are sampled.
 class Pupil {
 public:
-    static constexpr int kRows = PupilRowSearch::kRows;
-    static constexpr int kSectors = PupilRow::kSectors;  ///< for m >= 0
-    /// Upper bound of the number of ray blocks of a search, for any lens. There are 270 box searches at a film radius:
-    /// every eighth row, the rows around and beyond a dark one, the edge of the image, all rows, and half-way between
-    /// them. Each row has outlines at both ends and at seven positions in between, found in five steps, and 256 rounds
-    /// of rays. Lenses that can be made take a hundredth of it.
-    static constexpr int kMostBlocks = 270 * PupilSearch::kMostBlocks + OutlineSearch::most_blocks(kRows / 2 + 1) +
-                                       OutlineSearch::most_blocks(kRows / 2) + OutlineSearch::most_blocks(kRows) +
-                                       OutlineSearch::most_blocks(2 * kRows) + OutlineSearch::most_blocks(4 * kRows) +
-                                       256 * kRows;
+    static constexpr int kRows = PupilRowSearch::kRows;  ///< rows of the table; there are kRows + 1 nodes
+    static constexpr int kSectors = PupilRow::kSectors;  ///< sectors of a row, for m >= 0
+    /// Upper bound of the number of ray blocks that the search takes for any lens: 270 searches for boxes (every eighth
+    /// row, the rows around and beyond a dark one, the edge of the image, all rows, and half-way between them),
+    /// outlines at both ends of each row and at seven positions in between, found in five steps, and 256 rounds of
+    /// StraySearch per row. Lenses that can be made take a hundredth of it.
+    static constexpr int kMaxBlocks = 270 * PupilSearch::kMaxBlocks + OutlineSearch::max_blocks(kRows / 2 + 1) +
+                                      OutlineSearch::max_blocks(kRows / 2) + OutlineSearch::max_blocks(kRows) +
+                                      OutlineSearch::max_blocks(2 * kRows) + OutlineSearch::max_blocks(4 * kRows) +
+                                      256 * kRows;
 
-    /// `film_radius`: radius of the film point farthest from the axis, mm. Throws InputError unless it is a positive
-    /// length of at most 1e9 mm. The pupil contains the directions that pass at any of the wavelengths; if there are no
-    /// wavelengths, at the lens's design wavelength.
-    ///
-    /// `similar`: pupil of the lens in another state, near whose edges the search begins. Takes a fifth of the rays if
-    /// the edges are alike, and a few rays more if they are not.
+    /// `film_radius`: distance of the farthest film point from the axis, mm. `wavelengths_nm`: the pupil contains the
+    /// directions that pass at any of these wavelengths; if empty, at the design wavelength. `similar`: pupil of the
+    /// lens in another state (such as another focus distance), or null. The search then begins near its edges. This
+    /// takes a fifth of the rays if the edges are similar, and a few more rays if they are not. Throws InputError if
+    /// the lens is not rotationally symmetric, or if `film_radius` is not a positive length of at most 1e9 mm.
     Pupil(const LensSystem& lens, double film_radius, PupilTracer tracer = {},
           const std::vector<double>& wavelengths_nm = {}, const Pupil* similar = nullptr);
 
+    /// View for sampling, valid as long as this object.
     PupilView view() const;
+    /// Radius of the image circle, at most `film_radius`, mm; 0 if no light reaches the film.
     double image_radius() const { return image_radius_; }
-    /// True if the table describes the pupil between its rows, too. A stop of a few micrometres moves by more than its
-    /// own size from row to row.
-    bool follows() const { return follows_; }
+    /// True if interpolation between the rows of the table describes the pupil. It does not for a stop of a few
+    /// micrometres, whose pupil moves by more than its own size from row to row.
+    bool is_continuous() const { return is_continuous_; }
     /// True if the pupil was found near the edges of a similar one.
-    bool is_moved() const { return is_moved_; }
+    bool was_found_near_similar() const { return was_found_near_similar_; }
 
 private:
-    /// Pupils of a smaller half-width, in direction cosines, may move by more than their own size from row to row.
-    static constexpr float kSmall = 1e-3f;
-    /// Number of outermost rows, 0.4% of the image's area, whose outline is just the box.
+    /// Half-width in direction cosines below which a pupil may move by more than its own size from row to row.
+    static constexpr float kSmallHalfWidth = 1e-3f;
+    /// Number of outermost rows (0.4% of the image's area) whose outline is the whole box.
     static constexpr int kEdgeRows = 2;
 
+    /// Finds the pupil without a similar one.
     void find_from_scratch();
 
-    /// Finds this pupil near a similar one, whose boxes it adopts; returns false if the two differ too much.
-    bool find_near(const Pupil& similar);
+    /// Finds the pupil near a similar one, whose boxes it adopts. Returns false if the two differ too much.
+    bool find_near_similar(const Pupil& similar);
 
-    /// Finds the edge of the image near that of a similar pupil; returns false if it lies elsewhere.
-    bool find_edge_near(const Pupil& similar);
+    /// Finds the edge of the image circle near that of a similar pupil. Returns false if it is not there.
+    bool find_edge_near_similar(const Pupil& similar);
 
-    /// Finds the radius of the image, and the region's box at each node from the axis to that radius.
+    /// Finds the radius of the image circle, and the box of the region at each node from the axis to that radius.
     void find_nodes();
 
-    /// Ends the image at the innermost dark radius, with the box of the outermost lit one.
-    void end_image(PupilRowSearch::RowSearch& search);
+    /// Sets the image radius to the innermost dark radius, and adds it to the lit radii with the box of the outermost
+    /// one.
+    void set_image_edge(PupilRowSearch::RadiusSearch& search);
 
+    /// Converts a box to the type of nodes.
     static PupilNode node_of(const DirectionBox& box);
 
-    /// Limits how fast the boxes shrink at the edge of the image: the search grid misses the thin ends of the crescent
-    /// there.
+    /// Sets a minimum width for the boxes of the last nodes, because the search grid misses the thin ends of the
+    /// crescent at the edge of the image.
     void widen_last_nodes();
 
+    /// Search over the rows of the table.
     PupilRowSearch rows() const { return {search_, image_radius_}; }
+    /// Film radius at a position in rows, mm.
     double radius_at(double position) const { return rows().radius_at(position); }
 
-    /// True if a small pupil lies half-way between rows where its neighbours suggest. Large pupils are checked by their
-    /// outlines; slivers at the edge of the image, which are small without a small stop, are skipped.
-    bool nodes_follow() const;
+    /// True if the boxes half-way between rows are where their neighbours predict them, or if the pupil is not small.
+    /// Skips slivers at the edge of the image, which are small even if the stop is not.
+    bool nodes_are_continuous() const;
 
+    /// Interpolates the nodes; `position` in rows.
     PupilNode node_at(double position) const;
 
-    /// Outlines by position in the table, in eighths of a row.
+    /// Outlines by their position in the table, in eighths of a row.
     using OutlinesByEighth = std::map<int, PupilOutline>;
 
-    std::vector<OutlineLook> looks_at(const std::vector<int>& eighths) const;
+    /// Returns requests for the outlines at these positions, in the boxes of the interpolated nodes.
+    std::vector<OutlineRequest> requests_at(const std::vector<int>& eighths) const;
 
-    /// Searches half-way between known outlines, which lie `step` eighths before and behind.
-    void look_between(int step, int rows, const std::function<bool(int row)>& wanted, OutlinesByEighth& seen) const;
+    /// Finds outlines midway between known ones, which lie `step` eighths before and behind, in the first `rows` rows
+    /// for which `is_selected` returns true, and adds them to `outlines`.
+    void find_midway(int step, int rows, const std::function<bool(int row)>& is_selected,
+                     OutlinesByEighth& outlines) const;
 
     /// Number of rows with an outline of their own.
     int outlined_rows() const { return ends_inside_film_ ? kRows - kEdgeRows : kRows; }
 
-    /// Finds the outlines at both ends of each row and in between. Rows in which the outline changes much, as beyond
-    /// the last surface that vignettes, get more film radii.
+    /// Finds the outlines at both ends of each row, at its midpoint, and more densely in rows over which the outline
+    /// changes much, such as near the edge of the image.
     OutlinesByEighth find_outlines() const;
 
-    /// Adds all rows. A row contains the outlines at its ends and in between, extended by a share of their change over
-    /// it.
-    void add_rows(const OutlinesByEighth& seen);
+    /// Sets the sectors of all rows. They contain the outlines from one end of the row to the other, with a margin
+    /// (enclosing_outline).
+    void add_rows(const OutlinesByEighth& outlines);
 
-    /// Outlines from the beginning of a row to its end.
-    static std::vector<PupilOutline> outlines_of(int row, const OutlinesByEighth& seen);
+    /// Returns the outlines from the beginning of a row to its end.
+    static std::vector<PupilOutline> outlines_of(int row, const OutlinesByEighth& all);
 
-    /// Adds a row, whose sectors StraySearch widens. Sectors that few rays pass do not describe the light, which may
-    /// form several rings: the whole box replaces them.
-    void add_row(int row, PupilRow sectors, double reach, int clean_rounds);
+    /// Sets the sectors of a row, after StraySearch has enlarged them; `half_size` and `clean_rounds` are its
+    /// parameters. If few rays pass inside the sectors, they do not describe the light, which may form several rings;
+    /// the whole box then replaces them.
+    void add_row(int row, PupilRow sectors, double half_size, int clean_rounds);
 
     PupilSearch search_;
-    double film_radius_, image_radius_;
-    bool ends_inside_film_ = false, follows_ = false, is_moved_ = false;
+    double film_radius_, image_radius_;  ///< mm
+    bool ends_inside_film_ = false, is_continuous_ = false, was_found_near_similar_ = false;
     std::vector<PupilNode> nodes_;
     DirectionBox last_box_{};  ///< box of the outermost lit radius
     /// Outlines in the boxes of the nodes: this pupil's own, or those of the similar one from which it was found.
-    std::shared_ptr<const OutlinesByEighth> seen_;
-    std::vector<PupilSector> outline_;
+    std::shared_ptr<const OutlinesByEighth> outlines_;
+    std::vector<PupilSector> outline_;  ///< kSectors sectors of each row
 };
 
 }  // namespace REALCAM_NAMESPACE

@@ -8,17 +8,17 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Edges of the pupil as seen from a film point, as closed polygons in optical direction cosines: counter-clockwise
-/// around the light, clockwise around a central obstruction.
+/// Edges of the pupil as seen from a film point: closed polygons in optical direction cosines. The first is the outer
+/// edge, counter-clockwise; the second, if there is one, is the edge of a central obstruction, clockwise.
 using PupilEdges = std::vector<std::vector<Vec2<double>>>;
 
-/// Number of corners of the polygons.
+/// Number of corners of each polygon.
 inline constexpr int kPupilEdgeCorners = 2 * PupilOutline::kAzimuths;
 
-/// Finds the edges for the film point at this radius (mm) and azimuth (rad): rims, and blades if the lens has them, and
-/// all else that blocks light. `box`: bounding box of the light for azimuth 0, from whose centre the edges are
-/// searched. Returns std::nullopt if there is a direction from there without light, as in a crescent at the edge of the
-/// image.
+/// Finds the edges of the light for the film point at this radius (mm) and azimuth (rad). All that blocks light is
+/// included: rims, obstructions, and the blades if `lens` has them. `box`: bounding box of the light of the film point
+/// with the same radius and azimuth 0. The edges are searched outwards from its centre. Returns std::nullopt if no
+/// light passes at some azimuth about this centre, as in the crescent at the edge of the image circle.
 std::optional<PupilEdges> pupil_edges(const PupilLens& lens, double radius, double azimuth, const DirectionBox& box);
 
 }  // namespace REALCAM_NAMESPACE

@@ -22,97 +22,113 @@ struct MirrorPlanes {
     bool x = false, y = false;  ///< `x`: symmetric under x -> -x; `y`: under y -> -y
 };
 
-/// True if the pupil of a film point depends only on its distance from the axis, and directions at all film points
-/// share one frame: for a centred, rotationally symmetric lens before a flat film. Its pupil is found and sampled
-/// faster (Pupil).
+/// True if the pupil of a film point depends only on the point's distance from the axis: for a centred, rotationally
+/// symmetric lens with a flat film. The class Pupil finds and samples such pupils faster than PupilGrid.
 bool has_radial_pupil(const LensSystem& lens);
 
-/// Throws InputError unless the lens has a radial pupil: "`what` needs a centred lens of revolution before a flat film;
-/// surface 3 is tilted".
+/// Throws InputError unless the lens has a radial pupil. `what`: subject of the message, such as "a thin lens".
 void require_radial_pupil(const LensSystem& lens, const std::string& what);
 
+/// Returns the mirror symmetries of a lens; a symmetry may be missed for surface terms and apertures of unusual kinds.
 MirrorPlanes mirror_planes(const LensSystem& lens);
 
-/// Pupil of a lens of any kind: the directions that pass it, for every point on the film. Found by tracing real rays;
-/// owns the memory of its view.
+/// Pupil of a lens of any kind: for every film point, the region of directions in which rays pass the lens, found by
+/// tracing real rays. Owns the memory of its PupilGridView, from which rays are sampled. The film is divided into
+/// cells. Nodes, at the corners of every second cell, hold the bounding boxes of the regions, and cells hold their
+/// outlines.
 class PupilGrid {
 public:
-    /// The pupil contains the directions that pass at any of the wavelengths; if there are no wavelengths, at the
-    /// lens's design wavelength.
+    /// `film`: rectangle that contains all film points; `planes`: mirror symmetries, which save half of the film each;
+    /// `wavelengths_nm`: the pupil contains the directions that pass at any of these wavelengths; if empty, at the
+    /// design wavelength.
     PupilGrid(const LensSystem& lens, const FilmArea& film, MirrorPlanes planes = {}, PupilTracer tracer = {},
               const std::vector<double>& wavelengths_nm = {});
 
+    /// View for sampling, valid as long as this object.
     PupilGridView view() const;
-    /// True if light arrives anywhere on the film.
+    /// True if light reaches any node of the film.
     bool is_lit() const { return is_lit_; }
 
 private:
     static constexpr int kBlock = PupilTracer::kBlock;
 
+    // Numbers of nodes, and index of a node in nodes_.
     int node_columns() const { return columns_ / kCellsPerPupilNode + 1; }
     int node_rows() const { return rows_ / kCellsPerPupilNode + 1; }
     std::size_t node_index(int column, int row) const {
         return static_cast<std::size_t>(row * node_columns() + column);
     }
 
-    /// Film point at a position in cells from the corner of the grid.
+    /// Returns the film point (mm) at a position in units of cells from the corner of the grid.
     Vec2<double> film_point(double column, double row) const;
     Vec2<double> node_point(int column, int row) const {
         return film_point(kCellsPerPupilNode * column, kCellsPerPupilNode * row);
     }
 
-    /// Finds the box of each node, from a lit one outwards, searching near the boxes of its inner neighbours. Dark
-    /// nodes take the box of their inner neighbour.
+    /// Finds the box of each node, from a lit node outwards, by searching near the box predicted from its inner
+    /// neighbours. Dark nodes copy the box of their inner neighbour.
     void find_nodes();
 
-    std::optional<DirectionBox> look(int column, int row, const std::vector<std::optional<DirectionBox>>& found,
-                                     int from_column, int from_row) const;
+    /// Finds the box of one node; std::nullopt if no light reaches it. `found`: boxes of all nodes found so far; the
+    /// search started at the node (`from_column`, `from_row`).
+    std::optional<DirectionBox> find_node(int column, int row, const std::vector<std::optional<DirectionBox>>& found,
+                                          int from_column, int from_row) const;
 
-    /// Replaces the box of each node, found by a grid of rays, by the bounding box of the node's outline. Returns the
-    /// outlines.
-    std::vector<PupilOutline> sharpen_nodes();
+    /// Replaces the box of each node, which a grid of rays has found, by the bounding box of the node's outline.
+    /// Returns the outlines: two halves for each node.
+    std::vector<PupilOutline> refine_nodes();
 
-    /// Adds the searches for both halves of a film point's region.
-    void add_looks(double column, double row, std::vector<OutlineLook>& looks) const;
+    /// Adds the requests for the outlines of the upper and lower half at a film point; `column`, `row`: its position in
+    /// units of cells.
+    void add_requests(double column, double row, std::vector<OutlineRequest>& requests) const;
 
+    /// Converts a box to the type of nodes.
     static PupilGridNode node_of(const DirectionBox& box);
 
+    /// Interpolates the boxes of the nodes at a position in units of cells.
     PupilGridNode box_at(double column, double row) const;
 
-    /// A grid of film points with odd numbers of columns and rows. Each point has two outline searches: of the upper
-    /// and of the lower half.
+    /// Grid of film points with odd numbers of columns and rows. Each point has two consecutive outline requests: for
+    /// the upper half and for the lower half.
     struct Lattice {
         int columns, rows;
 
-        std::size_t look(int column, int row) const { return 2 * static_cast<std::size_t>(row * columns + column); }
-        std::vector<std::size_t> even_looks() const {
-            std::vector<std::size_t> looks;
+        /// Index of the request for the upper half at a point.
+        std::size_t request(int column, int row) const { return 2 * static_cast<std::size_t>(row * columns + column); }
+        /// Indices of the requests at points with an even column and an even row.
+        std::vector<std::size_t> even_requests() const {
+            std::vector<std::size_t> requests;
             for (int row = 0; row < rows; row += 2)
                 for (int column = 0; column < columns; column += 2)
-                    for (const std::size_t half : {0, 1}) looks.push_back(look(column, row) + half);
-            return looks;
+                    for (const std::size_t half : {0, 1}) requests.push_back(request(column, row) + half);
+            return requests;
         }
     };
 
-    /// Searches the points whose column or row is odd, near the mean outline of their even neighbours.
-    void look_between(Lattice lattice, const std::vector<OutlineLook>& looks, double tolerance,
-                      std::vector<PupilOutline>& outlines) const;
+    /// Finds the outlines at points whose column or row is odd, near the mean of the outlines of their even neighbours.
+    /// `tolerance`: see OutlineSearch::find_near.
+    void find_midway(Lattice lattice, const std::vector<OutlineRequest>& requests, double tolerance,
+                     std::vector<PupilOutline>& outlines) const;
 
-    /// Finds the outlines at the corners of all cells. `of_nodes`: expected outlines at the nodes.
-    std::vector<PupilOutline> outlines(const std::vector<PupilOutline>& of_nodes) const;
+    /// Returns the outlines at the corners of all cells, two halves for each. `node_outlines`: expected outlines at the
+    /// nodes.
+    std::vector<PupilOutline> outlines(const std::vector<PupilOutline>& node_outlines) const;
 
-    void find_cells(const std::vector<PupilOutline>& of_nodes);
+    /// Finds the sectors of all cells.
+    void find_cells(const std::vector<PupilOutline>& node_outlines);
 
+    /// Sets the sectors and weights of a cell. `outlines`: those at the corners of all cells.
     void set_cell(int column, int row, const std::vector<PupilOutline>& outlines);
 
-    /// Sets rays from random positions in a cell to points in units of the box interpolated there.
-    void set_rays(int column, int row, std::uint32_t stream, const StraySearch::Places& positions,
+    /// Sets a block of rays from random film points in a cell (StraySearch::SetRays). `positions`: in units of the
+    /// half-widths of the box that is interpolated at the film point.
+    void set_rays(int column, int row, std::uint32_t stream, const StraySearch::Points& positions,
                   PupilRays& rays) const;
 
     PupilSearch search_;
     FilmArea film_;  ///< the part that the grid covers
     MirrorPlanes planes_;
-    int columns_ = 24, rows_ = 16;  ///< cells
+    int columns_ = 24, rows_ = 16;  ///< numbers of cells; halved by a mirror symmetry
     bool is_lit_ = false;
     std::vector<PupilGridNode> nodes_;
     std::vector<PupilGridCell> cells_;

@@ -35,38 +35,39 @@ PupilLens::PupilLens(const LensSystem& lens, LensSystem traced, PupilTracer trac
     last_surface_ = inverse_motion(*ends_.entry) * surface_frames(lens_).surfaces.back();
 }
 
-void PupilLens::trace(const PupilRays& from, bool* passes) const {
+void PupilLens::trace(const PupilRays& start, bool* passes) const {
     PupilTracer::Rays rays;
-    trace(path_.view(), from, rays);
+    trace(path_.view(), start, rays);
     REALCAM_LANES
     for (int i = 0; i < kBlock; ++i) passes[i] = rays.status[i] == 0;
     for (const LensPath<float>& other : others_) {
-        trace(other.view(), from, rays);
+        trace(other.view(), start, rays);
         REALCAM_LANES
         for (int i = 0; i < kBlock; ++i) passes[i] |= rays.status[i] == 0;
     }
 }
 
-void PupilLens::trace_to_stop(const PupilRays& from, PupilTracer::Rays& rays) const {
+void PupilLens::trace_to_stop(const PupilRays& start, PupilTracer::Rays& rays) const {
     LensView<float> view = path_.view();
     view.surfaces = surfaces_to_stop_.data();
     view.count = static_cast<int>(surfaces_to_stop_.size());
     if (!frames_to_stop_.empty()) view.free.frames = frames_to_stop_.data();
-    trace(view, from, rays);
+    trace(view, start, rays);
 }
 
-DirectionBox PupilLens::box_of_last_surface(Vec2<double> at, FilmMap film_map) const {
+DirectionBox PupilLens::box_of_last_surface(Vec2<double> film_point, FilmMap film_map) const {
     const Surface& last = lens_.surfaces.back();
     const FilmSurface<double> film{lens_.film_distance, 1 / lens_.film_radius_of_curvature};
-    const Vec3d from = film.point(at), x = film.direction(at, {1, 0, 0}), y = film.direction(at, {0, 1, 0});
-    DirectionBox box = DirectionBox::none();
+    const Vec3d start = film.point(film_point), x = film.direction(film_point, {1, 0, 0}),
+                y = film.direction(film_point, {0, 1, 0});
+    DirectionBox box = DirectionBox::empty();
     for (int ring = 0; ring <= 8; ++ring) {
         const double r = last.clear_semi_diameter * ring / 8, z = last.sag(r);
         for (int azimuth = 0; azimuth < (film_map == FilmMap::radial ? 17 : 32); ++azimuth) {
             const double angle = std::numbers::pi * azimuth / 16;
             const Vec3d d = path_.entry_index *
-                            normalized(last_surface_.point({r * std::cos(angle), r * std::sin(angle), z}) - from);
-            box = box.with({dot(d, x), dot(d, y)});
+                            normalized(last_surface_.point({r * std::cos(angle), r * std::sin(angle), z}) - start);
+            box = box.extended_to({dot(d, x), dot(d, y)});
         }
     }
     return box;
@@ -75,6 +76,7 @@ DirectionBox PupilLens::box_of_last_surface(Vec2<double> at, FilmMap film_map) c
 LensSystem PupilLens::round_iris(LensSystem lens) {
     const double rim = lens.stop().clear_semi_diameter;
     if (lens.iris.blades > 0 && !lens.is_wide_open()) {
+        // Distance from the axis to the corner between two blades, which are arcs with apothem h and curvature q.
         const Iris<double> open = open_iris(lens.iris, lens.stop_semi_diameter, rim);
         const double h = open.apothem, q = open.curvature;
         const double linear = (1 - q * h) * std::cos(std::numbers::pi / open.blades), constant = 2 * h - q * h * h;
@@ -84,21 +86,21 @@ LensSystem PupilLens::round_iris(LensSystem lens) {
     return lens;
 }
 
-void PupilLens::trace(const LensView<float>& view, const PupilRays& from, PupilTracer::Rays& rays) const {
+void PupilLens::trace(const LensView<float>& view, const PupilRays& start, PupilTracer::Rays& rays) const {
     const double n2 = index_squared();
     REALCAM_LANES
     for (int i = 0; i < kBlock; ++i) {
-        const double l = from.l[i], m = from.m[i], squared = n2 - l * l - m * m;
-        rays.origin.set(i, static_cast<Vec3f>(Vec3d{from.x[i], from.y[i], lens_.film_distance}));
+        const double l = start.l[i], m = start.m[i], squared = n2 - l * l - m * m;
+        rays.origin.set(i, static_cast<Vec3f>(Vec3d{start.x[i], start.y[i], lens_.film_distance}));
         rays.direction.set(i, static_cast<Vec3f>(Vec3d{l, m, -sqrt_or_zero(squared)}));
         rays.status[i] = squared > 0 ? 0 : static_cast<int>(RayStatus::missed);
     }
     if (film_.curvature != 0) {
         REALCAM_LANES
         for (int i = 0; i < kBlock; ++i) {
-            const Vec2f at = {rays.origin.x[i], rays.origin.y[i]};
-            rays.direction.set(i, film_.direction(at, rays.direction[i]));
-            rays.origin.z[i] = film_.point(at).z;
+            const Vec2f film_point = {rays.origin.x[i], rays.origin.y[i]};
+            rays.direction.set(i, film_.direction(film_point, rays.direction[i]));
+            rays.origin.z[i] = film_.point(film_point).z;
         }
     }
     tracer_.trace(view, rays);

@@ -30,16 +30,16 @@ PupilOutline box_outline() {
     return outline;
 }
 
-double spread(const std::vector<PupilOutline>& looks, int azimuth) {
+double radius_range(const std::vector<PupilOutline>& outlines, int azimuth) {
     const auto [least, most] = std::minmax_element(
-        looks.begin(), looks.end(),
+        outlines.begin(), outlines.end(),
         [azimuth](const PupilOutline& x, const PupilOutline& y) { return x.outer[azimuth] < y.outer[azimuth]; });
     return most->outer[azimuth] - least->outer[azimuth];
 }
 
-double largest_spread(const std::vector<PupilOutline>& looks) {
+double largest_radius_range(const std::vector<PupilOutline>& outlines) {
     double largest = 0;
-    for (int a = 0; a <= PupilOutline::kAzimuths; ++a) largest = std::max(largest, spread(looks, a));
+    for (int a = 0; a <= PupilOutline::kAzimuths; ++a) largest = std::max(largest, radius_range(outlines, a));
     return largest;
 }
 
@@ -53,37 +53,38 @@ double mean_difference(const std::vector<PupilOutline>& a, const std::vector<Pup
     return sum / static_cast<double>(a.size() * (PupilOutline::kAzimuths + 1));
 }
 
-PupilOutline between(const std::vector<const PupilOutline*>& looks) {
+PupilOutline mean_outline(const std::vector<const PupilOutline*>& outlines) {
     PupilOutline mean;
     for (int a = 0; a <= PupilOutline::kAzimuths; ++a) {
-        const auto is_lit = [a](const PupilOutline* look) { return look->outer[a] > 0; };
-        const auto has_hole = [a](const PupilOutline* look) { return look->inner[a] > 0; };
-        const auto holes = std::count_if(looks.begin(), looks.end(), has_hole);
-        if (!std::all_of(looks.begin(), looks.end(), is_lit) ||
-            (holes > 0 && holes < static_cast<std::ptrdiff_t>(looks.size())))
+        const auto is_lit = [a](const PupilOutline* outline) { return outline->outer[a] > 0; };
+        const auto has_hole = [a](const PupilOutline* outline) { return outline->inner[a] > 0; };
+        const auto holes = std::count_if(outlines.begin(), outlines.end(), has_hole);
+        if (!std::all_of(outlines.begin(), outlines.end(), is_lit) ||
+            (holes > 0 && holes < static_cast<std::ptrdiff_t>(outlines.size())))
             continue;
-        for (const PupilOutline* look : looks) {
-            mean.outer[a] += look->outer[a] / static_cast<double>(looks.size());
-            mean.inner[a] += look->inner[a] / static_cast<double>(looks.size());
+        for (const PupilOutline* outline : outlines) {
+            mean.outer[a] += outline->outer[a] / static_cast<double>(outlines.size());
+            mean.inner[a] += outline->inner[a] / static_cast<double>(outlines.size());
         }
     }
     return mean;
 }
 
-PupilOutline holding_all(const std::vector<PupilOutline>& looks) {
-    constexpr double kMargin = 0.004, kSpreadShare = 0.05;
+PupilOutline enclosing_outline(const std::vector<PupilOutline>& outlines) {
+    constexpr double kMargin = 0.004;  // relative to the radius
+    constexpr double kRangeFraction = 0.05;  // of the range of radii
     PupilOutline all;
     for (int a = 0; a <= PupilOutline::kAzimuths; ++a) {
         double outer = 0, inner = std::numeric_limits<double>::infinity();
-        for (const PupilOutline& look : looks) {
-            if (!(look.outer[a] > 0)) continue;
-            outer = std::max(outer, look.outer[a]);
-            inner = std::min(inner, look.inner[a]);
+        for (const PupilOutline& outline : outlines) {
+            if (!(outline.outer[a] > 0)) continue;
+            outer = std::max(outer, outline.outer[a]);
+            inner = std::min(inner, outline.inner[a]);
         }
         if (!(outer > 0)) continue;
-        const double more = kSpreadShare * spread(looks, a);
-        all.outer[a] = (1 + kMargin) * outer + more;
-        all.inner[a] = std::max(0.0, (1 - kMargin) * inner - more);
+        const double range_margin = kRangeFraction * radius_range(outlines, a);
+        all.outer[a] = (1 + kMargin) * outer + range_margin;
+        all.inner[a] = std::max(0.0, (1 - kMargin) * inner - range_margin);
     }
     return all;
 }
@@ -95,17 +96,19 @@ PupilRow::PupilRow(const PupilOutline& outline) {
     for (int i = 0; i <= kPoints; ++i) {
         const int a = std::min(i / kFine, kAzimuths - 1);
         const double f = static_cast<double>(i - a * kFine) / kFine;
-        const double before = outline.outer[a], after = outline.outer[a + 1];
-        // At a jump of the radius, the corner of a sliver lies between the two azimuths, further out than either.
-        const bool corner = std::fabs(after - before) > 0.2 * std::max(before, after);
-        // At a corner between two rims, both sides of the outline are extrapolated linearly until they meet. At the
-        // ends it is taken as symmetric in m.
-        const double from_before = before + f * (before - outline.outer[a > 0 ? a - 1 : 1]);
-        const double from_after = after + (1 - f) * (after - outline.outer[a + 1 < kAzimuths ? a + 2 : kAzimuths - 1]);
-        const double straight = before + f * (after - before);
-        outer[i] = corner ? 1.25 * std::max(before, after) : std::max(straight, std::min(from_before, from_after));
-        inner[i] = corner ? std::min(outline.inner[a], outline.inner[a + 1])
-                          : outline.inner[a] + f * (outline.inner[a + 1] - outline.inner[a]);
+        const double outer_0 = outline.outer[a], outer_1 = outline.outer[a + 1];
+        // If the radius jumps between two azimuths, a corner of a sliver lies between them, further out than either.
+        const bool is_jump = std::fabs(outer_1 - outer_0) > 0.2 * std::max(outer_0, outer_1);
+        // At a corner between two rims, both sides of the outline are extrapolated linearly until they meet. At
+        // azimuths 0 and pi the outline is assumed to be symmetric in m.
+        const double extrapolated_0 = outer_0 + f * (outer_0 - outline.outer[a > 0 ? a - 1 : 1]);
+        const double extrapolated_1 =
+            outer_1 + (1 - f) * (outer_1 - outline.outer[a + 1 < kAzimuths ? a + 2 : kAzimuths - 1]);
+        const double linear = outer_0 + f * (outer_1 - outer_0);
+        outer[i] =
+            is_jump ? 1.25 * std::max(outer_0, outer_1) : std::max(linear, std::min(extrapolated_0, extrapolated_1));
+        inner[i] = is_jump ? std::min(outline.inner[a], outline.inner[a + 1])
+                           : outline.inner[a] + f * (outline.inner[a + 1] - outline.inner[a]);
     }
     area[0] = 0;
     for (int i = 1; i <= kPoints; ++i)
@@ -127,25 +130,25 @@ double PupilRow::area() const {
     return 0.5 * twice;
 }
 
-bool PupilRow::take_in(Vec2f point) {
+bool PupilRow::extend_to(Vec2f point) {
     const std::optional<std::size_t> at = sector_of(point);
     if (!at) return false;
     PupilSector& s = sectors_[*at];
-    const float reach = reach_in(s, point);
-    if (holds(s, reach)) return false;
-    const float scale = std::max(1.0f, 1.03f * reach);
+    const float radius = relative_radius(s, point);
+    if (contains(s, radius)) return false;
+    const float scale = std::max(1.0f, 1.03f * radius);
     s = {scale * s.x, scale * s.y, scale * s.dx, scale * s.dy,
-         std::min(s.hole_squared / (scale * scale), 0.98f * reach * reach / (scale * scale))};
+         std::min(s.hole_squared / (scale * scale), 0.98f * radius * radius / (scale * scale))};
     return true;
 }
 
-Vec2f PupilRow::beside(std::size_t sector, Vec2f u) const {
-    constexpr float kBeyond = 0.15f;
+Vec2f PupilRow::sample_beside(std::size_t sector, Vec2f u) const {
+    constexpr float kDepth = 0.15f;
     const PupilSector& s = sectors_[sector];
     // If there is a hole, a quarter of the points lies in it.
     const bool in_hole = s.hole_squared > 0 && u.y < 0.25f;
-    const float reach = in_hole ? (1 - 4 * u.y * kBeyond) * std::sqrt(s.hole_squared) : 1 + u.y * kBeyond;
-    return {reach * (s.x + u.x * s.dx), reach * (s.y + u.x * s.dy)};
+    const float radius = in_hole ? (1 - 4 * u.y * kDepth) * std::sqrt(s.hole_squared) : 1 + u.y * kDepth;
+    return {radius * (s.x + u.x * s.dx), radius * (s.y + u.x * s.dy)};
 }
 
 std::optional<std::size_t> PupilRow::sector_of(Vec2f point) const {
@@ -164,7 +167,8 @@ std::optional<std::size_t> PupilRow::sector_of(Vec2f point) const {
 
 PupilSector PupilRow::sector_over(const double* outer, const double* inner, int from, int to) {
     const auto point = [&](int i) {
-        // At least 1e-3: next to a point a thousand times as far out, float32 would give the triangle no area.
+        // The radius is at least 1e-3: if the other corner lies a thousand times as far out, the float32 triangle would
+        // otherwise have no area.
         const double r = std::max(outer[i], 1e-3);
         const PupilDirection d = PupilOutline::fine_direction(i);
         return Point{r * d.l, r * d.m};
@@ -188,23 +192,24 @@ namespace {
 
 constexpr int kAzimuths = PupilOutline::kAzimuths, kTurn = 2 * kAzimuths;
 
+/// z component of the cross product.
 double cross(Vec2<double> a, Vec2<double> b) {
     return a.x * b.y - a.y * b.x;
 }
 
-using Reaches = double (PupilOutline::*)[kAzimuths + 1];
+using RadiusTable = double (PupilOutline::*)[kAzimuths + 1];
 
 /// Sets one edge of the moved outline. Returns false if the edge does not surround the centre of the box.
-bool move_edge(const OutlineHalves& outline, const DirectionBox& from, const DirectionBox& to, Reaches edge,
+bool move_edge(const OutlineHalves& outline, const DirectionBox& from, const DirectionBox& to, RadiusTable edge,
                OutlineHalves& moved) {
     std::vector<Vec2<double>> corners;
     for (int i = 0; i <= kTurn; ++i) {
         const TurnAzimuth at(i % kTurn);
-        const double reach = (outline[at.half].*edge)[at.azimuth];
-        if (!(reach > 0)) return false;
+        const double radius = (outline[at.half].*edge)[at.azimuth];
+        if (!(radius > 0)) return false;
         corners.push_back(
-            {(from.centre().l + reach * from.half_width() * at.direction.x - to.centre().l) / to.half_width(),
-             (from.centre().m + reach * from.half_height() * at.direction.y - to.centre().m) / to.half_height()});
+            {(from.centre().l + radius * from.half_width() * at.direction.x - to.centre().l) / to.half_width(),
+             (from.centre().m + radius * from.half_height() * at.direction.y - to.centre().m) / to.half_height()});
     }
     const auto is_beyond = [&](Vec2<double> direction, std::size_t corner) {
         return cross(corners[corner], direction) >= 0;
@@ -224,6 +229,7 @@ bool move_edge(const OutlineHalves& outline, const DirectionBox& from, const Dir
     return true;
 }
 
+/// True if the region has a central obstruction.
 bool has_hole(const OutlineHalves& outline) {
     return outline[0].inner[0] > 0;
 }

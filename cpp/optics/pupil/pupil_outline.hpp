@@ -9,58 +9,64 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Outline of the passing directions: radii from the centre of their bounding box, in units of its half-widths, at
-/// azimuths from 0 to pi. An azimuth with outer radius 0 is dark.
+/// Upper half of the outline of a region of passing directions, in polar coordinates about the centre of the region's
+/// bounding box, in which half the width and half the height of the box are the units. Radii are tabulated at equally
+/// spaced azimuths from 0 to pi (towards larger m). An azimuth with the outer radius 0 is dark: no light passes there.
 struct PupilOutline {
-    static constexpr int kAzimuths = 64;  ///< intervals of azimuth
+    static constexpr int kAzimuths = 64;  ///< number of intervals of azimuth
 
-    double outer[kAzimuths + 1] = {}, inner[kAzimuths + 1] = {};
+    double outer[kAzimuths + 1] = {};  ///< radius of the outer edge
+    double inner[kAzimuths + 1] = {};  ///< radius of the edge of a central obstruction (hole); 0: no hole
 
+    /// Unit vector at azimuth pi `azimuth` / kAzimuths.
     static PupilDirection direction(int azimuth) { return fine_direction(azimuth * kFine); }
 
-    static constexpr int kFine = 16;  ///< subdivisions of each interval
-    /// Unit vector at an azimuth, in units of pi / (kAzimuths kFine).
+    static constexpr int kFine = 16;  ///< subdivisions of each interval, for fine_direction
+    /// Unit vector at azimuth pi i / (kAzimuths kFine).
     static PupilDirection fine_direction(int i);
 };
 
-/// Outline of the whole box and a margin. At the edge of the image circle the last light passes through a thin, bent
-/// crescent, which radii from its centre do not describe.
+/// Returns the outline of the whole box with a margin. It is used at the edge of the image circle, where light passes
+/// through a thin, curved crescent, which radii from the centre of its box cannot describe.
 PupilOutline box_outline();
 
-/// Range of the outer radius at an azimuth over several outlines.
-double spread(const std::vector<PupilOutline>& looks, int azimuth);
+/// Returns the largest minus the smallest outer radius of several outlines at an azimuth.
+double radius_range(const std::vector<PupilOutline>& outlines, int azimuth);
 
-double largest_spread(const std::vector<PupilOutline>& looks);
+/// Returns the largest radius_range over all azimuths.
+double largest_radius_range(const std::vector<PupilOutline>& outlines);
 
-/// Mean difference of the outer radii of corresponding outlines, over all azimuths, in units of the box. An azimuth
-/// that is dark in one outline and lit in the other counts as one unit.
+/// Returns the mean absolute difference of the outer radii of a[i] and b[i] over all i and azimuths. An azimuth that is
+/// dark in exactly one of the two counts as a difference of 1.
 double mean_difference(const std::vector<PupilOutline>& a, const std::vector<PupilOutline>& b);
 
-/// Mean of outlines, an estimate of the outline between them. It is 0 at azimuths at which an outline is dark, or at
-/// which only some outlines have a hole.
-PupilOutline between(const std::vector<const PupilOutline*>& looks);
+/// Returns the mean of outlines, as an estimate of an outline between them. It is dark at azimuths at which an outline
+/// is dark, or at which only some of the outlines have a hole.
+PupilOutline mean_outline(const std::vector<const PupilOutline*>& outlines);
 
-/// Outline that contains all of these, with a margin: a share of the radius, for light between the searched film radii
-/// and azimuths, and a share of the radius's range.
-PupilOutline holding_all(const std::vector<PupilOutline>& looks);
+/// Returns an outline that contains all given outlines. Its margin, for light between the searched film radii and
+/// azimuths, is a fraction of the radius plus a fraction of the range of radii.
+PupilOutline enclosing_outline(const std::vector<PupilOutline>& outlines);
 
-/// Sectors of one row, in order of azimuth.
+/// Sectors of the upper half of a region (one row of the pupil's table), in the order of their azimuths. Points are in
+/// units of the half-widths of the box, relative to its centre.
 class PupilRow {
 public:
     static constexpr int kSectors = PupilView::kSectors;  ///< sectors for m >= 0
 
-    /// Cuts the outline into sectors of nearly equal area.
+    /// Divides the outline into sectors of nearly equal area.
     explicit PupilRow(const PupilOutline& outline);
 
-    /// Widens the sector at a point in the box to contain the point; returns false if no sector was widened.
-    bool take_in(Vec2f point);
+    /// Enlarges the sector at the azimuth of a point, or shrinks its hole, so that it contains the point. Returns false
+    /// if no change was necessary, or if the point has no sector.
+    bool extend_to(Vec2f point);
 
-    /// A point just outside a sector's edge, or just inside its hole. `u`: random numbers in [0, 1).
-    Vec2f beside(std::size_t sector, Vec2f u) const;
+    /// Samples a point just outside the outer edge of a sector, or just inside its hole. `u`: random numbers in [0, 1).
+    Vec2f sample_beside(std::size_t sector, Vec2f u) const;
 
     const std::vector<PupilSector>& sectors() const { return sectors_; }
 
-    /// Area of all sectors without their holes, in units of the box's half-widths.
+    /// Returns the area of all sectors without their holes.
     double area() const;
 
 private:
@@ -68,35 +74,42 @@ private:
         double x, y;
     };
 
-    /// Returns std::nullopt for a point with m < 0, and for one that falls between two sectors by rounding.
+    /// Returns the index of the sector at a point's azimuth; std::nullopt for a point with m < 0, or if the point falls
+    /// between two sectors by rounding.
     std::optional<std::size_t> sector_of(Vec2f point) const;
-    /// Distance of a point from the centre; 1 on the sector's outer edge.
-    static float reach_in(const PupilSector& s, Vec2f point) {
+    /// Returns the distance of a point from the centre, relative to that of the sector's outer edge at the same
+    /// azimuth.
+    static float relative_radius(const PupilSector& s, Vec2f point) {
         return (point.x * s.dy - point.y * s.dx) / (s.x * s.dy - s.y * s.dx);
     }
-    static bool holds(const PupilSector& s, float reach) { return reach <= 1 && reach * reach >= s.hole_squared; }
+    /// True if a point at a sector's azimuth with this relative radius lies between the sector's inner and outer edges.
+    static bool contains(const PupilSector& s, float radius) {
+        return radius <= 1 && radius * radius >= s.hole_squared;
+    }
 
-    /// The smallest triangle between these two azimuths whose outer edge lies outside the outline in between.
+    /// Returns the smallest sector between two azimuths that contains the outline. `outer`, `inner`: radii at fine
+    /// azimuths (PupilOutline::fine_direction); `from`, `to`: indices of the two azimuths.
     static PupilSector sector_over(const double* outer, const double* inner, int from, int to);
 
     std::vector<PupilSector> sectors_;
 };
 
-/// Outline of a whole region: of its halves above and below the centre of its box.
+/// Outline of a whole region: its upper half, and its lower half mirrored upwards.
 using OutlineHalves = std::array<PupilOutline, 2>;
 
-/// An azimuth over a whole turn: its half of the outline, its index in that half, and its direction.
+/// Azimuth of an OutlineHalves over a full turn.
 struct TurnAzimuth {
-    std::size_t half;
-    int azimuth;
-    Vec2<double> direction;
+    std::size_t half;  ///< 0: upper half; 1: lower half
+    int azimuth;  ///< index of the azimuth in that half
+    Vec2<double> direction;  ///< unit vector
 
-    /// `i`: from 0 to 2 PupilOutline::kAzimuths - 1.
+    /// `i`: from 0 to 2 PupilOutline::kAzimuths - 1, counter-clockwise from the direction of l.
     explicit TurnAzimuth(int i);
 };
 
-/// Returns the outline relative to the centre of another box, in units of that box. It is taken as straight between
-/// azimuths. Returns an empty outline if the region does not surround the centres of both boxes.
+/// Converts an outline in the box `from` to one in the box `to`: about its centre, and in its units. The outline is
+/// assumed to be straight between azimuths. Returns dark outlines if the region does not surround the centres of both
+/// boxes.
 OutlineHalves moved_outline(const OutlineHalves& outline, const DirectionBox& from, const DirectionBox& to);
 
 }  // namespace REALCAM_NAMESPACE

@@ -6,104 +6,117 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Request for an outline: a film point, and the box about whose centre the outline is searched. The outline is that of
-/// the half above the centre, or of the half below if half_height is negative.
-struct OutlineLook {
-    Vec2<double> film;  ///< mm
-    PupilDirection centre;
-    double half_width, half_height;
+/// Request for the outline of half a region of passing directions: a film point, and the box about whose centre the
+/// outline is searched. If half_height is negative, the lower half of the region is searched, and the outline is its
+/// mirror image (see OutlineHalves).
+struct OutlineRequest {
+    Vec2<double> film;  ///< film point, mm
+    PupilDirection centre;  ///< centre of the box
+    double half_width, half_height;  ///< half-sides of the box, in optical direction cosines
     double cos = 1, sin = 0;  ///< cosine and sine of the angle by which the box is rotated about its centre
 
-    /// Direction at an azimuth of the outline (PupilOutline::direction) and a radius.
-    PupilDirection direction(int azimuth, double reach) const;
-    /// Unit of the radius at an azimuth of the outline.
+    /// Returns the direction at an azimuth (index, see PupilOutline::direction) and a radius of the outline.
+    PupilDirection direction(int azimuth, double radius) const;
+    /// Returns the difference of directions that corresponds to a radius of 1 at an azimuth of the outline.
     PupilDirection unit(int azimuth) const;
 };
 
-/// Resolution of a search along scan lines: number of radii that are scanned, and of bisections of the interval between
-/// two.
+/// Resolution of a search along radial scan lines.
 struct OutlineScan {
-    int steps = 20, halvings = 9;
+    int steps = 20;  ///< number of radii at which a scan line is sampled, at most OutlineSearch::kMaxSteps
+    int bisections = 9;  ///< of each interval between two samples that contains an edge
 };
 
-/// Searches outlines at several film points by bisection along radial scan lines. A block of rays holds
-/// azimuths of several requests, and several rays of each azimuth if there are few.
+/// Searches the outlines of several requests together, by bisection along radial scan lines. There is a scan line for
+/// each azimuth of each request. A block of rays contains rays of many scan lines, and several rays of each if there
+/// are few scan lines.
 class OutlineSearch {
 public:
-    /// Tolerance for outlines searched near the mean of their neighbours, in units of the box.
-    static constexpr double kChange = 0.005;
+    /// Tolerance of find_near for outlines that are searched near the mean of their neighbours.
+    static constexpr double kNeighbourTolerance = 0.005;
 
-    /// Upper bound of the number of ray blocks for `looks` outlines: without any near its expected outline, two
-    /// intervals for each edge, and a scan.
-    static constexpr int most_blocks(int looks) {
-        constexpr int kNarrowings = 2 * (2 + 4) + 2 * (2 + 7), kScan = OutlineScan{}.steps + 2 * OutlineScan{}.halvings;
+    /// Upper bound of the number of ray blocks for a number of requests. In the worst case no outline is near the
+    /// expected one: two intervals are then bisected for each edge, and the scan lines are scanned.
+    static constexpr int max_blocks(int requests) {
+        constexpr int kNearSearches = 2 * (2 + 4) + 2 * (2 + 7),
+                      kScan = OutlineScan{}.steps + 2 * OutlineScan{}.bisections;
         constexpr int kSmallGroups = (kBlock + kSmallGroup - 1) / kSmallGroup;
-        return ((looks * kScanLines + kBlock - 1) / kBlock + kSmallGroups) * (kNarrowings + kScan);
+        return ((requests * kScanLines + kBlock - 1) / kBlock + kSmallGroups) * (kNearSearches + kScan);
     }
 
-    /// `scan`: of at most kMostSteps steps.
-    static std::vector<PupilOutline> find(const PupilLens& lens, const std::vector<OutlineLook>& looks,
+    /// Returns the outline of each request.
+    static std::vector<PupilOutline> find(const PupilLens& lens, const std::vector<OutlineRequest>& requests,
                                           OutlineScan scan = {});
 
-    /// Finds outlines near an expected one for each request. Its edges are searched within `tolerance` (in units of the
-    /// box), which takes a quarter of the rays, and then within eight times as much. Azimuths without an edge in that
-    /// interval, and those that are dark in the expected outline, are scanned.
-    static std::vector<PupilOutline> find_near(const PupilLens& lens, const std::vector<OutlineLook>& looks,
+    /// Returns the outline of each request, searched near `expected`, one outline per request. Edges are first searched
+    /// within `tolerance` (a difference of radii), which takes a quarter of the rays of a scan, and then within eight
+    /// times the tolerance. Azimuths without an edge there, and those that are dark in the expected outline, are
+    /// scanned.
+    static std::vector<PupilOutline> find_near(const PupilLens& lens, const std::vector<OutlineRequest>& requests,
                                                const std::vector<PupilOutline>& expected, double tolerance);
 
 private:
-    static constexpr int kBlock = PupilLens::kBlock, kScanLines = PupilOutline::kAzimuths + 1;
-    /// Scan lines of a group if all scan lines together do not fill a block. Seven rays of each are traced at once,
-    /// which cover three bisections.
+    static constexpr int kBlock = PupilLens::kBlock;  ///< rays of a block
+    static constexpr int kScanLines = PupilOutline::kAzimuths + 1;  ///< scan lines of a request
+    /// Number of scan lines of a group if all scan lines together do not fill a block. Then seven rays of each scan
+    /// line are traced together, which are enough for three bisections.
     static constexpr int kSmallGroup = kBlock / 7;
-    static constexpr int kMostSteps = 48;
-    static constexpr double kReach = 1.5;  ///< past the corner of the box
-    static constexpr double kPrecision = 6e-4;  ///< approximate precision of edges near expected ones
+    static constexpr int kMaxSteps = 48;
+    static constexpr double kMaxRadius = 1.5;  ///< scan lines end past the corners of the box
+    static constexpr double kPrecision = 6e-4;  ///< approximate precision of edges that are found near expected ones
 
-    /// Indices of scan lines, numbered consecutively over all requests.
+    /// Indices of scan lines: request index * kScanLines + azimuth.
     using ScanLines = std::vector<int>;
 
-    OutlineSearch(const std::vector<OutlineLook>& looks, const int* scan_lines, int count);
+    /// A group of `count` scan lines, whose indices begin at `scan_lines`.
+    OutlineSearch(const std::vector<OutlineRequest>& requests, const int* scan_lines, int count);
 
-    static ScanLines scan_lines_of(const std::vector<OutlineLook>& looks);
+    /// Returns all scan lines of the requests.
+    static ScanLines scan_lines_of(const std::vector<OutlineRequest>& requests);
 
-    /// Calls task(group, position of its first scan line) for scan lines that are searched together, on any threads.
+    /// Divides scan lines into groups that are searched together, and calls task(group, position of the group's first
+    /// scan line in `scan_lines`) for each, on any threads.
     template <class Task>
-    static void for_each_group(const PupilLens& lens, const std::vector<OutlineLook>& looks,
+    static void for_each_group(const PupilLens& lens, const std::vector<OutlineRequest>& requests,
                                const ScanLines& scan_lines, Task&& task);
 
-    static void scan_all(const PupilLens& lens, const std::vector<OutlineLook>& looks, const ScanLines& scan_lines,
-                         OutlineScan scan, std::vector<PupilOutline>& outlines);
+    /// Scans all given scan lines and stores their edges in the outlines of their requests.
+    static void scan_all(const PupilLens& lens, const std::vector<OutlineRequest>& requests,
+                         const ScanLines& scan_lines, OutlineScan scan, std::vector<PupilOutline>& outlines);
 
-    /// Scans outwards along each azimuth, then bisects the first and the last interval in which the light changes.
+    /// Samples each scan line outwards, then bisects the interval before the first radius at which light passes (for
+    /// the inner edge) and the one behind the last (for the outer edge).
     void scan(const PupilLens& lens, OutlineScan scan);
 
-    /// Bisects the intervals around the expected edges. Sets `found` to true for scan lines whose intervals contain the
-    /// edges.
-    void narrow(const PupilLens& lens, const std::vector<PupilOutline>& expected, double tolerance, bool* found);
+    /// Bisects the intervals of +-tolerance around the expected edges. Sets `found` for each scan line: true if the
+    /// intervals contain its edges.
+    void bisect_near(const PupilLens& lens, const std::vector<PupilOutline>& expected, double tolerance, bool* found);
 
-    /// Clears `found` for scan lines on which light does not pass at `open`, or passes at `shut`.
-    void test(const PupilLens& lens, const double (&open)[kBlock], const double (&shut)[kBlock], bool* found);
+    /// Sets `found` to false for scan lines on which light does not pass at radius `lit`, or passes at radius `dark`.
+    void check_intervals(const PupilLens& lens, const double (&lit)[kBlock], const double (&dark)[kBlock], bool* found);
 
-    /// Bisects the interval between a radius at which light passes and one at which it does not.
-    void halve(const PupilLens& lens, int halvings, double (&open)[kBlock], double (&shut)[kBlock]);
+    /// Bisects, on each scan line, the interval between a radius at which light passes (`lit`) and one at which it does
+    /// not
+    /// (`dark`); both are updated.
+    void bisect(const PupilLens& lens, int bisections, double (&lit)[kBlock], double (&dark)[kBlock]);
 
-    /// Traces `reaches` rays of each scan line; ray k of the i-th scan line is at radius reach(i, k).
-    template <class Reach>
-    void trace(const PupilLens& lens, int reaches, Reach&& reach);
+    /// Traces `radii` rays of each scan line. Ray k of scan line i of the group is at the radius radius(i, k).
+    template <class Radius>
+    void trace(const PupilLens& lens, int radii, Radius&& radius);
 
-    /// True if this ray of the last trace passed.
+    /// True if a ray of the last call of trace passed.
     bool passes(int scan_line, int ray) const { return passes_[ray * count_ + scan_line]; }
 
-    /// Writes the edges of the scan lines that are `found`, or of all scan lines if it is null.
-    void write(const bool* found, std::vector<PupilOutline>& outlines) const;
+    /// Stores the edges in the outlines: of the scan lines for which `found` is true, or of all if `found` is null.
+    void store(const bool* found, std::vector<PupilOutline>& outlines) const;
 
-    const int* scan_lines_;
+    const int* scan_lines_;  ///< indices of the group's scan lines
     int count_;
+    // For each scan line of the group: film point, its origin and unit of radius, and the radii of its edges.
     Vec2<double> film_[kBlock];
     PupilDirection centre_[kBlock], unit_[kBlock];
     double outer_[kBlock], inner_[kBlock];
-    bool passes_[kMostSteps * kBlock];
+    bool passes_[kMaxSteps * kBlock];  ///< results of the last call of trace
 };
 
 }  // namespace REALCAM_NAMESPACE

@@ -9,11 +9,11 @@ namespace REALCAM_NAMESPACE {
 /// Point on the aperture stop, in units of the radius of the stop's bounding circle.
 struct PupilPoint {
     double x, y;
-    double weight;  ///< share of the stop's area that the point represents, up to a common factor
-    int cell = -1;  ///< index in a square grid, row by row from the lowest y; -1: no grid
+    double weight;  ///< fraction of the stop's area that the point represents, up to a factor common to the pattern
+    int cell = -1;  ///< index of the point's cell in square_grid, row by row from the lowest y; -1: other patterns
 };
 
-// Sampling patterns of the stop, for integrals over it. Each throws what `loop` throws to stop it.
+// Sampling patterns of the stop, for integrals over it. They throw Cancelled if `loop` is cancelled.
 
 /// Centres of the cells of an n x n grid over the circle; centres outside the circle are left out.
 std::vector<PupilPoint> square_grid(int n, const RayLoop& loop = {});
@@ -27,7 +27,8 @@ std::vector<PupilPoint> hexapolar(int n, const RayLoop& loop = {});
 /// tracing in the Gaussian pupil", J. Opt. Soc. Am. A 5, 1943, 1988).
 std::vector<PupilPoint> gauss_rings(int n, const RayLoop& loop = {});
 
-/// Radius of the stop's bounding circle, mm: the unit of PupilPoint.
+/// Radius of the circle around the stop's opening, mm: the unit of PupilPoint. For an iris, the circle passes through
+/// the corners between its blades.
 double stop_reach(const LensSystem& lens);
 
 }  // namespace REALCAM_NAMESPACE

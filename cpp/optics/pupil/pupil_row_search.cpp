@@ -10,12 +10,12 @@ double PupilRowSearch::radius_at(double position) const {
     return image_radius_ * (1 - inward * inward);
 }
 
-PupilRowSearch::RowSearch PupilRowSearch::look_from_axis() const {
+PupilRowSearch::RadiusSearch PupilRowSearch::search_from_axis() const {
     static_assert(kRows % kStride == 0);
-    RowSearch search;
+    RadiusSearch search;
     PupilTrack track;
     const auto is_lit = [&](int row) {
-        if (!track.look(search_, radius_at(row))) return false;
+        if (!track.find(search_, radius_at(row))) return false;
         search.lit.push_back(*track.last);
         return true;
     };
@@ -26,25 +26,25 @@ PupilRowSearch::RowSearch PupilRowSearch::look_from_axis() const {
     const int dark_for_sure = dark;
     if (dark > 0) dark -= kStride - 1;
     while (dark < dark_for_sure && is_lit(dark)) ++dark;
-    PupilRowBoxes ahead(kRows + 1);
+    PupilRowBoxes boxes_beyond(kRows + 1);
     search_.lens().for_each(kRows - dark, [&](int i) {
-        PupilTrack own = track;
+        PupilTrack local_track = track;
         const int row = dark + 1 + i;
-        ahead[static_cast<std::size_t>(row)] = own.look(search_, radius_at(row));
+        boxes_beyond[static_cast<std::size_t>(row)] = local_track.find(search_, radius_at(row));
     });
     int last = kRows;
-    while (last >= dark && !ahead[static_cast<std::size_t>(last)]) --last;
+    while (last >= dark && !boxes_beyond[static_cast<std::size_t>(last)]) --last;
     for (int row = dark + 1; row <= last; ++row)
-        if (const auto& box = ahead[static_cast<std::size_t>(row)]) search.lit.push_back({radius_at(row), *box});
+        if (const auto& box = boxes_beyond[static_cast<std::size_t>(row)]) search.lit.push_back({radius_at(row), *box});
     for (int row = kRows; row > last; --row) search.dark.push_back(radius_at(row));
     return search;
 }
 
-void PupilRowSearch::find_edge_of_image(RowSearch& search, double width, int far_rounds) const {
+void PupilRowSearch::find_edge_of_image(RadiusSearch& search, double width, int global_rounds) const {
     PupilTrack track;
-    for (const PupilTrack::Seen& seen : search.lit) track.add(seen.radius, seen.box);
+    for (const PupilTrack::LitRadius& lit : search.lit) track.add(lit.radius, lit.box);
     std::vector<double>& dark = search.dark;
-    for (int round = 0; round < kMostEdgeRounds && !dark.empty(); ++round) {
+    for (int round = 0; round < kMaxEdgeRounds && !dark.empty(); ++round) {
         const double lit = track.last->radius, third = (dark.back() - lit) / 3;
         if (3 * third < width * dark.back()) break;
         // A moving sliver may be missed from a distance, so dark radii are searched again from nearby.
@@ -52,8 +52,9 @@ void PupilRowSearch::find_edge_of_image(RowSearch& search, double width, int far
         constexpr int kCount = std::size(radii);
         std::optional<DirectionBox> boxes[kCount];
         search_.lens().for_each(kCount, [&](int i) {
-            PupilTrack own = track;
-            boxes[i] = round < far_rounds ? own.look(search_, radii[i]) : own.look_near(search_, radii[i]);
+            PupilTrack local_track = track;
+            boxes[i] =
+                round < global_rounds ? local_track.find(search_, radii[i]) : local_track.find_near(search_, radii[i]);
         });
         dark.pop_back();
         for (int i = kCount - 1; i >= 0 && !boxes[i]; --i) dark.push_back(radii[i]);
@@ -63,52 +64,52 @@ void PupilRowSearch::find_edge_of_image(RowSearch& search, double width, int far
     if (track.last->radius > search.lit.back().radius) search.lit.push_back(*track.last);
 }
 
-PupilRowSearch::RowSearch PupilRowSearch::look_near_edge(double radius, const DirectionBox& box) const {
-    RowSearch search = look_around(radius, box, {0.99994, 1});
+PupilRowSearch::RadiusSearch PupilRowSearch::search_near_edge(double radius, const DirectionBox& box) const {
+    RadiusSearch search = search_multiples(radius, box, {0.99994, 1});
     if (search.lit.size() == 1 && search.dark.size() == 1) return search;
-    search = look_around(radius, box, {0.999, 0.9999, 1, 1.0001, 1.001});
+    search = search_multiples(radius, box, {0.999, 0.9999, 1, 1.0001, 1.001});
     if (!search.lit.empty()) find_edge_of_image(search, 1.1e-4, 0);
     return search;
 }
 
-PupilRowSearch::RowSearch PupilRowSearch::look_around(double radius, const DirectionBox& box,
-                                                      const std::vector<double>& shares) const {
-    PupilRowBoxes boxes(shares.size());
-    search_.lens().for_each(static_cast<int>(shares.size()), [&](int i) {
+PupilRowSearch::RadiusSearch PupilRowSearch::search_multiples(double radius, const DirectionBox& box,
+                                                              const std::vector<double>& factors) const {
+    PupilRowBoxes boxes(factors.size());
+    search_.lens().for_each(static_cast<int>(factors.size()), [&](int i) {
         PupilTrack track;
         track.add(radius, box);
-        boxes[static_cast<std::size_t>(i)] = track.look_near(search_, radius * shares[static_cast<std::size_t>(i)]);
+        boxes[static_cast<std::size_t>(i)] = track.find_near(search_, radius * factors[static_cast<std::size_t>(i)]);
     });
-    RowSearch search;
+    RadiusSearch search;
     std::size_t lit = boxes.size();
-    for (; lit > 0 && !boxes[lit - 1]; --lit) search.dark.push_back(radius * shares[lit - 1]);
+    for (; lit > 0 && !boxes[lit - 1]; --lit) search.dark.push_back(radius * factors[lit - 1]);
     for (std::size_t i = 0; i < lit; ++i)
-        if (boxes[i]) search.lit.push_back({radius * shares[i], *boxes[i]});
+        if (boxes[i]) search.lit.push_back({radius * factors[i], *boxes[i]});
     return search;
 }
 
-PupilTrack PupilRowSearch::track_between(const std::vector<PupilTrack::Seen>& seen, double radius) {
-    const auto is_further = [](double r, const PupilTrack::Seen& other) { return r < other.radius; };
-    const auto outer = std::upper_bound(seen.begin(), seen.end(), radius, is_further);
-    const auto inner = outer == seen.begin() ? outer : std::prev(outer);
+PupilTrack PupilRowSearch::track_between(const std::vector<PupilTrack::LitRadius>& lit, double radius) {
+    const auto is_further = [](double r, const PupilTrack::LitRadius& other) { return r < other.radius; };
+    const auto outer = std::upper_bound(lit.begin(), lit.end(), radius, is_further);
+    const auto inner = outer == lit.begin() ? outer : std::prev(outer);
     PupilTrack track;
-    if (inner + 1 != seen.end()) {
+    if (inner + 1 != lit.end()) {
         track.add(inner[1].radius, inner[1].box);
-    } else if (inner != seen.begin()) {
+    } else if (inner != lit.begin()) {
         track.add(inner[-1].radius, inner[-1].box);
     }
     track.add(inner->radius, inner->box);
     return track;
 }
 
-PupilRowBoxes PupilRowSearch::look_between(const std::vector<PupilTrack::Seen>& seen, int first_row) const {
+PupilRowBoxes PupilRowSearch::boxes_of_rows(const std::vector<PupilTrack::LitRadius>& lit, int first_row) const {
     PupilRowBoxes boxes(kRows + 1);
     search_.lens().for_each(kRows + 1 - first_row, [&](int i) {
         const int row = first_row + i;
         const double radius = radius_at(row);
-        PupilTrack track = track_between(seen, radius);
-        const bool is_seen = track.last->radius == radius;
-        boxes[static_cast<std::size_t>(row)] = is_seen ? track.last->box : track.look(search_, radius);
+        PupilTrack track = track_between(lit, radius);
+        const bool is_known = track.last->radius == radius;
+        boxes[static_cast<std::size_t>(row)] = is_known ? track.last->box : track.find(search_, radius);
     });
     return boxes;
 }

@@ -6,52 +6,57 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Box of each row of a pupil's table, from the axis outwards; std::nullopt if the row is dark.
+/// Bounding box of the passing directions at each row of a pupil's table, from the axis outwards; std::nullopt if no
+/// light reaches the row's film radius.
 using PupilRowBoxes = std::vector<std::optional<DirectionBox>>;
 
-/// Searches the boxes at the rows of a pupil's table, whose spacing decreases towards the edge of the image.
+/// Searches for the boxes at the rows of the table of a Pupil, and for the edge of the image circle. A row belongs to a
+/// film radius; the spacing of rows decreases towards the edge of the image.
 class PupilRowSearch {
 public:
-    static constexpr int kRows = 48;  ///< rows in addition to the one on the axis
+    static constexpr int kRows = 48;  ///< index of the last row; row 0 is the axis
 
-    /// `image_radius`: film radius of the last row, mm.
+    /// `image_radius`: film radius of the last row, mm. The object keeps a reference to `search`.
     PupilRowSearch(const PupilSearch& search, double image_radius) : search_(search), image_radius_(image_radius) {}
 
-    /// Film radius of a row, or of a fractional position between rows.
+    /// Returns the film radius of a row, mm; `position` may lie between two rows.
     double radius_at(double position) const;
 
-    /// Lit film radii with their boxes, in ascending order, and the dark radii beyond them, in descending order.
-    struct RowSearch {
-        std::vector<PupilTrack::Seen> lit;
-        std::vector<double> dark;
+    /// Film radii that have been searched.
+    struct RadiusSearch {
+        std::vector<PupilTrack::LitRadius> lit;  ///< radii that light reaches, with their boxes, in ascending order
+        std::vector<double> dark;  ///< radii beyond them that no light reaches, in descending order
     };
 
-    /// Searches every eighth row from the axis, and all rows before and beyond a dark one: the light may end there or
-    /// begin again.
-    RowSearch look_from_axis() const;
+    /// Searches every eighth row from the axis to the first dark one, then all rows shortly before it and all rows
+    /// beyond: the light may end there, or begin again further out.
+    RadiusSearch search_from_axis() const;
 
-    /// Adds the outermost lit radius, and the innermost dark one at most `width` of it further out; leaves no dark
-    /// radius if light reaches the outermost. In the first `far_rounds` rounds light is searched everywhere, not only
-    /// where the lit boxes lead.
-    void find_edge_of_image(RowSearch& search, double width = 1e-5, int far_rounds = 2) const;
+    /// Finds the edge of the image circle by repeated division into thirds: adds the outermost lit radius and an
+    /// innermost dark radius to `search`, which differ by at most the fraction `width`. `search.dark` becomes empty if
+    /// light reaches the outermost radius. In the first `global_rounds` rounds light is searched in all directions, and
+    /// later only near the box that is predicted from the lit radii.
+    void find_edge_of_image(RadiusSearch& search, double width = 1e-5, int global_rounds = 2) const;
 
-    /// Finds the edge, to 1e-4, of an image that ends at about `radius`, where the light has this box. The edge is
-    /// `radius` itself if it lies at most 6e-5 further in. `lit` or `dark` is empty if the image ends more than a
-    /// thousandth elsewhere.
-    RowSearch look_near_edge(double radius, const DirectionBox& box) const;
+    /// Finds the edge of an image circle that probably ends at about `radius` with this box, to a relative accuracy of
+    /// 1e-4. `radius` itself is used if the edge lies between 0.99994 times `radius` and `radius`. In the result, `lit`
+    /// or `dark` is empty if the edge lies more than a thousandth away from `radius`.
+    RadiusSearch search_near_edge(double radius, const DirectionBox& box) const;
 
-    /// Boxes of all rows from `first_row` on, each searched where its neighbours in `seen` lead.
-    PupilRowBoxes look_between(const std::vector<PupilTrack::Seen>& seen, int first_row = 0) const;
+    /// Finds the boxes of all rows from `first_row` on. Each search begins with the box that is predicted from the
+    /// nearest radii in `lit`, which must not be empty.
+    PupilRowBoxes boxes_of_rows(const std::vector<PupilTrack::LitRadius>& lit, int first_row = 0) const;
 
 private:
-    static constexpr int kStride = 8;
-    static constexpr int kMostEdgeRounds = 32;
+    static constexpr int kStride = 8;  ///< step of rows in search_from_axis
+    static constexpr int kMaxEdgeRounds = 32;  ///< largest number of divisions into thirds
 
-    /// Searches at these multiples of a radius, in ascending order, near the box of that radius.
-    RowSearch look_around(double radius, const DirectionBox& box, const std::vector<double>& shares) const;
+    /// Searches the radii radius * factors[i] near `box`, the box of `radius`. `factors` must be in ascending order.
+    RadiusSearch search_multiples(double radius, const DirectionBox& box, const std::vector<double>& factors) const;
 
-    /// Track that leads to a radius from the nearest two known boxes, on both sides of it if possible.
-    static PupilTrack track_between(const std::vector<PupilTrack::Seen>& seen, double radius);
+    /// Returns a track of the two radii in `lit` nearest to `radius`, on both sides of it if possible, for a search
+    /// there.
+    static PupilTrack track_between(const std::vector<PupilTrack::LitRadius>& lit, double radius);
 
     const PupilSearch& search_;
     double image_radius_;

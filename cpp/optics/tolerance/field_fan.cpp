@@ -9,7 +9,7 @@ namespace realcam {
 
 namespace {
 
-constexpr int kLanes = 16;
+constexpr int kLanes = 16;  ///< rays that are traced together
 
 }  // namespace
 
@@ -21,7 +21,8 @@ FieldFan::FieldFan(const LensSystem& nominal, double wavelength_nm, const FieldP
     const double reach = stop_reach(nominal);
     const std::vector<PupilPoint> pattern = gauss_rings(rings);
     const std::vector<AimedRay> rays = aim_all(aim, pattern, reach, loop);
-    // Least-squares fit of a linear map; missing rays make the pattern asymmetric, so cross terms stay.
+    // Least-squares fit of a linear map from the stop to the entry plane. Cross terms are necessary, because rays that
+    // are missing make the pattern asymmetric.
     double xx = 0, xy = 0, yy = 0;
     Vec2<double> of_x{0, 0}, of_y{0, 0};
     for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -40,51 +41,51 @@ FieldFan::FieldFan(const LensSystem& nominal, double wavelength_nm, const FieldP
                          " reach the stop of lens \"" + nominal.name + "\"");
     by_x_ = {(of_x.x * yy - of_x.y * xy) / determinant, (of_y.x * yy - of_y.y * xy) / determinant};
     by_y_ = {(of_x.y * xx - of_x.x * xy) / determinant, (of_y.y * xx - of_y.x * xy) / determinant};
-    // Chief rays with weight 0 fill the last lanes.
+    // The last lanes are filled with chief rays of weight 0.
     while (entries_.size() % kLanes != 0) {
         entries_.push_back(chief_);
         weights_.push_back(0);
     }
 }
 
-double FieldFan::full_weight() const {
+double FieldFan::total_weight() const {
     return std::accumulate(weights_.begin(), weights_.end(), 0.0);
 }
 
-Vec2<double> FieldFan::turned(Vec2<double> v) const {
+Vec2<double> FieldFan::to_azimuth(Vec2<double> v) const {
     return {cos_ * v.x - sin_ * v.y, sin_ * v.x + cos_ * v.y};
 }
 
-Vec2<double> FieldFan::turned_back(Vec2<double> v) const {
+Vec2<double> FieldFan::from_azimuth(Vec2<double> v) const {
     return {cos_ * v.x + sin_ * v.y, -sin_ * v.x + cos_ * v.y};
 }
 
 template <int N>
-void FieldFan::start(const CopyPath::At& copy, const Vec2<double>* entries, LensRays<double, N>& rays) const {
+void FieldFan::start(const CopyPath::WavelengthView& copy, const Vec2<double>* entries,
+                     LensRays<double, N>& rays) const {
     for (int i = 0; i < N; ++i) {
         const Vec3d at = object_.at(entries[i]), direction = object_.direction(entries[i]);
-        const Vec2<double> position = turned({at.x, at.y}), across = turned({direction.x, direction.y});
+        const Vec2<double> position = to_azimuth({at.x, at.y}), across = to_azimuth({direction.x, direction.y});
         rays.origin.set(i, {position.x, position.y, at.z - copy.entry_position});
         rays.direction.set(i, copy.entry_index * Vec3d{across.x, across.y, direction.z});
         rays.status[i] = 0;
     }
 }
 
-/// Returns the intersection of the nominal chief ray with the copy's stop, relative to its centre. It takes two lanes,
-/// because a single ray stops at the first rim that blocks it.
-Vec2<double> FieldFan::miss(const CopyPath::At& copy, int stop) const {
+Vec2<double> FieldFan::chief_ray_miss(const CopyPath::WavelengthView& copy, int stop) const {
     LensView<double> to_stop = copy.view;
     to_stop.count = stop + 1;
+    // Two lanes, because the trace of a single ray ends at the first rim that blocks it.
     const Vec2<double> entries[2] = {chief_, chief_};
     LensRays<double, 2> rays;
     start<2>(copy, entries, rays);
     trace_lens(to_stop, rays);
-    return turned_back({rays.origin.x[0], rays.origin.y[0]});
+    return from_azimuth({rays.origin.x[0], rays.origin.y[0]});
 }
 
-FieldFan::Traced FieldFan::through(const CopyPath::At& copy, int stop, bool with_rays) const {
-    const Vec2<double> off = miss(copy, stop);
-    const Vec2<double> move = {-(by_x_.x * off.x + by_y_.x * off.y), -(by_x_.y * off.x + by_y_.y * off.y)};
+FieldFan::Traced FieldFan::trace_copy(const CopyPath::WavelengthView& copy, int stop, bool with_rays) const {
+    const Vec2<double> miss = chief_ray_miss(copy, stop);
+    const Vec2<double> move = {-(by_x_.x * miss.x + by_y_.x * miss.y), -(by_x_.y * miss.x + by_y_.y * miss.y)};
     const LensView<double> view = copy.view;
     const auto at_vertex = [](const auto& rays, int i, double weight) {
         const Vec3d o = rays.origin[i], d = rays.direction[i];
@@ -132,7 +133,7 @@ CopyPath::CopyPath(const LensSystem& lens, const std::vector<double>& wavelength
     }
 }
 
-CopyPath::At CopyPath::at(std::size_t wavelength) const {
+CopyPath::WavelengthView CopyPath::at(std::size_t wavelength) const {
     LensView<double> view = first_.view();
     view.surfaces = surfaces_[wavelength].data();
     return {view, first_.entry_position, entry_indices_[wavelength]};

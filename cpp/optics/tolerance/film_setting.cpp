@@ -13,54 +13,59 @@ namespace realcam {
 
 namespace {
 
-constexpr int kPlanes = 49;  ///< spaced by an eighth of the depth of focus
+constexpr int kPlanes = 49;  ///< planes of the through-focus search, an eighth of the depth of focus apart
 
-/// Largest distance of a spot from the axis, mm; 1 if all are on the axis.
-double reach_of(const std::vector<FieldSpot>& spots) {
-    double reach = 0;
+/// Returns the largest distance of a spot from the axis, mm; 1 if all spots are on the axis or without light.
+double field_height(const std::vector<FieldSpot>& spots) {
+    double height = 0;
     for (const FieldSpot& spot : spots)
-        if (!spot.rays.empty()) reach = std::max(reach, hypotenuse(spot.chief_at(0).x, spot.chief_at(0).y));
-    return reach > 0 ? reach : 1;
+        if (!spot.rays.empty()) height = std::max(height, hypotenuse(spot.chief_at(0).x, spot.chief_at(0).y));
+    return height > 0 ? height : 1;
 }
 
 /// Through-focus contrast of each field on equally spaced planes, interpolated by parabolas.
 struct FocusCurves {
-    double first, step;
-    std::vector<std::vector<double>> fields;
-    std::vector<Vec2<double>> points;
+    double first, step;  ///< shift of the first plane, and distance between planes, mm
+    std::vector<std::vector<double>> fields;  ///< contrast of each field on each plane
+    std::vector<Vec2<double>> points;  ///< film point of each field, mm
 
-    double mean(const FilmSetting& film) const {
+    /// Returns the mean contrast of the fields.
+    double mean(const FilmAdjustment& film) const {
         double sum = 0;
         for (std::size_t f = 0; f < fields.size(); ++f) sum += value(fields[f], film.at(points[f]));
         return sum / static_cast<double>(fields.size());
     }
 
 private:
+    /// Interpolates a field's contrast at shift z; beyond the planes it is that of the last plane.
     double value(const std::vector<double>& curve, double z) const {
         const double last = static_cast<double>(curve.size() - 1), at = std::clamp((z - first) / step, 0.0, last);
         const double middle = std::clamp(std::round(at), 1.0, last - 1), t = at - middle;
         const std::size_t k = static_cast<std::size_t>(middle);
-        const double rise = 0.5 * (curve[k + 1] - curve[k - 1]), bend = 0.5 * (curve[k + 1] + curve[k - 1]) - curve[k];
-        return curve[k] + t * (rise + t * bend);
+        const double rise = 0.5 * (curve[k + 1] - curve[k - 1]),
+                     curvature = 0.5 * (curve[k + 1] + curve[k - 1]) - curve[k];
+        return curve[k] + t * (rise + t * curvature);
     }
 };
 
-/// Coordinate ascent of the mean contrast: steps along one number of the film at a time, halved when no step improves.
-void climb(const FocusCurves& curves, FilmSetting& film, const std::vector<double*>& numbers,
-           std::vector<double> steps) {
+/// Maximises the mean contrast by coordinate ascent: changes one number of the film at a time by its step, and halves
+/// all steps when no change improves the contrast. `numbers`: members of `film` to change; `steps`: their initial
+/// steps.
+void maximise_contrast(const FocusCurves& curves, FilmAdjustment& film, const std::vector<double*>& numbers,
+                       std::vector<double> steps) {
     double best = curves.mean(film);
     for (int halving = 0; halving < 12; ++halving) {
-        bool better = true;
-        for (int round = 0; better && round < 20; ++round) {
-            better = false;
+        bool improved = true;
+        for (int round = 0; improved && round < 20; ++round) {
+            improved = false;
             for (std::size_t k = 0; k < numbers.size(); ++k)
-                for (const double by : {steps[k], -steps[k]}) {
-                    *numbers[k] += by;
-                    if (const double now = curves.mean(film); now > best) {
-                        best = now;
-                        better = true;
+                for (const double change : {steps[k], -steps[k]}) {
+                    *numbers[k] += change;
+                    if (const double contrast_now = curves.mean(film); contrast_now > best) {
+                        best = contrast_now;
+                        improved = true;
                     } else {
-                        *numbers[k] -= by;
+                        *numbers[k] -= change;
                     }
                 }
         }
@@ -70,24 +75,25 @@ void climb(const FocusCurves& curves, FilmSetting& film, const std::vector<doubl
 
 }  // namespace
 
-FilmSetting film_of_small_spots(const std::vector<FieldSpot>& spots, FilmFreedom freedom) {
+FilmAdjustment film_for_small_spots(const std::vector<FieldSpot>& spots, FilmFreedom freedom) {
     const auto [moves, tilts] = freedom;
-    FilmSetting film;
+    FilmAdjustment film;
     if (!moves && !tilts) return film;
-    const double reach = reach_of(spots);
-    // Each mean square is c (z + b / c)^2 plus a constant: a linear least-squares problem.
+    const double height = field_height(spots);
+    // Each mean square is c (z + b / c)^2 plus a constant, and z is linear in the film's numbers: a linear
+    // least-squares problem.
     std::vector<std::vector<double>> columns(static_cast<std::size_t>(moves) + (tilts ? 2 : 0)), targets(1);
     for (const FieldSpot& spot : spots) {
         if (spot.rays.empty()) continue;
-        const FieldSpot::Square square = spot.square();
+        const FieldSpot::MeanSquare square = spot.mean_square_radius();
         if (!(square.c > 0)) continue;
         const double root = std::sqrt(square.c);
         const Vec2<double> at = spot.chief_at(0);
         std::size_t k = 0;
         if (moves) columns[k++].push_back(root);
         if (tilts) {
-            columns[k++].push_back(root * at.x / reach);
-            columns[k++].push_back(root * at.y / reach);
+            columns[k++].push_back(root * at.x / height);
+            columns[k++].push_back(root * at.y / height);
         }
         targets[0].push_back(-square.b / root);
     }
@@ -95,31 +101,31 @@ FilmSetting film_of_small_spots(const std::vector<FieldSpot>& spots, FilmFreedom
     const std::vector<double> found = least_squares(columns, std::move(targets))[0];
     std::size_t k = 0;
     if (moves) film.shift = found[k++];
-    if (tilts) film.slope = {found[k] / reach, found[k + 1] / reach};
+    if (tilts) film.slope = {found[k] / height, found[k + 1] / height};
     return film;
 }
 
-double mean_square(const std::vector<FieldSpot>& spots, const FilmSetting& film) {
+double mean_square(const std::vector<FieldSpot>& spots, const FilmAdjustment& film) {
     double sum = 0;
     for (const FieldSpot& spot : spots) {
         if (spot.rays.empty()) return std::numeric_limits<double>::quiet_NaN();
-        const FieldSpot::Square square = spot.square();
+        const FieldSpot::MeanSquare square = spot.mean_square_radius();
         const double z = film.at(spot.chief_at(0));
         sum += square.a + (2 * square.b + square.c * z) * z;
     }
     return sum / static_cast<double>(spots.size());
 }
 
-FilmSetting film_of_high_contrast(const std::vector<FieldSpot>& spots, const std::vector<Vec2<double>>& outwards,
-                                  double frequency, FilmFreedom freedom) {
-    FilmSetting film = film_of_small_spots(spots, freedom);
+FilmAdjustment film_for_high_contrast(const std::vector<FieldSpot>& spots, const std::vector<Vec2<double>>& outwards,
+                                      double frequency, FilmFreedom freedom) {
+    FilmAdjustment film = film_for_small_spots(spots, freedom);
     if (!freedom.moves && !freedom.tilts) return film;
-    double half = 0;
+    double max_half_slope = 0;
     for (const FieldSpot& spot : spots)
-        if (!spot.rays.empty()) half = std::max(half, spot.half_slope());
-    if (!(half > 0)) return film;
+        if (!spot.rays.empty()) max_half_slope = std::max(max_half_slope, spot.half_slope());
+    if (!(max_half_slope > 0)) return film;
     // Defocus with a blur of one period, at which a perfect lens has lost its contrast.
-    const double depth = 1 / (2 * half * frequency), reach = reach_of(spots);
+    const double depth = 1 / (2 * max_half_slope * frequency), height = field_height(spots);
     FocusCurves curves{0, 0.125 * depth, {}, {}};
     const double to_middle = 0.5 * (kPlanes - 1) * curves.step;
     curves.first = film.shift - to_middle;
@@ -132,12 +138,12 @@ FilmSetting film_of_high_contrast(const std::vector<FieldSpot>& spots, const std
         curves.points.push_back(spots[f].chief_at(0));
     }
     if (freedom.moves) {
-        FilmSetting trial = film;
+        FilmAdjustment trial = film;
         double best = curves.mean(film);
         for (int k = 0; k < kPlanes; ++k) {
             trial.shift = curves.first + k * curves.step;
-            if (const double now = curves.mean(trial); now > best) {
-                best = now;
+            if (const double contrast_now = curves.mean(trial); contrast_now > best) {
+                best = contrast_now;
                 film = trial;
             }
         }
@@ -147,14 +153,14 @@ FilmSetting film_of_high_contrast(const std::vector<FieldSpot>& spots, const std
     if (freedom.moves) numbers.push_back(&film.shift), steps.push_back(0.5 * curves.step);
     if (freedom.tilts) {
         numbers.insert(numbers.end(), {&film.slope.x, &film.slope.y});
-        steps.insert(steps.end(), {4 * curves.step / reach, 4 * curves.step / reach});
+        steps.insert(steps.end(), {4 * curves.step / height, 4 * curves.step / height});
     }
-    climb(curves, film, numbers, std::move(steps));
+    maximise_contrast(curves, film, numbers, std::move(steps));
     return film;
 }
 
 double mean_contrast(const std::vector<FieldSpot>& spots, const std::vector<Vec2<double>>& outwards, double frequency,
-                     const FilmSetting& film) {
+                     const FilmAdjustment& film) {
     double sum = 0;
     for (std::size_t f = 0; f < spots.size(); ++f) {
         if (spots[f].rays.empty()) return std::numeric_limits<double>::quiet_NaN();
@@ -165,13 +171,13 @@ double mean_contrast(const std::vector<FieldSpot>& spots, const std::vector<Vec2
     return 0.5 * sum / static_cast<double>(spots.size());
 }
 
-FieldSpot::Square FieldSpot::square() const {
+FieldSpot::MeanSquare FieldSpot::mean_square_radius() const {
     Vec2<double> at{0, 0}, slope{0, 0};
     for (const auto& ray : rays) {
         at = {at.x + ray.weight * ray.at.x, at.y + ray.weight * ray.at.y};
         slope = {slope.x + ray.weight * ray.slope.x, slope.y + ray.weight * ray.slope.y};
     }
-    Square sum{0, 0, 0};
+    MeanSquare sum{0, 0, 0};
     for (const auto& ray : rays) {
         const double sx = ray.slope.x - slope.x, sy = ray.slope.y - slope.y;
         const double x = ray.at.x - at.x + film * sx, y = ray.at.y - at.y + film * sy;
@@ -188,12 +194,12 @@ Vec2<double> FieldSpot::chief_at(double shift) const {
 }
 
 double FieldSpot::contrast(double shift, Vec2<double> along, double frequency) const {
-    const double z = film + shift, turn = 2 * std::numbers::pi * frequency;
+    const double z = film + shift, radians_per_mm = 2 * std::numbers::pi * frequency;
     const Vec2<double> from = chief_at(shift);
     double real = 0, imaginary = 0;
     for (const auto& ray : rays) {
         const double x = ray.at.x + z * ray.slope.x - from.x, y = ray.at.y + z * ray.slope.y - from.y;
-        const double phase = turn * (along.x * x + along.y * y);
+        const double phase = radians_per_mm * (along.x * x + along.y * y);
         real += ray.weight * std::cos(phase);
         imaginary += ray.weight * std::sin(phase);
     }
@@ -202,7 +208,7 @@ double FieldSpot::contrast(double shift, Vec2<double> along, double frequency) c
 
 void FieldSpot::add_contrast(double shift, double step, Vec2<double> along, double frequency,
                              std::vector<double>& sum) const {
-    const double turn = 2 * std::numbers::pi * frequency;
+    const double radians_per_mm = 2 * std::numbers::pi * frequency;
     const Vec2<double> from = chief_at(shift);
     std::vector<std::complex<double>> total(sum.size());
     for (const auto& ray : rays) {
@@ -211,9 +217,9 @@ void FieldSpot::add_contrast(double shift, double step, Vec2<double> along, doub
         const double rise = along.x * (ray.slope.x - chief.slope.x) + along.y * (ray.slope.y - chief.slope.y);
         // The phase advances by the same angle from plane to plane. Real arithmetic, because products of std::complex
         // check for infinities.
-        double real = ray.weight * std::cos(turn * (along.x * x + along.y * y));
-        double imaginary = ray.weight * std::sin(turn * (along.x * x + along.y * y));
-        const double cos = std::cos(turn * step * rise), sin = std::sin(turn * step * rise);
+        double real = ray.weight * std::cos(radians_per_mm * (along.x * x + along.y * y));
+        double imaginary = ray.weight * std::sin(radians_per_mm * (along.x * x + along.y * y));
+        const double cos = std::cos(radians_per_mm * step * rise), sin = std::sin(radians_per_mm * step * rise);
         for (std::complex<double>& plane : total) {
             plane += std::complex<double>(real, imaginary);
             const double next = real * cos - imaginary * sin;
@@ -224,7 +230,8 @@ void FieldSpot::add_contrast(double shift, double step, Vec2<double> along, doub
     for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += std::abs(total[k]);
 }
 
-double FieldSpot::limit(Vec2<double> along, double frequency, const std::vector<StudyColour>& colours) const {
+double FieldSpot::diffraction_limit(Vec2<double> along, double frequency,
+                                    const std::vector<StudyColour>& colours) const {
     double mean = 0, square = 0;
     for (const auto& ray : rays) {
         const Vec2<double> s = ray.slope;

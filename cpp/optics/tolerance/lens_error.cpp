@@ -10,24 +10,27 @@ namespace realcam {
 
 namespace {
 
-constexpr double kFringe_mm = 0.5e-6 * kFringeLine_nm;
+/// One fringe.
+constexpr double kHalfWavelength_mm = 0.5e-6 * kFringeLine_nm;
 
-void bend(Surface& surface, ErrorKind kind, double size) {
-    const double before = surface.curvature, rim = surface.clear_semi_diameter;
-    double after = before;
+/// Applies an error of the radius of curvature.
+void change_curvature(Surface& surface, ErrorKind kind, double size) {
+    const double nominal = surface.curvature, rim = surface.clear_semi_diameter;
+    double curvature = nominal;
     if (kind == ErrorKind::radius)
-        after = before / (1 + size * before);
+        curvature = nominal / (1 + size * nominal);
     else if (kind == ErrorKind::radius_percent)
-        after = before / (1 + 0.01 * size);
+        curvature = nominal / (1 + 0.01 * size);
     else
-        after = before + 2 * size * kFringe_mm / (rim * rim);
-    surface.curvature = after;
-    if (surface.form.base != BaseForm::conic) surface.form.curvature_x += after - before;
+        curvature = nominal + 2 * size * kHalfWavelength_mm / (rim * rim);
+    surface.curvature = curvature;
+    if (surface.form.base != BaseForm::conic) surface.form.curvature_x += curvature - nominal;
 }
 
-/// x^2 - y^2 and 2 x y have their extremes at the rim, of opposite signs on two perpendicular diameters.
-void make_irregular(Surface& surface, ErrorKind kind, double fringes) {
-    const double rim = surface.clear_semi_diameter, amplitude = 0.5 * fringes * kFringe_mm / (rim * rim);
+/// Adds astigmatism: a sag proportional to x^2 - y^2, or to 2 x y. Its extremes lie at the rim, with opposite signs on
+/// two perpendicular diameters.
+void add_irregularity(Surface& surface, ErrorKind kind, double fringes) {
+    const double rim = surface.clear_semi_diameter, amplitude = 0.5 * fringes * kHalfWavelength_mm / (rim * rim);
     if (kind == ErrorKind::irregularity_45) {
         surface.form.xy.push_back({1, 1, 2 * amplitude});
         return;
@@ -36,13 +39,15 @@ void make_irregular(Surface& surface, ErrorKind kind, double fringes) {
     surface.form.xy.push_back({0, 2, -amplitude});
 }
 
-void lengthen(LensSystem& lens, int index, double by) {
-    lens.surfaces[static_cast<std::size_t>(index)].thickness += by;
+/// Adds to the thickness behind a surface, at all zoom positions.
+void add_thickness(LensSystem& lens, int index, double amount) {
+    lens.surfaces[static_cast<std::size_t>(index)].thickness += amount;
     for (std::size_t i = 0; i < lens.zoom.surfaces.size(); ++i)
         if (lens.zoom.surfaces[i] == index)
-            for (ZoomPosition& position : lens.zoom.positions) position.thicknesses[i] += by;
+            for (ZoomPosition& position : lens.zoom.positions) position.thicknesses[i] += amount;
 }
 
+/// Adds a tilt or decentre to a placement.
 void add_to(SurfacePlacement& placement, ErrorKind kind, double size) {
     switch (kind) {
         case ErrorKind::surface_tilt_x:
@@ -55,17 +60,19 @@ void add_to(SurfacePlacement& placement, ErrorKind kind, double size) {
     }
 }
 
+/// True for tilts and decentres of a single surface.
 bool moves_surface(ErrorKind kind) {
     return kind >= ErrorKind::surface_tilt_x && kind <= ErrorKind::surface_decentre_y;
 }
 
+/// True for tilts and decentres of an element.
 bool moves_element(ErrorKind kind) {
     return kind >= ErrorKind::element_tilt_x && kind <= ErrorKind::element_decentre_y;
 }
 
 }  // namespace
 
-void move_pieces(LensSystem& lens, int first, int last, const Affine<double>& motion) {
+void move_rigidly(LensSystem& lens, int first, int last, const Affine<double>& motion) {
     if (!move_each_alone(lens, first, last, motion)) move_element(lens, first, last, motion);
 }
 
@@ -85,37 +92,38 @@ LensSystem with_errors(const LensSystem& lens, const std::vector<LensError>& err
         else if (moves_element(kind))
             add_to(elements[{first, last}], kind, size);
         else if (kind == ErrorKind::thickness)
-            lengthen(result, first, size);
+            add_thickness(result, first, size);
         else if (kind == ErrorKind::index)
             melts[first].first += size;
         else if (kind == ErrorKind::abbe_percent)
             melts[first].second += 0.01 * size;
         else if (kind == ErrorKind::irregularity_0 || kind == ErrorKind::irregularity_45)
-            make_irregular(surface, kind, size);
+            add_irregularity(surface, kind, size);
         else
-            bend(surface, kind, size);
+            change_curvature(surface, kind, size);
     }
     for (const auto& [index, melt] : melts) {
         Glass& glass = result.surfaces[static_cast<std::size_t>(index)].material;
         glass = with_melt_error(glass, melt.first, melt.second);
     }
-    for (const auto& [which, placement] : surfaces) move_pieces(result, which.first, which.second, placement.frame());
-    for (const auto& [which, placement] : elements) {
+    for (const auto& [range, placement] : surfaces) move_rigidly(result, range.first, range.second, placement.frame());
+    for (const auto& [range, placement] : elements) {
         double length = 0;
-        for (int i = which.first; i < which.second; ++i)
+        for (int i = range.first; i < range.second; ++i)
             length += result.surfaces[static_cast<std::size_t>(i)].thickness;
-        move_pieces(result, which.first, which.second,
-                    along_axis(0.5 * length) * placement.frame() * along_axis(-0.5 * length));
+        move_rigidly(result, range.first, range.second,
+                     along_axis(0.5 * length) * placement.frame() * along_axis(-0.5 * length));
     }
-    // Faces that touch at their rims do so in every real lens; an overlap of a micrometre there is no error.
+    // Surfaces that touch at their rims do so in every real lens, so that an overlap of a micrometre is not an error.
     result.allow_overlap = true;
     return result;
 }
 
 namespace {
 
-/// n'^2 = constant + scale (n^2 - 1) keeps the poles of Sellmeier's formula; the constant becomes a term with C = 0.
-/// Newton's method finds the scale from n'_F - n'_C.
+/// Returns a Sellmeier glass with this index at the d line and this dispersion n_F - n_C. The new index is
+/// n'^2 = constant + scale (n^2 - 1), which preserves the poles of the formula; the constant becomes a term with C = 0.
+/// Newton's method finds the scale from the dispersion.
 Glass with_sellmeier_error(const Glass& glass, Glass::Parts parts, double index_d, double dispersion) {
     const double square_d = glass.index(kLineD_nm) * glass.index(kLineD_nm);
     const double above = glass.index(kLineF_nm) * glass.index(kLineF_nm) - square_d;
@@ -135,21 +143,22 @@ Glass with_sellmeier_error(const Glass& glass, Glass::Parts parts, double index_
 
 }  // namespace
 
-Glass with_melt_error(const Glass& glass, double index, double abbe) {
-    if (index == 0 && abbe == 0) return glass;
-    const double before_d = glass.index(kLineD_nm), index_d = before_d + index;
+Glass with_melt_error(const Glass& glass, double index_change, double abbe_fraction) {
+    if (index_change == 0 && abbe_fraction == 0) return glass;
+    const double nominal_d = glass.index(kLineD_nm), index_d = nominal_d + index_change;
     const double spread = glass.index(kLineF_nm) - glass.index(kLineC_nm);
-    if (!(index_d >= 1 && abbe > -1)) throw InputError("an error of a glass leaves an index below 1");
-    if (abbe != 0 && !(spread > 0))
-        throw InputError("the dispersion of glass \"" + glass.label + "\" is not known, and neither its Abbe number");
+    if (!(index_d >= 1 && abbe_fraction > -1)) throw InputError("an error of a glass reduces its index below 1");
+    if (abbe_fraction != 0 && !(spread > 0))
+        throw InputError("the dispersion of glass \"" + glass.label +
+                         "\" is not known, and so its Abbe number cannot have an error");
     // V = (n_d - 1) / (n_F - n_C); a glass without dispersion needs no scaling.
-    const double scale = spread > 0 ? (index_d - 1) / ((before_d - 1) * (1 + abbe)) : 1;
+    const double scale = spread > 0 ? (index_d - 1) / ((nominal_d - 1) * (1 + abbe_fraction)) : 1;
     Glass::Parts parts = glass.parts();
     if (parts.formula == Glass::Formula::sellmeier)
         return with_sellmeier_error(glass, std::move(parts), index_d, scale * spread);
     for (double& coefficient : parts.coefficients) coefficient *= scale;
-    if (parts.formula == Glass::Formula::cauchy) parts.coefficients[0] += index_d - scale * before_d;
-    for (Glass::TablePoint& point : parts.points) point.index = index_d + scale * (point.index - before_d);
+    if (parts.formula == Glass::Formula::cauchy) parts.coefficients[0] += index_d - scale * nominal_d;
+    for (Glass::TablePoint& point : parts.points) point.index = index_d + scale * (point.index - nominal_d);
     return Glass::from_parts(std::move(parts));
 }
 

@@ -7,30 +7,31 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// A wavelength and its weight in polychromatic results.
+/// Wavelength with its weight in polychromatic results.
 struct StudyColour {
     double wavelength_nm, weight;
 };
 
-/// Compensator: surfaces, counted from 0, that are moved together along or across the axis to maximise sharpness.
+/// Compensator: surfaces that are moved together to maximise sharpness.
 struct ElementShift {
-    int first, last;
-    bool along_axis;
-    double range;  ///< to either side, mm
+    int first, last;  ///< indices of the first and last surface, from 0
+    bool along_axis;  ///< true: they are moved along the axis; false: along x and y
+    double range;  ///< largest displacement to either side, mm
 };
 
 /// Compensators: adjustments of an assembled lens that maximise sharpness in the mean of all fields.
 struct Compensators {
-    /// Frequency at which contrast is maximised, periods per mm; empty: the mean square spot radius is minimised.
+    /// Frequency at which the contrast is maximised, periods per mm; empty: the mean square spot radius is minimised
+    /// instead.
     std::optional<double> frequency = std::nullopt;
-    bool refocus = false;    ///< the film moves along the axis
-    bool film_tilt = false;  ///< the film is tilted about x and y
+    bool refocus = false;  ///< true: the film is moved along the axis
+    bool film_tilt = false;  ///< true: the film is tilted about x and y
     std::optional<ElementShift> shift = std::nullopt;
 };
 
 /// Evaluation to be done for each copy of a lens.
 struct StudyRequest {
-    std::vector<Vec2<double>> fields;  ///< directions from the axis whose length is the field angle, rad
+    std::vector<Vec2<double>> fields;  ///< vectors away from the axis, whose length is the field angle, rad
     std::optional<double> object_distance;  ///< see FieldPoint
     std::vector<StudyColour> colours;
     std::vector<double> frequencies;  ///< periods per mm
@@ -38,11 +39,11 @@ struct StudyRequest {
     Compensators compensators;
 };
 
-/// Settings of the compensators.
+/// Settings of the compensators of a lens copy.
 struct CopySettings {
     double film_shift = 0;  ///< mm, away from the lens
     Vec2<double> film_slope{0, 0};  ///< dz/dx and dz/dy of the film
-    Vec3d element_shift{0, 0, 0};  ///< mm
+    Vec3d element_shift{0, 0, 0};  ///< displacement of Compensators::shift, mm
 
     bool operator==(const CopySettings&) const = default;
 };

@@ -6,32 +6,36 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Image quality of one field of a lens copy. NaN if no light passes.
+/// Image quality of one field of a lens copy.
 struct FieldFigures {
-    double rms_spot;  ///< RMS spot radius about the centroid, of all colours, mm
+    double rms_spot;  ///< RMS spot radius about the centroid, of all wavelengths, mm; NaN if no light passes
     double distortion;  ///< along the field, relative to the image scale near the axis; 0 on the axis
-    double light;  ///< fraction of the stop's area that light passes to the film
+    double light;  ///< fraction of the stop's area through which light reaches the film
     Vec2<double> at;  ///< intersection of the chief ray with the film, mm
-    std::vector<double>
-        mtf;  ///< geometric MTF times the diffraction limit: all frequencies along the field, then all across it
+    /// Geometric MTF times the diffraction limit: at all frequencies along the field's direction, then at all
+    /// frequencies across it; NaN if no light passes.
+    std::vector<double> mtf;
 };
 
+/// Image quality of a lens copy after compensation.
 struct CopyFigures {
-    double focal_length;  ///< from paraxial rays, mean of both meridians, mm; inf if the lens is afocal
-    CopySettings settings;
+    double focal_length;  ///< from rays close to the axis, mean of both meridians, mm; infinite for an afocal lens
+    CopySettings settings;  ///< of the compensators
     std::vector<FieldFigures> fields;
 };
 
-/// Monte Carlo tolerance evaluation: computes the image quality of copies that differ little from a nominal lens, also
-/// tilted and decentred ones. Rays are aimed once, in the nominal lens. operator() may be called from several threads.
+/// Evaluator of Monte Carlo tolerancing: adjusts the compensators of lens copies that differ little from a nominal
+/// lens, and computes their image quality. Errors may include tilts and decentres. Rays are aimed once, in the nominal
+/// lens.
 class ToleranceEvaluator {
 public:
-    /// Throws InputError if the request is invalid or no light of a field passes; passes on what `loop` throws to stop
-    /// it.
+    /// Aims the rays of all fields in the nominal lens. Throws InputError if the request is invalid or no light of a
+    /// field passes, and Cancelled if `loop` is cancelled.
     ToleranceEvaluator(const LensSystem& nominal, StudyRequest request, const RayLoop& loop = {});
     ~ToleranceEvaluator();
     ToleranceEvaluator(ToleranceEvaluator&&) noexcept;
 
+    /// Evaluates a copy of the lens. Several threads may call it at once.
     CopyFigures operator()(const LensSystem& copy) const;
 
     const LensSystem& nominal() const;

@@ -97,7 +97,7 @@ TEST_CASE("motion: keys for kernels are as many as a thousandth of the way wants
     // An arc of 1 radian in steps of d radians: off by d^2 / 8 of a way of 2 sin 0.5, from d = 0.0876 on.
     CHECK(key_steps({{0, 1}, {{}, turn_about({0, 0, 1}, 1)}}, {0, 1}, points) == 16);
     // A bend at 1/3, next to which the way is cut by 1/3 of a step: 2/9 of the steps' length at 128 of them.
-    CHECK(key_steps({{0, 1.0 / 3, 1}, {{}, there, {}}}, {0, 1}, points).value_or(0) == kMostKeySteps);
+    CHECK(key_steps({{0, 1.0 / 3, 1}, {{}, there, {}}}, {0, 1}, points).value_or(0) == kMaxKeySteps);
     Motion fast;
     for (int k = 0; k < 200; ++k) {
         fast.times_s.push_back(k);

@@ -154,7 +154,7 @@ TEST_CASE("from frame to frame a pupil is found in less than half of the blocks"
         Blocks anew, near;
         const LensSystem next = focused(lens, 4010);
         const Pupil whole(next, radius, anew.tracer()), moved(next, radius, near.tracer(), {}, &before);
-        CHECK(moved.is_moved());
+        CHECK(moved.was_found_near_similar());
         CHECK(2 * near.all <= anew.all);
         CHECK(2 * near.in_a_row <= anew.in_a_row);
     }
@@ -169,7 +169,7 @@ TEST_CASE("errors of pupils that are found near others do not add up") {
     Pupil moved = first;
     for (const double distance : {4050.0, 4100.0, 4150.0, 4200.0})
         moved = Pupil(focused(lens, distance), radius, {}, {}, &moved);
-    CHECK(moved.is_moved());
+    CHECK(moved.was_found_near_similar());
     CHECK(same_pupil(moved.view(), Pupil(end, radius, {}, {}, &first).view()));
 }
 

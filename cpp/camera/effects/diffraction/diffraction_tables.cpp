@@ -53,7 +53,7 @@ std::vector<DirectionBox> DiffractionTables::boxes_of(const LensSystem& lens, co
     PupilTrack track;
     std::vector<DirectionBox> boxes;
     for (int row = 0; row < radii_; ++row) {
-        const std::optional<DirectionBox> box = track.look(search, radius_of(row));
+        const std::optional<DirectionBox> box = track.find(search, radius_of(row));
         if (!box && boxes.empty()) throw no_light(lens);
         boxes.push_back(box ? *box : boxes.back());
     }

@@ -176,8 +176,8 @@ TEST_CASE("light is the same by halves and by more rays") {
         CAPTURE(name);
         const LensSystem lens = io::read_lens(name);
         const PsfRequest request = request_for(lens, field);
-        psf_detail::Start whole = psf_detail::start(lens, request, {});
-        psf_detail::Part& part = whole.parts[0];
+        psf_detail::PreparedPsf whole = psf_detail::prepare(lens, request, {});
+        psf_detail::ColourPart& part = whole.parts[0];
         const BundleSampling sampling = psf_detail::checked_sampling(part, whole.psf, 0);
         part.bundle.mirrored = false;
         part.light = plane_waves(part.bundle, {sampling.arms + sampling.arms % 2, sampling.nodes});

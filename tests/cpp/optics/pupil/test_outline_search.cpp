@@ -22,16 +22,16 @@ double largest_difference(const PupilOutline& a, const PupilOutline& b, double (
     return largest;
 }
 
-std::vector<OutlineLook> looks_through(const PupilSearch& search, double film_radius) {
-    std::vector<OutlineLook> looks;
+std::vector<OutlineRequest> requests_through(const PupilSearch& search, double film_radius) {
+    std::vector<OutlineRequest> requests;
     PupilTrack track;
     for (const double share : {0.0, 0.3, 0.6, 0.9}) {
         const double radius = share * film_radius;
-        const std::optional<DirectionBox> box = track.look(search, radius);
+        const std::optional<DirectionBox> box = track.find(search, radius);
         REQUIRE(box);
-        looks.push_back({{radius, 0}, {box->centre().l, 0}, box->half_width(), box->half_height()});
+        requests.push_back({{radius, 0}, {box->centre().l, 0}, box->half_width(), box->half_height()});
     }
-    return looks;
+    return requests;
 }
 
 }  // namespace
@@ -42,8 +42,8 @@ TEST_CASE("an outline is the same whatever was expected") {
         CAPTURE(std::string(name));
         const LensSystem lens = io::read_lens(name);
         const PupilSearch search(lens, FilmMap::radial, {});
-        const std::vector<OutlineLook> looks = looks_through(search, 0.5 * lens.film_width);
-        const std::vector<PupilOutline> scanned = OutlineSearch::find(search.lens(), looks);
+        const std::vector<OutlineRequest> requests = requests_through(search, 0.5 * lens.film_width);
+        const std::vector<PupilOutline> scanned = OutlineSearch::find(search.lens(), requests);
         // Right within the tolerance; within eight times that; not at all; nothing known.
         for (const double factor : {1.003, 0.998, 1.03, 1.4, 0.0}) {
             CAPTURE(factor);
@@ -51,8 +51,8 @@ TEST_CASE("an outline is the same whatever was expected") {
             for (PupilOutline& outline : expected)
                 for (int a = 0; a <= kAzimuths; ++a) outline.outer[a] *= factor, outline.inner[a] *= factor;
             const std::vector<PupilOutline> found =
-                OutlineSearch::find_near(search.lens(), looks, expected, OutlineSearch::kChange);
-            for (std::size_t i = 0; i < looks.size(); ++i) {
+                OutlineSearch::find_near(search.lens(), requests, expected, OutlineSearch::kNeighbourTolerance);
+            for (std::size_t i = 0; i < requests.size(); ++i) {
                 // An edge lies in intervals of 1.5e-4 and of 6.25e-4 of the box.
                 CHECK(largest_difference(found[i], scanned[i], &PupilOutline::outer) < 6.3e-4);
                 CHECK(largest_difference(found[i], scanned[i], &PupilOutline::inner) < 6.3e-4);

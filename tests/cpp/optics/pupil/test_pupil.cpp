@@ -129,9 +129,9 @@ TEST_CASE("a pupil found near that of a similar state holds all that passes, and
             state.lens.film_distance *= 1.0005;
             state.description += ", a little later";
             const Pupil pupil(state.lens, radius, {}, {}, &before);
-            if (!pupil.is_moved()) continue;
+            if (!pupil.was_found_near_similar()) continue;
             ++moved_pupils;
-            CHECK(pupil.follows());
+            CHECK(pupil.is_continuous());
             check_no_leaks(state, pupil);
             // It may keep the edge of the image where it was, by as much as the searches allow.
             const Pupil anew(state.lens, radius);
@@ -147,7 +147,7 @@ TEST_CASE("a pupil that has changed much is the same as without the one before")
     const auto is_as_without = [&](const LensSystem& changed, double radius) {
         const Pupil pupil(changed, radius, {}, {}, &before), anew(changed, radius);
         const PupilView a = pupil.view(), b = anew.view();
-        return !pupil.is_moved() && a.image_radius == b.image_radius &&
+        return !pupil.was_found_near_similar() && a.image_radius == b.image_radius &&
                std::equal(a.outline, a.outline + a.rows * PupilView::kSectors, b.outline,
                           [](const PupilSector& s, const PupilSector& t) {
                               return s.x == t.x && s.y == t.y && s.dx == t.dx && s.dy == t.dy &&

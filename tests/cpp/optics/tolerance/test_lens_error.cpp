@@ -181,6 +181,6 @@ TEST_CASE("errors that no lens can have are refused with one line") {
     };
     CHECK(contains(refusal({ErrorKind::radius, 3, 3}, 1), "there is no surface 3; the lens has 3, counted from 0"));
     CHECK(contains(refusal({ErrorKind::element_tilt_x, 1, 9}, 1), "there is no surface 9"));
-    CHECK(contains(refusal({ErrorKind::index, 1, 1}, -0.6), "leaves an index below 1"));
+    CHECK(contains(refusal({ErrorKind::index, 1, 1}, -0.6), "reduces its index below 1"));
     CHECK(contains(refusal({ErrorKind::abbe_percent, 1, 1}, 1), "the dispersion of glass"));
 }

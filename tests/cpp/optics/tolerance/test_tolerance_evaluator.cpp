@@ -158,15 +158,15 @@ TEST_CASE("a film is set on three foci that do not lie on one line") {
         spots.push_back(spot);
         outwards.push_back({0, 1});
     }
-    const FilmSetting small = film_of_small_spots(spots, {true, true});
+    const FilmAdjustment small = film_for_small_spots(spots, {true, true});
     CHECK(small.shift == about(shift, 1e-10));
     CHECK(small.slope.x == about(slope_x, 1e-10));
     CHECK(small.slope.y == about(slope_y, 1e-10));
     CHECK(mean_square(spots, small) < 1e-20);
-    const FilmSetting sharp = film_of_high_contrast(spots, outwards, 20, {true, true});
+    const FilmAdjustment sharp = film_for_high_contrast(spots, outwards, 20, {true, true});
     CHECK(mean_contrast(spots, outwards, 20, sharp) == about(1, 1e-4));
     // Without any freedom it stays.
-    CHECK(film_of_small_spots(spots, {false, false}).shift == 0);
+    CHECK(film_for_small_spots(spots, {false, false}).shift == 0);
 }
 
 TEST_CASE("an element off the axis is found and moved back") {

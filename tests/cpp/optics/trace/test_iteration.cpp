@@ -276,6 +276,6 @@ TEST_CASE("the pupil search ends within its bound, whatever passes") {
     for (const double wrong : {0.0, -1.0, std::nan(""), kInfinity}) CHECK_THROWS_AS(Pupil(gauss, wrong), InputError);
     hold({"Iteration",
           "pupil search: nothing, everything, noise, stripes and a needle pass; film radii of 1e-30 to 1e9 mm",
-          std::to_string(count) + " searches", "core", "float32", static_cast<double>(worst), Pupil::kMostBlocks,
+          std::to_string(count) + " searches", "core", "float32", static_cast<double>(worst), Pupil::kMaxBlocks,
           "blocks of 256 rays"});
 }
