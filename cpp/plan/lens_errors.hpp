@@ -83,7 +83,7 @@ inline SampledBundle traced_bundle(const CameraView& camera, const LensView<floa
 }
 
 /// Intersection of a bundle with a plane of the scene, converted to the film by the paraxial magnification. `circle`:
-/// of the lens, see CircleOfConfusion; `distance_mm`: distance of the plane from the front vertex; may be infinite.
+/// CameraView::circle of the lens; `distance_mm`: distance of the plane from the front vertex; may be infinite.
 /// Members are NaN if no light passes.
 inline BundleSpot spot_of(const SampledBundle& bundle, const CircleOfConfusion& circle, double distance_mm) {
     const bool is_far = !(distance_mm < 1e30);
@@ -144,7 +144,7 @@ struct LensErrors {
 
 namespace lens_errors_detail {
 
-/// Wavelengths below the first and above the second of which lies a tenth each of the luminous response to white light.
+/// A tenth of the luminous response to white light lies below kBlue_nm, and a tenth above kRed_nm.
 inline constexpr double kBlue_nm = 500, kRed_nm = 620;
 
 /// Raises `largest` to `value` if that is larger. NaN, from a model that sees nothing at that point, counts as

@@ -106,8 +106,8 @@ public:
         double radius_in_front;  ///< radius of the bundle in front of the lens
     };
 
-    /// `slope`: slope of the bundle to the axis in front of the lens. Returns std::nullopt if the rims block the whole
-    /// bundle.
+    /// Spot of a bundle. `slope`: its slope to the axis in front of the lens. Returns std::nullopt if the rims block
+    /// the whole bundle.
     std::optional<Spot> spot_of(double slope) const {
         double low = -kInfinity, high = kInfinity;
         for (const GhostPath::Meeting& meeting : path_.meetings) {
@@ -131,6 +131,7 @@ public:
     Cone cone_to_film_centre() const {
         // A ray to the film centre has height and slope in front of the lens in the ratio of these two.
         const double height = film_height_per_slope_, slope = -film_height_per_height_;
+        // Largest factor by which this ray can be scaled so that it passes all rims.
         double largest_scale = kInfinity;
         for (const GhostPath::Meeting& meeting : path_.meetings)
             largest_scale = std::min(
@@ -209,7 +210,8 @@ struct GhostDisc {
     double darkest;  ///< lowest value of the picture without it, within the disc
 };
 
-/// `transmittance`: fraction of the light that the ghost path transmits; `pixel_mm`: pixel pitch. Returns std::nullopt
+/// Ghost of a light. `bundle`: properties of the ghost path; `transmittance`: fraction of the light that it transmits;
+/// `pixel_mm`: pixel pitch. Returns std::nullopt
 /// if the rims block the ghost, or it lies outside the frame.
 inline std::optional<GhostDisc> ghost_disc(const Camera& camera, const SceneFacts& facts, const GhostBundle& bundle,
                                            const VisibleLight& light, double transmittance, double pixel_mm) {
@@ -218,7 +220,7 @@ inline std::optional<GhostDisc> ghost_disc(const Camera& camera, const SceneFact
     const double slope = std::max(hypotenuse(across, down), 1e-6);
     const std::optional<GhostBundle::Spot> spot = bundle.spot_of(slope);
     if (!spot) return {};
-    const double chief = spot->centre / slope;  // focal length of the ghost path, mm
+    const double chief = spot->centre / slope;  // film height of the ghost per unit of slope, mm
     const double image_area = light.solid_angle_sr * chief * chief;
     const double radius =
         std::sqrt(std::max(spot->radius * spot->radius, pixel_mm * pixel_mm / 4) + image_area / std::numbers::pi);

@@ -72,10 +72,11 @@ inline std::string text_of(const Plan& plan, const std::string& model_name) {
     using Row = std::array<std::string, 6>;
     std::vector<Row> rows = {{"effect", "size", "threshold", "", "time", "because"}};
     for (const PlanDecision& decision : plan.decisions) {
-        rows.push_back(
-            {decision.name, size_text(decision.size, decision.unit), size_text(decision.threshold, decision.unit),
-             std::string(decision.is_kept ? "kept" : "left out") + (decision.by == DecidedBy::user ? " as requested" : ""),
-             decision.time ? "+" + number_text(100 * *decision.time, 2) + "%" : "", decision.reason});
+        rows.push_back({decision.name, size_text(decision.size, decision.unit),
+                        size_text(decision.threshold, decision.unit),
+                        std::string(decision.is_kept ? "kept" : "left out") +
+                            (decision.by == DecidedBy::user ? " as requested" : ""),
+                        decision.time ? "+" + number_text(100 * *decision.time, 2) + "%" : "", decision.reason});
     }
     std::array<std::size_t, 6> width{};
     for (const Row& row : rows)

@@ -37,7 +37,7 @@ public:
           errors_(errors),
           facts_(facts),
           settings_(settings),
-          is_round_(is_round_lens(camera.lens)) {}
+          is_rotational_(uses_rotational_code(camera.lens)) {}
 
     Plan plan() {
         plan_.effects = without_plan(settings_.effects);
@@ -62,8 +62,9 @@ private:
     /// Returns why the planner must not switch the effect on: because the lens cannot show it or, if it can, because of
     /// `doubt`, which may be empty.
     std::string objection_to(const EffectInfo& effect, const std::string& doubt) const {
-        return effect.needs_round_lens && !is_round_ ? "but only a centred, rotationally symmetric lens can show it"
-                                                     : doubt;
+        return effect.needs_round_lens && !is_rotational_
+                   ? "but only a centred, rotationally symmetric lens can show it"
+                   : doubt;
     }
 
     /// Decides on an effect, by its name in kEffects. `size`: change of the picture if it is left out. `reason`:
@@ -170,7 +171,7 @@ private:
         CameraModel model = CameraModel::full_lens;
         if (!may_choose_model_)
             model = camera_.model;
-        else if (is_round_ && !any_is(plan_.effects, &EffectInfo::needs_full_lens))
+        else if (is_rotational_ && !any_is(plan_.effects, &EffectInfo::needs_full_lens))
             model = errors_.pinhole.is_within(thresholds)  ? CameraModel::pinhole
                     : errors_.thin.is_within(thresholds)   ? CameraModel::thin_lens
                     : errors_.mapped.is_within(thresholds) ? CameraModel::mapped_lens
@@ -201,7 +202,7 @@ private:
     const LensErrors& errors_;
     const SceneFacts& facts_;
     const RenderSettings& settings_;
-    const bool is_round_;
+    const bool is_rotational_;
     const bool may_choose_model_ = camera_.model == CameraModel::full_lens;  ///< otherwise the camera's model is used
     Plan plan_;
     double coating_colour_codes_ = 0, ghost_colour_codes_ = 0;  ///< 0 if the effect is left out

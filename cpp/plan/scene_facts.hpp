@@ -9,7 +9,7 @@
 
 namespace REALCAM_NAMESPACE {
 
-// What the planner knows about a scene: a small picture of it and its lights (probe_scene.hpp).
+// Facts about a scene on which the planner decides: a small picture of it and its lights (probe_scene.hpp).
 
 /// Returns the film with at most this many pixels along its longer side.
 inline Film with_long_side(Film film, int pixels) {
