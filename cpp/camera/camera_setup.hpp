@@ -25,8 +25,9 @@ enum class PupilStart {
 class CameraSetup {
 public:
     /// `tracer`: traces the rays of the pupil search, see PupilTracer. `last`: an earlier set-up or null; its pupil is
-    /// reused if lens and film are unchanged, because the pupil search is most of the work. Throws InputError if the
-    /// camera is invalid, passes no light, or rotates too fast for one exposure.
+    /// reused if lens and film are unchanged, because the pupil search is most of the work. `effects`: effects for
+    /// which tables are made; `start`: start of the pupil search if the lens differs from that of `last`. Throws
+    /// InputError if the camera is invalid, passes no light, or rotates too fast for one exposure.
     explicit CameraSetup(const Camera& camera, PupilTracer tracer = {}, const CameraSetup* last = nullptr,
                          const LensEffects& effects = {}, PupilStart start = PupilStart::from_scratch);
 

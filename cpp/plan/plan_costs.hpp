@@ -94,10 +94,10 @@ inline void plan_bounces(Session& session, const Assembly& scene, Camera camera,
     const auto codes = [](double size) { return counted(size, "code", 2); };
     plan.decisions.push_back(
         {"bounces", indirect, SizeUnit::codes, threshold, plan.max_bounces > 0, DecidedBy::planner, std::nullopt,
-         plan.max_bounces == 0 ? "light that has bounced brings " + codes(indirect)
+         plan.max_bounces == 0 ? "indirect light adds " + codes(indirect)
                                : "with " + counted(plan.max_bounces, "bounce") + " the picture lacks " +
                                      codes(missing) + ", with fewer " + codes(missing_with_fewer) +
-                                     " (half the threshold is allowed), with direct light base_s " + codes(indirect)});
+                                     " (half the threshold is allowed), with direct light alone " + codes(indirect)});
 }
 
 namespace measure_times_detail {

@@ -64,6 +64,7 @@ inline void remove_hidden_lights(Session& session, const Assembly& scene, const 
     lights = std::move(visible);
 }
 
+/// Luminance of a linear colour, in double precision.
 inline double luminance_of(Color c) {
     return static_cast<double>(luminance(c));
 }

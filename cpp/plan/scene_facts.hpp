@@ -60,10 +60,10 @@ struct VisibleLight {
 
 /// A scene as seen by one camera: all that the planner knows about it.
 struct SceneFacts {
-    int columns = 0, rows = 0;
+    int columns = 0, rows = 0;  ///< number of tiles across and down
     std::vector<SceneTile> tiles;  ///< row by row
     std::vector<VisibleLight> lights;  ///< the brightest first
-    WideView surroundings;
+    WideView surroundings;  ///< view beyond the frame, from which ghosts receive light
 
     /// Tile at a point given in fractions of the picture's width and height; points outside give the nearest tile.
     const SceneTile& tile_at(double across, double down) const {

@@ -17,7 +17,7 @@ inline constexpr int kMaxResolution = 32768;  ///< largest number of pixels alon
 /// Film or sensor: the light-sensitive rectangle and its pixel grid.
 struct Film {
     double width_mm = 36, height_mm = 24;
-    int width = 960, height = 640;
+    int width = 960, height = 640;  ///< number of pixels
     /// Offset of the film's centre from Pose::position_m, to the right and upwards as seen in the picture.
     Vec2<double> shift_mm = {0, 0};
 
@@ -70,8 +70,8 @@ struct Camera {
     Film film;
     Pose pose;  ///< pose at time 0 if the camera moves
     CameraModel model = CameraModel::full_lens;
-    double exposure_time_s = 1.0 / 125;
-    double iso = 100;
+    double exposure_time_s = 1.0 / 125;  ///< exposure time of each row of pixels
+    double iso = 100;  ///< sensitivity: 10 / iso lux seconds become middle grey
     Shutter shutter;
     std::vector<PoseKey> motion;  ///< keyframes in increasing order of time; empty: the camera does not move
 

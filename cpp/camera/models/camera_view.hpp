@@ -61,7 +61,7 @@ struct ThinLens {
 struct ThickLens {
     float A, B, C, D;  ///< elements of the matrix from front to last vertex, scaled by the film's refractive index
     float exit_pupil_distance;  ///< film to exit pupil, positive towards the scene, mm
-    float exit_pupil_radius;
+    float exit_pupil_radius;  ///< mm
 };
 
 /// Pose of the camera in render space.
@@ -79,7 +79,7 @@ struct CameraView : CameraPlacement, EffectViews {
     Vec2f film_middle;  ///< film centre, from the axis, mm
     float film_distance;  ///< last vertex to film, mm
     float film_curvature;  ///< see FilmSurface; 0 for a rotationally symmetric lens, whose film is flat
-    float axis_irradiance;  ///< of the real lens for unit radiance; used by the ideal models
+    float axis_irradiance;  ///< irradiance on the axis behind the real lens for unit radiance; used by the ideal models
     float front_vertex_m;  ///< film to front vertex, metres
     float pupil_m;  ///< film to entrance pupil, metres
     ThinLens thin;
@@ -88,9 +88,9 @@ struct CameraView : CameraPlacement, EffectViews {
     CircleOfConfusion circle;
     PupilView pupil;  ///< centred, rotationally symmetric lenses
     PupilGridView pupil_grid;  ///< all other lenses; else without nodes
-    TracedLightsView traced_lights;
-    PixelPupils pixel_pupils;
-    LensView<float> lens;
+    TracedLightsView traced_lights;  ///< set by the session; empty if no light is traced
+    PixelPupils pixel_pupils;  ///< PupilSampling::pixel; else null
+    LensView<float> lens;  ///< for light from the film to the scene
     const LensView<double>* lens_in_double;  ///< model full_lens_double; else null
     LensPolynomialView polynomial;  ///< model polynomial_lens; else without coefficients
     // Times as fractions of the exposure; 0 if nothing moves during it:

@@ -35,7 +35,7 @@ REALCAM_INLINE FilmRaySample sample_film_ray(const CameraView& camera, Vec2f fil
     return {{film.x, film.y, camera.film_distance}, pupil.direction, pupil.weight};
 }
 
-/// Intersection of a ray that has left the lens with the film, mm.
+/// Intersection of a ray that has left the lens towards the film with the film, mm.
 template <LensKind lens_kind>
 REALCAM_INLINE Vec2f landing_on_film(const CameraView& camera, Vec3f origin, Vec3f direction) {
     if constexpr (lens_kind == LensKind::any) return film_surface(camera).landing(origin, direction);
@@ -53,7 +53,8 @@ REALCAM_INLINE float irradiance_of_flux(const CameraView& camera, Vec2f film) {
     return 1.0f / pixel_area;
 }
 
-/// Density of a direction sampled by sample_film_ray, per unit area of optical direction cosines.
+/// Density of a direction sampled by sample_film_ray at a film point (mm), per unit area of optical direction cosines.
+/// `direction`: optical direction at the film.
 REALCAM_INLINE float camera_pupil_pdf(const CameraView& camera, Vec2f film, Vec3f direction) {
     if (camera.pupil_grid.nodes) return pupil_pdf(camera.pupil_grid, film.x, film.y, direction.x, direction.y);
     return pupil_pdf(camera.pupil, film.x, film.y, direction.x, direction.y);
@@ -62,7 +63,7 @@ REALCAM_INLINE float camera_pupil_pdf(const CameraView& camera, Vec2f film, Vec3
 /// Rays in render space: scene axes, metres.
 template <int N>
 struct CameraRays {
-    Vec3Lanes<float, N> origin, direction;
+    Vec3Lanes<float, N> origin, direction;  ///< metres; unit vector
     Lanes<float, N> weight;  ///< irradiance of the sample on the film per unit radiance
     Lanes<std::int32_t, N> sampled;  ///< 1 if a ray was sent into the lens
     Lanes<std::int32_t, N> passed;  ///< 1 if it left the lens
@@ -96,7 +97,7 @@ REALCAM_INLINE LensFrameRay thin_lens_ray(const CameraView& camera, Vec2f film, 
     return {{p.x, p.y, pupil_z}, direction, camera.axis_irradiance * cosine2 * cosine2};
 }
 
-/// thin_lens_ray with the real lens's distortion and vignetting.
+/// thin_lens_ray with the real lens's distortion and vignetting: the camera model mapped_lens.
 REALCAM_INLINE LensFrameRay mapped_lens_ray(const CameraView& camera, Vec2f film, Vec2f u) {
     const LensMapNode map = lens_map_at(camera.map, film);
     LensFrameRay ray = thin_lens_ray(camera, {map.scale * film.x, map.scale * film.y}, u, camera.thin.pupil_radius);

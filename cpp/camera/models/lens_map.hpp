@@ -8,7 +8,8 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Distortion and vignetting of a lens, measured with real rays. Owns the memory of its view.
+/// Distortion and vignetting of a lens, measured with real rays, for the camera model mapped_lens. Owns the memory of
+/// its view.
 class LensMap {
 public:
     /// `film_radius`: distance of the farthest film point from the axis, mm. `thin_image_distance`, `pupil_position`:
