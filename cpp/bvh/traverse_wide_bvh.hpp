@@ -17,7 +17,8 @@ using TraversalStack = PendingSlots[kMaxBvhDepth];
 /// Traversal of one wide BVH by a ray, as a state machine. It can be suspended after each step, so that a GPU's lanes
 /// whose rays have ended can take new ones before the longest ray of the warp ends.
 ///
-/// With `any`, traversal ends at the first triangle found. A ray hits nothing if one of its numbers is not finite
+/// `far`: end of the ray, in units of the direction's length. With `any`, traversal ends at the first triangle found. A
+/// ray hits nothing if one of its numbers is not finite
 /// (`far` may be infinite) or if the largest component of its direction is zero or subnormal.
 class Traversal {
 public:

@@ -147,14 +147,15 @@ const Camera& CameraSetup::validated(const Camera& camera) {
 
 void CameraSetup::set_pupil(const PupilTracer& tracer, const CameraSetup* last, PupilStart start) {
     const std::vector<double>& wavelengths = tables_.pupil_wavelengths();
-    const bool is_alike = last && last->has_pupil_for(wavelengths, effects_.pupil_sampling);
-    const bool is_same = is_alike && last->has_lens_and_film_of(camera_);
-    if (is_same && last->has_new_pupil()) {
+    const bool is_comparable = last && last->has_pupil_for(wavelengths, effects_.pupil_sampling);
+    const bool is_unchanged = is_comparable && last->has_lens_and_film_of(camera_);
+    if (is_unchanged && last->has_new_pupil()) {
         pupil_ = last->pupil_;
         pupil_grid_ = last->pupil_grid_;
         return;
     }
-    const Pupil* similar = is_alike && !is_same && start == PupilStart::near_last ? last->pupil_.get() : nullptr;
+    const Pupil* similar =
+        is_comparable && !is_unchanged && start == PupilStart::near_last ? last->pupil_.get() : nullptr;
     const LensSystem lens = sampled_lens(camera_.lens, effects_.pupil_sampling);
     if (has_radial_pupil(lens))
         pupil_ = std::make_shared<const Pupil>(lens, film_radius(), tracer, wavelengths, similar);
