@@ -84,9 +84,9 @@ inline std::vector<VisibleLight> brightest_in_front(const SceneFacts& facts) {
 
 /// Value of the brightest tile; 0 without tiles.
 inline double brightest_value(const SceneFacts& facts) {
-    double most = 0;
-    for (const SceneTile& tile : facts.tiles) most = std::max(most, tile.value);
-    return most;
+    double largest = 0;
+    for (const SceneTile& tile : facts.tiles) largest = std::max(largest, tile.value);
+    return largest;
 }
 
 /// First-order properties of the light that reaches the film by reflection at a pair of surfaces.
@@ -281,11 +281,11 @@ inline GhostChange ghost_codes(const Camera& camera, const SceneFacts& facts) {
     }
     double darkest = brightest_value(facts);
     for (const SceneTile& tile : facts.tiles) darkest = std::min(darkest, tile.value);
-    GhostChange most;
+    GhostChange change;
     for (const double value : veil) {
         const double codes = codes_added(darkest, value);
-        most.codes = std::max(most.codes, codes);
-        most.colour_codes = std::max(most.colour_codes, std::fabs(codes - codes_added(darkest, veil.back())));
+        change.codes = std::max(change.codes, codes);
+        change.colour_codes = std::max(change.colour_codes, std::fabs(codes - codes_added(darkest, veil.back())));
     }
     for (const Discs& discs : all) {
         const std::optional<GhostDisc>& reference = discs.by_colour.back();
@@ -293,16 +293,16 @@ inline GhostChange ghost_codes(const Camera& camera, const SceneFacts& facts) {
             const std::optional<GhostDisc>& disc = discs.by_colour[c];
             if (!disc) continue;
             const double codes = codes_added(disc->darkest, disc->value + veil[c]);
-            if (codes > most.codes) {
-                most.codes = codes;
-                most.brightest = discs.pair;
+            if (codes > change.codes) {
+                change.codes = codes;
+                change.brightest = discs.pair;
             }
-            most.colour_codes =
-                std::max(most.colour_codes,
+            change.colour_codes =
+                std::max(change.colour_codes,
                          reference ? colour_difference(*disc, veil[c], *reference, veil.back(), pixel_mm) : codes);
         }
     }
-    return most;
+    return change;
 }
 
 /// Change in codes by diffraction, two pixels from overexposed tiles and point lights, where the picture next to them

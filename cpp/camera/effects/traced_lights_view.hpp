@@ -43,8 +43,8 @@ struct TracedLight {
 struct TracedLightsView {
     const TracedLight* lights;
     std::int32_t light_count;  ///< 0: no light is traced
-    const std::int32_t*
-        turns;  ///< index of the light that a sample is traced from, by the last bits of the sample's index
+    const std::int32_t* turns;  ///< index in `lights` of the light that a sample is traced from, by the last bits of
+                                ///< the sample's index
     std::int32_t turn_count;  ///< size of `turns`, a power of two
     const std::int32_t* triangles;  ///< indices of area lights of the scene, light by light
     const float* cdfs;  ///< cumulative probabilities of each light's triangles, one entry more than it has triangles

@@ -97,12 +97,12 @@ struct GhostView {
     int path_count;
     const float* cdf;  ///< cumulative probabilities of the paths: path_count + 1 elements from 0 to 1
     const GhostEntry* entries;  ///< kGhostBins for each path, or kGhostCells without rotational symmetry
-    int crossing_count;
-    const SurfaceView<float>*
-        surfaces;  ///< surface of each crossing, path by path; the next three are indexed likewise
-    const GhostCoating<kOneWavelengthTerms>* coatings;
-    const IndexCubic* indices;  ///< only if samples have wavelengths, as spectral_coatings; else null
-    const GhostCoating<kGhostSpectrumTerms>* spectral_coatings;  ///< null if surfaces transmit all light
+    int crossing_count;  ///< number of crossings of all paths; each of the next four arrays has one element for each
+    const SurfaceView<float>* surfaces;
+    const GhostCoating<kOneWavelengthTerms>* coatings;  ///< null if samples have wavelengths or no light is lost
+    const IndexCubic* indices;  ///< null if samples have no wavelengths
+    const GhostCoating<kGhostSpectrumTerms>* spectral_coatings;  ///< null if samples have no wavelengths or no light is
+                                                                 ///< lost
     float largest_half_tangent;  ///< largest tangent of half the angle to the axis of light that causes a ghost
     float film_radius;  ///< radius of a circle that contains the film
     float film_index;  ///< refractive index of the medium in front of the film
