@@ -11,10 +11,9 @@ from matplotlib.figure import Figure
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 from typing_extensions import CapsuleType, Self, TypeVar, Unpack
 
-from .derivatives import Gradient
+from .derivatives import Gradient, Variable
 from .image import Image
 from .raw_image import RawImage
-from .variable import Variable
 
 # Arrays of numpy, except for rays in a GPU's memory.
 _Doubles = TypeVar("_Doubles", default=NDArray[np.float64])

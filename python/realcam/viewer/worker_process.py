@@ -19,7 +19,7 @@ from .._core import InputError
 
 T = TypeVar("T")
 _NICENESS = 5  # lower priority than rendering
-_LONGEST_IMPORT_S = 60.0
+_LONGEST_START_S = 60.0  # of the process, and of an import in it
 _MOST_BYTES = 4 << 30  # memory limit of the process
 _PROCESSES = multiprocessing.get_context("spawn")
 
@@ -44,12 +44,15 @@ class WorkerProcess:
     def call(self, function: Callable[..., T], *arguments: Any, seconds: float) -> T:
         """Returns the function's result or raises its exception. Function, arguments and result must be picklable.
 
-        Raises WorkError if the process crashes, or after `seconds`, which include the start of the process if
-        necessary.
+        Raises WorkError if the process crashes, or after `seconds`. A start of the process is not counted.
         """
         with self._turn:
-            line = self._begun()
+            line, is_new = self._begun()
             try:
+                if is_new and not line.poll(_LONGEST_START_S):
+                    raise WorkError(f"did not begin within {_LONGEST_START_S:g} s")
+                if is_new:
+                    line.recv()
                 line.send((function, arguments))
                 if not line.poll(seconds):
                     raise WorkError(f"took longer than {seconds:g} s")
@@ -68,7 +71,7 @@ class WorkerProcess:
     def warm_up(self, module: str) -> None:
         """Starts the process and imports a module, to shorten the first call."""
         with contextlib.suppress(WorkError):
-            self.call(_import, module, seconds=_LONGEST_IMPORT_S)
+            self.call(_import, module, seconds=_LONGEST_START_S)
 
     def end(self) -> None:
         """Kills the process permanently. A call in progress raises WorkError, and so do later calls."""
@@ -76,9 +79,10 @@ class WorkerProcess:
             self._is_ended = True
             self._kill()
 
-    def _begun(self) -> Connection:
+    def _begun(self) -> tuple[Connection, bool]:
+        """Returns the connection to the process, and true if it was started now and will send that it is ready."""
         if self._line and self._process and self._process.is_alive():
-            return self._line
+            return self._line, False
         self._forget()
         with self._beginning:
             if self._is_ended:
@@ -87,7 +91,7 @@ class WorkerProcess:
             self._process = _PROCESSES.Process(target=_work, args=(theirs,), name="realcam-worker", daemon=True)
             self._process.start()
             theirs.close()
-            return self._line
+            return self._line, True
 
     def _forget(self) -> None:
         if self._line:
@@ -108,6 +112,7 @@ def _work(line: Connection) -> None:
     os.nice(_NICENESS)
     resource.setrlimit(resource.RLIMIT_DATA, (_MOST_BYTES, _MOST_BYTES))
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    line.send(None)  # ready: this module and the package are imported
     while True:
         try:
             function, arguments = line.recv()

@@ -36,7 +36,7 @@ def test_defaults_and_what_is_kept() -> None:
 @pytest.mark.parametrize(
     ("size", "says"),
     [
-        ((36, 24, (0, 640)), "0 x 640 pixels; 1 to 32768"),
+        ((36, 24, (0, 640)), "0 x 640 pixels; expected 1 to 32768"),
         ((36, 24, (960, -5)), "960 x -5 pixels"),
         ((36, 24, (1000000, 1)), "1000000 x 1 pixels"),
         *(((*size, (36, 24)), "width and height") for size in ((0, 24), (36, math.nan), (1e-3, 1e170), (1e-300, 24))),

@@ -189,7 +189,7 @@ def test_blades_and_film_have_keys() -> None:
         (lambda: Key(0, focus_m=0), "the focus distance must be a positive number of metres, or inf"),
         (lambda: Key(0, iso=math.inf), "the ISO number must be a positive number"),
         (lambda: Key(math.nan, iso=1), "a time must lie within 1e9 s"),
-        (lambda: Key(0, blades=2), "the iris has 2 blades; 0"),
+        (lambda: Key(0, blades=2), "the iris has 2 blades; expected 0"),
         (lambda: Key(0, blade_rounding=1.5), "the rounding of the iris must lie between 0"),
         (lambda: Key(0, film_shift_mm=(0, math.nan)), "the shift of the film must be a number"),
         (lambda: shot_of(Key(0, blade_rotation_deg=9)), "key 0 of the camera: the diaphragm of tessar-50mm is round"),

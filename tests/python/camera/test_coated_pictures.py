@@ -121,12 +121,12 @@ def test_an_unknown_coating_is_said_and_taken_as_bare() -> None:
 def test_coatings_that_cannot_be_computed_are_named() -> None:
     coating = rc.Coating([rc.CoatingLayer(rc.Glass.table([(500, 1.38), (600, 1.37)]), thickness_nm=100)])
     lens = rc.Lens.load("double-gauss-100mm").with_coating(coating)
-    for camera, message in (
-        (rc.Camera(lens), r"surface 11 of lens \"double-gauss-100mm\""),
-        (rc.Camera(lens, model="thin"), "coatings: the camera's model must be full"),
+    for camera, effects, message in (
+        (rc.Camera(lens), {"coatings", "dispersion"}, r"surface 11 of lens \"double-gauss-100mm\""),
+        (rc.Camera(lens, model="thin"), {"coatings"}, "coatings: the camera's model must be full"),
     ):
         with pytest.raises(rc.InputError, match=message):
-            rc.render(scenes.sky(), camera, spp=1, effects={"coatings", "dispersion"})
+            rc.render(scenes.sky(), camera, spp=1, effects=effects)
 
 
 def test_metadata_name_what_covers_the_surfaces() -> None:

@@ -260,7 +260,7 @@ def test_bench_says_where_the_benchmarks_are(tmp_path: Path, python: Said, monke
         ("render quad.obj -o a.png --layers all", "layers are written to .exr, and no --output is one"),
         (
             "render quad.obj -o a.exr --layers depth,,normal",
-            '--layers: unknown layer ""; all, or some of depth, normal',
+            '--layers: unknown layer ""; expected all, or some of depth, normal',
         ),
         # The package has more commands.
         ("lens", "a command is missing; info, list are known (realcam lens --help lists the commands)"),

@@ -56,7 +56,7 @@ def test_an_interruption_writes_the_best_lens_and_ends_in_130(
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        (["--vary", "colours"], '--vary: "colours": radii, thicknesses'),
+        (["--vary", "colours"], '--vary: "colours": expected radii, thicknesses'),
         (["--vary", "radius:x"], '"radius:x": expected whole numbers'),
         (["--vary", "radius:70"], "there is no surface 70; the lens has 7"),
         (["--vary", "radius:0"], "there is no surface 0; the lens has 7"),

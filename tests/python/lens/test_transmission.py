@@ -247,7 +247,7 @@ def test_a_wavelength_outside_a_glass_is_an_error_that_names_it() -> None:
         lambda: lens.trace([(0, 0, 0)], [(0, 0, 1)], start="scene", wavelength_nm=700, transmission=True),
     ):
         with pytest.raises(
-            rc.InputError, match="the glass of surface 2 of tabulated is known from 450 to 650 nm; 700 nm was requested"
+            rc.InputError, match="the glass of surface 2 of tabulated is known from 450 to 650 nm; 700 nm is requested"
         ):
             ask()
     achromat = rc.Lens.load("achromat-75mm")

@@ -189,8 +189,9 @@ def test_the_executable_says_what_makes_films(folder: Path) -> None:
         *(
             (f"{what} --frames={frames}", f'--frames: "{frames}": expected a number, 1-240 or 1-240x2')
             for what in ("render -oa.png", "job make -oa.job")
-            for frames in ("9-1", "a-b", "1-2x0.5", "1-9x0", "-3", "")
+            for frames in ("9-1", "a-b", "1-2x0.5", "1-9x0", "-3")
         ),
+        ("job make -oa.job --frames=", '--frames: "": expected a number, 1-240 or 1-240x2'),
     ],
 )
 def test_films_that_cannot_be_are_refused(folder: Path, command: Command, words: str, wanted: str) -> None:

@@ -161,8 +161,8 @@ def test_what_is_not_played_is_said(tmp_path: Path) -> None:
     [
         ([0, 0], [[0, 0, 0]] * 2, "LINEAR", "channel 0: its times must rise"),
         ([0, np.nan], [[0, 0, 0]] * 2, "LINEAR", "a time must lie within 1e9 s"),
-        ([0, 1], [[0, 0, 0]] * 3, "LINEAR", "has 2 times and 3 values; 1 for each"),
-        ([0, 1], [[0, 0, 0]] * 2, "CUBICSPLINE", "has 2 times and 2 values; 3 for each"),
+        ([0, 1], [[0, 0, 0]] * 3, "LINEAR", "has 2 times and 3 values; expected 1 for each"),
+        ([0, 1], [[0, 0, 0]] * 2, "CUBICSPLINE", "has 2 times and 2 values; expected 3 for each"),
         ([0, 1], [[0, np.inf, 0]] * 2, "LINEAR", "not finite"),
         ([0, 1], [[0, 0, 0]] * 2, "SWING", 'its interpolation is "SWING"; expected LINEAR, STEP or CUBICSPLINE'),
         ([], [], "LINEAR", "has 0 times"),

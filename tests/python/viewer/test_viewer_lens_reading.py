@@ -23,7 +23,7 @@ def test_a_lens_that_was_saved_is_read() -> None:
         assert read.first_order().effective_focal_length_mm == pytest.approx(
             lens.first_order().effective_focal_length_mm, rel=1e-6
         )
-    with pytest.raises(rc.InputError, match="wanted"):
+    with pytest.raises(rc.InputError, match="expected a lens file"):
         saving.lens_content(lens, "mine.txt")
 
 

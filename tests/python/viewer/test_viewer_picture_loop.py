@@ -60,13 +60,18 @@ def test_the_time_that_is_left_is_told_truly(watched: Watched) -> None:
 
 
 def test_a_goal_beyond_the_most_samples_is_told(watched: Watched) -> None:
-    """The noise of the end, from a quarter of the samples on: two estimates of a noise, each right within a third."""
+    """The noise of the end, from a quarter of the samples on.
+
+    The estimates of 64 and of 256 samples are each right within a third, so that one is between half and twice the
+    other; in 24 runs it was 0.7 to 1.6 times.
+    """
     last = watched.photograph(PictureRequest(camera(), noise_codes=0.01, max_spp=256))
     assert last.samples == 256
     assert last.noise_codes is not None and last.noise_codes > 0.01
     for frame in watched.frames:
         if frame.samples >= 64:
-            assert frame.final_noise_codes == pytest.approx(last.noise_codes, rel=0.5)
+            assert frame.final_noise_codes is not None
+            assert 0.5 < frame.final_noise_codes / last.noise_codes < 2
 
 
 def test_the_noise_that_is_told_is_the_error(watched: Watched) -> None:

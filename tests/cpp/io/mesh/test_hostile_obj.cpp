@@ -170,7 +170,7 @@ TEST_CASE("PLY: elements that promise what is not there") {
     };
     CHECK(error("element foo 1000000000000\n" + kPlyVertices + kPlyFace) == "no error");
     CHECK(has(error(kPlyVertices + "element face 1000000000000\n"), "holds no triangles"));
-    CHECK(has(error(kPlyVertices + "element face -1\nproperty uchar a\n"), "line 7: \"element\", a name and a number"));
+    CHECK(has(error(kPlyVertices + "element face -1\nproperty uchar a\n"), "line 7: expected \"element\", a name and a number"));
     CHECK(has(error(kPlyVertices + "element face 1000000000\nproperty list uchar int vertex_indices\n"),
               "its header promises 1000000000 of \"face\", and has"));
     CHECK(has(error("element vertex 4000000000\nproperty float x\nproperty float y\nproperty float z\n" + kPlyFace),
