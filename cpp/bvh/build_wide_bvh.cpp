@@ -18,13 +18,14 @@ namespace {
 /// Number of levels of wide nodes built by the surface area heuristic. The levels below are built by median splits; a
 /// wide node takes up at least one level of them, so that they add at most 28 for the largest scene.
 constexpr int kLevelsByArea = 20;
-constexpr std::size_t kMostTriangles = std::size_t{1} << 28;
+constexpr std::size_t kMaxTriangles = std::size_t{1} << 28;
 static_assert(kLevelsByArea + 28 <= kMaxBvhDepth);
 
 /// Least number of triangles for which a subtree gets its own task.
 constexpr std::uint32_t kTaskSize = 2048;
 
 /// Counts the wide nodes of the subtree at `node`, so that the range of each subtree is known before it is written.
+/// `level`: number of wide nodes above it. Rebuilds subtrees that reach the level kLevelsByArea by median splits.
 void count_wide_nodes(InnerNode& node, int level) {
     if (level == kLevelsByArea) {
         balance(node);
@@ -48,12 +49,13 @@ void count_wide_nodes(InnerNode& node, int level) {
         if (!in_one_slot(*children.node[c])) node.wide_nodes += children.node[c]->inner().wide_nodes;
 }
 
+/// Writes the wide nodes and the order of the leaves, subtrees in parallel.
 class Writer {
 public:
     explicit Writer(WideNodes& bvh) : bvh_(bvh) {}
 
-    /// Writes a wide node with these children, and its subtree. `first_below` and `first_triangle`: first indices of
-    /// the nodes below it and of its triangles.
+    /// Writes a wide node with these children, and its subtree. `index`: of the node; `first_below` and
+    /// `first_triangle`: first indices of the nodes below it and of its triangles.
     void write(const WideChildren& children, std::uint32_t index, std::uint32_t first_below,
                std::uint32_t first_triangle) {
         Box boxes[kSlots] = {};
@@ -104,6 +106,7 @@ public:
     }
 
 private:
+    /// Writes the caller's indices of a subtree's primitives from position `next` on, and advances it.
     void write_triangles(const BinaryNode& node, std::uint32_t& next) {
         if (node.is_leaf())
             bvh_.order[next++] = node.triangle;
@@ -145,22 +148,22 @@ WideNodes build_wide_nodes(std::size_t count, const BoxOf& box_of, const KeepGoi
 
 WideBvh build_wide_bvh(std::span<const Vec3f> positions, std::span<const Triangle> triangles,
                        const KeepGoing& keep_going) {
-    if (triangles.size() > kMostTriangles)
-        throw DeviceError("the scene has " + std::to_string(triangles.size()) + " triangles; a BVH holds " +
-                          std::to_string(kMostTriangles));
-    const auto corners_of = [&](std::uint32_t number) -> BvhTriangle {
-        const std::uint32_t* vertex = triangles[number].vertices;
-        return {positions[vertex[0]], number, positions[vertex[1]], 0, positions[vertex[2]], 0};
+    if (triangles.size() > kMaxTriangles)
+        throw DeviceError("the scene has " + std::to_string(triangles.size()) + " triangles; a BVH holds at most " +
+                          std::to_string(kMaxTriangles));
+    const auto bvh_triangle = [&](std::uint32_t index) -> BvhTriangle {
+        const std::uint32_t* vertex = triangles[index].vertices;
+        return {positions[vertex[0]], index, positions[vertex[1]], 0, positions[vertex[2]], 0};
     };
     WideNodes tree =
-        build_wide_nodes(triangles.size(), [&](std::uint32_t i) { return box_of(corners_of(i)); }, keep_going);
+        build_wide_nodes(triangles.size(), [&](std::uint32_t i) { return box_of(bvh_triangle(i)); }, keep_going);
     WideBvh bvh;
     bvh.nodes = std::move(tree.nodes);
     bvh.triangles.resize(triangles.size());
     bvh.corners.resize(triangles.size());
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, triangles.size(), 4096), [&](const auto& range) {
         for (std::size_t i = range.begin(); i < range.end(); ++i) {
-            bvh.triangles[i] = corners_of(tree.order[i]);
+            bvh.triangles[i] = bvh_triangle(tree.order[i]);
             const std::uint32_t* vertex = triangles[tree.order[i]].vertices;
             bvh.corners[i] = {{vertex[0], vertex[1], vertex[2]}};
         }
@@ -173,7 +176,8 @@ namespace {
 /// Number of upper levels whose children are refitted as parallel tasks.
 constexpr int kParallelLevels = 3;
 
-/// Refits a subtree from the leaves up and returns its bounding box.
+/// Refits the subtree at node `index`, which is `level` levels below the root, from the leaves up; returns its bounding
+/// box.
 Box refit_node(std::vector<WideNode>& nodes, const BoxOf& box_of_leaf, std::uint32_t index, int level) {
     WideNode& node = nodes[index];
     Box boxes[kSlots] = {};
@@ -185,7 +189,7 @@ Box refit_node(std::vector<WideNode>& nodes, const BoxOf& box_of_leaf, std::uint
             used |= 1u << s;
             continue;
         }
-        for (unsigned left = count_bits(node.content >> (3 * s) & 7u); left > 0; --left) {
+        for (unsigned remaining = count_bits(node.content >> (3 * s) & 7u); remaining > 0; --remaining) {
             const Box box = box_of_leaf(leaf++);
             if (used >> s & 1u)
                 grow(boxes[s], box);

@@ -9,18 +9,19 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Nodes of a wide BVH over primitives with bounding boxes, in depth-first ranges: children come after their parent.
+/// Nodes of a wide BVH over primitives with bounding boxes. Node 0 is the root; children come after their parent, and
+/// the nodes of a subtree other than its root are consecutive.
 struct WideNodes {
     std::vector<WideNode> nodes;       ///< at least one
-    std::vector<std::uint32_t> order;  ///< indices in the caller's list, in the order of the leaves
+    std::vector<std::uint32_t> order;  ///< index of each primitive in the caller's list, in the order of the leaves
 };
 
 /// Builds a wide BVH over `count` primitives with the boxes that `box_of` returns; see build_wide_bvh for threads,
 /// cancellation and Embree's errors.
 WideNodes build_wide_nodes(std::size_t count, const BoxOf& box_of, const KeepGoing& keep_going = {});
 
-/// Recomputes the boxes of all nodes from new leaf boxes, on all threads. `box_of_leaf` takes a position in the order
-/// of the leaves.
+/// Recomputes the boxes of all nodes from new boxes of the primitives, on all threads. `box_of_leaf` takes an index
+/// into WideNodes::order.
 void refit(std::vector<WideNode>& nodes, const BoxOf& box_of_leaf);
 
 /// Wide BVH over triangles, with its memory.

@@ -9,16 +9,17 @@ namespace REALCAM_NAMESPACE {
 /// Cost of a triangle test, relative to that of a wide node with its eight boxes.
 inline constexpr float kTriangleCost = 0.5f;
 
-/// Fills in the boxes, triangle counts and parents of a subtree, in parallel.
+/// Sets the boxes, triangle counts and parents of a subtree from its leaves, in parallel.
 void measure(BinaryNode& node);
 
 /// Computes the decisions that children_of follows, for a subtree that measure() has processed; in parallel.
 void plan_collapse(BinaryNode& node);
 
-/// Makes a node that was planned a second time remain a wide node, because its parent counts it as one.
+/// Makes a node remain a wide node whose decisions plan_collapse has computed a second time, because its parent's
+/// decisions count it as one.
 inline void keep_as_node(InnerNode& node) {
     node.as_one_slot = false;
-    for (unsigned roots = 2; roots < kSlots; ++roots) node.left_share[roots - 2] = 0;
+    for (unsigned roots = 2; roots < kSlots; ++roots) node.left_roots[roots - 2] = 0;
 }
 
 /// Children of the wide node into which an inner node is collapsed.
@@ -26,6 +27,8 @@ struct WideChildren {
     BinaryNode* node[kSlots];
     unsigned count = 0;
 };
+
+/// Returns the subtrees, at most eight, that become the slots of the wide node of `node`; follows plan_collapse.
 WideChildren children_of(const InnerNode& node);
 
 /// True if a child becomes triangles in a slot of its parent instead of a wide node of its own.

@@ -5,10 +5,14 @@
 
 namespace REALCAM_NAMESPACE {
 
+// Bounding boxes, and their quantisation to the bytes of a WideNode.
+
+/// Axis-aligned bounding box.
 struct Box {
     Vec3f lower, upper;
 };
 
+/// Enlarges the box to contain another one.
 REALCAM_INLINE void grow(Box& box, const Box& by) {
     box.lower = {std::fmin(box.lower.x, by.lower.x), std::fmin(box.lower.y, by.lower.y),
                  std::fmin(box.lower.z, by.lower.z)};
@@ -23,7 +27,8 @@ REALCAM_INLINE Box box_of(const BvhTriangle& t) {
     return box;
 }
 
-/// Returns the smallest bfloat16 number >= v > 0, as the upper half of a float's bits; at least 2^-126.
+/// Returns the smallest bfloat16 number of at least v, as the bits of a float whose lower half is 0. v is positive; the
+/// result is at least 2^-126.
 REALCAM_INLINE std::uint32_t bfloat16_above(double v) {
     const float near = static_cast<float>(v < 1.2e-38 ? 1.2e-38 : v);
     std::uint32_t bits = (std::bit_cast<std::uint32_t>(near) + 0xffffu) & 0xffff0000u;
@@ -32,9 +37,10 @@ REALCAM_INLINE std::uint32_t bfloat16_above(double v) {
     return bits;
 }
 
-/// Quantises the box planes of one axis outwards and returns the bits of the step. The results are exact: differences
-/// of floats are multiples of the smaller one's last digit, so origin + byte * step has at most 41 binary digits, and
-/// double arithmetic does not round.
+/// Quantises the box planes of one axis outwards: sets the origin and the bytes of WideNode, and returns the bits of
+/// the step. `used_slots`: mask of the slots that have a box. The results are exact: differences of floats are
+/// multiples of the smaller one's last digit, so origin + byte * step has at most 41 binary digits, and double
+/// arithmetic does not round.
 REALCAM_HD inline std::uint32_t quantise_axis(const float (&lower)[kSlots], const float (&upper)[kSlots],
                                               unsigned used_slots, float& origin, std::uint32_t (&lower_bytes)[2],
                                               std::uint32_t (&upper_bytes)[2]) {

@@ -4,9 +4,11 @@
 
 namespace REALCAM_NAMESPACE {
 
-// Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection", JCGT 2013: vertices are translated and sheared so
-// that the ray is the z axis. The signs of three edge functions tell on which side of an edge it passes. A sheared
-// vertex depends on the vertex and the ray alone, so the triangles at an edge agree if the signs are right.
+// Intersection of a ray with the triangles and the boxes of a wide BVH.
+//
+// Triangles: Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection", JCGT 2013: vertices are translated and
+// sheared so that the ray is the z axis. The signs of three edge functions tell on which side of an edge it passes. A
+// sheared vertex depends on the vertex and the ray alone, so the triangles at an edge agree if the signs are right.
 
 /// Returns a b - c d with the right sign, and 0 only if it is 0, as long as nothing underflows (Jeannerod, Louvet and
 /// Muller, "Further analysis of Kahan's algorithm for the accurate computation of 2x2 determinants", 2013: the error is
@@ -17,12 +19,12 @@ REALCAM_INLINE float difference_of_products(float a, float b, float c, float d) 
     return std::fma(a, b, -cd) + std::fma(-c, d, cd);
 }
 
-/// Ray constants shared by all triangle tests.
+/// Ray in the form that tests triangles: a shear along its dominant axis, the one of its direction's largest component.
 struct ShearedRay {
     Vec3f origin;
-    float slope_x, slope_y;  ///< slopes of the two minor axes along the dominant one
-    float per_z;  ///< ray parameter along the dominant axis
-    int dominant;
+    float slope_x, slope_y;  ///< change of the two minor coordinates per unit length along the dominant axis
+    float per_z;  ///< ray parameter per unit length along the dominant axis
+    int dominant;  ///< index of the dominant axis: 0 x, 1 y, 2 z
 
     /// The direction's components have a magnitude in [0, 4), the largest of at least 1.
     REALCAM_INLINE ShearedRay(Vec3f from, Vec3f direction) : origin(from) {
@@ -42,12 +44,14 @@ struct ShearedRay {
     }
 
 private:
+    /// Permutes the axes so that z is the dominant one.
     REALCAM_INLINE Vec3f dominant_last(Vec3f v) const {
         return {dominant == 0 ? v.z : v.x, dominant == 1 ? v.z : v.y, dominant == 0 ? v.x : dominant == 1 ? v.y : v.z};
     }
 };
 
-/// True if the ray hits the triangle, from either side, at a parameter in [0, hit.distance); then sets `hit`.
+/// True if the ray hits the triangle, from either side, at a parameter in [0, hit.distance). Sets `hit` to the
+/// parameter, the triangle's index and the barycentric coordinates of b and c then; leaves it unchanged otherwise.
 REALCAM_INLINE bool intersects_triangle(const ShearedRay& ray, const BvhTriangle& triangle, Hit& hit) {
     const Vec3f a = ray.sheared(triangle.a), b = ray.sheared(triangle.b), c = ray.sheared(triangle.c);
     const float u = difference_of_products(c.x, b.y, c.y, b.x);
@@ -57,11 +61,11 @@ REALCAM_INLINE bool intersects_triangle(const ShearedRay& ray, const BvhTriangle
     if (some_left == some_right) return false;  // outside, or edge-on
     // A product of a coordinate and an edge function would overflow in a scene of 1e18 m. Twice the area, at most 2^126
     // there, still has a reciprocal that is a normal number.
-    const float share = quotient(1.0f, u + v + w);
-    const float u_share = u * share, v_share = v * share, w_share = w * share;
-    const float t = (u_share * a.z + v_share * b.z + w_share * c.z) * ray.per_z;
+    const float inverse_area = quotient(1.0f, u + v + w);
+    const float weight_a = u * inverse_area, weight_b = v * inverse_area, weight_c = w * inverse_area;
+    const float t = (weight_a * a.z + weight_b * b.z + weight_c * c.z) * ray.per_z;
     if (!(t >= 0 && t < hit.distance)) return false;
-    hit = {t, triangle.index, v_share, w_share};
+    hit = {t, triangle.index, weight_b, weight_c};
     return true;
 }
 
@@ -73,9 +77,10 @@ REALCAM_INLINE bool intersects_triangle(const ShearedRay& ray, const BvhTriangle
 /// a node are therefore enlarged by 16 roundings of the distance of its farthest corner, and no other tolerance is
 /// needed.
 struct SlabRay {
-    Vec3f origin, per_axis;  ///< ray parameter per unit length along each axis
+    Vec3f origin;
+    Vec3f per_axis;  ///< ray parameter per unit length along each axis
     unsigned near_first, near_second, near_third;  ///< masks of the slots on the near side, dominant axis first
-    bool down_x, down_y, down_z;
+    bool down_x, down_y, down_z;  ///< true if the direction's component is negative
     std::uint32_t bits_of_32768;  ///< kBitsOf32768, hidden from the compiler: an instruction has room for one constant
 
     /// The direction's components have a magnitude in [0, 4), the largest of at least 1.
@@ -85,6 +90,7 @@ struct SlabRay {
         down_z = direction.z < 0;
         bits_of_32768 = kBitsOf32768 | std::bit_cast<std::uint32_t>(direction.x - direction.x);
         per_axis = {reciprocal(direction.x), reciprocal(direction.y), reciprocal(direction.z)};
+        // Slots whose index has the bit of an axis clear lie towards the negative end of that axis (WideNode).
         const unsigned near_x = down_x ? 0xaau : 0x55u, near_y = down_y ? 0xccu : 0x33u,
                        near_z = down_z ? 0xf0u : 0x0fu;
         const float x = std::fabs(direction.x), y = std::fabs(direction.y), z = std::fabs(direction.z);
@@ -98,9 +104,9 @@ struct SlabRay {
     }
 
     /// Returns a mask of the slots whose boxes the ray intersects at a parameter in [0, far]. Bits of empty slots are
-    /// undefined. `is_short`: half the code size, for a few more instructions.
-    template <bool is_short>
-    REALCAM_INLINE unsigned slots_met(const WideNode& node, float far) const {
+    /// undefined. `has_less_code`: half the code size, for a few more instructions.
+    template <bool has_less_code>
+    REALCAM_INLINE unsigned intersected_slots(const WideNode& node, float far) const {
         const Vec3f to = node.origin - origin;
         // The reach is 18 * 255 steps: 255 steps for the farthest plane, and 17 * 255 steps, which 2^-20 reduces to
         // 2^-8 of a step, for the two roundings of 32768 steps.
@@ -120,10 +126,10 @@ struct SlabRay {
                 missed = append_sign(missed, leave - enter);
             }
         };
-        if constexpr (is_short) {
+        if constexpr (has_less_code) {
             FourSlots slots = four_slots(node, 1);
             REALCAM_NO_UNROLL
-            for (int turn = 0; turn < 2; ++turn) {
+            for (int pass = 0; pass < 2; ++pass) {
                 test(slots);
                 slots = four_slots(node, 0);
             }
@@ -142,10 +148,11 @@ struct SlabRay {
     }
 
 private:
-    /// Box planes of one axis as ray parameters.
+    /// Box planes of one axis as ray parameters: linear functions of 32768 + a plane's byte (byte_above_32768).
     struct Axis {
         float step, near_start, far_start;
 
+        /// `to`: from the ray's origin to the node's; `box_step`: the node's step; `slack`: enlargement of the boxes.
         REALCAM_INLINE Axis(float to, float box_step, float per_axis, float slack) : step(box_step * per_axis) {
             const float start = std::fma(-32768.0f, step, to * per_axis);
             near_start = std::fma(-slack, std::fabs(per_axis), start);
@@ -155,10 +162,11 @@ private:
         REALCAM_INLINE float far(float plane) const { return std::fma(plane, step, far_start); }
     };
 
-    /// Near and far planes of half of a node's slots.
+    /// Bytes of the near and far planes of half of a node's slots, as seen along the ray.
     struct FourSlots {
         std::uint32_t near_x, near_y, near_z, far_x, far_y, far_z;
     };
+    /// `half`: 0 for slots 0 to 3, 1 for slots 4 to 7.
     REALCAM_INLINE FourSlots four_slots(const WideNode& node, int half) const {
         return {down_x ? node.upper[0][half] : node.lower[0][half], down_y ? node.upper[1][half] : node.lower[1][half],
                 down_z ? node.upper[2][half] : node.lower[2][half], down_x ? node.lower[0][half] : node.upper[0][half],

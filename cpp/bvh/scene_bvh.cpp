@@ -18,30 +18,31 @@ Box box_of(const RenderSpaceMesh& mesh) {
     return box;
 }
 
-/// Returns the bounding box of an object's box transformed by an instance. It is widened, because transforming a ray
-/// into the object's frame rounds its coordinates: hits on the surface of the box must not be lost.
-Box placed_box(const Box& box, const Affine<float>& render_from_object) {
-    constexpr float kRoundings = 0x1p-20f, kInfinity = std::numeric_limits<float>::infinity();
-    Box placed = {{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
+/// Returns the bounding box, in render space, of an object's box transformed by an instance. It is widened, because
+/// transforming a ray into the object's frame rounds its coordinates: hits on the surface of the box must not be lost.
+Box transformed_box(const Box& box, const Affine<float>& render_from_object) {
+    constexpr float kRelativeMargin = 0x1p-20f, kInfinity = std::numeric_limits<float>::infinity();
+    Box result = {{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
     for (unsigned corner = 0; corner < 8; ++corner) {
         const Vec3f p =
             render_from_object.point({corner & 1u ? box.upper.x : box.lower.x, corner & 2u ? box.upper.y : box.lower.y,
                                       corner & 4u ? box.upper.z : box.lower.z});
-        grow(placed, {p, p});
+        grow(result, {p, p});
     }
-    const float margin = kRoundings * (largest_coordinate(placed.lower) + largest_coordinate(placed.upper) +
-                                       largest_coordinate(render_from_object.origin));
+    const float margin = kRelativeMargin * (largest_coordinate(result.lower) + largest_coordinate(result.upper) +
+                                            largest_coordinate(render_from_object.origin));
     const Vec3f all_sides = {margin, margin, margin};
-    return {placed.lower - all_sides, placed.upper + all_sides};
+    return {result.lower - all_sides, result.upper + all_sides};
 }
 
-Box instance_box(const SceneBvh& bvh, const RenderSpaceScene& scene, std::uint32_t number) {
-    const InstanceView& instance = scene.instances()[number];
+/// Bounding box of an instance in render space, over all its positions while the shutter is open.
+Box instance_box(const SceneBvh& bvh, const RenderSpaceScene& scene, std::uint32_t index) {
+    const InstanceView& instance = scene.instances()[index];
     const Box& own = bvh.object_boxes[instance.object];
-    Box box = placed_box(own, instance.render_from_object);
+    Box box = transformed_box(own, instance.render_from_object);
     // Between two keys every point moves along a line, which stays within the bounding box of both ends.
     for (std::int32_t k = 0; k < instance.key_count; ++k)
-        grow(box, placed_box(own, scene.keys()[static_cast<std::size_t>(instance.first_key + k)]));
+        grow(box, transformed_box(own, scene.keys()[static_cast<std::size_t>(instance.first_key + k)]));
     return box;
 }
 
@@ -81,8 +82,8 @@ SceneBvh build_scene_bvh(const RenderSpaceScene& scene, const KeepGoing& keep_go
 
 void refit_instances(SceneBvh& bvh, const RenderSpaceScene& scene) {
     refit(bvh.instances.nodes, [&](std::uint32_t leaf) { return instance_box(bvh, scene, bvh.instances.order[leaf]); });
-    constexpr double kMostWorse = 2;
-    if (expected_nodes(bvh.instances.nodes) > kMostWorse * bvh.built_cost) build_instances(bvh, scene);
+    constexpr double kMaxCostRatio = 2;
+    if (expected_nodes(bvh.instances.nodes) > kMaxCostRatio * bvh.built_cost) build_instances(bvh, scene);
 }
 
 std::vector<BvhInstance> bvh_instances(const SceneBvh& bvh, const RenderSpaceScene& scene,

@@ -5,7 +5,7 @@ namespace REALCAM_NAMESPACE {
 
 /// Assigns children to slots so that the slot's index tells where in the node a child lies (see WideNode), and a ray
 /// finds near children first. Greedy: takes the best pair of a child and a slot, then the best of the remaining ones.
-/// `slot_of` receives the slot of each child.
+/// `boxes`: `count` bounding boxes of the children, at most kSlots. `slot_of`: receives the slot of each child.
 inline void order_slots(const Box* boxes, unsigned count, unsigned (&slot_of)[kSlots]) {
     Vec3d centre[kSlots], middle = {0, 0, 0};
     for (unsigned c = 0; c < count; ++c) {

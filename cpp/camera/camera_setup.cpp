@@ -31,11 +31,11 @@ std::vector<Affine<double>> exposure_keys(const Camera& camera) {
     for (Affine<double>& translation : translations.transforms)
         translation = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, translation.origin};
     const Vec3d axes[] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, middle[] = {{0, 0, 0}};
-    const std::optional<int> turning = key_steps(rotations, exposure, axes),
-                             going = key_steps(translations, exposure, middle);
-    if (!turning || !going)
-        throw InputError("the camera turns too fast; in one exposure about 20 turns can be followed");
-    const int steps = std::max(*turning, *going);
+    const std::optional<int> rotation_steps = key_steps(rotations, exposure, axes),
+                             translation_steps = key_steps(translations, exposure, middle);
+    if (!rotation_steps || !translation_steps)
+        throw InputError("the camera turns too fast; at most about 20 turns in one exposure are supported");
+    const int steps = std::max(*rotation_steps, *translation_steps);
     return steps == 0 ? std::vector<Affine<double>>() : uniform_keys(motion, exposure, steps);
 }
 
@@ -59,6 +59,7 @@ CircleOfConfusion circle_of_confusion(double entrance_pupil_position, ThinLens t
     }
     const double A = static_cast<double>(thick.A), B = static_cast<double>(thick.B), C = static_cast<double>(thick.C),
                  D = static_cast<double>(thick.D), pupil = static_cast<double>(thick.exit_pupil_distance);
+    // Height and slope at the front vertex of a ray with a height and slope at the film.
     const auto front = [&](double film, double slope) {
         const double last = film - film_distance * slope;
         return std::pair(static_cast<float>(D * last - B * slope), static_cast<float>(C * last - A * slope));
@@ -93,7 +94,7 @@ CameraSetup::CameraSetup(const Camera& camera, PupilTracer tracer, const CameraS
     check_light();
     if (camera.model == CameraModel::polynomial_lens)
         polynomial_.emplace(camera.lens, pupil_->view(), std::min(film_radius(), pupil_->image_radius()));
-    if (traces_lights() && is_round_lens(camera.lens))
+    if (traces_lights() && uses_rotational_code(camera.lens))
         pupil_entries_ = last && last->pupil_entries_ && last->pupil_ == pupil_
                              ? last->pupil_entries_
                              : std::make_shared<const PupilEntries>(pupil_->view(), path_.view(), film_radius(),
@@ -146,14 +147,15 @@ const Camera& CameraSetup::validated(const Camera& camera) {
 
 void CameraSetup::set_pupil(const PupilTracer& tracer, const CameraSetup* last, PupilStart start) {
     const std::vector<double>& wavelengths = tables_.pupil_wavelengths();
-    const bool is_alike = last && last->has_pupil_for(wavelengths, effects_.pupil_sampling);
-    const bool is_same = is_alike && last->has_lens_and_film_of(camera_);
-    if (is_same && last->has_new_pupil()) {
+    const bool is_comparable = last && last->has_pupil_for(wavelengths, effects_.pupil_sampling);
+    const bool is_unchanged = is_comparable && last->has_lens_and_film_of(camera_);
+    if (is_unchanged && last->has_new_pupil()) {
         pupil_ = last->pupil_;
         pupil_grid_ = last->pupil_grid_;
         return;
     }
-    const Pupil* similar = is_alike && !is_same && start == PupilStart::near_last ? last->pupil_.get() : nullptr;
+    const Pupil* similar =
+        is_comparable && !is_unchanged && start == PupilStart::near_last ? last->pupil_.get() : nullptr;
     const LensSystem lens = sampled_lens(camera_.lens, effects_.pupil_sampling);
     if (has_radial_pupil(lens))
         pupil_ = std::make_shared<const Pupil>(lens, film_radius(), tracer, wavelengths, similar);
@@ -165,9 +167,9 @@ void CameraSetup::check_light() const {
     const std::string lens = "lens \"" + camera_.lens.name + "\"";
     if (!(camera_.lens.stop_semi_diameter > 0)) throw InputError("no light passes " + lens + ": its stop is closed");
     if (pupil_ ? !(pupil_->image_radius() > 0) : !pupil_grid_->is_lit())
-        throw InputError("no light passes " + lens +
-                         " in this state: what it blocks in the middle is larger than what its stop leaves open, or "
-                         "a surface is out of reach");
+        throw InputError(
+            "no light passes " + lens +
+            " in this state: its central obstruction is larger than its open stop, or rays miss one of its surfaces");
     if (pupil_ && !pupil_->is_continuous())
         throw InputError("the stop of " + lens + ", a hole of radius " +
                          std::to_string(1000 * camera_.lens.stop_semi_diameter) +

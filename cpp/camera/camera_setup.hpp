@@ -24,13 +24,15 @@ enum class PupilStart {
 /// A camera prepared for rendering. Owns the tables that its view points to.
 class CameraSetup {
 public:
-    /// Throws InputError, also if the camera rotates too fast for one exposure. `tracer`: see Pupil. `last`: an earlier
-    /// set-up, whose pupil is reused if it is the same: finding the pupil is most of the work, and a camera that only
-    /// moves keeps it.
+    /// `tracer`: traces the rays of the pupil search, see PupilTracer. `last`: an earlier set-up or null; its pupil is
+    /// reused if lens and film are unchanged, because the pupil search is most of the work. `effects`: effects for
+    /// which tables are made; `start`: start of the pupil search if the lens differs from that of `last`. Throws
+    /// InputError if the camera is invalid, passes no light, or rotates too fast for one exposure.
     explicit CameraSetup(const Camera& camera, PupilTracer tracer = {}, const CameraSetup* last = nullptr,
                          const LensEffects& effects = {}, PupilStart start = PupilStart::from_scratch);
 
-    /// `origin_m`: origin of the render space. `scene_moves`: true if the scene moves during the exposure.
+    /// View for the render kernels, valid as long as this object. `origin_m`: origin of the render space in the scene.
+    /// `scene_moves`: true if the scene moves during the exposure.
     CameraView view(Vec3d origin_m, bool scene_moves = false) const;
 
     const Camera& camera() const { return camera_; }
@@ -41,6 +43,7 @@ public:
     const PupilGrid* pupil_grid() const { return pupil_grid_.get(); }
     /// True if the pupil does not depend on the earlier set-up that the search started from (PupilStart).
     bool has_new_pupil() const { return !pupil_ || !pupil_->was_found_near_similar(); }
+    /// Rectangle of the film in the lens's axes, mm.
     FilmArea film_area() const;
     /// True if lights can be traced through every surface of the lens.
     bool traces_lights() const {
@@ -64,10 +67,13 @@ private:
     /// Throws InputError if no light reaches the film.
     void check_light() const;
 
+    /// Measures distortion and vignetting, or reuses the map of `last`.
     void set_map(const PupilTracer& tracer, const CameraSetup* last);
 
+    /// Pose in render space.
     static CameraPlacement placement(const Affine<double>& scene_from_camera, Vec3d origin_m);
 
+    /// Sets the view's keyframes and row times; leaves the times 0 if nothing moves.
     void set_times(CameraView& view, bool scene_moves) const;
 
     bool has_lens_and_film_of(const Camera& camera) const;
@@ -92,7 +98,8 @@ private:
 /// Cache of the last camera set-up, whose pupil serves the next one if lens and film are equal. Thread-safe.
 class LastSetup {
 public:
-    /// Throws InputError; the last set-up is kept then.
+    /// Returns a set-up of the camera and stores it as the last one. Throws InputError as CameraSetup; the last set-up
+    /// is then unchanged. Parameters: see CameraSetup.
     std::shared_ptr<const CameraSetup> make(const Camera& camera, const PupilTracer& tracer,
                                             const LensEffects& effects = {},
                                             PupilStart start = PupilStart::from_scratch);

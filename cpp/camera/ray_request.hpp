@@ -18,12 +18,12 @@ REALCAM_HD inline void find_right_half(const CameraView& camera, const SampleBlo
     if constexpr (effects.have_wavelengths()) draw_wavelengths(camera.dispersion, block, wavelengths);
     const FilmPointsWith<N, effects> film(camera, block, wavelengths);
     const LaneNumbers<N> u(block, dimension::pupil);
-    const bool has_real = has_real_pupil(camera.model);
+    const bool uses_real_pupil = has_real_pupil(camera.model);
     // Compares slopes instead of points in the pupil, which also holds for a pupil behind the film (negative distance).
     const float inverse_distance = 1.0f / camera.thick.exit_pupil_distance;
     for (int i = 0; i < N; ++i) {
         float right;
-        if (has_real) {
+        if (uses_real_pupil) {
             const FilmRaySample ray = sample_film_ray<LensKind::any>(camera, film[i], u[i]);
             right = ray.origin.x * inverse_distance - ray.direction.x / ray.direction.z;
         } else {
@@ -47,11 +47,11 @@ inline RayRange all_rays(int width, int height, std::uint32_t spp) {
 struct RayRequest {
     CameraView camera;
     RayRange range;
-    std::uint32_t spp, seed;
+    std::uint32_t spp, seed;  ///< samples per pixel; seed of the random sequence
     float *origins, *directions;  ///< 3 for each ray: metres in render space; unit vectors
     float* weights;  ///< irradiance on the film for unit radiance; 0: blocked
     float* times;  ///< as fractions of the camera's exposure
-    float* wavelengths_nm;
+    float* wavelengths_nm;  ///< wavelength of each ray
     float design_wavelength_nm;  ///< used for all rays if the camera has no dispersion
 
     REALCAM_HD std::int64_t count() const { return range.count; }

@@ -12,8 +12,10 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Probes the scene and the lens, and plans what the settings leave to the planner. `settings`: those of the picture.
-/// Throws what probe_scene throws, and InputError if the lens passes no light or a threshold is invalid.
+/// Probes the scene and the lens, and decides on the effects, camera model and bounces that the settings leave to the
+/// planner. `settings`: those of the picture; `measures_times`: true to measure the render time of each effect, too;
+/// `tracer`: see Pupil. Throws the errors of probe_scene, and InputError if the lens passes no light or a threshold is
+/// invalid.
 inline Plan make_plan(Session& session, const Assembly& scene, const Camera& camera, const RenderSettings& settings,
                       bool measures_times, const PupilTracer& tracer, const Progress& progress = {}) {
     validate(settings);
@@ -29,16 +31,16 @@ inline Plan make_plan(Session& session, const Assembly& scene, const Camera& cam
     Camera ideal = full;
     full.model = CameraModel::full_lens;
     ideal.model = CameraModel::thin_lens;
-    const CameraSetup of_surfaces(full, tracer), of_ideal(ideal, tracer);
+    const CameraSetup full_setup(full, tracer), ideal_setup(ideal, tracer);
     const LensErrors errors =
-        lens_errors(of_surfaces.view({0, 0, 0}), of_ideal.view({0, 0, 0}), full.lens, facts, tracer);
+        lens_errors(full_setup.view({0, 0, 0}), ideal_setup.view({0, 0, 0}), full.lens, facts, tracer);
     Plan plan = plan_shot(camera, errors, facts, settings);
     plan_bounces(session, scene, full, settings, plan, progress);
     if (measures_times) measure_times(session, scene, camera, settings, plan, progress);
     return plan;
 }
 
-/// Settings of a picture, or of all frames of a film, after planning.
+/// Settings of a picture, or of all frames of a video, after planning.
 struct ResolvedFilm {
     CameraModel model = CameraModel::full_lens;
     RenderSettings settings;
@@ -47,18 +49,18 @@ struct ResolvedFilm {
     std::string warning;      ///< why there was nothing to plan; otherwise empty
 };
 
-/// Plans some frames, given by their cameras, together. An effect is used if any frame calls for it, because one that
-/// comes and goes would be visible, unless the lens of another frame cannot show it. The camera model is the planned
-/// one, or that of the cameras if the plans differ. Frames that see nothing are ignored. Throws what make_plan throws,
-/// except NothingToPlan.
+/// Plans frames, given by their cameras, together. An effect is used if any frame requires it, because an effect that
+/// switches on and off within a video would be visible, unless the lens of another frame cannot show it. The camera
+/// model is the planned one, or that of the first camera if the plans differ. Frames that see nothing are ignored.
+/// `requested`: settings as given by the user. Throws the errors of make_plan, except NothingToPlan.
 inline ResolvedFilm resolve_film(Session& session, const Assembly& scene, const std::vector<Camera>& cameras,
-                                 const RenderSettings& asked, const PupilTracer& tracer,
+                                 const RenderSettings& requested, const PupilTracer& tracer,
                                  const Progress& progress = {}) {
-    ResolvedFilm film{cameras.front().model, asked, {}, "", ""};
-    if (!asked.needs_plan()) return film;
+    ResolvedFilm film{cameras.front().model, requested, {}, "", ""};
+    if (!requested.needs_plan()) return film;
     for (const Camera& camera : cameras) {
         try {
-            film.plans.push_back(make_plan(session, scene, camera, asked, false, tracer, progress));
+            film.plans.push_back(make_plan(session, scene, camera, requested, false, tracer, progress));
         } catch (const NothingToPlan& nothing) {
             film.warning = std::string(nothing.what()) + "; the picture has the effects that are named";
         }
@@ -84,8 +86,8 @@ inline ResolvedFilm resolve_film(Session& session, const Assembly& scene, const 
     }
     for (const Camera& camera : cameras)
         for (const EffectInfo& effect : kEffects)
-            if (asked.effects.is_automatic && effect.needs_round_lens && !has_radial_pupil(camera.lens) &&
-                !(asked.effects.*effect.member))
+            if (requested.effects.is_automatic && effect.needs_round_lens && !has_radial_pupil(camera.lens) &&
+                !(requested.effects.*effect.member))
                 effects.*effect.member = false;
     if (!effects.have_wavelengths()) film.settings.remove_spectra();
     return film;

@@ -13,6 +13,9 @@
 
 namespace REALCAM_NAMESPACE {
 
+// Result of planning: decisions with their reasons, and their text.
+
+/// Unit of the change that an effect makes to a picture: pixels, or codes (8-bit display values).
 enum class SizeUnit { pixels, codes };
 
 /// Thrown for a shot with nothing to decide upon, because the camera sees no object and no light.
@@ -28,8 +31,8 @@ struct PlanDecision {
     std::string name;
     double size;  ///< change of the picture if the effect is left out; may be infinite
     SizeUnit unit;
-    double threshold;
-    bool is_kept;
+    double threshold;  ///< size from which on the effect is simulated, in the same unit
+    bool is_kept;      ///< true: the effect is simulated
     DecidedBy by = DecidedBy::planner;
     std::optional<double>
         time;  ///< additional time as a fraction of the time without any effect; std::nullopt if not measured
@@ -60,7 +63,7 @@ inline std::string summary_of(const Plan& plan) {
     std::string text;
     for (const PlanDecision& decision : plan.decisions)
         text += (text.empty() ? "" : ", ") + decision.name + ' ' + size_text(decision.size, decision.unit) +
-                (decision.is_kept ? " kept" : " left out") + (decision.by == DecidedBy::user ? " as asked" : "");
+                (decision.is_kept ? " kept" : " left out") + (decision.by == DecidedBy::user ? " as requested" : "");
     return text;
 }
 
@@ -69,10 +72,11 @@ inline std::string text_of(const Plan& plan, const std::string& model_name) {
     using Row = std::array<std::string, 6>;
     std::vector<Row> rows = {{"effect", "size", "threshold", "", "time", "because"}};
     for (const PlanDecision& decision : plan.decisions) {
-        rows.push_back(
-            {decision.name, size_text(decision.size, decision.unit), size_text(decision.threshold, decision.unit),
-             std::string(decision.is_kept ? "kept" : "left out") + (decision.by == DecidedBy::user ? " as asked" : ""),
-             decision.time ? "+" + number_text(100 * *decision.time, 2) + "%" : "", decision.reason});
+        rows.push_back({decision.name, size_text(decision.size, decision.unit),
+                        size_text(decision.threshold, decision.unit),
+                        std::string(decision.is_kept ? "kept" : "left out") +
+                            (decision.by == DecidedBy::user ? " as requested" : ""),
+                        decision.time ? "+" + number_text(100 * *decision.time, 2) + "%" : "", decision.reason});
     }
     std::array<std::size_t, 6> width{};
     for (const Row& row : rows)

@@ -18,16 +18,17 @@ namespace REALCAM_NAMESPACE {
 
 namespace plan_bounces_detail {
 
-/// Pixels of the longer side, pixels of the side of a square, and samples per pixel. Pictures are compared by means
-/// over squares, because roulette lets few paths continue, which light up single pixels.
+/// Size of the small picture: pixels along its longer side, pixels along the side of a square, and samples per pixel.
+/// Pictures are compared by means over squares, because Russian roulette lets few paths continue, which light up single
+/// pixels.
 inline constexpr int kLongSide = 48, kSquare = 4, kSamples = 32;
-/// Fraction of the threshold that the small picture may lack. It underestimates light that few samples find, such as
-/// that of many reflections in glass. Superfluous bounces cost little, because few paths take them.
+/// Fraction of the threshold by which the small picture may be too dark. It underestimates light that few samples find,
+/// such as that of many reflections in glass. Superfluous bounces cost little, because few paths take them.
 inline constexpr double kMargin = 0.5;
 
-/// Renders a small picture; returns linear 8-bit codes of its squares, three channels each. With another number of
-/// bounces the same paths are followed as far as they go, so that two pictures differ only by the light of the
-/// additional bounces.
+/// Renders a small picture; returns the display values (code_of) of its squares, three channels each. With another
+/// number of bounces the same paths are followed as far as they go, so that two pictures differ only by the light of
+/// the additional bounces.
 inline std::vector<double> small_picture(Session& session, const Assembly& scene, const Camera& camera,
                                          RenderSettings settings, int max_bounces, const Progress& progress) {
     settings.max_bounces = max_bounces;
@@ -47,6 +48,7 @@ inline std::vector<double> small_picture(Session& session, const Assembly& scene
     return codes;
 }
 
+/// Largest absolute difference between corresponding elements.
 inline double largest_difference(const std::vector<double>& a, const std::vector<double>& b) {
     double largest = 0;
     for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, std::fabs(a[i] - b[i]));
@@ -55,8 +57,9 @@ inline double largest_difference(const std::vector<double>& a, const std::vector
 
 }  // namespace plan_bounces_detail
 
-/// Decides on the number of bounces: the least with which every square of a small picture lacks less than kMargin times
-/// the threshold of codes. `settings`: those of the picture. Throws what take_picture throws.
+/// Sets the plan's number of bounces, and adds the decision: the least number with which every square of a small
+/// picture is darker than with all bounces by less than kMargin times the threshold in codes. `settings`: those of the
+/// picture. Throws the errors of take_picture.
 inline void plan_bounces(Session& session, const Assembly& scene, Camera camera, RenderSettings settings, Plan& plan,
                          const Progress& progress) {
     using namespace plan_bounces_detail;
@@ -80,30 +83,32 @@ inline void plan_bounces(Session& session, const Assembly& scene, Camera camera,
     const auto with = [&](int bounces) { return small_picture(session, scene, camera, settings, bounces, progress); };
     const std::vector<double> all = with(kMostBounces);
     const double indirect = largest_difference(with(0), all);
-    double lacking = indirect, lacking_before = indirect;
+    double missing = indirect, missing_with_fewer = indirect;
     plan.max_bounces = 0;
     for (const int bounces : {1, 2, 3, 4, 6, 8, 12, 16, 24, 32, kMostBounces}) {
-        if (lacking < kMargin * threshold) break;
-        lacking_before = lacking;
+        if (missing < kMargin * threshold) break;
+        missing_with_fewer = missing;
         plan.max_bounces = bounces;
-        lacking = bounces == kMostBounces ? 0 : largest_difference(with(bounces), all);
+        missing = bounces == kMostBounces ? 0 : largest_difference(with(bounces), all);
     }
     const auto codes = [](double size) { return counted(size, "code", 2); };
     plan.decisions.push_back(
         {"bounces", indirect, SizeUnit::codes, threshold, plan.max_bounces > 0, DecidedBy::planner, std::nullopt,
-         plan.max_bounces == 0 ? "light that has bounced brings " + codes(indirect)
+         plan.max_bounces == 0 ? "indirect light adds " + codes(indirect)
                                : "with " + counted(plan.max_bounces, "bounce") + " the picture lacks " +
-                                     codes(lacking) + ", with fewer " + codes(lacking_before) +
+                                     codes(missing) + ", with fewer " + codes(missing_with_fewer) +
                                      " (half the threshold is allowed), with direct light alone " + codes(indirect)});
 }
 
 namespace measure_times_detail {
 
-/// Long enough that the resolution of the clock and the start of a device do not matter.
-inline constexpr double kLeast_s = 0.02;
+/// Shortest run that is used as a measurement: long enough that the resolution of the clock and the start of a device
+/// do not matter.
+inline constexpr double kMinRun_s = 0.02;
 
-/// Seconds for `spp` samples per pixel: the least of three runs, because other programs can only slow one down.
-inline double seconds_of(Session& session, int spp, const Progress& progress) {
+/// Render time of `spp` samples per pixel, s: the shortest of three runs, because other programs can only slow one
+/// down.
+inline double shortest_run_s(Session& session, int spp, const Progress& progress) {
     double least = kInfinity;
     for (int i = 0; i < 3; ++i) {
         const auto begin = std::chrono::steady_clock::now();
@@ -116,8 +121,8 @@ inline double seconds_of(Session& session, int spp, const Progress& progress) {
 }  // namespace measure_times_detail
 
 /// Measures the additional time of each effect of a plan on the session's device, relative to the full lens without
-/// effects, one effect at a time; takes some tenths of a second for each. Preparations, which a picture needs once, are
-/// not counted. `settings`: those of the picture. Effects that this camera cannot have get no time.
+/// effects, one effect at a time, as PlanDecision::time; takes some tenths of a second for each. The set-up of a
+/// picture is not counted. `settings`: those of the picture. Effects that this camera cannot show get no time.
 inline void measure_times(Session& session, const Assembly& scene, Camera camera, RenderSettings settings, Plan& plan,
                           const Progress& progress) {
     using namespace measure_times_detail;
@@ -129,53 +134,53 @@ inline void measure_times(Session& session, const Assembly& scene, Camera camera
     settings.layers = {};
     settings.noise.reset();
     settings.max_bounces = plan.max_bounces;
-    EffectChoice none;
-    none.motion_blur = none.rolling_shutter = false;
+    EffectChoice no_effects;
+    no_effects.motion_blur = no_effects.rolling_shutter = false;
     const auto set = [&](const EffectChoice& effects) {
         settings.effects = effects;
-        RenderSettings given = settings;
-        if (!effects.have_wavelengths()) given.remove_spectra();
-        session.set(scene, camera, given, keep_going);
-        session.add(1, progress);  // runs what a device does only once
+        RenderSettings used = settings;
+        if (!effects.have_wavelengths()) used.remove_spectra();
+        session.set(scene, camera, used, keep_going);
+        session.add(1, progress);  // warm-up: work that a device does only once
     };
-    set(none);
-    // The film grows until a run takes kLeast_s: a sample of a small film costs nearly as much as one of the whole
+    set(no_effects);
+    // The film grows until a run takes kMinRun_s: a sample of a small film costs nearly as much as one of the whole
     // picture. On a fast device it grows to the whole picture, where the use of memory counts, too.
     int spp = 1;
-    double alone = seconds_of(session, spp, progress);
-    while (alone < kLeast_s && spp < (1 << 20)) {
+    double base_s = shortest_run_s(session, spp, progress);
+    while (base_s < kMinRun_s && spp < (1 << 20)) {
         if (camera.film == whole) {
             spp *= 2;
         } else {
             camera.film = with_long_side(whole, long_side *= 2);
-            set(none);
+            set(no_effects);
         }
-        alone = seconds_of(session, spp, progress);
+        base_s = shortest_run_s(session, spp, progress);
     }
-    std::vector<std::optional<double>> with(plan.decisions.size());
+    std::vector<std::optional<double>> seconds_with(plan.decisions.size());
     for (std::size_t k = 0; k < plan.decisions.size(); ++k) {
         if (plan.decisions[k].name == "bounces") {
             settings.max_bounces = 0;
-            set(none);
-            plan.decisions[k].time = std::max(alone / seconds_of(session, spp, progress) - 1, 0.0);
+            set(no_effects);
+            plan.decisions[k].time = std::max(base_s / shortest_run_s(session, spp, progress) - 1, 0.0);
             settings.max_bounces = plan.max_bounces;
             continue;
         }
         const EffectInfo* effect = find_effect(plan.decisions[k].name);
-        if (!effect) continue;  // it comes with the camera model
-        EffectChoice one = none;
+        if (!effect) continue;  // a property of the camera model
+        EffectChoice one = no_effects;
         one.*effect->member = true;
         try {
             set(one);
         } catch (const InputError&) {
             continue;  // for example because the index of a glass is not known at all wavelengths
         }
-        with[k] = seconds_of(session, spp, progress);
+        seconds_with[k] = shortest_run_s(session, spp, progress);
     }
-    set(none);
-    alone = std::min(alone, seconds_of(session, spp, progress));
-    for (std::size_t k = 0; k < with.size(); ++k)
-        if (with[k]) plan.decisions[k].time = std::max(*with[k] / alone - 1, 0.0);
+    set(no_effects);
+    base_s = std::min(base_s, shortest_run_s(session, spp, progress));
+    for (std::size_t k = 0; k < seconds_with.size(); ++k)
+        if (seconds_with[k]) plan.decisions[k].time = std::max(*seconds_with[k] / base_s - 1, 0.0);
 }
 
 }  // namespace REALCAM_NAMESPACE

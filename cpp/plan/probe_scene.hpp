@@ -17,9 +17,10 @@ namespace probe_scene_detail {
 inline constexpr int kLongSide = 48;
 
 /// Number of lights, the brightest first, whose visibility is tested. Others count as visible.
-inline constexpr std::size_t kLooked = 16;
+inline constexpr std::size_t kTestedLights = 16;
 
-/// Adds a light of the scene. `towards`: vector from the lens to it, in scene axes, metres; for a sun, a direction.
+/// Adds a light of the scene to the facts unless it is dark. `towards`: vector from the lens to it, in scene axes,
+/// metres; for a sun, a direction. `lux`, `solid_angle_sr`: see VisibleLight.
 inline void add_light(const InverseAffine<double>& camera_from_scene, Vec3d towards, double lux, double solid_angle_sr,
                       bool is_sun, SceneFacts& facts) {
     if (!(lux > 0)) return;
@@ -27,9 +28,10 @@ inline void add_light(const InverseAffine<double>& camera_from_scene, Vec3d towa
     facts.lights.push_back({from, lux, is_sun ? kInfinity : length(towards), solid_angle_sr});
 }
 
-/// True if something occludes a light. `camera`: a pinhole camera, which is turned towards it.
+/// True if something occludes a light, by a picture of one pixel. `camera`: a pinhole camera, which is pointed at the
+/// light; `settings`: with the layer depth_middle.
 inline bool is_hidden(Session& session, const Assembly& scene, Camera camera, RenderSettings settings,
-                      const Affine<double>& scene_from_camera, const SeenLight& light) {
+                      const Affine<double>& scene_from_camera, const VisibleLight& light) {
     const FirstOrder data = first_order(camera.lens, camera.lens.wavelength_nm);
     const double pupil_m = 0.001 * (camera.lens.film_position() - data.entrance_pupil_position);
     const Vec3d direction = scene_from_camera.direction(light.from);
@@ -43,31 +45,35 @@ inline bool is_hidden(Session& session, const Assembly& scene, Camera camera, Re
     camera.film.shift_mm = {0, 0};
     settings.spp = 1;
     const Image image = take_picture(session, scene, camera, settings, {});
-    // Excludes the lamp's own surface, which bulges towards the lens by its radius at most.
+    // Excludes the light's own surface, which extends towards the lens by its radius at most: distance times the square
+    // root of solid angle / pi. 2 instead of 1 / sqrt(pi), 0.1% and 1 mm are margins.
     const double nearest = light.distance_m * (0.999 - 2 * std::sqrt(light.solid_angle_sr)) - 1e-3;
     return static_cast<double>(image.layers[0].values[0]) < pupil_m + nearest;
 }
 
-/// Removes the lights that are hidden from the lens.
-inline void drop_hidden(Session& session, const Assembly& scene, const Camera& camera, const RenderSettings& settings,
-                        const Affine<double>& scene_from_camera, std::vector<SeenLight>& lights) {
+/// Sorts the lights by illuminance, the brightest first, and removes those that are hidden from the lens.
+inline void remove_hidden_lights(Session& session, const Assembly& scene, const Camera& camera,
+                                 const RenderSettings& settings, const Affine<double>& scene_from_camera,
+                                 std::vector<VisibleLight>& lights) {
     std::sort(lights.begin(), lights.end(),
-              [](const SeenLight& a, const SeenLight& b) { return a.illuminance_lux > b.illuminance_lux; });
-    std::vector<SeenLight> seen;
+              [](const VisibleLight& a, const VisibleLight& b) { return a.illuminance_lux > b.illuminance_lux; });
+    std::vector<VisibleLight> visible;
     for (std::size_t i = 0; i < lights.size(); ++i)
-        if (i >= kLooked || !is_hidden(session, scene, camera, settings, scene_from_camera, lights[i]))
-            seen.push_back(lights[i]);
-    lights = std::move(seen);
+        if (i >= kTestedLights || !is_hidden(session, scene, camera, settings, scene_from_camera, lights[i]))
+            visible.push_back(lights[i]);
+    lights = std::move(visible);
 }
 
+/// Luminance of a linear colour, in double precision.
 inline double luminance_of(Color c) {
     return static_cast<double>(luminance(c));
 }
 
-/// Renders the view far beyond the frame. `camera`, `settings`: those of the small picture.
+/// Renders the view far beyond the frame, which ghosts may receive light from. `camera`, `settings`: those of the small
+/// picture.
 inline WideView wide_view(Session& session, const Assembly& scene, Camera camera, RenderSettings settings,
                           const Progress& progress) {
-    WideView view{16, 2, {}};
+    WideView view{.side = 16, .half_slope = 2, .values = {}};  // 63 degrees to each side
     const double f = std::fabs(first_order(camera.lens, camera.lens.wavelength_nm).effective_focal_length);
     camera.film.width = camera.film.height = view.side;
     camera.film.width_mm = camera.film.height_mm = 2 * view.half_slope * f;
@@ -82,18 +88,18 @@ inline WideView wide_view(Session& session, const Assembly& scene, Camera camera
 }
 
 /// Adds the point lights of an object, and one light for all triangles of each emissive material.
-inline void add_lights_of(const Scene& object, const Affine<double>& scene_from_object, Vec3d lens_m,
-                          const InverseAffine<double>& camera_from_scene, SceneFacts& facts) {
+inline void add_lights_of_object(const Scene& object, const Affine<double>& scene_from_object, Vec3d lens_m,
+                                 const InverseAffine<double>& camera_from_scene, SceneFacts& facts) {
     for (const ScenePointLight& point : object.points) {
         const Vec3d to_light = scene_from_object.point(point.position_m) - lens_m;
         add_light(camera_from_scene, to_light, luminance_of(point.intensity) / dot(to_light, to_light), 0, false,
                   facts);
     }
-    struct Lamp {
+    struct EmissiveMaterial {
         double solid_angle = 0;
         Vec3d to_light = {0, 0, 0};  ///< integral of the vector from the lens over the solid angle
     };
-    std::vector<Lamp> lamps(object.materials.size());
+    std::vector<EmissiveMaterial> emitters(object.materials.size());
     for (const Triangle& triangle : object.triangles) {
         if (!object.materials[triangle.material].emits()) continue;
         const auto corner = [&](int k) { return scene_from_object.point(object.positions_m[triangle.vertices[k]]); };
@@ -101,21 +107,22 @@ inline void add_lights_of(const Scene& object, const Affine<double>& scene_from_
         const Vec3d to_light = (1.0 / 3) * (a + corner(1) + corner(2)) - lens_m;
         const double distance = length(to_light), cosine_area = 0.5 * std::max(0.0, -dot(edges, to_light)) / distance;
         const double solid_angle = cosine_area / (distance * distance);
-        lamps[triangle.material].solid_angle += solid_angle;
-        lamps[triangle.material].to_light = lamps[triangle.material].to_light + solid_angle * to_light;
+        emitters[triangle.material].solid_angle += solid_angle;
+        emitters[triangle.material].to_light = emitters[triangle.material].to_light + solid_angle * to_light;
     }
-    for (std::size_t m = 0; m < lamps.size(); ++m) {
-        const double solid_angle = lamps[m].solid_angle;
+    for (std::size_t m = 0; m < emitters.size(); ++m) {
+        const double solid_angle = emitters[m].solid_angle;
         if (solid_angle > 0)
-            add_light(camera_from_scene, (1 / solid_angle) * lamps[m].to_light,
+            add_light(camera_from_scene, (1 / solid_angle) * emitters[m].to_light,
                       luminance_of(object.materials[m].emission) * solid_angle, solid_angle, false, facts);
     }
 }
 
 }  // namespace probe_scene_detail
 
-/// Probes a scene with a small picture through a pinhole. `settings`: those of the picture that is planned. Throws what
-/// take_picture throws, and NothingToPlan if the camera sees neither an object nor any light.
+/// Probes a scene with a small picture through a pinhole: returns its tiles, the visible lights and the view beyond the
+/// frame. `settings`: those of the picture that is planned. Throws the errors of take_picture, and NothingToPlan if the
+/// camera sees neither an object nor any light.
 inline SceneFacts probe_scene(Session& session, const Assembly& scene, Camera camera, RenderSettings settings,
                               const Progress& progress) {
     using namespace probe_scene_detail;
@@ -123,7 +130,7 @@ inline SceneFacts probe_scene(Session& session, const Assembly& scene, Camera ca
     camera.film = with_long_side(camera.film, kLongSide);
     const Film& film = camera.film;
     camera.model = CameraModel::pinhole;
-    settings.spp = 8;
+    settings.spp = 8;  // enough for the mean of a tile
     settings.noise.reset();
     settings.effects = {};
     settings.pupil_sampling = PupilSampling::outline;
@@ -154,16 +161,16 @@ inline SceneFacts probe_scene(Session& session, const Assembly& scene, Camera ca
         camera_detail::scene_from_camera(pose_at(camera, camera.exposure().begin_s));
     const InverseAffine<double> camera_from_scene = scene_from_camera.inverse();
     const Vec3d lens_m = scene_from_camera.point({0, 0, -0.001 * vertex_mm});
-    add_lights_of(*scene.static_geometry, {}, lens_m, camera_from_scene, facts);
+    add_lights_of_object(*scene.static_geometry, {}, lens_m, camera_from_scene, facts);
     for (const Instance& instance : scene.instances)
-        add_lights_of(*instance.object, instance.transform_at(camera.exposure().begin_s), lens_m, camera_from_scene,
-                      facts);
+        add_lights_of_object(*instance.object, instance.transform_at(camera.exposure().begin_s), lens_m,
+                             camera_from_scene, facts);
     for (const SunLight& sun : scene.static_geometry->suns)
         add_light(camera_from_scene, -static_cast<Vec3d>(sun.direction), luminance_of(sun.illuminance), 0, true, facts);
     for (SeenLight& light : facts.lights) light.illuminance_lux *= settings.filter_transmittance();
     facts.surroundings = wide_view(session, scene, camera, settings, progress);
     settings.layers = {Layer::depth_middle};
-    drop_hidden(session, scene, camera, settings, scene_from_camera, facts.lights);
+    remove_hidden_lights(session, scene, camera, settings, scene_from_camera, facts.lights);
     return facts;
 }
 

@@ -5,7 +5,7 @@
 
 namespace realcam {
 
-bool is_round_lens(const LensSystem& lens) {
+bool uses_rotational_code(const LensSystem& lens) {
     return has_radial_pupil(lens) &&
            LensPath<float>(lens, LightDirection::to_film, lens.wavelength_nm).view().kind != LensKind::any;
 }
@@ -14,8 +14,8 @@ DirectLensPath::DirectLensPath(const LensSystem& lens, const std::optional<FilmS
                                const Effects& effects)
     : effects_(effects),
       path_(lens, LightDirection::to_film, lens.wavelength_nm, film_path_ends(lens, LightDirection::to_film)),
-      kind_(is_round_lens(lens) ? path_.view().kind : LensKind::any),
-      only_path_{0, path_.view().count, 1},
+      kind_(uses_rotational_code(lens) ? path_.view().kind : LensKind::any),
+      only_path_{.first = 0, .count = path_.view().count, .probability = 1},
       reach_(entry_reach(lens)) {
     const double design = lens.wavelength_nm;
     const std::vector<Crossing> crossings = crossings_of(lens);
@@ -27,6 +27,7 @@ DirectLensPath::DirectLensPath(const LensSystem& lens, const std::optional<FilmS
     }
     const std::vector<double> all = spectrum->even_wavelengths();
     const WavelengthVariable variable = variable_over(spectrum->range());
+    // Without dispersion, all wavelengths are refracted as the design wavelength.
     const std::vector<double> refracted = effects.dispersion ? all : std::vector{design};
     indices_ = index_cubics(lens, crossings, refracted, variable);
     if (effects.coatings)

@@ -12,22 +12,24 @@ namespace realcam {
 EffectTables::EffectTables(const LensSystem& lens, double film_radius, const LensEffects& effects,
                            const PupilTracer& tracer, const EffectTables* last)
     : effects_(effects), lens_(lens), film_radius_(film_radius) {
-    const bool has_lens = last && last->effects_ == effects && last->lens_ == lens;
-    const EffectTables* const same = has_lens && last->film_radius_ == film_radius ? last : nullptr;
+    const bool has_same_lens = last && last->effects_ == effects && last->lens_ == lens;
+    const EffectTables* const unchanged = has_same_lens && last->film_radius_ == film_radius ? last : nullptr;
     if (effects.illuminant)
         set_wavelengths(FilmSpectrum(*effects.illuminant, effects.filter));
     else if (effects.even_wavelengths)
         set_wavelengths(FilmSpectrum(*effects.even_wavelengths));
-    if (effects.coatings) set_coatings(has_lens ? last : nullptr);
-    direct_lens_path_ = has_lens ? last->direct_lens_path_ : std::make_shared<LazyDirectLensPath>();
+    if (effects.coatings) set_coatings(has_same_lens ? last : nullptr);
+    direct_lens_path_ = has_same_lens ? last->direct_lens_path_ : std::make_shared<LazyDirectLensPath>();
     if (effects.ghosts)
-        ghosts_ = same ? same->ghosts_
-                       : std::make_shared<const GhostTables>(lens, film_radius, *effects.ghosts, tracer,
-                                                             effects.dispersion ? &*spectrum_ : nullptr);
+        ghosts_ = unchanged ? unchanged->ghosts_
+                            : std::make_shared<const GhostTables>(lens, film_radius, *effects.ghosts, tracer,
+                                                                  effects.dispersion ? &*spectrum_ : nullptr);
     if (!effects.diffraction) return;
-    diffraction_ = same ? same->diffraction_ : std::make_shared<const DiffractionTables>(lens, film_radius, tracer);
-    starbursts_ = same ? same->starbursts_
-                       : std::make_shared<const StarburstTables>(lens, film_radius, shared_direct_lens_path(), tracer);
+    diffraction_ =
+        unchanged ? unchanged->diffraction_ : std::make_shared<const DiffractionTables>(lens, film_radius, tracer);
+    starbursts_ = unchanged
+                      ? unchanged->starbursts_
+                      : std::make_shared<const StarburstTables>(lens, film_radius, shared_direct_lens_path(), tracer);
 }
 
 EffectViews EffectTables::views(double film_angle) const {

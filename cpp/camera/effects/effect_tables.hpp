@@ -18,7 +18,7 @@ namespace REALCAM_NAMESPACE {
 struct LensEffects : Effects {
     std::optional<Illuminant> illuminant = {};  ///< for pictures whose samples have wavelengths
     std::optional<LensFilter> filter = {};  ///< applies to the illuminant
-    std::optional<GhostChoice> ghosts = {};
+    std::optional<GhostChoice> ghosts = {};  ///< std::nullopt: no ghosts
     PupilSampling pupil_sampling = PupilSampling::outline;
     std::optional<WavelengthRange> even_wavelengths = {};  ///< replaces the illuminant: uniform over these wavelengths
 
@@ -51,10 +51,12 @@ private:
     /// whose rays leave the lens farthest apart.
     void set_wavelengths(FilmSpectrum spectrum);
 
+    /// Fits the transmittances, or copies those of `same`, tables of the same lens and effects, if not null.
     void set_coatings(const EffectTables* same);
 
     std::shared_ptr<const DirectLensPath> shared_direct_lens_path() const;
 
+    /// Built at first use, and shared by tables of the same lens and effects.
     struct LazyDirectLensPath {
         std::once_flag once;
         std::shared_ptr<const DirectLensPath> path;
@@ -64,8 +66,8 @@ private:
     LensSystem lens_;
     double film_radius_;
     std::optional<FilmSpectrum> spectrum_;  ///< this and the next four only if samples have wavelengths
-    std::vector<IndexCubic> to_scene_, to_film_;
-    std::optional<LensPath<float>> film_path_;
+    std::vector<IndexCubic> to_scene_, to_film_;  ///< refractive indices at the surfaces, in the order of light
+    std::optional<LensPath<float>> film_path_;  ///< the lens for light towards the film
     std::vector<double> pupil_wavelengths_;
     std::vector<CoatingPolynomials<kOneWavelengthTerms>> coatings_;
     std::vector<CoatingPolynomials<kSpectrumTerms>> coatings_to_scene_, coatings_to_film_;

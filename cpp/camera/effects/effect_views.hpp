@@ -14,7 +14,7 @@ struct CoatingView {
     const CoatingPolynomials<kSpectrumTerms>*to_scene, *to_film;
 };
 
-/// Views of the tables for a camera's effects. The view of an effect that is off is empty.
+/// Views of the tables for a camera's effects, for the render kernels. The view of an effect that is off is empty.
 struct EffectViews {
     Effects effects;  ///< effects for which the camera was set up
     DispersionView dispersion;

@@ -22,6 +22,7 @@ struct Effects {
     /// True if samples may count in pixels other than their own (SampleSharing). Diffraction alone also has wavelengths
     /// that end in other pixels, but too seldom to be worth the cost.
     constexpr bool share_pixels() const { return dispersion; }
+    /// True if all effects of `other` are in this set.
     constexpr bool hold(const Effects& other) const;
 };
 
@@ -64,7 +65,7 @@ using EffectParameter = double EffectChoice::*;
 struct EffectInfo {
     const char* name;  ///< on the command line, in shot files and in Python; prefix "-": off; suffix "=" and a number:
                        ///< sets `parameter`
-    EffectSwitch member;
+    EffectSwitch member;  ///< its switch in EffectChoice
     EffectParameter parameter = nullptr;  ///< null if the effect has no parameter
     const char* what;  ///< description
     const char* needs;  ///< requirements on lens, scene and camera
@@ -92,16 +93,16 @@ inline constexpr EffectInfo kEffects[] = {
     {.name = "dispersion",
      .member = &EffectChoice::dispersion,
      .what = "each sample has a wavelength of its own, for which every glass has its own index",
-     .needs = "glasses with more than one index, nothing of the scene, and the camera model full",
+     .needs = "refractive indices at several wavelengths, and the camera model full",
      .has_wavelengths = true,
      .needs_full_lens = true,
      .cpu_time = 1.12,
      .gpu_time = 1.24},
     {.name = "coatings",
      .member = &EffectChoice::coatings,
-     .what = "each surface of the lens takes from the light what its glass and coating reflect, or its mirror keeps",
-     .needs = "coatings in the lens file (glass of which it says nothing is taken as bare), nothing of the scene, and "
-              "the camera model full",
+     .what = "each surface of the lens loses the light that its glass and coating reflect, or that its mirror absorbs",
+     .needs = "coatings in the lens file (glass without a stated coating is assumed to be bare), and the camera model "
+              "full",
      .needs_full_lens = true,
      .needs_coatings = true,
      .cpu_time = 1.03,
@@ -111,9 +112,9 @@ inline constexpr EffectInfo kEffects[] = {
      .parameter = &EffectChoice::ghost_share,
      .what = "light that two surfaces of the lens reflect on its way to the film, from all lights and objects of the "
              "scene",
-     .needs = "coatings in the lens file (glass of which it says nothing is taken as bare), lights, and the camera "
-              "model full",
-     .usage = "ghosts=1e-8 leaves out those with less than 1e-8 of the lens's light, where ghosts alone means 1e-6",
+     .needs = "coatings in the lens file (glass without a stated coating is assumed to be bare), lights, and the "
+              "camera model full",
+     .usage = "ghosts=1e-8 leaves out ghosts with less than 1e-8 of the lens's light; ghosts alone means 1e-6",
      .needs_full_lens = true,
      .needs_coatings = true,
      .cpu_time = 1.51,
@@ -122,14 +123,14 @@ inline constexpr EffectInfo kEffects[] = {
      .member = &EffectChoice::film_reflection,
      .parameter = &EffectChoice::film_reflectance,
      .what = "light that the film or sensor reflects like a mirror, and then a surface of the lens back to it",
-     .needs = "what ghosts needs",
-     .usage = "film_reflection=0.1 reflects a tenth, where film_reflection alone means 0.05",
+     .needs = "the same as ghosts",
+     .usage = "with film_reflection=0.1 the film reflects a tenth of the light; film_reflection alone means 0.05",
      .needs_full_lens = true,
      .needs_coatings = true},
     {.name = "diffraction",
      .member = &EffectChoice::diffraction,
-     .what = "the edges of the aperture spread light of each wavelength over the film, and make stars of lamps",
-     .needs = "nothing of lens, scene and camera",
+     .what = "the edges of the aperture spread light of each wavelength over the film, which gives lights starbursts",
+     .needs = "a centred, rotationally symmetric lens",
      .has_wavelengths = true,
      .needs_round_lens = true,
      .shows_in_previews = false,
@@ -137,14 +138,14 @@ inline constexpr EffectInfo kEffects[] = {
      .gpu_time = 1.25},
     {.name = "motion_blur",
      .member = &EffectChoice::motion_blur,
-     .what = "what moves while the shutter is open is blurred",
+     .what = "objects that move relative to the camera while the shutter is open are blurred",
      .needs = "objects or a camera that move",
-     .usage = "on unless left out, as -motion_blur"},
+     .usage = "on by default; -motion_blur switches it off"},
     {.name = "rolling_shutter",
      .member = &EffectChoice::rolling_shutter,
      .what = "the rows of pixels are exposed one after the other",
      .needs = "a readout time of the camera, and objects or a camera that move",
-     .usage = "on unless left out, as -rolling_shutter"},
+     .usage = "on by default; -rolling_shutter switches it off"},
 };
 
 /// First active effect that has a property; null if there is none.
@@ -154,7 +155,8 @@ constexpr const EffectInfo* first_that(const EffectChoice& effects, bool EffectI
     return nullptr;
 }
 
-/// A separate loop: with sanitizers, gcc does not accept an address other than null as a constant.
+/// True if any active effect has a property. A separate loop: with sanitizers, gcc does not accept an address other
+/// than null as a constant.
 constexpr bool any_is(const EffectChoice& effects, bool EffectInfo::* property) {
     for (const EffectInfo& effect : kEffects)
         if (effects.*effect.member && effect.*property) return true;
@@ -172,8 +174,8 @@ constexpr bool Effects::hold(const Effects& other) const {
     return true;
 }
 
-/// Index in kCompiledEffects of the first set that contains these effects. Kernels take an int because nvcc generates
-/// no launch code for template arguments of class type.
+/// Index in kCompiledEffects of the first set that contains the effects `wanted`. Kernels take an int because nvcc
+/// generates no launch code for template arguments of class type.
 constexpr int number_of(const Effects& wanted) {
     int number = 0;
     for (const Effects& set : kCompiledEffects) {
@@ -183,6 +185,7 @@ constexpr int number_of(const Effects& wanted) {
     return number;
 }
 
+/// Returns the set without coatings.
 constexpr Effects without_coatings(Effects set) {
     set.coatings = false;
     return set;

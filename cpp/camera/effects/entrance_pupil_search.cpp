@@ -25,8 +25,9 @@ double rim_depth(const Surface& surface) {
 }
 
 /// Radius of a circle in the vertex plane through which all light passes that hits the surface, mm.
-double reach_of(const Surface& surface) {
-    return 1.02 * hypotenuse(surface.clear_semi_diameter, rim_depth(surface));
+double light_radius(const Surface& surface) {
+    constexpr double kMargin = 1.02;
+    return kMargin * hypotenuse(surface.clear_semi_diameter, rim_depth(surface));
 }
 
 /// The lens with a circular stop: the circumcircle of the opening that its blades leave.
@@ -40,14 +41,15 @@ LensSystem with_stop_around_blades(LensSystem lens) {
     return lens;
 }
 
+/// Enlarges a rectangle, std::nullopt being the empty one, to contain another.
 template <class T>
-void unite(std::optional<TargetRectangle<T>>& a, const TargetRectangle<T>& b) {
+void enlarge(std::optional<TargetRectangle<T>>& a, const TargetRectangle<T>& b) {
     if (!a) a = b;
     a = {{std::min(a->low.x, b.low.x), std::min(a->low.y, b.low.y)},
          {std::max(a->high.x, b.high.x), std::max(a->high.y, b.high.y)}};
 }
 
-/// Bounds, for each cell of a map, of all that is in it and its neighbours.
+/// Bounds, for each cell of a map, of the bounds `own` of the cell and its neighbours.
 template <class Map, class Bounds>
 std::vector<std::optional<Bounds>> with_neighbours(const std::vector<std::optional<Bounds>>& own) {
     constexpr int kColumns = Map::kColumns, kRows = Map::kRows;
@@ -57,21 +59,23 @@ std::vector<std::optional<Bounds>> with_neighbours(const std::vector<std::option
             for (int y = std::max(0, row - 1); y <= std::min(kRows - 1, row + 1); ++y)
                 for (int x = std::max(0, column - 1); x <= std::min(kColumns - 1, column + 1); ++x)
                     if (const auto& other = own[static_cast<std::size_t>(y * kColumns + x)])
-                        unite(all[static_cast<std::size_t>(row * kColumns + column)], *other);
+                        enlarge(all[static_cast<std::size_t>(row * kColumns + column)], *other);
     return all;
 }
 
-/// Bounding rectangles of the points of each cell and its neighbours. A margin of a sixteenth on each side covers the
-/// gaps between the rays.
+/// Bounding rectangles of points of rays, for each cell and its neighbours. `point_of`: the points, as a member of
+/// FoundRay; `cell_of(ray)`: index of a ray's cell, negative if there is none. A margin of a sixteenth on each side
+/// covers the gaps between the rays.
 template <class Map, class CellOf>
-std::vector<GhostEntry> entries_around(const std::vector<FoundRay>& rays, Vec2f FoundRay::* place, CellOf&& cell_of) {
+std::vector<GhostEntry> entries_around(const std::vector<FoundRay>& rays, Vec2f FoundRay::* point_of,
+                                       CellOf&& cell_of) {
     std::vector<std::optional<TargetRectangle<float>>> own(Map::kColumns * Map::kRows);
     for (const FoundRay& ray : rays) {
         const int cell = cell_of(ray);
-        const Vec2f at = ray.*place, image = {at.x, Map::kMirrored ? -at.y : at.y};
+        const Vec2f point = ray.*point_of, mirrored = {point.x, Map::kMirrored ? -point.y : point.y};
         if (cell < 0) continue;
-        unite(own[static_cast<std::size_t>(cell)], {at, at});
-        unite(own[static_cast<std::size_t>(cell)], {image, image});
+        enlarge(own[static_cast<std::size_t>(cell)], {point, point});
+        enlarge(own[static_cast<std::size_t>(cell)], {mirrored, mirrored});
     }
     std::vector<GhostEntry> entries;
     for (const auto& box : with_neighbours<Map>(own)) {
@@ -91,7 +95,7 @@ float entry_reach(const LensSystem& lens) {
     Affine<double> front = surface_frames(lens).surfaces.front();
     if (const auto camera = film_path_ends(lens, LightDirection::to_scene).exit)
         front = inverse_motion(*camera) * front;
-    return static_cast<float>(length(front.origin) + reach_of(lens.surfaces.front()));
+    return static_cast<float>(length(front.origin) + light_radius(lens.surfaces.front()));
 }
 
 int HalfTangentBins::bin_of(float half_tangent) const {
@@ -102,7 +106,7 @@ FilmRings::FilmRings(const LensSystem& lens, double film_radius)
     : film_radius(film_radius),
       film_distance(lens.film_distance),
       film_index(lens.indices(lens.wavelength_nm).back()),
-      rear_reach(reach_of(lens.surfaces.back())) {}
+      rear_reach(light_radius(lens.surfaces.back())) {}
 
 TargetRectangle<double> FilmRings::all_targets(int ring) const {
     const double r = radius_of(ring);
@@ -145,15 +149,14 @@ FilmCells::FilmCells(const LensSystem& lens, double film_radius)
       film_index(static_cast<float>(lens.indices(lens.wavelength_nm).back())) {
     const auto corner = static_cast<float>(-film_radius), cells = 1 / cell_size;
     grid = {{corner, corner}, {cells, cells}};
-    // Between the last surface and the plane z = 0, a ray covers at most this fraction (`share`) of its distance to the
-    // film.
+    // Between the last surface and the plane z = 0, a ray covers at most this fraction of its distance to the film.
     const Surface& last = lens.surfaces.back();
     Affine<double> rear{};  // a surface that is not displaced lies at the origin
     if (to_scene.entry) rear = inverse_motion(*to_scene.entry) * surface_frames(lens).surfaces.back();
-    const double rim = last.clear_semi_diameter, beside = hypotenuse(rear.origin.x, rear.origin.y) + reach_of(last);
+    const double rim = last.clear_semi_diameter, radius = hypotenuse(rear.origin.x, rear.origin.y) + light_radius(last);
     const double depth = std::fabs(rear.origin.z) + rim_depth(last) + rim * hypotenuse(rear.z.x, rear.z.y);
-    const double share = depth / std::max(lens.film_distance - depth, 0.1 * lens.film_distance);
-    rear_reach = static_cast<float>(beside + share * (beside + film_radius));
+    const double fraction = depth / std::max(lens.film_distance - depth, 0.1 * lens.film_distance);
+    rear_reach = static_cast<float>(radius + fraction * (radius + film_radius));
 }
 
 void FilmCells::start(const TargetRectangle<float>& in, const TargetStratum<float>& stratum, int lane,
@@ -181,7 +184,7 @@ void FilmCells::set_front(Vec3f o, Vec3f d, FoundRay& ray) {
 GhostGrid FilmCells::directions_of(const FoundRays& rays) {
     std::optional<TargetRectangle<float>> all;
     for (const std::vector<FoundRay>& found : rays)
-        for (const FoundRay& ray : found) unite(all, {ray.half_tangents, ray.half_tangents});
+        for (const FoundRay& ray : found) enlarge(all, {ray.half_tangents, ray.half_tangents});
     if (!all || !(all->high.x > all->low.x && all->high.y > all->low.y)) return {{0, 0}, {0, 0}};
     // A margin of half a cell on each side covers the gaps between the rays.
     const auto cells = [](float least, float most) { return (kGhostColumns - 1) / (most - least); };
@@ -190,22 +193,23 @@ GhostGrid FilmCells::directions_of(const FoundRays& rays) {
 }
 
 template <class Map>
-std::vector<FoundRay> EntrancePupilSearch<Map>::along(const LensSystem& lens,
-                                                      const std::vector<Crossing>& crossings) const {
-    const LensSystem round = with_stop_around_blades(lens);
-    LensSystem open = round;
+std::vector<FoundRay> EntrancePupilSearch<Map>::find_rays(const LensSystem& lens,
+                                                          const std::vector<Crossing>& crossings) const {
+    const LensSystem stopped = with_stop_around_blades(lens);
+    LensSystem open = stopped;
     open.stop_semi_diameter = open.stop().clear_semi_diameter;
     Targets targets;
     for (int cell = 0; cell < kCells; ++cell) targets[static_cast<std::size_t>(cell)] = map_.all_targets(cell);
-    targets = around(traced<Map::kFew>(open, crossings, targets), targets);
-    targets = around(traced<Map::kFew>(round, crossings, targets), targets);
-    return traced<Map::kMany>(round, crossings, targets);
+    targets = target_bounds(trace_strata<Map::kCoarseRows>(open, crossings, targets), targets);
+    targets = target_bounds(trace_strata<Map::kCoarseRows>(stopped, crossings, targets), targets);
+    return trace_strata<Map::kFineRows>(stopped, crossings, targets);
 }
 
 template <class Map>
 template <int kStrataRows>
-std::vector<FoundRay> EntrancePupilSearch<Map>::traced(const LensSystem& lens, const std::vector<Crossing>& crossings,
-                                                       const Targets& targets) const {
+std::vector<FoundRay> EntrancePupilSearch<Map>::trace_strata(const LensSystem& lens,
+                                                             const std::vector<Crossing>& crossings,
+                                                             const Targets& targets) const {
     constexpr int kStrataColumns = Map::kColumnsPerRow * kStrataRows, kPerCell = kStrataColumns * kStrataRows;
     constexpr int kCount = kCells * kPerCell;
     static_assert(kCount % PupilTracer::kBlock == 0);
@@ -213,43 +217,44 @@ std::vector<FoundRay> EntrancePupilSearch<Map>::traced(const LensSystem& lens, c
     std::vector<FoundRay> found;
     for (int first = 0; first < kCount; first += PupilTracer::kBlock) {
         PupilTracer::Rays rays;
-        FoundRay looked[PupilTracer::kBlock];
+        FoundRay launched[PupilTracer::kBlock];
         for (int k = 0; k < PupilTracer::kBlock; ++k) {
             const int cell = (first + k) / kPerCell, in_cell = (first + k) % kPerCell;
             const Rectangle& in = targets[static_cast<std::size_t>(cell)];
             const Vec2<Real> size = {(in.high.x - in.low.x) / kStrataColumns, (in.high.y - in.low.y) / kStrataRows};
-            looked[k].film_cell = cell;
-            looked[k].stratum = {static_cast<float>(size.x), static_cast<float>(size.y)};
+            launched[k].film_cell = cell;
+            launched[k].stratum = {static_cast<float>(size.x), static_cast<float>(size.y)};
             map_.start(
                 in, {in_cell % kStrataColumns, in_cell / kStrataColumns, size, static_cast<std::uint32_t>(first + k)},
-                k, rays, looked[k]);
+                k, rays, launched[k]);
         }
         tracer_.trace(back.view(), rays);
         for (int k = 0; k < PupilTracer::kBlock; ++k) {
             if (rays.status[k] != 0) continue;
-            Map::set_front(rays.origin[k], normalized(rays.direction[k]), looked[k]);
-            found.push_back(looked[k]);
+            Map::set_front(rays.origin[k], normalized(rays.direction[k]), launched[k]);
+            found.push_back(launched[k]);
         }
     }
     return found;
 }
 
 template <class Map>
-typename EntrancePupilSearch<Map>::Targets EntrancePupilSearch<Map>::around(const std::vector<FoundRay>& rays,
-                                                                            const Targets& before) {
+typename EntrancePupilSearch<Map>::Targets EntrancePupilSearch<Map>::target_bounds(const std::vector<FoundRay>& rays,
+                                                                                   const Targets& previous) {
     std::vector<std::optional<Rectangle>> own(kCells);
     for (const FoundRay& ray : rays) {
         const auto x = static_cast<Real>(ray.target.x), y = static_cast<Real>(ray.target.y);
+        // A ray's own stratum is half a stratum to each side; one more covers the gaps to its neighbours.
         const Real wide = Real(1.5) * static_cast<Real>(ray.stratum.x),
                    high = Real(1.5) * static_cast<Real>(ray.stratum.y);
-        unite(own[static_cast<std::size_t>(ray.film_cell)],
-              {{x - wide, Map::kMirrored ? 0 : y - high}, {x + wide, y + high}});
+        enlarge(own[static_cast<std::size_t>(ray.film_cell)],
+                {{x - wide, Map::kMirrored ? 0 : y - high}, {x + wide, y + high}});
     }
     const std::vector<std::optional<Rectangle>> all = with_neighbours<Map>(own);
-    Targets around = before;
-    for (std::size_t cell = 0; cell < around.size(); ++cell)
-        if (all[cell]) around[cell] = *all[cell];
-    return around;
+    Targets result = previous;
+    for (std::size_t cell = 0; cell < result.size(); ++cell)
+        if (all[cell]) result[cell] = *all[cell];
+    return result;
 }
 
 template class EntrancePupilSearch<FilmRings>;
@@ -280,8 +285,9 @@ double etendue_of(const std::vector<FoundRay>& rays) {
 
 namespace {
 
-std::vector<FoundRay> rays_of(const PupilView& pupil, const LensView<float>& lens, double film_radius,
-                              double film_distance, const PupilTracer& tracer) {
+/// Rays through the pupil from one azimuth of the film that leave the lens, with half_tangents and front set.
+std::vector<FoundRay> rays_through_pupil(const PupilView& pupil, const LensView<float>& lens, double film_radius,
+                                         double film_distance, const PupilTracer& tracer) {
     constexpr int kBlock = PupilTracer::kBlock, kSide = 8, kPerRing = kSide * kSide, kRings = kGhostBins;
     constexpr int kBlocks = kRings * kPerRing / kBlock;
     static_assert(kBlocks * kBlock == kRings * kPerRing);
@@ -315,7 +321,7 @@ std::vector<FoundRay> rays_of(const PupilView& pupil, const LensView<float>& len
 
 PupilEntries::PupilEntries(const PupilView& pupil, const LensView<float>& lens, double film_radius,
                            double film_distance, const PupilTracer& tracer) {
-    const std::vector<FoundRay> found = rays_of(pupil, lens, film_radius, film_distance, tracer);
+    const std::vector<FoundRay> found = rays_through_pupil(pupil, lens, film_radius, film_distance, tracer);
     directions_ = FilmRings::directions_of({found});
     entries_ = entries_of<FilmRings>(found, directions_);
 }

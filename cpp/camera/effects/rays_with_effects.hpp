@@ -13,7 +13,7 @@ struct NoWavelengths {};
 template <int N, Effects effects>
 using WavelengthsWith = std::conditional_t<effects.have_wavelengths(), SampleWavelengths<N>, NoWavelengths>;
 
-/// Film points from which samples look through the lens: `points[lane]`, mm, and `points.landing`.
+/// Film points from which rays are sent into the lens: PixelPoints or, with diffraction, DiffractedPoints.
 template <int N, Effects effects>
 struct FilmPointsWith : PixelPoints<N> {
     REALCAM_INLINE FilmPointsWith(const CameraView& camera, const SampleBlock<N>& block,
@@ -29,7 +29,8 @@ struct FilmPointsWith<N, effects> : DiffractedPoints<N> {
     }
 };
 
-/// generate_rays_from for a full lens with dispersion or coatings.
+/// generate_rays_from for a full lens with dispersion or coatings. Sets wavelengths.passed, and multiplies the weights
+/// by the lens's transmittance if samples have no wavelengths.
 template <LensKind lens_kind, Effects effects, int N, class Points>
 REALCAM_HD inline void generate_surface_rays(const CameraView& camera, const SampleBlock<N>& block, const Points& film,
                                              [[maybe_unused]] WavelengthsWith<N, effects>& wavelengths,

@@ -5,9 +5,11 @@
 
 namespace REALCAM_NAMESPACE {
 
+// Lights whose images are traced from the light to the film, instead of being hit by chance by pixel samples.
+
 enum class TracedLightKind : std::int32_t { point, sun, triangles };
 
-/// Rectangle in a plane, in the directions of two axes.
+/// Rectangle in a plane, in coordinates `along` and `across` two perpendicular axes.
 struct PlaneRectangle {
     float low_along, high_along, low_across, high_across;
 
@@ -33,7 +35,7 @@ struct TracedLight {
     /// direction `along`, and across.
     PlaneRectangle entries;
     std::int32_t halvings;  ///< the light is sampled with the probability 2^-halvings
-    float probability;
+    float probability;  ///< that probability
 };
 
 /// Lights of a scene whose images are traced from the lights, for one camera. Other lights are found by pixel samples
@@ -41,8 +43,9 @@ struct TracedLight {
 struct TracedLightsView {
     const TracedLight* lights;
     std::int32_t light_count;  ///< 0: no light is traced
-    const std::int32_t* turns;  ///< index of the light of a sample, by the last bits of the sample's index
-    std::int32_t turn_count;  ///< a power of two
+    const std::int32_t* turns;  ///< index in `lights` of the light that a sample is traced from, by the last bits of
+                                ///< the sample's index
+    std::int32_t turn_count;  ///< size of `turns`, a power of two
     const std::int32_t* triangles;  ///< indices of area lights of the scene, light by light
     const float* cdfs;  ///< cumulative probabilities of each light's triangles, one entry more than it has triangles
     std::int32_t triangle_count;

@@ -18,17 +18,18 @@ namespace camera_detail {
 
 namespace {
 
-constexpr double kFarthestPosition = 1e12;  ///< limit of each coordinate, m; as for a scene's bounding box
+constexpr double kMaxPosition_m = 1e12;  ///< limit of each coordinate; as for a scene's bounding box
 
-constexpr double kNearestLook = 1e-9;  ///< least distance of look_at from position, m
+constexpr double kMinLookDistance_m = 1e-9;  ///< least distance of look_at from position
+constexpr double kMinUpSine = 1e-9;  ///< least sine of the angle between the viewing direction and `up`
 
-bool lies_between(double least, double value, double most) {
-    return value >= least && value <= most;
+bool is_between(double low, double value, double high) {
+    return value >= low && value <= high;
 }
 
 bool is_bounded_point(Vec3d v) {
-    const auto in_reach = [](double x) { return std::fabs(x) <= kFarthestPosition; };
-    return in_reach(v.x) && in_reach(v.y) && in_reach(v.z);
+    const auto is_bounded = [](double x) { return std::fabs(x) <= kMaxPosition_m; };
+    return is_bounded(v.x) && is_bounded(v.y) && is_bounded(v.z);
 }
 
 }  // namespace
@@ -40,11 +41,10 @@ void validate(const Film& film) {
     if (film.width < 1 || film.height < 1 || film.width > kMaxResolution || film.height > kMaxResolution)
         throw InputError("the resolution is " + std::to_string(film.width) + " x " + std::to_string(film.height) +
                          " pixels; expected 1 to " + std::to_string(kMaxResolution) + " along each side");
-    if (!lies_between(kSmallestFilm, film.width_mm, kLargestFilm) ||
-        !lies_between(kSmallestFilm, film.height_mm, kLargestFilm))
+    if (!is_between(kMinFilm_mm, film.width_mm, kMaxFilm_mm) || !is_between(kMinFilm_mm, film.height_mm, kMaxFilm_mm))
         throw InputError("the film's width and height must be positive lengths, from 1e-6 to 1e9 mm");
-    if (!lies_between(-kLargestFilm, film.shift_mm.x, kLargestFilm) ||
-        !lies_between(-kLargestFilm, film.shift_mm.y, kLargestFilm))
+    if (!is_between(-kMaxFilm_mm, film.shift_mm.x, kMaxFilm_mm) ||
+        !is_between(-kMaxFilm_mm, film.shift_mm.y, kMaxFilm_mm))
         throw InputError("the film's shift must be two finite lengths of at most 1e9 mm");
 }
 
@@ -52,11 +52,12 @@ void validate(const Pose& pose) {
     using namespace camera_detail;
     if (!is_bounded_point(pose.position_m) || !is_bounded_point(pose.look_at_m))
         throw InputError("the camera's position and look_at must be finite numbers of at most 1e12 m");
-    if (!lies_between(kShortestUp, length(pose.up), kLongestUp))
+    if (!is_between(kMinUp, length(pose.up), kMaxUp))
         throw InputError("the camera's up direction must have a finite length, from 1e-100 to 1e100");
     const Vec3d forward = pose.look_at_m - pose.position_m;
     const double distance = length(forward);
-    if (!(distance > kNearestLook) || !(length(cross(forward, pose.up)) > 1e-9 * distance * length(pose.up)))
+    if (!(distance > kMinLookDistance_m) ||
+        !(length(cross(forward, pose.up)) > kMinUpSine * distance * length(pose.up)))
         throw InputError("the camera must look at a point other than its position, and not along its up direction");
 }
 
@@ -67,9 +68,9 @@ void validate(const std::vector<PoseKey>& motion) {
 void validate(const Camera& camera) {
     using namespace camera_detail;
     validate(camera.film);
-    if (!lies_between(kLeastDial, camera.exposure_time_s, kMostDial))
+    if (!is_between(kMinExposureSetting, camera.exposure_time_s, kMaxExposureSetting))
         throw InputError("the exposure time must be a positive number of seconds, from 1e-37 to 1e38");
-    if (!lies_between(kLeastDial, camera.iso, kMostDial))
+    if (!is_between(kMinExposureSetting, camera.iso, kMaxExposureSetting))
         throw InputError("the ISO number must be positive, from 1e-37 to 1e38");
     if (camera.lens.stop_index() < 0) throw InputError("the camera has no lens; expected a lens with a stop");
     if (const std::string why = film_distance_error(camera.lens); !why.empty()) throw InputError(why);
@@ -78,7 +79,7 @@ void validate(const Camera& camera) {
         throw InputError("the radius of the lens's open stop must be a length of 0 or more");
     if (!(std::fabs(camera.shutter.opens_s) <= kMostSeconds))
         throw InputError("the time at which the shutter opens must lie within 1e9 s");
-    if (!lies_between(0, camera.shutter.readout_time_s, kMostSeconds))
+    if (!is_between(0, camera.shutter.readout_time_s, kMostSeconds))
         throw InputError("the readout time must be a number of seconds from 0 to 1e9");
     validate(camera.pose);
     validate(camera.motion);
@@ -141,7 +142,7 @@ ThickLens thick_lens_of(const LensSystem& lens, const FirstOrder& data) {
     thick.C = static_cast<float>(data.image_index * height.slope);
     thick.D = static_cast<float>(data.image_index * slope.slope);
     // A pupil at infinity is replaced by one 1 km away under the same angle.
-    constexpr double kFar = 1e6;
+    constexpr double kFar = 1e6;  // mm
     const double distance = lens.film_position() - data.exit_pupil_position;
     const bool far = !(std::fabs(distance) < kFar);
     const double tangent = data.exit_pupil_diameter / (2 * std::fabs(distance));
@@ -157,18 +158,18 @@ ThickLens thick_lens_of(const LensSystem& lens, const FirstOrder& data) {
 
 void validate_ideal(const LensSystem& lens, CameraModel model) {
     const FirstOrder data = first_order(lens, lens.wavelength_nm);
-    const std::string which = "the ideal camera models have no place for lens \"" + lens.name + "\": its ";
+    const std::string start = "the ideal camera models cannot represent lens \"" + lens.name + "\": its ";
     if (model == CameraModel::thick_lens) {
         const ThickLens thick = thick_lens_of(lens, data);
-        if (!(std::fabs(thick.exit_pupil_distance) > 0)) throw InputError(which + "exit pupil lies in the film");
+        if (!(std::fabs(thick.exit_pupil_distance) > 0)) throw InputError(start + "exit pupil lies in the film");
         return;
     }
     const ThinLens thin = thin_lens_of(lens, data);
     if (!std::isfinite(data.entrance_pupil_position))
-        throw InputError(which + "entrance pupil lies at infinity; use the thick lens");
+        throw InputError(start + "entrance pupil lies at infinity; use the thick lens");
     if (!std::isfinite(thin.inverse_object_distance) || !(thin.image_distance > 0) ||
         !std::isfinite(thin.image_distance))
-        throw InputError(which + "entrance pupil lies in the plane in focus, or its image in the film");
+        throw InputError(start + "entrance pupil lies in the plane in focus, or its image in the film");
 }
 
 }  // namespace camera_detail
@@ -184,6 +185,7 @@ Pose pose_at(const Camera& camera, double time_s) {
                                    [&](const PoseKey& key) { return key.time_s > time_s; });
     const PoseKey &from = *(next - 1), &to = *next;
     const double share = (time_s - from.time_s) / (to.time_s - from.time_s);
+    // map.z points backward, away from the point looked at.
     const auto distance = [](const Pose& pose) { return length(pose.look_at_m - pose.position_m); };
     const double look_m = (1 - share) * distance(from.pose) + share * distance(to.pose);
     return {map.origin, map.origin - look_m * map.z, map.y};

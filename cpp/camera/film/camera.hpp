@@ -12,12 +12,12 @@
 
 namespace REALCAM_NAMESPACE {
 
-inline constexpr int kMaxResolution = 32768;
+inline constexpr int kMaxResolution = 32768;  ///< largest number of pixels along a side of the film
 
 /// Film or sensor: the light-sensitive rectangle and its pixel grid.
 struct Film {
     double width_mm = 36, height_mm = 24;
-    int width = 960, height = 640;
+    int width = 960, height = 640;  ///< number of pixels
     /// Offset of the film's centre from Pose::position_m, to the right and upwards as seen in the picture.
     Vec2<double> shift_mm = {0, 0};
 
@@ -40,8 +40,8 @@ struct Film {
 /// Position and orientation of the camera in the scene (metres, right-handed, y up).
 struct Pose {
     Vec3d position_m = {0, 0, 0};  ///< centre of the unshifted film (Film::shift_mm is 0)
-    Vec3d look_at_m = {0, 0, -1};
-    Vec3d up = {0, 1, 0};
+    Vec3d look_at_m = {0, 0, -1};  ///< point of the scene on the camera's axis, in front of it
+    Vec3d up = {0, 1, 0};  ///< direction that is upwards in the picture; any length, not along the viewing direction
 
     bool operator==(const Pose&) const = default;
 };
@@ -70,8 +70,8 @@ struct Camera {
     Film film;
     Pose pose;  ///< pose at time 0 if the camera moves
     CameraModel model = CameraModel::full_lens;
-    double exposure_time_s = 1.0 / 125;
-    double iso = 100;
+    double exposure_time_s = 1.0 / 125;  ///< exposure time of each row of pixels
+    double iso = 100;  ///< sensitivity: 10 / iso lux seconds become middle grey
     Shutter shutter;
     std::vector<PoseKey> motion;  ///< keyframes in increasing order of time; empty: the camera does not move
 
@@ -85,13 +85,11 @@ struct Camera {
 namespace camera_detail {
 
 // Limits of valid parameters. Beyond them, ray coordinates would leave the range of float32.
-inline constexpr double kSmallestFilm = 1e-6, kLargestFilm = 1e9;  ///< width and height, mm; from a few atoms up to
-                                                                   ///< kLongest
+inline constexpr double kMinFilm_mm = 1e-6, kMaxFilm_mm = 1e9;  ///< width and height; from a few atoms up to kLongest
 
-inline constexpr double kShortestUp = 1e-100, kLongestUp = 1e100;  ///< length of Pose::up; the squares of both limits
-                                                                   ///< are finite
+inline constexpr double kMinUp = 1e-100, kMaxUp = 1e100;  ///< length of Pose::up; the squares of both limits are finite
 /// Exposure time, s, and ISO: both, and the exposure of middle grey, 10 / ISO, are normal float32 numbers.
-inline constexpr double kLeastDial = 1e-37, kMostDial = 1e38;
+inline constexpr double kMinExposureSetting = 1e-37, kMaxExposureSetting = 1e38;
 
 }  // namespace camera_detail
 
@@ -109,17 +107,20 @@ void validate(const Camera& camera);
 
 namespace camera_detail {
 
+/// Unit vectors of the camera's axes, in the scene: x, y and z of the lens.
 struct Axes {
     Vec3d right, up, backward;
 };
 
 Axes axes_of(const Pose& pose);
 
+/// Transform from the camera's axes, with the origin at Pose::position_m, to the scene; metres.
 Affine<double> scene_from_camera(const Pose& pose);
 
+/// Animated transform scene_from_camera of keyframes.
 Motion motion_of(const std::vector<PoseKey>& keys);
 
-/// ThinLens in double precision, mm.
+/// ThinLens in double precision, mm. inverse_object_distance in 1/mm.
 struct IdealLens {
     double image_distance, inverse_object_distance, pupil_radius;
 };
@@ -128,8 +129,10 @@ struct IdealLens {
 /// conjugate to the object plane at focus_distance.
 IdealLens ideal_lens_of(const LensSystem& lens, const FirstOrder& data);
 
+/// ideal_lens_of for the render kernels.
 ThinLens thin_lens_of(const LensSystem& lens, const FirstOrder& data);
 
+/// Paraxial matrix and exit pupil of the lens. An exit pupil at infinity is replaced by one 1 km away.
 ThickLens thick_lens_of(const LensSystem& lens, const FirstOrder& data);
 
 /// Throws InputError if the ideal camera model cannot represent the lens: its pupil lies in the film, at infinity or in
@@ -138,7 +141,7 @@ void validate_ideal(const LensSystem& lens, CameraModel model);
 
 }  // namespace camera_detail
 
-/// Pose of the camera at a time.
+/// Pose of the camera at a time of the scene, s; constant before the first and after the last keyframe.
 Pose pose_at(const Camera& camera, double time_s);
 
 /// Pose::position_m at shutter open.
@@ -157,7 +160,7 @@ bool lies_near(const Camera& camera, Vec3d origin_m);
 /// Throws InputError if the camera's model has no GPU implementation.
 void validate_on_gpu(const Camera& camera);
 
-inline constexpr int kDefaultLongSide = 960;
+inline constexpr int kDefaultLongSide = 960;  ///< default number of pixels along the film's longer side
 
 /// Completes the user's film settings. Pixels are square unless both size and resolution are given.
 /// - Neither: the film of the lens, 960 pixels along its longer side.

@@ -17,23 +17,23 @@ namespace {
 
 using Value = std::optional<double> CameraKey::*;
 
-/// Treatment of a setting at a cut to another lens.
+/// Treatment of a setting at a cut to another lens that has no keys for it.
 enum class AtCut {
-    goes_on,  ///< continues across the cut: a setting of the camera body
-    stays,    ///< keeps the last value of the lens before
-    ends,     ///< is dropped: the next lens has its own
+    continues,   ///< is interpolated across the cut: a setting of the camera body
+    keeps_last,  ///< keeps the last value of the previous lens
+    is_dropped,  ///< has no value: the next lens has its own
 };
 
-/// A setting and the scale in which it is interpolated.
-struct Ring {
+/// A setting of the camera, and how it is interpolated.
+struct Setting {
     Value value;
-    const char* name;
-    double (*scale)(double);
-    double (*from_scale)(double);
+    const char* name;               ///< in messages
+    double (*scale)(double);       ///< from a value to the scale that is interpolated linearly
+    double (*from_scale)(double);  ///< inverse of `scale`
     AtCut at_cut;
 };
 
-double same(double x) {
+double identity(double x) {
     return x;
 }
 
@@ -49,16 +49,16 @@ double exponential(double x) {
     return std::exp(x);
 }
 
-constexpr Ring kRings[] = {
-    {&CameraKey::focus_m, "focus distance", inverse, inverse, AtCut::stays},
-    {&CameraKey::focal_length_mm, "focal length", logarithm, exponential, AtCut::ends},
-    {&CameraKey::f_number, "f-number", logarithm, exponential, AtCut::stays},
-    {&CameraKey::blade_rounding, "rounding of the blades", same, same, AtCut::ends},
-    {&CameraKey::blade_rotation_deg, "rotation of the blades", same, same, AtCut::ends},
-    {&CameraKey::exposure_time_s, "exposure time", logarithm, exponential, AtCut::goes_on},
-    {&CameraKey::iso, "ISO number", logarithm, exponential, AtCut::goes_on},
-    {&CameraKey::film_right_mm, "shift of the film", same, same, AtCut::goes_on},
-    {&CameraKey::film_up_mm, "shift of the film", same, same, AtCut::goes_on},
+constexpr Setting kSettings[] = {
+    {&CameraKey::focus_m, "focus distance", inverse, inverse, AtCut::keeps_last},
+    {&CameraKey::focal_length_mm, "focal length", logarithm, exponential, AtCut::is_dropped},
+    {&CameraKey::f_number, "f-number", logarithm, exponential, AtCut::keeps_last},
+    {&CameraKey::blade_rounding, "rounding of the blades", identity, identity, AtCut::is_dropped},
+    {&CameraKey::blade_rotation_deg, "rotation of the blades", identity, identity, AtCut::is_dropped},
+    {&CameraKey::exposure_time_s, "exposure time", logarithm, exponential, AtCut::continues},
+    {&CameraKey::iso, "ISO number", logarithm, exponential, AtCut::continues},
+    {&CameraKey::film_right_mm, "shift of the film", identity, identity, AtCut::continues},
+    {&CameraKey::film_up_mm, "shift of the film", identity, identity, AtCut::continues},
 };
 
 using Keys = std::span<const CameraKey>;
@@ -77,7 +77,7 @@ std::pair<std::size_t, std::size_t> keys_of_lens(Keys keys, double time_s) {
     return {begin, keys.size()};
 }
 
-/// Keys that have a value of a setting.
+/// Keys that have a value for a setting.
 std::vector<const CameraKey*> keys_with(Keys keys, Value value) {
     std::vector<const CameraKey*> found;
     for (const CameraKey& key : keys)
@@ -85,16 +85,17 @@ std::vector<const CameraKey*> keys_with(Keys keys, Value value) {
     return found;
 }
 
-std::optional<double> value_at(Keys all, const Ring& ring, double time_s) {
+/// Interpolated value of a setting at a time. Returns std::nullopt if no key of the lens in use has one (see AtCut).
+std::optional<double> value_at(Keys all, const Setting& setting, double time_s) {
     const auto [begin, end] =
-        ring.at_cut == AtCut::goes_on ? std::pair(std::size_t{0}, all.size()) : keys_of_lens(all, time_s);
-    auto keys = keys_with(all.subspan(begin, end - begin), ring.value);
-    if (keys.empty() && ring.at_cut == AtCut::stays) {
-        keys = keys_with(all.first(begin), ring.value);
-        if (!keys.empty()) return keys.back()->*ring.value;
+        setting.at_cut == AtCut::continues ? std::pair(std::size_t{0}, all.size()) : keys_of_lens(all, time_s);
+    auto keys = keys_with(all.subspan(begin, end - begin), setting.value);
+    if (keys.empty() && setting.at_cut == AtCut::keeps_last) {
+        keys = keys_with(all.first(begin), setting.value);
+        if (!keys.empty()) return keys.back()->*setting.value;
     }
     if (keys.empty()) return std::nullopt;
-    const auto value = [&](std::size_t i) { return *(keys[i]->*ring.value); };
+    const auto value = [&](std::size_t i) { return *(keys[i]->*setting.value); };
     if (!(time_s > keys.front()->time_s)) return value(0);
     const auto above = std::upper_bound(keys.begin(), keys.end(), time_s,
                                         [](double time, const CameraKey* key) { return time < key->time_s; });
@@ -110,14 +111,14 @@ std::optional<double> value_at(Keys all, const Ring& ring, double time_s) {
     std::vector<double> times, scaled;
     for (std::size_t i = first; i <= last; ++i) {
         times.push_back(keys[i]->time_s);
-        scaled.push_back(ring.scale(value(i)));
+        scaled.push_back(setting.scale(value(i)));
     }
     const CurveEnds ends = is_smooth ? CurveEnds::zero_slope : CurveEnds::free;
-    return ring.from_scale(MonotoneCurve(std::move(times), std::move(scaled), ends).at(time_s));
+    return setting.from_scale(MonotoneCurve(std::move(times), std::move(scaled), ends).at(time_s));
 }
 
 /// f-number to set for a key; std::nullopt leaves the diaphragm unchanged, which is wide open on a newly mounted lens.
-std::optional<double> f_number_wanted(const Camera& camera, const CameraKey& key) {
+std::optional<double> requested_f_number(const Camera& camera, const CameraKey& key) {
     if (key.f_number || !key.lens || camera.lens.is_wide_open()) return key.f_number;
     return f_number_at_infinity(camera.lens);
 }
@@ -126,18 +127,18 @@ std::optional<double> f_number_wanted(const Camera& camera, const CameraKey& key
 
 void validate(const CameraKey& key) {
     if (const std::string why = key_time_error(key.time_s, nullptr); !why.empty()) throw InputError(why);
-    bool says_something = key.lens || key.blades;
-    for (const Ring& ring : kRings) {
-        const std::optional<double> value = key.*ring.value;
-        says_something = says_something || value;
+    bool has_value = key.lens || key.blades;
+    for (const Setting& setting : kSettings) {
+        const std::optional<double> value = key.*setting.value;
+        has_value = has_value || value;
         if (!value) continue;
-        const bool may_be_infinite = ring.value == &CameraKey::focus_m;
-        const bool may_be_negative = ring.scale == same;
+        const bool may_be_infinite = setting.value == &CameraKey::focus_m;
+        const bool may_be_negative = setting.scale == identity;
         if (!(*value > 0 || may_be_negative) || !(std::isfinite(*value) || may_be_infinite))
-            throw InputError(std::string("the ") + ring.name + " must be a " + (may_be_negative ? "" : "positive ") +
+            throw InputError(std::string("the ") + setting.name + " must be a " + (may_be_negative ? "" : "positive ") +
                              "number" + (may_be_infinite ? " of metres, or inf" : ""));
     }
-    if (!says_something)
+    if (!has_value)
         throw InputError(
             "a key of the camera has no value: lens, focus, focal length, f-number, blades, exposure time, ISO or "
             "shift of the film");
@@ -154,11 +155,11 @@ void validate(const std::vector<CameraKey>& keys) {
 
 CameraKey key_at(const std::vector<CameraKey>& keys, double time_s) {
     // A frame's time is a sum, which may differ from a key's time in its last digits.
-    constexpr double kSame_s = 1e-7;
+    constexpr double kTimeTolerance_s = 1e-7;
     for (const CameraKey& key : keys)
-        if (std::fabs(key.time_s - time_s) <= kSame_s) time_s = key.time_s;
+        if (std::fabs(key.time_s - time_s) <= kTimeTolerance_s) time_s = key.time_s;
     CameraKey found{.time_s = time_s};
-    for (const Ring& ring : kRings) found.*ring.value = value_at(keys, ring, time_s);
+    for (const Setting& setting : kSettings) found.*setting.value = value_at(keys, setting, time_s);
     const auto [begin, end] = keys_of_lens(keys, time_s);
     if (begin < end) found.lens = keys[begin].lens;
     for (std::size_t i = begin; i < end; ++i)
@@ -168,7 +169,7 @@ CameraKey key_at(const std::vector<CameraKey>& keys, double time_s) {
 
 Camera with_key(Camera camera, const CameraKey& key) {
     LensSystem& lens = camera.lens;
-    const std::optional<double> f_number = f_number_wanted(camera, key);
+    const std::optional<double> f_number = requested_f_number(camera, key);
     const double focus_before = lens.focus_distance;
     if (key.lens) lens = wide_open(*key.lens);
     Rings rings{{}, key.blades, key.blade_rounding, key.blade_rotation_deg, f_number, key.focal_length_mm.has_value(),
@@ -186,12 +187,12 @@ Camera with_key(Camera camera, const CameraKey& key) {
 
 void check_key(const Camera& camera, const CameraKey& key) {
     const double f_number = f_number_at_infinity(with_key(camera, key).lens);
-    const std::optional<double> wanted = f_number_wanted(camera, key);
+    const std::optional<double> requested = requested_f_number(camera, key);
     constexpr double kRounding = 1e-6;  // relative error of setting the diaphragm
     // Without a focal length, with_key has thrown already.
-    if (!wanted || !key.focal_length_mm || *wanted > (1 - kEngravingError) * (1 - kRounding) * f_number) return;
+    if (!requested || !key.focal_length_mm || *requested > (1 - kEngravingError) * (1 - kRounding) * f_number) return;
     char text[120];
-    std::snprintf(text, sizeof text, "f/%.4g is faster than the lens at %.4g mm, which opens to f/%.4g", *wanted,
+    std::snprintf(text, sizeof text, "f/%.4g is faster than the lens at %.4g mm, which opens to f/%.4g", *requested,
                   *key.focal_length_mm, f_number);
     throw InputError(text);
 }

@@ -28,10 +28,10 @@ struct CameraKey {
     std::optional<double> iso = {};
     CameraKeyInterpolation interpolation = CameraKeyInterpolation::linear;  ///< interpolation from this key on
     std::optional<LensSystem> lens = {};  ///< lens from this key on; before the first key with a lens: the camera's own
-    std::optional<int> blades = {};  ///< from this key on; without a value, this and the following stay as the lens and
-                                     ///< camera have them
+    std::optional<int> blades = {};  ///< number of blades from this key on. Without keys for this and the following
+                                     ///< settings, those of the lens and the camera apply
     std::optional<double> blade_rounding = {}, blade_rotation_deg = {};
-    std::optional<double> film_right_mm = {}, film_up_mm = {};  ///< Film::shift_mm
+    std::optional<double> film_right_mm = {}, film_up_mm = {};  ///< x and y of Film::shift_mm
 
     bool operator==(const CameraKey&) const = default;
 };

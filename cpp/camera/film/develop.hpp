@@ -9,6 +9,9 @@
 
 namespace REALCAM_NAMESPACE {
 
+// Development: from exposures in lux seconds to linear values (1: white), by the ISO, and to 8-bit sRGB display values,
+// by a tone curve.
+
 /// Exposure in lux seconds as stored on the film: clamped to the largest float.
 REALCAM_HD inline float film_exposure(double lux_s) {
     constexpr double kLargest = 3.4028234663852886e38;
@@ -27,10 +30,11 @@ REALCAM_HD inline double sensor_value(double exposure_lux_s, double iso) {
     return 0.018 * iso * exposure_lux_s;
 }
 
+/// Linear display value, 0 to 1, of a screen-linear value (1: white). Negative values and NaN become 0.
 REALCAM_HD inline double apply_tone_curve(ToneCurve curve, double value) {
     if (!(value > 0)) return 0;
     if (curve == ToneCurve::film) {
-        constexpr double knee = 0.3;  // above middle grey, which is unchanged
+        constexpr double knee = 0.3;  // start of the shoulder; above middle grey, which is unchanged
         if (value > knee) value = 1 - (1 - knee) * std::exp(-(value - knee) / (1 - knee));
     }
     return value < 1 ? value : 1;
@@ -53,8 +57,8 @@ T code_of(T value) {
     return 255 * srgb_encoded(std::clamp(value, T(0), T(1)));
 }
 
-/// Tone-mapping table: 8-bit display values of exposures at one ISO (see develop.hpp), found by eight comparisons
-/// instead of a power and an exponential.
+/// Tone-mapping table: maps exposures at one ISO to 8-bit display values by eight comparisons instead of a power and an
+/// exponential. Gives the same values as srgb_code(apply_tone_curve(curve, sensor_value(exposure, iso))).
 class CodeTable {
 public:
     CodeTable(double iso, ToneCurve curve) {
@@ -74,21 +78,21 @@ public:
                 else
                     low = middle + 1;
             }
-            begins_[code] = std::bit_cast<float>(low);
+            first_exposure_[code] = std::bit_cast<float>(low);
         }
     }
 
-    /// Negative exposures and NaN are black.
+    /// 8-bit display value of an exposure. Negative exposures and NaN are black.
     std::uint8_t operator()(float exposure_lux_s) const {
         unsigned code = 0;
         // Branch-free: in a noisy picture every second branch would be mispredicted.
         for (unsigned step = 128; step > 0; step /= 2)
-            code += step * static_cast<unsigned>(exposure_lux_s >= begins_[code + step]);
+            code += step * static_cast<unsigned>(exposure_lux_s >= first_exposure_[code + step]);
         return static_cast<std::uint8_t>(code);
     }
 
 private:
-    float begins_[256] = {};  ///< least exposure of each code except 0, lux seconds
+    float first_exposure_[256] = {};  ///< least exposure of each code except 0, lux seconds
 };
 
 }  // namespace REALCAM_NAMESPACE

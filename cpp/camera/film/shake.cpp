@@ -13,27 +13,30 @@
 namespace realcam {
 namespace {
 
-constexpr int kCosines = 64;  // number for each angle and shift
+constexpr int kCosines = 64;  ///< number of cosines summed for each angle and each shift
 /// Highest frequency, in units of the corner frequency: 4e-4 of the spectrum lie above it.
-constexpr double kHighest = 10;
-constexpr double kMostDegrees = 90, kMostMetres = 1e6, kMostHertz = 1e4;
+constexpr double kMaxFrequency = 10;
+/// Limits of valid parameters.
+constexpr double kMaxDegrees = 90, kMaxMetres = 1e6, kMaxHertz = 1e4;
 
-/// Three independent Gaussian processes of variance 1.
-class DrawnCurves {
+/// Three independent Gaussian processes of variance 1 as functions of time, with the spectrum of Shake.
+class RandomCurves {
 public:
-    DrawnCurves(double corner_hz, std::uint32_t seed, std::uint32_t first_stream) {
-        constexpr double kTurn = 2 * std::numbers::pi;
+    /// `first_stream`: index of the first curve's random stream; the other two have the next ones.
+    RandomCurves(double corner_hz, std::uint32_t seed, std::uint32_t first_stream) {
+        constexpr double kTwoPi = 2 * std::numbers::pi;
         for (std::uint32_t axis = 0; axis < 3; ++axis) {
             for (std::uint32_t k = 0; k < kCosines; ++k) {
                 const std::uint32_t stream = hash32((first_stream + axis) * 2 * kCosines + 2 * k, seed);
                 // Each cosine has the same share of the spectrum and a random frequency in it, so that the sum does not
                 // repeat.
-                const double frequency = corner_hz * frequency_below((k + unit(stream)) / kCosines);
-                cosines_[axis][k] = {kTurn * frequency, kTurn * unit(hash32(stream))};
+                const double frequency = corner_hz * frequency_quantile((k + unit(stream)) / kCosines);
+                cosines_[axis][k] = {kTwoPi * frequency, kTwoPi * unit(hash32(stream))};
             }
         }
     }
 
+    /// Values of the three curves.
     Vec3d at(double time_s) const {
         std::array<double, 3> sums{};
         for (std::size_t axis = 0; axis < 3; ++axis)
@@ -48,21 +51,23 @@ private:
         double radians_per_s, phase;
     };
 
+    /// Random number between 0 and 1, exclusive.
     static double unit(std::uint32_t bits) { return (bits + 0.5) * 0x1p-32; }
 
-    /// Frequency, in units of the corner frequency, below which a share of the spectrum up to kHighest lies. The
-    /// spectrum's integral is 2 / pi (atan x + x / (1 + x^2)).
-    static double frequency_below(double share) {
-        const auto below = [](double x) { return 2 / std::numbers::pi * (std::atan(x) + x / (1 + x * x)); };
-        const double all = below(kHighest);
-        const auto excess = [&](double x) { return below(x) - share * all; };
-        return find_root(excess, 0.0, excess(0), kHighest, excess(kHighest), 1e-14).at;
+    /// Frequency, in units of the corner frequency, below which a fraction of the spectrum's power up to kMaxFrequency
+    /// lies. The spectrum's integral is 2 / pi (atan x + x / (1 + x^2)).
+    static double frequency_quantile(double fraction) {
+        const auto integral = [](double x) { return 2 / std::numbers::pi * (std::atan(x) + x / (1 + x * x)); };
+        const double all = integral(kMaxFrequency);
+        const auto excess = [&](double x) { return integral(x) - fraction * all; };
+        return find_root(excess, 0.0, excess(0), kMaxFrequency, excess(kMaxFrequency), 1e-14).at;
     }
 
     std::array<std::array<Cosine, kCosines>, 3> cosines_;
 };
 
-ShakeKey on_curve(const std::vector<ShakeKey>& curve, double time_s) {
+/// Displacement on a measured curve at a time; zero if the curve is empty.
+ShakeKey curve_at(const std::vector<ShakeKey>& curve, double time_s) {
     if (curve.empty()) return {time_s, {}, {}};
     const auto next = std::upper_bound(curve.begin(), curve.end(), time_s,
                                        [](double time, const ShakeKey& key) { return time < key.time_s; });
@@ -71,13 +76,13 @@ ShakeKey on_curve(const std::vector<ShakeKey>& curve, double time_s) {
         return {time_s, end.rotation_deg, end.position_m};
     }
     const ShakeKey& before = next[-1];
-    const double share = (time_s - before.time_s) / (next->time_s - before.time_s);
-    return {time_s, mix(before.rotation_deg, next->rotation_deg, share),
-            mix(before.position_m, next->position_m, share)};
+    const double fraction = (time_s - before.time_s) / (next->time_s - before.time_s);
+    return {time_s, mix(before.rotation_deg, next->rotation_deg, fraction),
+            mix(before.position_m, next->position_m, fraction)};
 }
 
-bool is_within(Vec3d v, double most) {
-    return std::fabs(v.x) <= most && std::fabs(v.y) <= most && std::fabs(v.z) <= most;
+bool is_within(Vec3d v, double limit) {
+    return std::fabs(v.x) <= limit && std::fabs(v.y) <= limit && std::fabs(v.z) <= limit;
 }
 
 }  // namespace
@@ -86,23 +91,23 @@ void validate(const Shake& shake) {
     for (std::size_t k = 0; k < shake.curve.size(); ++k) {
         const ShakeKey& key = shake.curve[k];
         std::string why = key_time_error(key.time_s, k > 0 ? &shake.curve[k - 1].time_s : nullptr);
-        if (why.empty() && !(is_within(key.rotation_deg, kMostDegrees) && is_within(key.position_m, kMostMetres)))
+        if (why.empty() && !(is_within(key.rotation_deg, kMaxDegrees) && is_within(key.position_m, kMaxMetres)))
             why = "angles must lie within 90 degrees, and positions within 1e6 m";
         if (!why.empty()) throw InputError("key " + std::to_string(k) + " of the shake: " + why);
     }
-    if (!(shake.rms_deg >= 0 && shake.rms_deg <= kMostDegrees / 10))
+    if (!(shake.rms_deg >= 0 && shake.rms_deg <= kMaxDegrees / 10))
         throw InputError("the shake's root mean square must be an angle from 0 to 9 degrees");
-    if (!(shake.rms_mm >= 0 && shake.rms_mm <= kMostMetres))
+    if (!(shake.rms_mm >= 0 && shake.rms_mm <= kMaxMetres))
         throw InputError("the shake's root mean square must be a length from 0 to 1e6 mm");
-    if (!(shake.corner_hz > 0 && shake.corner_hz <= kMostHertz))
+    if (!(shake.corner_hz > 0 && shake.corner_hz <= kMaxHertz))
         throw InputError("the shake's corner must be a frequency up to 1e4 Hz");
 }
 
 std::vector<ShakeKey> shake_at(const Shake& shake, const std::vector<double>& times_s) {
-    const DrawnCurves angles(shake.corner_hz, shake.seed, 0), shifts(shake.corner_hz, shake.seed, 3);
+    const RandomCurves angles(shake.corner_hz, shake.seed, 0), shifts(shake.corner_hz, shake.seed, 3);
     std::vector<ShakeKey> found;
     for (const double time_s : times_s) {
-        ShakeKey key = on_curve(shake.curve, time_s);
+        ShakeKey key = curve_at(shake.curve, time_s);
         if (shake.rms_deg > 0) key.rotation_deg = key.rotation_deg + shake.rms_deg * angles.at(time_s);
         if (shake.rms_mm > 0) key.position_m = key.position_m + (0.001 * shake.rms_mm) * shifts.at(time_s);
         found.push_back(key);
@@ -115,10 +120,10 @@ Camera shaken(Camera camera, const Shake& shake) {
     const TimeInterval exposure = camera.exposure();
     // Uniform steps over which a random curve bends little, and all times at which the measured curve and the camera's
     // own motion may have a kink.
-    const double step_s = 0.1 / (kHighest * shake.corner_hz);
-    constexpr int kMostSteps = 1000;
+    const double step_s = 0.1 / (kMaxFrequency * shake.corner_hz);
+    constexpr int kMaxSteps = 1000;
     const int steps = static_cast<int>(
-        std::clamp(std::ceil((exposure.end_s - exposure.begin_s) / step_s), 1.0, static_cast<double>(kMostSteps)));
+        std::clamp(std::ceil((exposure.end_s - exposure.begin_s) / step_s), 1.0, static_cast<double>(kMaxSteps)));
     std::vector<double> times;
     for (int i = 0; i <= steps; ++i) times.push_back(exposure.at(static_cast<double>(i) / steps));
     const auto add = [&](double time_s) {
@@ -130,9 +135,9 @@ Camera shaken(Camera camera, const Shake& shake) {
     std::vector<PoseKey> keys;
     for (const ShakeKey& key : shake_at(shake, times)) {
         const Pose pose = pose_at(camera, key.time_s);
-        Affine<double> off = turn_of(key.rotation_deg);
-        off.origin = key.position_m;
-        const Affine<double> map = camera_detail::scene_from_camera(pose) * off;
+        Affine<double> displacement = turn_of(key.rotation_deg);
+        displacement.origin = key.position_m;
+        const Affine<double> map = camera_detail::scene_from_camera(pose) * displacement;
         const double distance = length(pose.look_at_m - pose.position_m);
         keys.push_back({key.time_s, {map.origin, map.origin - distance * map.z, map.y}});
     }

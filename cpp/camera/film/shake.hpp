@@ -24,10 +24,10 @@ struct ShakeKey {
 struct Shake {
     std::vector<ShakeKey> curve;  ///< measured, in increasing order of time; linear in between, constant before and
                                   ///< after
-    double rms_deg = 0;
-    double rms_mm = 0;
-    double corner_hz = 1;
-    std::uint32_t seed = 0;
+    double rms_deg = 0;  ///< root mean square of each random angle
+    double rms_mm = 0;   ///< root mean square of each random shift
+    double corner_hz = 1;  ///< corner frequency f_c
+    std::uint32_t seed = 0;  ///< of the random shake
 
     bool operator==(const Shake&) const = default;
 
@@ -37,10 +37,11 @@ struct Shake {
 /// Throws InputError if a parameter is invalid.
 void validate(const Shake& shake);
 
-/// Displacements of the camera at these times.
+/// Displacements of the camera at these times of the scene, in the same order. The shake must be valid.
 std::vector<ShakeKey> shake_at(const Shake& shake, const std::vector<double>& times_s);
 
-/// The camera with the shake added to its motion during its exposure; not valid for other times. Throws InputError.
+/// Returns the camera with the shake added to its motion, as keyframes over its exposure; not valid for other times.
+/// Throws InputError if the camera that results is invalid.
 Camera shaken(Camera camera, const Shake& shake);
 
 }  // namespace REALCAM_NAMESPACE

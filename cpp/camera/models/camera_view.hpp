@@ -14,17 +14,18 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Circle of confusion of a paraxial lens, from two rays whose heights are linear in the distance t in front of the
-/// front vertex, mm. The marginal ray from the axial film point through the pupil's rim has the height rim + t *
-/// rim_slope. The chief ray from a film height of 1 mm has the height middle + t * middle_slope, the inverse of the
-/// magnification at t. So the diameter of the disc on the film is 2 |rim| / |middle|.
+/// Circle of confusion (defocus disc) of a paraxial lens, from two rays whose heights are linear in the distance t in
+/// front of the front vertex, mm. The marginal ray from the axial film point through the pupil's rim has the height rim
+/// + t * rim_slope. The chief ray from a film height of 1 mm has the height middle + t * middle_slope, the inverse of
+/// the magnification at t. So the diameter of the disc on the film is 2 |rim| / |middle|.
 struct CircleOfConfusion {
-    float rim, rim_slope;
-    float middle, middle_slope;
+    float rim, rim_slope;  ///< height at t = 0 and slope of the marginal ray; mm and mm per mm
+    float middle, middle_slope;  ///< height at t = 0 and slope of the chief ray, per mm of film height
     float least_middle;  ///< least height of the chief ray: that at one pupil radius from the pupil
 };
 
-/// Diameter on the film, mm. `distance_mm`: from the front vertex along the axis towards the scene; may be infinite.
+/// Diameter of the defocus disc on the film, mm, of an object point. `distance_mm`: its distance from the front vertex
+/// along the axis towards the scene; may be infinite.
 REALCAM_INLINE float circle_diameter(const CircleOfConfusion& circle, float distance_mm) {
     if (!(distance_mm < 1e30f)) return 2.0f * std::fabs(circle.rim_slope / circle.middle_slope);
     const float rim = circle.rim + distance_mm * circle.rim_slope;
@@ -34,12 +35,12 @@ REALCAM_INLINE float circle_diameter(const CircleOfConfusion& circle, float dist
 
 /// Camera models in order of increasing accuracy. All have the same film, focus and exposure on the axis.
 enum class CameraModel : int {
-    pinhole,     ///< centre of the entrance pupil: everything is sharp
-    thin_lens,   ///< ideal lens in the entrance pupil: defocus and cos^4 falloff only
+    pinhole,  ///< centre of the entrance pupil: everything is sharp
+    thin_lens,  ///< ideal lens in the entrance pupil: defocus and cos^4 falloff only
     mapped_lens,  ///< thin_lens with the real lens's distortion and vignetting
     thick_lens,  ///< paraxial matrix of the real lens, with its two pupils and its real film distance
-    polynomial_lens,   ///< polynomials fitted to the rays of the real lens
-    full_lens,         ///< every surface of the prescription
+    polynomial_lens,  ///< polynomials fitted to the rays of the real lens
+    full_lens,  ///< every surface of the prescription
     full_lens_double,  ///< full_lens in double precision, for comparison; CPU only
 };
 
@@ -51,70 +52,74 @@ REALCAM_INLINE bool has_real_pupil(CameraModel model) {
 
 /// Ideal lens in the entrance pupil. Lengths in mm.
 struct ThinLens {
-    float image_distance;           ///< from film to pupil; gives the real lens's magnification
+    float image_distance;  ///< from film to pupil; gives the real lens's magnification
     float inverse_object_distance;  ///< from pupil to the plane in focus; 0 at infinity
     float pupil_radius;
 };
 
 /// Paraxial lens as a matrix from the last vertex back to the front one: h = D h' - B u', u = -C h' + A u'.
 struct ThickLens {
-    float A, B, C, D;
+    float A, B, C, D;  ///< elements of the matrix from front to last vertex, scaled by the film's refractive index
     float exit_pupil_distance;  ///< film to exit pupil, positive towards the scene, mm
-    float exit_pupil_radius;
+    float exit_pupil_radius;  ///< mm
 };
 
 /// Pose of the camera in render space.
 struct CameraPlacement {
-    Vec3f position;             ///< centre of the unshifted film, metres
+    Vec3f position;  ///< centre of the unshifted film, metres
     Vec3f right, up, backward;  ///< unit: x, y, z of the lens frame
 };
 
-/// Parameters of a camera for the render kernels. The base CameraPlacement is that at the start of the exposure.
+/// Parameters of a camera for the render kernels. The base CameraPlacement is the pose at the start of the exposure;
+/// the base EffectViews holds the tables of the effects.
 struct CameraView : CameraPlacement, EffectViews {
     CameraModel model;
-    int width, height;                    ///< pixels
+    int width, height;  ///< size of the picture, pixels
     float film_half_width, film_half_height;  ///< mm
-    Vec2f film_middle;                        ///< film centre, from the axis, mm
-    float film_distance;                  ///< last vertex to film, mm
+    Vec2f film_middle;  ///< film centre, from the axis, mm
+    float film_distance;  ///< last vertex to film, mm
     float film_curvature;  ///< see FilmSurface; 0 for a rotationally symmetric lens, whose film is flat
-    float axis_irradiance;  ///< of the real lens for unit radiance; used by the ideal models
-    float front_vertex_m;   ///< film to front vertex, metres
-    float pupil_m;          ///< film to entrance pupil, metres
+    float axis_irradiance;  ///< irradiance on the axis behind the real lens for unit radiance; used by the ideal models
+    float front_vertex_m;  ///< film to front vertex, metres
+    float pupil_m;  ///< film to entrance pupil, metres
     ThinLens thin;
     ThickLens thick;
     LensMapView map;  ///< model mapped_lens; else without nodes
     CircleOfConfusion circle;
     PupilView pupil;  ///< centred, rotationally symmetric lenses
     PupilGridView pupil_grid;  ///< all other lenses; else without nodes
-    TracedLightsView traced_lights;
-    PixelPupils pixel_pupils;
-    LensView<float> lens;
+    TracedLightsView traced_lights;  ///< set by the session; empty if no light is traced
+    PixelPupils pixel_pupils;  ///< PupilSampling::pixel; else null
+    LensView<float> lens;  ///< for light from the film to the scene
     const LensView<double>* lens_in_double;  ///< model full_lens_double; else null
-    LensPolynomialView polynomial;           ///< model polynomial_lens; else without coefficients
+    LensPolynomialView polynomial;  ///< model polynomial_lens; else without coefficients
     // Times as fractions of the exposure; 0 if nothing moves during it:
-    float row_time;      ///< delay of each row of pixels after the row above
+    float row_time;  ///< delay of each row of pixels after the row above
     float exposed_time;  ///< exposure time of each row
     const CameraPlacement* keys;  ///< keyframes of a moving camera at uniformly spaced times; positions relative to the
                                   ///< base placement
     int key_count;
 };
 
-/// True if the camera needs the code for LensKind::any.
+/// True if the camera needs the code for LensKind::any, the kind of lenses of any shape.
 REALCAM_INLINE bool has_any_lens(const CameraView& camera) {
     return camera.pupil_grid.nodes || camera.lens.kind == LensKind::any;
 }
 
-/// Camera at a time of the exposure. The axes are interpolated linearly between two keys and re-orthonormalised.
+/// Pose of the camera at a time, as a fraction of the exposure. The axes are interpolated linearly between two keys and
+/// re-orthonormalised.
 REALCAM_INLINE CameraPlacement camera_at(const CameraView& camera, float time) {
     if (camera.key_count == 0) return camera;
-    const KeyInterval at = key_interval(time, camera.key_count);
-    const CameraPlacement &a = camera.keys[at.first], &b = camera.keys[at.first + 1];
-    const Vec3f backward = normalized(mix(a.backward, b.backward, at.share)), right = mix(a.right, b.right, at.share);
-    const Vec3f across = normalized(right - dot(right, backward) * backward);
-    return {camera.position + mix(a.position, b.position, at.share), across, cross(backward, across), backward};
+    const KeyInterval interval = key_interval(time, camera.key_count);
+    const CameraPlacement &a = camera.keys[interval.first], &b = camera.keys[interval.first + 1];
+    const Vec3f backward = normalized(mix(a.backward, b.backward, interval.share)),
+                right = mix(a.right, b.right, interval.share);
+    const Vec3f unit_right = normalized(right - dot(right, backward) * backward);
+    return {camera.position + mix(a.position, b.position, interval.share), unit_right, cross(backward, unit_right),
+            backward};
 }
 
-/// Depth of a point: its distance from the film along the camera's axis, metres.
+/// Depth of a point of render space: its distance from the film along the camera's axis, metres.
 REALCAM_INLINE float depth_from(const CameraPlacement& camera, Vec3f point) {
     return dot(camera.position - point, camera.backward);
 }
@@ -124,7 +129,8 @@ REALCAM_INLINE Vec3f front_vertex(const CameraPlacement& camera, float front_ver
     return camera.position - front_vertex_m * camera.backward;
 }
 
-/// Returns the view with every array replaced by a copy; `copy(pointer, count)` returns the address of the copy.
+/// Returns the view with every array replaced by a copy, for example in the memory of a GPU; `copy(pointer, count)`
+/// copies `count` elements and returns the address of the copy.
 template <class Copy>
 CameraView with_copied_arrays(CameraView view, Copy&& copy) {
     const auto move = [&](auto*& array, int count) {

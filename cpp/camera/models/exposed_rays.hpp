@@ -6,7 +6,8 @@ namespace REALCAM_NAMESPACE {
 // Rays of an exposure during which something moves: each has its own time, as a fraction of the exposure, and starts
 // from the camera's pose at that time.
 
-/// `within(lane)`: time within the exposure of the lane's row, from 0 to 1.
+/// Sets the time of each lane's ray, as a fraction of the exposure. `within(lane)`: time within the exposure of the
+/// lane's row of pixels, from 0 to 1.
 template <int N, class Within>
 REALCAM_INLINE void set_times(const CameraView& camera, const SampleBlock<N>& block, float (&times)[N],
                               Within&& within) {
@@ -19,13 +20,13 @@ template <int N>
 REALCAM_INLINE void move_rays(const CameraView& camera, const float (&times)[N], CameraRays<N>& rays) {
     if (camera.key_count == 0) return;
     for (int i = 0; i < N; ++i) {
-        const CameraPlacement then = camera_at(camera, times[i]);
-        const auto turned = [&](Vec3f v) {
-            return dot(v, camera.right) * then.right + dot(v, camera.up) * then.up +
-                   dot(v, camera.backward) * then.backward;
+        const CameraPlacement moved = camera_at(camera, times[i]);
+        const auto rotated = [&](Vec3f v) {
+            return dot(v, camera.right) * moved.right + dot(v, camera.up) * moved.up +
+                   dot(v, camera.backward) * moved.backward;
         };
-        rays.origin.set(i, then.position + turned(rays.origin[i] - camera.position));
-        rays.direction.set(i, turned(rays.direction[i]));
+        rays.origin.set(i, moved.position + rotated(rays.origin[i] - camera.position));
+        rays.direction.set(i, rotated(rays.direction[i]));
     }
 }
 

@@ -6,9 +6,11 @@
 
 namespace REALCAM_NAMESPACE {
 
+// Camera rays: film and pupil sampling for all camera models, and the trace through the lens (generate_rays).
+
 /// A ray from the film into the lens.
 struct FilmRaySample {
-    Vec3f origin;  ///< mm
+    Vec3f origin;  ///< point of the film's surface, mm, in the frame in which the trace towards the scene begins
     Vec3f direction;  ///< optical direction: length is the refractive index
     float weight;  ///< see PupilSample::weight
 };
@@ -18,7 +20,8 @@ REALCAM_INLINE FilmSurface<float> film_surface(const CameraView& camera) {
     return {camera.film_distance, camera.film_curvature};
 }
 
-/// Samples a ray from a film point (mm) into the lens. `lens_kind`: LensKind::any, or the lens's own kind.
+/// Samples a ray from a film point (mm) into the lens. `u`: random numbers that select the pupil point, each in [0, 1).
+/// `lens_kind`: LensKind::any, or the lens's own kind. The weight is 0 if no light reaches the film point.
 template <LensKind lens_kind>
 REALCAM_INLINE FilmRaySample sample_film_ray(const CameraView& camera, Vec2f film, Vec2f u) {
     if constexpr (lens_kind == LensKind::any) {
@@ -32,7 +35,7 @@ REALCAM_INLINE FilmRaySample sample_film_ray(const CameraView& camera, Vec2f fil
     return {{film.x, film.y, camera.film_distance}, pupil.direction, pupil.weight};
 }
 
-/// Intersection of a ray that has left the lens with the film, mm.
+/// Intersection of a ray that has left the lens towards the film with the film, mm.
 template <LensKind lens_kind>
 REALCAM_INLINE Vec2f landing_on_film(const CameraView& camera, Vec3f origin, Vec3f direction) {
     if constexpr (lens_kind == LensKind::any) return film_surface(camera).landing(origin, direction);
@@ -50,7 +53,8 @@ REALCAM_INLINE float irradiance_of_flux(const CameraView& camera, Vec2f film) {
     return 1.0f / pixel_area;
 }
 
-/// Density of a direction sampled by sample_film_ray, per unit area of optical direction cosines.
+/// Density of a direction sampled by sample_film_ray at a film point (mm), per unit area of optical direction cosines.
+/// `direction`: optical direction at the film.
 REALCAM_INLINE float camera_pupil_pdf(const CameraView& camera, Vec2f film, Vec3f direction) {
     if (camera.pupil_grid.nodes) return pupil_pdf(camera.pupil_grid, film.x, film.y, direction.x, direction.y);
     return pupil_pdf(camera.pupil, film.x, film.y, direction.x, direction.y);
@@ -59,27 +63,29 @@ REALCAM_INLINE float camera_pupil_pdf(const CameraView& camera, Vec2f film, Vec3
 /// Rays in render space: scene axes, metres.
 template <int N>
 struct CameraRays {
-    Vec3Lanes<float, N> origin, direction;
+    Vec3Lanes<float, N> origin, direction;  ///< metres; unit vector
     Lanes<float, N> weight;  ///< irradiance of the sample on the film per unit radiance
     Lanes<std::int32_t, N> sampled;  ///< 1 if a ray was sent into the lens
     Lanes<std::int32_t, N> passed;  ///< 1 if it left the lens
 };
 
-/// Film point of a sample, mm (source paper, equation 1). The lens inverts the picture, so the film's axes are opposite
-/// to the picture's.
+/// Film point of a sample, mm. `offset`: position in the pixel, each coordinate in [0, 1). The lens inverts the
+/// picture, so the film's axes are opposite to the picture's.
 REALCAM_INLINE Vec2f film_point(const CameraView& camera, std::int32_t column, std::int32_t row, Vec2f offset) {
     const float x = quotient(2.0f * (static_cast<float>(column) + offset.x), static_cast<float>(camera.width)) - 1.0f;
     const float y = quotient(2.0f * (static_cast<float>(row) + offset.y), static_cast<float>(camera.height)) - 1.0f;
     return {camera.film_middle.x - x * camera.film_half_width, camera.film_middle.y + y * camera.film_half_height};
 }
 
+/// Ray that has left the lens, in the lens frame.
 struct LensFrameRay {
     Vec3f origin_mm;  ///< z relative to the front vertex
-    Vec3f direction;
-    float weight;
+    Vec3f direction;  ///< unit vector
+    float weight;  ///< see CameraRays::weight
 };
 
-/// Ray of the ideal lens from the pupil point P towards the conjugate point in focus. Off the axis, irradiance falls
+/// Ray of the ideal thin lens from a pupil point towards the point in focus that is conjugate to a film point (mm).
+/// `u`: random numbers that select the pupil point; `pupil_radius`: mm, 0 for a pinhole. Off the axis, irradiance falls
 /// off as cos^4.
 REALCAM_INLINE LensFrameRay thin_lens_ray(const CameraView& camera, Vec2f film, Vec2f u, float pupil_radius) {
     const Vec2f disc = sample_disc(u);
@@ -91,7 +97,7 @@ REALCAM_INLINE LensFrameRay thin_lens_ray(const CameraView& camera, Vec2f film, 
     return {{p.x, p.y, pupil_z}, direction, camera.axis_irradiance * cosine2 * cosine2};
 }
 
-/// thin_lens_ray with the real lens's distortion and vignetting.
+/// thin_lens_ray with the real lens's distortion and vignetting: the camera model mapped_lens.
 REALCAM_INLINE LensFrameRay mapped_lens_ray(const CameraView& camera, Vec2f film, Vec2f u) {
     const LensMapNode map = lens_map_at(camera.map, film);
     LensFrameRay ray = thin_lens_ray(camera, {map.scale * film.x, map.scale * film.y}, u, camera.thin.pupil_radius);
@@ -99,6 +105,8 @@ REALCAM_INLINE LensFrameRay mapped_lens_ray(const CameraView& camera, Vec2f film
     return ray;
 }
 
+/// Ray of the paraxial thick lens: from a film point (mm) through a point of the exit pupil, selected by the random
+/// numbers `u`, to the front vertex plane.
 REALCAM_INLINE LensFrameRay thick_lens_ray(const CameraView& camera, Vec2f film, Vec2f u) {
     const ThickLens& lens = camera.thick;
     const Vec2f disc = sample_disc(u);
@@ -114,17 +122,18 @@ REALCAM_INLINE LensFrameRay thick_lens_ray(const CameraView& camera, Vec2f film,
         {front.x, front.y, 0.0f}, normalized(Vec3f{-out.x, -out.y, -1.0f}), camera.axis_irradiance * cosine2 * cosine2};
 }
 
-/// Transforms a ray from the lens frame to render space. Lanes without light get a valid ray of weight 0.
+/// Transforms a ray from the lens frame to render space and stores it in a lane. If `has_light` is false, stores a
+/// valid ray of weight 0 instead.
 template <int N>
 REALCAM_INLINE void set_camera_ray(const CameraView& camera, CameraRays<N>& rays, int lane, LensFrameRay ray,
-                                   bool lit) {
-    const Vec3f o = select(lit, ray.origin_mm, Vec3f{0, 0, 0});
-    const Vec3f d = select(lit, ray.direction, Vec3f{0, 0, -1});
+                                   bool has_light) {
+    const Vec3f o = select(has_light, ray.origin_mm, Vec3f{0, 0, 0});
+    const Vec3f d = select(has_light, ray.direction, Vec3f{0, 0, -1});
     const float z = 0.001f * o.z - camera.front_vertex_m;
     rays.origin.set(lane,
                     camera.position + (0.001f * o.x) * camera.right + (0.001f * o.y) * camera.up + z * camera.backward);
     rays.direction.set(lane, d.x * camera.right + d.y * camera.up + d.z * camera.backward);
-    rays.weight[lane] = select(lit, ray.weight, 0.0f);
+    rays.weight[lane] = select(has_light, ray.weight, 0.0f);
 }
 
 /// Film point of each sample, uniform in its pixel.
@@ -134,13 +143,13 @@ struct PixelPoints {
     const SampleBlock<N>& block;
     LaneNumbers<N> u;
 
-    REALCAM_INLINE PixelPoints(const CameraView& of, const SampleBlock<N>& samples)
-        : camera(of), block(samples), u(samples, dimension::film) {}
+    REALCAM_INLINE PixelPoints(const CameraView& view, const SampleBlock<N>& samples)
+        : camera(view), block(samples), u(samples, dimension::film) {}
     REALCAM_INLINE Vec2f operator[](int lane) const {
         return film_point(camera, block.column[lane], block.row[lane], u[lane]);
     }
-    /// Film point reached by light of a wavelength that geometrical optics brings to `at`: without diffraction, `at`
-    /// itself.
+    /// Film point that light of a lane's sample and of a wavelength reaches if geometrical optics brings it to `at`:
+    /// without diffraction, `at` itself.
     REALCAM_INLINE Vec2f landing(int, Vec2f at, float) const { return at; }
 };
 
@@ -156,7 +165,7 @@ REALCAM_HD inline void generate_ideal_rays(const CameraView& camera, const Sampl
     }
 }
 
-/// Marks used lanes with a positive weight as sampled, and all others as vignetted.
+/// Marks used lanes with a positive weight as sampled, and the rays of all other lanes as vignetted.
 template <class T, int N>
 REALCAM_INLINE void mark_sampled(const SampleBlock<N>& block, LensRays<T, N>& inside, CameraRays<N>& rays) {
     REALCAM_LANES
@@ -166,7 +175,8 @@ REALCAM_INLINE void mark_sampled(const SampleBlock<N>& block, LensRays<T, N>& in
     }
 }
 
-/// Starts rays at film points towards sampled points of the pupil, before the last surface.
+/// Starts rays at film points towards sampled points of the pupil: sets the rays `inside` the lens, before the last
+/// surface, and the weights of `rays`. `u`: random numbers that select the pupil points.
 template <LensKind lens_kind, class T, int N, class Points>
 REALCAM_INLINE void start_lens_rays(const CameraView& camera, const SampleBlock<N>& block, const Points& film,
                                     const LaneNumbers<N>& u, LensRays<T, N>& inside, CameraRays<N>& rays) {
@@ -196,6 +206,7 @@ REALCAM_INLINE void set_camera_rays(const CameraView& camera, const LensRays<T, 
     }
 }
 
+/// Generates rays of a full lens, surface by surface.
 template <LensKind lens_kind, int N, class Points>
 REALCAM_HD inline void generate_lens_rays(const CameraView& camera, const SampleBlock<N>& block, const Points& film,
                                           const LaneNumbers<N>& u, CameraRays<N>& rays) {
@@ -205,6 +216,7 @@ REALCAM_HD inline void generate_lens_rays(const CameraView& camera, const Sample
     set_camera_rays(camera, inside, rays);
 }
 
+/// generate_lens_rays in double precision, for CameraModel::full_lens_double.
 template <int N, class Points>
 REALCAM_HD inline void generate_lens_rays_in_double(const CameraView& camera, const SampleBlock<N>& block,
                                                     const Points& film, const LaneNumbers<N>& u, CameraRays<N>& rays) {
@@ -214,7 +226,8 @@ REALCAM_HD inline void generate_lens_rays_in_double(const CameraView& camera, co
     set_camera_rays(camera, inside, rays);
 }
 
-/// generate_lens_rays for a camera whose pixels learn where light passes the lens (PixelPupil).
+/// generate_lens_rays for a camera whose pixels learn through which cells of the pupil light passes (PixelPupil).
+/// Samples the cells known so far, and records the outcome.
 template <LensKind lens_kind, int N, class Points>
 REALCAM_HD inline void generate_learning_rays(const CameraView& camera, const SampleBlock<N>& block, const Points& film,
                                               const LaneNumbers<N>& numbers, CameraRays<N>& rays) {
@@ -240,7 +253,8 @@ REALCAM_HD inline void generate_learning_rays(const CameraView& camera, const Sa
     }
 }
 
-/// Traces rays through the polynomials, and clips them at the rims of the first and last surface and the stop.
+/// Generates rays of the polynomial lens model: evaluates the polynomials, and clips the rays at the rims of the first
+/// and last surface and the stop.
 template <int N, class Points>
 REALCAM_HD inline void generate_polynomial_rays(const CameraView& camera, const SampleBlock<N>& block,
                                                 const Points& film, const LaneNumbers<N>& u, CameraRays<N>& rays) {
@@ -253,25 +267,24 @@ REALCAM_HD inline void generate_polynomial_rays(const CameraView& camera, const 
         const float distance = camera.film_distance / pupil.direction.z;
         const Vec2f last = {at.x - distance * pupil.direction.x, at.y - distance * pupil.direction.y};
         const LensPolynomialRay ray = evaluate(lens, at, last);
-        const float rest = 1.0f - squared(ray.direction), down = -sqrt_or_zero(rest);
-        const float to_front = (lens.front_rim - lens.plane) / down,
-                    back = distance - lens.last_rim / pupil.direction.z;
+        const float z_squared = 1.0f - squared(ray.direction), z = -sqrt_or_zero(z_squared);
+        const float to_front = (lens.front_rim - lens.plane) / z, back = distance - lens.last_rim / pupil.direction.z;
         const Vec2f rim = {at.x - back * pupil.direction.x, at.y - back * pupil.direction.y};
         const Vec2f front = {ray.position.x + to_front * ray.direction.x, ray.position.y + to_front * ray.direction.y};
         const bool sampled = (block.used[i] != 0) & (pupil.weight > 0.0f);
         const bool passes = sampled & (squared(rim) <= lens.last_radius_squared) & (squared(ray.at_stop) <= 1.0f) &
-                            (rest > 0.0f) & (squared(front) <= lens.front_radius_squared);
+                            (z_squared > 0.0f) & (squared(front) <= lens.front_radius_squared);
         set_camera_ray(
             camera, rays, i,
-            {{ray.position.x, ray.position.y, lens.plane}, {ray.direction.x, ray.direction.y, down}, pupil.weight},
+            {{ray.position.x, ray.position.y, lens.plane}, {ray.direction.x, ray.direction.y, z}, pupil.weight},
             passes);
         rays.sampled[i] = select(sampled, 1, 0);
         rays.passed[i] = select(passes, 1, 0);
     }
 }
 
-/// Samples the pupil as seen from film points and traces the rays through the lens. `film[lane]`: film point of a lane,
-/// mm.
+/// Samples the pupil as seen from given film points and traces the rays through the camera's lens model. `film[lane]`:
+/// film point of a lane, mm. Lanes that are not used, or whose ray is blocked, get a valid ray of weight 0.
 template <LensKind lens_kind, int N, class Points>
 REALCAM_HD inline void generate_rays_from(const CameraView& camera, const SampleBlock<N>& block, const Points& film,
                                           CameraRays<N>& rays) {

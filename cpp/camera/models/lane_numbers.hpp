@@ -7,20 +7,23 @@
 
 namespace REALCAM_NAMESPACE {
 
+// Random numbers of pixel samples: quasi-random sequences by pixel, sample index and dimension pair.
+
 /// Samples of a block of lanes. Unused lanes have used = 0 and otherwise valid numbers.
 template <int N>
 struct SampleBlock {
     Lanes<std::int32_t, N> column,
         row;  ///< pixel; row 0 at the top of the picture
-    Lanes<std::int32_t, N> used;
+    Lanes<std::int32_t, N> used;  ///< 1 if the lane holds a sample
     Lanes<std::uint32_t, N> stream;  ///< pixel_stream() of the pixel
-    Lanes<std::uint32_t, N> sample;
+    Lanes<std::uint32_t, N> sample;  ///< index of the sample in its pixel
 
+    /// Two random numbers in [0, 1) of a lane's sample.
     REALCAM_INLINE Vec2f random(int lane, std::uint32_t dimension) const {
         return dimension < kJointPairs ? sample_joint_2d(stream[lane], sample[lane], dimension)
                                        : sample_2d(stream[lane], sample[lane], dimension);
     }
-    /// Hashed random bits of a sample, independent of the sequences.
+    /// Hashed random bits of a lane's sample, independent of the sequences. `salt`: selects one of many such numbers.
     REALCAM_INLINE std::uint32_t bits(int lane, std::uint32_t salt) const {
         return hash32(stream[lane] ^ sample[lane], salt);
     }
@@ -31,8 +34,8 @@ REALCAM_INLINE std::uint32_t pixel_stream(std::int32_t pixel, std::uint32_t seed
     return hash32(static_cast<std::uint32_t>(pixel), seed);
 }
 
-/// Dimension pairs of the random sequence. Those below kJointPairs, all up to the first bounce, form one joint
-/// sequence.
+/// Indices of the dimension pairs of the random sequence. Pairs below kJointPairs, all up to the first bounce, form one
+/// joint sequence. `light` and `scatter` are relative to the first pair of a bounce.
 namespace dimension {
 inline constexpr std::uint32_t film = 0, pupil = 1, first_bounce = 2, per_bounce = 2, light = 0, scatter = 1;
 /// Dimension pair of the time, unused by most samples. Its second number selects the wavelength.
@@ -56,11 +59,11 @@ class LaneNumbers {
 public:
     REALCAM_INLINE LaneNumbers(const SampleBlock<N>& block, std::uint32_t dimension) {
         if constexpr (N > 1)
-            draw(block.stream, block.sample, N, dimension, kept_);
+            draw(block.stream, block.sample, N, dimension, values_);
         else
-            kept_.set(0, block.random(0, dimension));
+            values_.set(0, block.random(0, dimension));
     }
-    /// Draws numbers for the lanes `lane_of(i)`, i from 0 to `slots` - 1.
+    /// Draws numbers for a selection of lanes: element i, from 0 to `slots` - 1, belongs to the lane `lane_of(i)`.
     template <class LaneOf>
     REALCAM_INLINE LaneNumbers(const SampleBlock<N>& block, std::uint32_t dimension, int slots, LaneOf&& lane_of) {
         Lanes<std::uint32_t, N> stream, sample;
@@ -69,14 +72,16 @@ public:
             stream[i] = block.stream[lane_of(i)];
             sample[i] = block.sample[lane_of(i)];
         }
-        draw(stream, sample, slots, dimension, kept_);
+        draw(stream, sample, slots, dimension, values_);
     }
-    REALCAM_INLINE Vec2f operator[](int slot) const { return kept_[slot]; }
+    /// Two random numbers in [0, 1) of a lane or, for a selection of lanes, of an element.
+    REALCAM_INLINE Vec2f operator[](int slot) const { return values_[slot]; }
 
 private:
     using Integers = std::uint32_t[N];
 
-    /// The code for a dimension of the joint sequence, and for few or many samples, is selected outside the loops.
+    /// Sets `numbers` for `slots` samples. The code for a dimension of the joint sequence, and for few or many samples,
+    /// is selected outside the loops.
     [[gnu::noinline]] static void draw(const Integers& stream, const Integers& sample, int slots,
                                        std::uint32_t dimension, Vec2Lanes<float, N>& numbers) {
         switch (dimension) {
@@ -107,7 +112,7 @@ private:
             draw_with(std::integral_constant<int, 32>{});
     }
 
-    Vec2Lanes<float, N> kept_;
+    Vec2Lanes<float, N> values_;
 };
 
 }  // namespace REALCAM_NAMESPACE

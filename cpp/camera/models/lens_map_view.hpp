@@ -5,7 +5,8 @@ namespace REALCAM_NAMESPACE {
 
 /// Distortion and vignetting of the real lens at one film radius.
 struct LensMapNode {
-    float scale;  ///< film radius at which a thin lens sees the point that the real lens sees here, over this radius
+    float scale;  ///< film radius at which a thin lens images the point that the real lens images at this node's
+                  ///< radius, over the latter
     float light;  ///< irradiance of the real lens for uniform unit radiance
 };
 
@@ -16,6 +17,7 @@ struct LensMapView {
     float steps_per_mm;
 };
 
+/// Map at a film point, mm, linearly interpolated; extrapolated beyond the last node.
 REALCAM_INLINE LensMapNode lens_map_at(const LensMapView& map, Vec2f film) {
     const float position = map.steps_per_mm * sqrt_or_zero(film.x * film.x + film.y * film.y);
     int step = static_cast<int>(position);

@@ -15,8 +15,9 @@ namespace realcam {
 
 namespace {
 
-/// An ideal lens has its own image distance. The film of a real lens lies where its picture is sharpest, which is not
-/// quite the paraxial focus. Its image distance follows from the paraxial chief ray.
+/// Central projection of a lens by a camera model. An ideal lens has its own image distance. The film of a real lens
+/// lies where its picture is sharpest, which is not quite the paraxial focus. Its image distance follows from the
+/// paraxial chief ray.
 CentralLens central_lens(const LensSystem& lens, CameraModel model) {
     const FirstOrder data = first_order(lens, lens.wavelength_nm);
     if (model == CameraModel::pinhole || model == CameraModel::thin_lens)
@@ -34,68 +35,69 @@ struct FilmPinhole {
     Vec2<double> middle;
 };
 
-FilmPinhole pinhole_of_round_lens(const Camera& camera) {
+/// Projection of a centred, rotationally symmetric lens.
+FilmPinhole pinhole_of_rotational_lens(const Camera& camera) {
     const CentralLens lens = central_lens(camera.lens, camera.model);
     const double f = lens.image_distance;
     return {{0, 0, lens.position - camera.lens.film_position()}, {{f, 0}, {0, f}}, {0, 0}};
 }
 
-/// Computed from chief rays of film points close to the centre, by differences over four points with an error of fourth
-/// order. Contains NaN if a chief ray does not exist.
+/// Projection of a lens of any kind, from chief rays of film points close to the centre, by differences over four
+/// points with an error of fourth order. Contains NaN if a chief ray does not exist.
 FilmPinhole pinhole_of_any_lens(const LensSystem& lens) {
-    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+    constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
     const RaysFromFilm rays(lens, lens.wavelength_nm);
     const std::optional<ChiefRay> middle = chief_ray_of_film_point(rays, {0, 0});
-    if (!middle) return {{kNone, kNone, kNone}, {}, {}};
+    if (!middle) return {{kNaN, kNaN, kNaN}, {}, {}};
     const Vec3d towards = -middle->scene_direction;
     const AcrossRay across(towards);
     // `direction`: x / z and y / z in the axes of computer vision. `position`, `slope`: position and slope in the plane
     // perpendicular to the central chief ray.
-    struct Seen {
-        Vec2<double> direction = {kNone, kNone}, position = direction, slope = direction;
+    struct ChiefRayCoordinates {
+        Vec2<double> direction = {kNaN, kNaN}, position = direction, slope = direction;
     };
-    const auto seen_from = [&](const std::optional<ChiefRay>& chief) {
-        if (!chief) return Seen{};
+    const auto coordinates_of = [&](const std::optional<ChiefRay>& chief) {
+        if (!chief) return ChiefRayCoordinates{};
         const Vec3d d = -chief->scene_direction, from = chief->scene - middle->scene;
         const double ahead = dot(d, towards), along = dot(from, towards);
         const Vec2<double> at = across.of(from), direction = across.of(d),
                            slope = {direction.x / ahead, direction.y / ahead};
-        return Seen{{-d.x / d.z, d.y / d.z}, {at.x - along * slope.x, at.y - along * slope.y}, slope};
+        return ChiefRayCoordinates{{-d.x / d.z, d.y / d.z}, {at.x - along * slope.x, at.y - along * slope.y}, slope};
     };
     const double step = 1e-3 * rays.film_distance();
-    Matrix2 direction{}, position{},
-        slope{};  // derivatives by x to the right and y down on the film, as in the picture
+    // Derivatives by x to the right and y down on the film, as in the picture.
+    Matrix2 direction{}, position{}, slope{};
     for (const bool is_y : {false, true}) {
         const auto at = [&](double steps) {
-            return seen_from(
+            return coordinates_of(
                 chief_ray_of_film_point(rays, is_y ? Vec2<double>{0, steps * step} : Vec2<double>{-steps * step, 0}));
         };
-        const Seen near[] = {at(1), at(-1)}, far[] = {at(2), at(-2)};
-        const auto set = [&](Matrix2& to, Vec2<double> Seen::* value) {
-            const auto by = [&](double Vec2<double>::* part) {
-                const auto of = [&](const Seen& seen) { return seen.*value.*part; };
-                return (8 * (of(near[0]) - of(near[1])) - (of(far[0]) - of(far[1]))) / (12 * step);
+        const ChiefRayCoordinates near[] = {at(1), at(-1)}, far[] = {at(2), at(-2)};
+        const auto set = [&](Matrix2& to, Vec2<double> ChiefRayCoordinates::* value) {
+            const auto derivative = [&](double Vec2<double>::* part) {
+                const auto get = [&](const ChiefRayCoordinates& ray) { return ray.*value.*part; };
+                return (8 * (get(near[0]) - get(near[1])) - (get(far[0]) - get(far[1]))) / (12 * step);
             };
-            (is_y ? to.first.y : to.first.x) = by(&Vec2<double>::x);
-            (is_y ? to.second.y : to.second.x) = by(&Vec2<double>::y);
+            (is_y ? to.first.y : to.first.x) = derivative(&Vec2<double>::x);
+            (is_y ? to.second.y : to.second.x) = derivative(&Vec2<double>::y);
         };
-        set(direction, &Seen::direction);
-        set(position, &Seen::position);
-        set(slope, &Seen::slope);
+        set(direction, &ChiefRayCoordinates::direction);
+        set(position, &ChiefRayCoordinates::position);
+        set(slope, &ChiefRayCoordinates::slope);
     }
     // Distance along the central chief ray to where the chief rays cross, averaged over both meridians.
     const double ahead = -0.5 * (position * slope.inverse()).trace();
     const Vec3d centre = middle->scene + ahead * towards - Vec3d{0, 0, camera_film_position(lens)};
     const Matrix2 scale = direction.inverse();
-    const Vec2<double> shown = scale * seen_from(middle).direction;
-    return {centre, scale, {-shown.x, -shown.y}};
+    const Vec2<double> axis = scale * coordinates_of(middle).direction;
+    return {centre, scale, {-axis.x, -axis.y}};
 }
 
 }  // namespace
 
 std::optional<PinholeCamera> pinhole_camera(const Camera& camera, const Pose& pose) {
     const FilmPinhole lens =
-        camera.lens.is_rotational() ? pinhole_of_round_lens(camera) : pinhole_of_any_lens(camera.lens);
+        camera.lens.is_rotational() ? pinhole_of_rotational_lens(camera) : pinhole_of_any_lens(camera.lens);
     if (!std::isfinite(lens.centre.z) || !std::isfinite(lens.scale.first.x + lens.scale.second.y)) return std::nullopt;
     const Film& film = camera.film;
     const double columns = film.width / film.width_mm, rows = film.height / film.height_mm;
@@ -186,8 +188,10 @@ public:
         to_stop_.back().has_blades = false;
     }
 
+    /// Traces rays that are aimed at these fractions of the last surface's semi-diameter, -1 to 1, through the lens or
+    /// only to its stop.
     template <int N>
-    LensRays<double, N> trace(const double (&shares)[N], bool only_to_stop) const {
+    LensRays<double, N> trace(const double (&aims)[N], bool only_to_stop) const {
         LensView<double> view = path_.view();
         if (only_to_stop) {
             view.surfaces = to_stop_.data();
@@ -196,7 +200,7 @@ public:
         LensRays<double, N> rays;
         for (int i = 0; i < N; ++i) {
             rays.origin.set(i, origin_);
-            rays.direction.set(i, path_.entry_index * normalized(Vec3d{rim_ * shares[i], 0, 0} - origin_));
+            rays.direction.set(i, path_.entry_index * normalized(Vec3d{rim_ * aims[i], 0, 0} - origin_));
             rays.status[i] = 0;
         }
         trace_lens(view, rays);
@@ -207,9 +211,10 @@ private:
     LensPath<double> path_;
     Vec3d origin_;
     double rim_;
-    std::vector<SurfaceView<double>> to_stop_;
+    std::vector<SurfaceView<double>> to_stop_;  ///< surfaces from the last one to the stop, which blocks nothing
 };
 
+/// Signed angle to the axis, in the meridional plane, of a direction towards the scene, rad.
 double angle_of(Vec3d direction) {
     return std::atan2(-direction.x, -direction.z);
 }
@@ -217,11 +222,11 @@ double angle_of(Vec3d direction) {
 }  // namespace
 
 double field_angle(const LensSystem& lens, double image_height_mm) {
-    constexpr int kRays = 512, kFew = 8, kHalvings = 60;
+    constexpr int kRays = 512, kMinPassed = 8, kHalvings = 60;
     const MeridionalRays meridian(lens, image_height_mm);
-    double shares[kRays];
-    for (int i = 0; i < kRays; ++i) shares[i] = (2 * i + 1.0) / kRays - 1;
-    const LensRays<double, kRays> rays = meridian.trace(shares, false);
+    double aims[kRays];
+    for (int i = 0; i < kRays; ++i) aims[i] = (2 * i + 1.0) / kRays - 1;
+    const LensRays<double, kRays> rays = meridian.trace(aims, false);
     double sum = 0;
     int passed = 0;
     for (int i = 0; i < kRays; ++i) {
@@ -229,12 +234,13 @@ double field_angle(const LensSystem& lens, double image_height_mm) {
         sum += angle_of(rays.direction[i]);
         ++passed;
     }
-    if (passed >= kFew) return std::fabs(sum / passed);
-    const LensRays<double, kRays> at_stop = meridian.trace(shares, true);
+    if (passed >= kMinPassed) return std::fabs(sum / passed);
+    // Bisection for the chief ray, which crosses the axis at the stop.
+    const LensRays<double, kRays> at_stop = meridian.trace(aims, true);
     for (int i = 1; i < kRays; ++i) {
         const bool above = at_stop.origin.x[i] > 0;
         if (at_stop.status[i - 1] != 0 || at_stop.status[i] != 0 || (at_stop.origin.x[i - 1] > 0) == above) continue;
-        double low = shares[i - 1], high = shares[i];
+        double low = aims[i - 1], high = aims[i];
         for (int k = 0; k < kHalvings; ++k) {
             const double middle[1] = {0.5 * (low + high)};
             const LensRays<double, 1> ray = meridian.trace(middle, true);

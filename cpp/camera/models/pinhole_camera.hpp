@@ -7,6 +7,8 @@
 
 namespace REALCAM_NAMESPACE {
 
+// Angles of view, the centre of projection, and the pinhole model of a camera.
+
 /// Angle to the axis, in front of the lens, of the light that reaches the film at `image_height_mm` from the axis,
 /// radians: the mean direction of real meridional rays or, if few of those traced pass the stop, the direction of the
 /// chief ray. NaN if no ray from there passes the lens.
@@ -43,9 +45,9 @@ struct CentralLens {
     double image_distance;  ///< the focal length if the lens is focused at infinity
 };
 
-/// Pixel = K (R p + t), with p in the scene. Axes of computer vision: x right, y down, z forward from the centre of
-/// projection, the centre of the entrance pupil. Pixel coordinates start at the upper left corner of the picture, so
-/// the centre of the first pixel is (0.5, 0.5).
+/// Pinhole model of a camera: pixel = K (R p + t) up to scale, with p in the scene, metres. Axes of computer vision: x
+/// right, y down, z forward from the centre of projection, the centre of the entrance pupil. Pixel coordinates start at
+/// the upper left corner of the picture, so the centre of the first pixel is (0.5, 0.5).
 struct PinholeCamera {
     double focal_x, focal_y, centre_x, centre_y;  ///< K, pixels
     /// Off-diagonal elements of K: column by y / z, and row by x / z. Non-zero only for lenses whose meridians are not

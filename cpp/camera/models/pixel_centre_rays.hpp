@@ -9,18 +9,19 @@ inline constexpr int kPupilTrials = 2048;
 
 namespace pixel_centre_rays_detail {
 
-/// Point of Vogel's spiral, in units of the half sizes of the pupil's box: uniformly spread, in order of increasing
-/// radius. The first is the centre.
-REALCAM_INLINE Vec2f spiral(int index) {
-    constexpr float kGoldenTurn = 0.381966011f;
+/// Point of Vogel's sunflower spiral, in units of the half sizes of the pupil's box: uniformly spread, in order of
+/// increasing radius. Point 0 is the centre.
+REALCAM_INLINE Vec2f spiral_point(int index) {
+    constexpr float kGoldenTurn = 0.381966011f;  // golden angle in turns: (3 - sqrt(5)) / 2
     const float turns = static_cast<float>(index) * kGoldenTurn;
     const Vec2f azimuth = cos_sin_of_turn(turns - std::floor(turns));
     // Radius up to sqrt(2), because a pupil with blades may fill the corners of the box.
-    const float reach = 1.4142136f * std::sqrt(static_cast<float>(index) / static_cast<float>(kPupilTrials));
-    return {reach * azimuth.x, reach * azimuth.y};
+    const float radius = 1.4142136f * std::sqrt(static_cast<float>(index) / static_cast<float>(kPupilTrials));
+    return {radius * azimuth.x, radius * azimuth.y};
 }
 
-/// Optical direction from a film point to a point in the box around its pupil.
+/// Optical direction from a film point (mm) to a point in the box around its pupil. `pupil`: PupilView or
+/// PupilGridView.
 template <class View>
 REALCAM_INLINE Vec3f direction_to(const View& pupil, Vec2f film, Vec2f pupil_point) {
     const auto at = pupil_lookup(pupil, film.x, film.y);
@@ -42,12 +43,13 @@ REALCAM_INLINE bool may_be_lit(const CameraView& camera, Vec2f film) {
 /// Index of the next point, from `first` on, that lies in the tabulated pupil; kPupilTrials if there is none.
 REALCAM_INLINE int next_trial(const CameraView& camera, Vec2f film, int first) {
     for (int k = first; k < kPupilTrials; ++k) {
-        const Vec3f direction = direction_to(camera, film, spiral(k));
+        const Vec3f direction = direction_to(camera, film, spiral_point(k));
         if (direction.z < 0.0f && camera_pupil_pdf(camera, film, direction) > 0.0f) return k;
     }
     return kPupilTrials;
 }
 
+/// Pixel-centre rays at the start of the exposure of a camera with a real pupil.
 template <int N>
 REALCAM_HD inline void lens_rays(const CameraView& camera, const SampleBlock<N>& block, CameraRays<N>& rays) {
     LensRays<float, N> inside;
@@ -67,7 +69,7 @@ REALCAM_HD inline void lens_rays(const CameraView& camera, const SampleBlock<N>&
         for (int i = 0; i < N; ++i) {
             const Vec2f film = film_point(camera, block.column[i], block.row[i], {0.5f, 0.5f});
             const bool tries = !rays.passed[i] && trial[i] < kPupilTrials;
-            const Vec3f direction = direction_to(camera, film, spiral(tries ? trial[i] : 0));
+            const Vec3f direction = direction_to(camera, film, spiral_point(tries ? trial[i] : 0));
             const FilmSurface<float> surface = film_surface(camera);
             inside.origin.set(i, surface.point(film));
             inside.direction.set(i, surface.direction(film, direction));
@@ -88,8 +90,9 @@ REALCAM_HD inline void lens_rays(const CameraView& camera, const SampleBlock<N>&
     }
 }
 
+/// Pixel-centre rays at the start of the exposure of any camera.
 template <int N>
-REALCAM_HD inline void still_rays(const CameraView& camera, const SampleBlock<N>& block, CameraRays<N>& rays) {
+REALCAM_HD inline void rays_at_start(const CameraView& camera, const SampleBlock<N>& block, CameraRays<N>& rays) {
     if (has_real_pupil(camera.model)) {
         lens_rays(camera, block, rays);
         return;
@@ -114,7 +117,7 @@ REALCAM_HD inline void still_rays(const CameraView& camera, const SampleBlock<N>
 template <int N>
 REALCAM_HD inline void pixel_centre_rays(const CameraView& camera, const SampleBlock<N>& block, CameraRays<N>& rays,
                                          float (&times)[N]) {
-    pixel_centre_rays_detail::still_rays(camera, block, rays);
+    pixel_centre_rays_detail::rays_at_start(camera, block, rays);
     set_times(camera, block, times, [](int) { return 0.5f; });
     move_rays(camera, times, rays);
 }

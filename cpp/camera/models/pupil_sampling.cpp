@@ -25,12 +25,14 @@ LensSystem last_surface_alone(const LensSystem& lens) {
     return alone;
 }
 
+/// Lens that consists of the paraxial exit pupil alone. Throws InputError if it does not lie at a finite distance in
+/// front of the film.
 LensSystem exit_pupil_alone(const LensSystem& lens) {
     const FirstOrder data = first_order(lens, lens.wavelength_nm);
     const double distance = lens.film_position() - data.exit_pupil_position;
     if (!(distance > 0) || !std::isfinite(distance))
         throw InputError("the exit pupil of lens \"" + lens.name +
-                         "\" lies behind the film or at infinity, so that nothing can be sent there");
+                         "\" lies behind the film or at infinity, so that no rays can be sent through it");
     LensSystem alone = lens;
     Surface stop;
     stop.type = SurfaceType::stop;

@@ -28,7 +28,7 @@ PictureMap::PictureMap(const CameraView& camera)
     CameraRays<1> rays;
     float time[1];
     block.used[0] = 1;
-    // The right half of the picture shows the right half of the scene.
+    // Columns from the middle to the right, which show scene points at x > 0.
     for (int k = 0; k < kRadii; ++k) {
         block.column[0] = kRadii + k;
         pixel_centre_rays(along, block, rays, time);
@@ -43,11 +43,11 @@ std::optional<Vec2<double>> PictureMap::pixel_of(Vec3d point, bool is_direction)
     const double radius = hypotenuse(point.x, point.y);
     const std::optional<double> film = film_radius(radius, point.z, is_direction);
     if (!film) return std::nullopt;
-    const double share = radius > 0 ? *film / radius : 0;
-    return Vec2<double>{axis_.x + pixels_per_mm_x_ * share * point.x, axis_.y - pixels_per_mm_y_ * share * point.y};
+    const double scale = radius > 0 ? *film / radius : 0;
+    return Vec2<double>{axis_.x + pixels_per_mm_x_ * scale * point.x, axis_.y - pixels_per_mm_y_ * scale * point.y};
 }
 
-double PictureMap::beside(const Ray& ray, double radius, double z, bool is_direction) {
+double PictureMap::signed_distance(const Ray& ray, double radius, double z, bool is_direction) {
     const double x = is_direction ? radius : radius - ray.x, depth = is_direction ? z : z - ray.z;
     return depth * ray.along_x - x * ray.along_z;
 }
@@ -58,16 +58,16 @@ std::optional<double> PictureMap::film_radius(double radius, double z, bool is_d
         const double x = is_direction ? radius : radius - ray.x, depth = is_direction ? z : z - ray.z;
         return x * ray.along_x + depth * ray.along_z > 0;
     };
-    double before = beside(rays_.front(), radius, z, is_direction);
+    double before = signed_distance(rays_.front(), radius, z, is_direction);
     // Linear interpolation between the axis and the first ray.
     if (before <= 0 && is_ahead(rays_.front())) {
         return rays_.front().film_mm * radius / (radius - before);
     }
     for (std::size_t k = 1; k < rays_.size(); ++k) {
-        const double here = beside(rays_[k], radius, z, is_direction);
+        const double here = signed_distance(rays_[k], radius, z, is_direction);
         if (before > 0 && here <= 0 && is_ahead(rays_[k])) {
-            const double share = before / (before - here);
-            return rays_[k - 1].film_mm + share * (rays_[k].film_mm - rays_[k - 1].film_mm);
+            const double fraction = before / (before - here);
+            return rays_[k - 1].film_mm + fraction * (rays_[k].film_mm - rays_[k - 1].film_mm);
         }
         before = here;
     }

@@ -23,13 +23,17 @@ private:
 
     /// Pixel-centre ray in the meridional plane.
     struct Ray {
-        double film_mm;
-        double x, z, along_x, along_z;
+        double film_mm;  ///< film radius of its pixel
+        double x, z;  ///< where it leaves the lens, from the centre of the film, metres
+        double along_x, along_z;  ///< unit direction towards the scene
     };
 
-    /// Signed distance of a point from a ray, positive outwards.
-    static double beside(const Ray& ray, double radius, double z, bool is_direction);
+    /// Signed distance of a point from a ray, metres, positive outwards; for a direction, the sine of the angle between
+    /// them. `radius`: distance of the point from the axis.
+    static double signed_distance(const Ray& ray, double radius, double z, bool is_direction);
 
+    /// Film radius, mm, whose ray passes through a point or has a direction, interpolated between neighbouring rays.
+    /// Returns std::nullopt if no ray does.
     std::optional<double> film_radius(double radius, double z, bool is_direction) const;
 
     double pixels_per_mm_x_, pixels_per_mm_y_;

@@ -13,14 +13,15 @@ class CameraSetup;
 
 /// Projection ray: the ray that represents all light of a film point.
 enum class ProjectionRay {
-    light,  ///< centroid ray, for whose point in focus the light's centroid is the film point (mean_ray.hpp)
+    light,  ///< centroid ray, for whose point in focus the light's centroid is the film point (centroid_ray.hpp)
     chief,  ///< chief ray, through the centre of the stop, even if a rim blocks it
 };
 
 /// Projection ray from the lens into the scene, in the camera's axes, mm from the centre of the unshifted film.
 struct FilmProjection {
-    Vec3d origin, direction;
-    double light;  ///< irradiance for a uniform scene, relative to the middle of the film
+    Vec3d origin;     ///< point at which it leaves the lens
+    Vec3d direction;  ///< unit vector
+    double light;  ///< irradiance for a uniform scene, relative to the film centre
 };
 
 /// Projection of a camera: maps film points to rays in the scene, and scene points to film points. Film coordinates in
@@ -57,32 +58,38 @@ struct ProjectedPoint {
 
 /// Projection ray from the lens into the scene, metres.
 struct PixelRay {
-    Vec3d origin_m, direction;  ///< NaN for a pixel without light
-    double light = 0;  ///< irradiance of the pixel for a uniform scene, relative to the middle of the film
+    Vec3d origin_m;  ///< point at which it leaves the lens; NaN for a pixel without light
+    Vec3d direction;  ///< unit vector; NaN for a pixel without light
+    double light = 0;  ///< irradiance of the pixel for a uniform scene, relative to the film centre
 };
 
 /// Projects scene points to pixels of a camera's picture, and pixels to rays in the scene. If the camera moves, each
 /// row of pixels uses the camera's pose at the middle of the row's exposure.
 class Projection {
 public:
-    Projection(const Camera& camera, std::shared_ptr<const ProjectionRays> lines);
+    /// `rays`: projection rays of the camera's lens.
+    Projection(const Camera& camera, std::shared_ptr<const ProjectionRays> rays);
 
+    /// Pixel of a scene point.
     ProjectedPoint pixel_of(Vec3d point_m) const;
 
+    /// Projection ray of a point of the picture, in pixel coordinates as in ProjectedPoint.
     PixelRay ray_of(Vec2<double> pixel) const;
 
 private:
-    static constexpr int kMostTurns = 20;
-    static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-    static constexpr Vec2<double> kNowhere = {kNone, kNone};
-    static constexpr Vec3d kNowhere3 = {kNone, kNone, kNone};
+    static constexpr int kMaxIterations = 20;
+    static constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+    static constexpr Vec2<double> kNoPixel = {kNaN, kNaN};
+    static constexpr Vec3d kNoVector = {kNaN, kNaN, kNaN};
 
+    /// Index of the row of pixels at a vertical pixel coordinate, clamped to the picture.
     int row_of(double y) const { return static_cast<int>(std::clamp(y, 0.0, static_cast<double>(film_.height - 1))); }
 
-    ProjectedPoint seen_from(const Affine<double>& scene_from_camera, Vec3d point_m) const;
+    /// pixel_of for one pose of the camera.
+    ProjectedPoint project_from_pose(const Affine<double>& scene_from_camera, Vec3d point_m) const;
 
     Film film_;
-    std::shared_ptr<const ProjectionRays> lines_;
+    std::shared_ptr<const ProjectionRays> rays_;
     std::vector<Affine<double>> scene_from_camera_;  ///< scene-from-camera transform of each row of pixels; a single
                                                      ///< one if all rows share it
 };

@@ -28,49 +28,54 @@ private:
     /// Projection ray of a film point: its unit direction; `foot`, its point nearest to the reference point, relative
     /// to the latter; `start`, the position along the ray, from the foot, where it leaves the lens; the film point's
     /// irradiance; and, as `shift`, the offset on the film of the light's centroid for the ray's point in focus, mm.
-    struct Seen {
+    struct NodeRay {
         Vec3d direction, foot;
         double start, light;
         Vec2<double> shift;
     };
-    static constexpr int kNumbers = 8, kLight = 7;  ///< values of a ray, and the index of its light
-    using Grid = SmoothGrid<kNumbers>;
-    using SeenGrid = SmoothGrid<kNumbers + 2>;
+    /// Number of values of a ray in the grid: direction, foot, start and light; and the indices of the last two.
+    static constexpr int kRayValues = 8, kStart = 6, kLight = 7;
+    using Grid = SmoothGrid<kRayValues>;
+    using ShiftedGrid = SmoothGrid<kRayValues + 2>;  ///< with the two coordinates of `shift` appended
 
-    Seen seen_along(const SceneRay& ray, double light, Vec2<double> shift) const;
+    NodeRay node_ray(const SceneRay& ray, double light, Vec2<double> shift) const;
 
+    /// Column and row of a node index.
     static int column_of(int node) { return node % (kColumns + 1); }
     static int row_of(int node) { return node / (kColumns + 1); }
-    Vec2<double> cell_size() const;
+    Vec2<double> cell_size() const;  ///< mm
+    /// Film point of a node in the lens's axes, mm.
     Vec2<double> film_point(int column, int row) const;
 
-    /// Values of look(film point) at all nodes; only evaluated at those from which the others follow by symmetry.
-    template <class Look>
-    std::vector<SeenGrid::Values> nodes_by(Look&& look, const RayLoop& loop) const;
+    /// Values at all nodes of the rays that ray_at(film point) returns as std::optional<NodeRay>; NaN for std::nullopt.
+    /// It is only called for nodes from which the others follow by symmetry.
+    template <class RayAt>
+    std::vector<ShiftedGrid::Values> node_values(RayAt&& ray_at, const RayLoop& loop) const;
 
     /// Assigns each node the ray for whose point in focus the light's centroid lies at the node.
-    std::vector<Grid::Values> shown_where_light_lands(const SeenGrid& seen) const;
+    std::vector<Grid::Values> rays_by_light_centroid(const ShiftedGrid& traced) const;
 
-    /// Stores the rays, with their light relative to that in the middle of the film.
-    void finish(std::vector<Grid::Values> lines);
+    /// Stores the rays, with their light relative to that at the film centre.
+    void store(std::vector<Grid::Values> rays);
 
     /// Position in the grid, in columns and rows.
     struct GridPosition {
         double column, row;
     };
-    /// Node whose ray passes nearest to a point, by angle; std::nullopt if the point lies in front of no ray's start.
-    /// Points are relative to the reference point.
+    /// Node whose ray passes nearest to a point, by angle. Returns std::nullopt if the point lies in front of no ray's
+    /// start. `from`: point relative to the reference point.
     std::optional<GridPosition> nearest_node(Vec3d from) const;
-    /// Moves `at` to the position in the grid whose ray passes through the point. Returns false if no ray does.
-    bool follow(Vec3d from, GridPosition& at) const;
+    /// Moves `at`, by Newton's method, to the position in the grid whose ray passes through a point. Returns false if
+    /// no ray does.
+    bool find_position(Vec3d from, GridPosition& at) const;
 
-    FilmArea area_;
+    FilmArea area_;  ///< area of the grid, in the lens's axes, mm
     MirrorPlanes planes_;
     Vec3d reference_;  ///< centre of the entrance pupil or, if that is far away, where the chief ray leaves the lens;
                        ///< in the camera's frame (film_path_ends), mm
     double film_z_;  ///< z of the film in that frame
     bool ends_in_film_ = false;
-    std::optional<Grid> lines_;
+    std::optional<Grid> rays_;
 };
 
 }  // namespace REALCAM_NAMESPACE

@@ -12,11 +12,12 @@ namespace REALCAM_NAMESPACE {
 
 /// Projection ray of a film point, in the meridional plane. Lengths in mm.
 struct MeridionalRay {
-    double angle;   ///< to the axis, rad; positive: away from the axis on the side shown on this side of the picture
-    double offset;  ///< perpendicular distance of the ray from the reference point
+    double angle;  ///< to the axis, rad; positive if the ray leads away from the axis on the side of the scene that the
+                   ///< picture shows on the film point's side
+    double offset;  ///< signed perpendicular distance of the ray from the reference point
     double start;  ///< where it leaves the lens, along the ray from the foot of the perpendicular from the reference
                    ///< point
-    double light;  ///< irradiance for a uniform scene, relative to the middle of the film
+    double light;  ///< irradiance for a uniform scene, relative to the film centre
 };
 
 /// Projection rays by film radius, in front of the camera's lens or of the ideal model that replaces it. The lens is
@@ -33,8 +34,8 @@ public:
     std::optional<Vec2<double>> project(Vec3d point) const override;
 
 private:
-    static constexpr int kSteps = 256;
-    static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+    static constexpr int kSteps = 256;  ///< uniform steps of the film radius, from 0 to max_radius_
+    static constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
     /// Thin lens: position of its pupil, from the front vertex; and image distance, mm.
     struct ThinLensPosition {
@@ -47,46 +48,50 @@ private:
         double away, ahead;
     };
 
-    /// `film_radius`: from 0 to reach_. Returns std::nullopt if no light reaches it.
+    /// Ray of a film radius from 0 to max_radius_. Returns std::nullopt if no light reaches it.
     std::optional<MeridionalRay> at(double film_radius) const;
 
     /// Film radius whose ray passes through a point in front of the lens; the smallest one if there are several, and
     /// std::nullopt if there is none.
-    std::optional<double> radius_towards(MeridionalPoint point) const;
+    std::optional<double> film_radius_of(MeridionalPoint point) const;
 
-    double radius_of(double step) const { return reach_ * step / kSteps; }
+    /// Film radius of a step, mm.
+    double radius_of(double step) const { return max_radius_ * step / kSteps; }
 
+    /// Interpolates a member of the rays over the steps. `rises`: see OddCurve.
     OddCurve curve_of(double MeridionalRay::* value, bool rises = false) const;
 
-    /// Stores the ray of step k; std::nullopt if there is none. A film point at +y sees scene points at -y.
-    void set(int k, const std::optional<SceneRay>& ray, double light);
+    /// Stores the ray of step k; std::nullopt if no light reaches it. A film point at +y sees scene points at -y.
+    void set_ray(int k, const std::optional<SceneRay>& ray, double light);
 
     /// Traces the centroid rays of as many film radii as accurate cubic interpolation requires.
-    void follow_light(const LensSystem& lens, const PupilView& pupil, const RayLoop& loop);
+    void trace_centroid_rays(const LensSystem& lens, const PupilView& pupil, const RayLoop& loop);
 
-    void follow_chief_rays(const LensSystem& lens, const PupilView& pupil);
+    /// Replaces the rays by chief rays; keeps their light.
+    void trace_chief_rays(const LensSystem& lens, const PupilView& pupil);
 
-    /// Sets step k for a camera model without surfaces: its ray passes through the centre of the pupil.
-    void set_ideal(int k, const CameraView& view, ThinLensPosition thin);
+    /// Sets the ray of step k for a camera model without surfaces: it passes through the centre of the pupil.
+    void set_ideal_ray(int k, const CameraView& view, ThinLensPosition thin);
 
-    /// Discards the rays from the radius on at which they turn back. At the edge of the image, where rims leave little
-    /// of the light, the centroid ray may point farther inwards again, at points that already have a smaller film
-    /// radius. Also orients all rays to the side on which they lead away from the axis.
-    void end_where_lines_turn_back();
+    /// Discards the rays from the film radius on at which the angle stops increasing outwards. At the edge of the
+    /// image, where rims leave little of the light, the centroid ray may point farther inwards again, at points that
+    /// already have a smaller film radius. Also orients all rays to the side on which they lead away from the axis.
+    void discard_rays_turning_inwards();
 
-    /// Fraction of the step at which its ray passes through the point: Newton's method, safeguarded by bisection.
-    double root(int k, MeridionalPoint point) const;
+    /// Fraction of the step from k to k + 1 at which the interpolated ray passes through the point: Newton's method,
+    /// safeguarded by bisection.
+    double fraction_through(int k, MeridionalPoint point) const;
 
     /// Position of the reference point, the centre of the paraxial entrance pupil, or the front vertex if the pupil is
     /// far away: mm from the film towards the scene, and mm from the front vertex.
     double reference_, vertex_;
     double focus_;  ///< distance from the reference point to the plane in focus, mm
-    double reach_ = 0;  ///< largest film radius with a known ray, mm
+    double max_radius_ = 0;  ///< largest film radius with a known ray, mm
     bool ends_in_film_ = false;
     int sign_ = 1;  ///< -1 if the picture is upside down, as behind a lens with an intermediate image
-    std::vector<MeridionalRay> lines_;
+    std::vector<MeridionalRay> rays_;  ///< one for each step
     OddCurve angle_, offset_;
-    std::vector<double> cosines_, sines_;
+    std::vector<double> cosines_, sines_;  ///< cosines and sines of the rays' angles
 };
 
 }  // namespace REALCAM_NAMESPACE

@@ -4,8 +4,8 @@ namespace realcam {
 
 namespace sensor_detail {
 
-void fail(const std::string& key, const std::string& wanted) {
-    throw InputError(key + " must be " + wanted);
+void fail(const std::string& key, const std::string& requirement) {
+    throw InputError(key + " must be " + requirement);
 }
 
 namespace {
@@ -14,7 +14,7 @@ void require_at_least_0(const std::string& key, double value) {
     if (!(value >= 0 && value <= 1e12)) fail(key, "a number from 0 to 1e12");
 }
 
-bool is_share(double value) {
+bool is_fraction(double value) {
     return value >= 0 && value <= 1;
 }
 
@@ -23,12 +23,12 @@ void validate_spectra(const Sensor& sensor) {
         "quantum_efficiency", sensor.quantum_efficiency, [](const QuantumEfficiency& q) { return q.wavelength_nm; },
         [](const QuantumEfficiency& q) {
             for (double e : q.electrons_per_photon)
-                if (!is_share(e)) return false;
+                if (!is_fraction(e)) return false;
             return true;
         });
     if (sensor.quantum_efficiency.size() < 2) fail("quantum_efficiency", "a table of at least two wavelengths");
     const auto at = [](const SensorPoint& p) { return p.at; };
-    const auto is_good = [](const SensorPoint& p) { return is_share(p.value); };
+    const auto is_good = [](const SensorPoint& p) { return is_fraction(p.value); };
     require_table<SensorPoint>("cover_glass", sensor.cover_glass, at, is_good);
     require_table<SensorPoint>("angular_response", sensor.angular_response, at, is_good);
     if (!sensor.angular_response.empty() &&
@@ -46,7 +46,7 @@ void validate_noise(const SensorNoise& noise) {
     if (!is_temperature(noise.dark_current_temperature_c))
         fail("dark_current_temperature_c", "a temperature in degrees Celsius, from -273.15 to 1000");
     if (!(noise.prnu_percent >= 0 && noise.prnu_percent <= 15)) fail("prnu_percent", "from 0 to 15");
-    if (!is_share(noise.hot_pixel_share)) fail("hot_pixel_share", "from 0 to 1");
+    if (!is_fraction(noise.hot_pixel_share)) fail("hot_pixel_share", "from 0 to 1");
 }
 
 void validate_conversion(const SensorConversion& conversion) {
@@ -59,7 +59,7 @@ void validate_conversion(const SensorConversion& conversion) {
     if (!(conversion.black_level_dn >= 0 && conversion.black_level_dn <= 0.5 * conversion.largest_dn()))
         fail("black_level_dn", "from 0 to half of the converter's largest number");
     if (std::isfinite(conversion.saturation_capacity_e) && conversion.gain_dn_per_e == 0)
-        fail("gain_dn_per_e", "given where there is a saturation_capacity_e");
+        fail("gain_dn_per_e", "given if saturation_capacity_e is given");
 }
 
 }  // namespace
@@ -69,9 +69,9 @@ void validate_conversion(const SensorConversion& conversion) {
 void validate(const Sensor& sensor) {
     using namespace sensor_detail;
     if (!(sensor.pixel_pitch_um == 0 || (sensor.pixel_pitch_um >= 1e-3 && sensor.pixel_pitch_um <= 1e6)))
-        fail("pixel_pitch_um", "a number from 0.001 to 1e6, or 0: that of the film's pixels");
+        fail("pixel_pitch_um", "a number from 0.001 to 1e6, or 0 for the pitch of the film's pixels");
     if (sensor.columns < 0 || sensor.rows < 0 || (sensor.columns > 0) != (sensor.rows > 0))
-        fail("resolution", "columns and rows, from 1 on, or 0 and 0: any number");
+        fail("resolution", "a number of columns and one of rows, both at least 1, or 0 and 0 if they are not fixed");
     if (sensor.has_filters() && !is_filter_array(sensor.color_filter_array)) fail("color_filter_array", kFilterArrays);
     validate_spectra(sensor);
     validate_conversion(sensor.conversion);

@@ -97,7 +97,8 @@ std::array<double, 3> white_of(const SensorMatrix& matrix) {
 
 double full_well_e(double saturation_capacity_e, double prnu_percent) {
     if (!std::isfinite(saturation_capacity_e)) return saturation_capacity_e;
-    const auto slope = [](double m, double full) {
+    // Derivative of the variance by the mean m, for a full well of `full` (see the declaration of full_well_e).
+    const auto derivative = [](double m, double full) {
         const double z = (full - m) / std::sqrt(m);
         const double below = 0.5 * std::erfc(-z / std::numbers::sqrt2);
         const double density = std::exp(-z * z / 2) / std::sqrt(2 * std::numbers::pi);
@@ -105,17 +106,19 @@ double full_well_e(double saturation_capacity_e, double prnu_percent) {
         const double variance = below - z * density + z * z * (1 - below) - mean * mean;
         return variance - (1 - below) * (density + z * below) * (full + m) / std::sqrt(m);
     };
-    const auto rises = [&](double full) {
+    // True if the mean variance of all pixels still increases at the saturation capacity: the full well lies lower.
+    const auto still_increases = [&](double full) {
         double sum = 0;
         for (int i = -24; i <= 24; ++i) {  // PRNU up to six standard deviations, in quarters
             const double deviations = 0.25 * i, response = 1 + 0.01 * prnu_percent * deviations;
-            sum += std::exp(-deviations * deviations / 2) * response * slope(response * saturation_capacity_e, full);
+            sum +=
+                std::exp(-deviations * deviations / 2) * response * derivative(response * saturation_capacity_e, full);
         }
         return sum >= 0;
     };
     double low = saturation_capacity_e;
     double high = low + 12 * std::sqrt(low) + 0.08 * prnu_percent * low;
-    for (int i = 0; i < 60; ++i) (rises(0.5 * (low + high)) ? high : low) = 0.5 * (low + high);
+    for (int i = 0; i < 60; ++i) (still_increases(0.5 * (low + high)) ? high : low) = 0.5 * (low + high);
     return high;
 }
 
@@ -123,7 +126,7 @@ SensorSpeed::SensorSpeed(const Sensor& sensor, double pitch_um)
     : conversion_(sensor.conversion), full_well_e_(full_well_e(sensor)) {
     const std::array<double, 3> white = white_of(electrons_per_um2(sensor, Illuminant::named("D65")));
     electrons_per_lux_s_ = pitch_um * pitch_um * *std::max_element(white.begin(), white.end());
-    if (!(electrons_per_lux_s_ > 0)) throw InputError("quantum_efficiency must see some of the light of D65");
+    if (!(electrons_per_lux_s_ > 0)) throw InputError("quantum_efficiency must be positive at some wavelength of D65");
 }
 
 double SensorSpeed::lowest_iso() const {
@@ -140,8 +143,8 @@ double SensorSpeed::highest_iso() const {
 double SensorSpeed::gain_dn_per_e(double iso) const {
     if (!(iso > 0) || !std::isfinite(iso)) throw InputError("iso must be a positive number");
     if (conversion_.gain_dn_per_e == 0) return range_dn() * iso / (kSaturation * electrons_per_lux_s_);
-    constexpr double kRounded = 5e-3;  // rounding of values that users copy from a message or a table
-    if (iso < lowest_iso() * (1 - kRounded))
+    constexpr double kRoundingTolerance = 5e-3;  // rounding of values that users copy from a message or a table
+    if (iso < lowest_iso() * (1 - kRoundingTolerance))
         throw InputError("the lowest ISO of this sensor is " + rounded(lowest_iso()) + "; it is " + rounded(iso) +
                          " here (camera.replace(iso=...).metered(scene), or the command realcam render with --iso, "
                          "exposes for another)");
@@ -192,7 +195,7 @@ SensorMatrix adaptation(const std::array<double, 3>& from_white, const std::arra
 namespace {
 
 /// True if the filters distinguish three colours. Under a single line they do not.
-bool tells_colors(const SensorMatrix& m) {
+bool distinguishes_colors(const SensorMatrix& m) {
     double volume =
         m[0] * (m[4] * m[8] - m[5] * m[7]) - m[1] * (m[3] * m[8] - m[5] * m[6]) + m[2] * (m[3] * m[7] - m[4] * m[6]);
     for (std::size_t row = 0; row < 3; ++row) volume /= std::hypot(m[3 * row], m[3 * row + 1], m[3 * row + 2]);
@@ -206,18 +209,18 @@ bool tells_colors(const SensorMatrix& m) {
 SensorColor sensor_color(const Sensor& sensor, const Illuminant& illuminant) {
     using namespace sensor_detail;
     const Illuminant d65 = Illuminant::named("D65");
-    const SensorMatrix seen = electrons_per_um2(sensor, illuminant);
-    std::array<double, 3> white = white_of(seen);
-    const double most = std::max({white[0], white[1], white[2]});
-    for (double& w : white) w /= most;
+    const SensorMatrix response = electrons_per_um2(sensor, illuminant);
+    std::array<double, 3> white = white_of(response);
+    const double largest = std::max({white[0], white[1], white[2]});
+    for (double& w : white) w /= largest;
     if (!(std::min({white[0], white[1], white[2]}) > 1e-6))
-        throw InputError("a filter of the sensor sees nothing of the illuminant: its colours cannot be developed");
-    const bool own = tells_colors(seen);
-    const SensorMatrix matrix = own ? seen : electrons_per_um2(sensor, d65);
-    if (!tells_colors(matrix)) throw InputError("the sensor's filters do not tell colours apart");
+        throw InputError("a filter of the sensor does not respond to the illuminant: its colours cannot be developed");
+    const bool is_distinct = distinguishes_colors(response);
+    const SensorMatrix matrix = is_distinct ? response : electrons_per_um2(sensor, d65);
+    if (!distinguishes_colors(matrix)) throw InputError("the sensor's filters do not distinguish colours");
     const SensorMatrix xyz_from_film = inverse(film_spectrum_detail::kSrgbFromXyz);
     const std::array<double, 3> film_white = applied(xyz_from_film, {1, 1, 1});
-    const std::array<double, 3> reference = own ? white_xyz(illuminant) : film_white;
+    const std::array<double, 3> reference = is_distinct ? white_xyz(illuminant) : film_white;
     SensorColor color{};
     color.white = white;
     color.film_from_balanced = product(inverse(matrix), diagonal(white_of(matrix)));

@@ -19,7 +19,8 @@ using SensorMatrix = std::array<double, 9>;
 
 namespace sensor_detail {
 
-/// Linear interpolation between the points; `beyond` outside.
+/// Linear interpolation between the points of a table, at(point) being its arguments and value(point) its values.
+/// Returns `beyond` outside.
 template <class Point, class At, class Value>
 double interpolated(const std::vector<Point>& points, double x, double beyond, At&& at, Value&& value) {
     if (points.empty() || x < at(points.front()) || x > at(points.back())) return beyond;
@@ -30,6 +31,7 @@ double interpolated(const std::vector<Point>& points, double x, double beyond, A
     return value(a) + (x - at(a)) / (at(b) - at(a)) * (value(b) - value(a));
 }
 
+/// Value of a table at x, linear between its points, 0 outside; 1 for an empty table.
 double table_at(const std::vector<SensorPoint>& table, double x);
 
 }  // namespace sensor_detail
@@ -57,6 +59,7 @@ inline double full_well_e(const Sensor& sensor) {
 /// in lux seconds at which white, here under D65, saturates its most sensitive filter.
 class SensorSpeed {
 public:
+    /// Throws InputError if the sensor does not respond to D65.
     SensorSpeed(const Sensor& sensor, double pitch_um);
 
     /// Lowest and highest ISO; 0 and infinite if the gain is determined by the ISO.
@@ -67,14 +70,15 @@ public:
     double gain_dn_per_e(double iso) const;
 
 private:
-    static constexpr double kSaturation = 78;
+    static constexpr double kSaturation = 78;  ///< lux seconds, times the ISO speed
 
+    /// Range of digital numbers above the black level.
     double range_dn() const { return conversion_.largest_dn() - conversion_.black_level_dn; }
     static std::string rounded(double value);
 
     SensorConversion conversion_;
     double full_well_e_;
-    double electrons_per_lux_s_;
+    double electrons_per_lux_s_;  ///< response of a pixel with the most sensitive filter, under D65
 };
 
 /// Conversion of a sensor's raw values to colours under one illuminant. The film's colours stand for spectra of a basis
@@ -91,19 +95,23 @@ namespace sensor_detail {
 using film_spectrum_detail::inverse;
 using film_spectrum_detail::product;
 
+/// Product of a matrix and a vector.
 std::array<double, 3> applied(const SensorMatrix& m, const std::array<double, 3>& v);
 
+/// Diagonal matrix.
 inline SensorMatrix diagonal(const std::array<double, 3>& v) {
     return {v[0], 0, 0, 0, v[1], 0, 0, 0, v[2]};
 }
 
-/// Chromatic adaptation by Bradford's matrix (Lam 1985), as ICC and DNG have it.
+/// Chromatic adaptation by Bradford's matrix (Lam 1985), as in ICC and DNG. `from_white`, `to_white`: XYZ of the two
+/// whites.
 SensorMatrix adaptation(const std::array<double, 3>& from_white, const std::array<double, 3>& to_white);
 
 }  // namespace sensor_detail
 
-/// If the sensor cannot distinguish colours under the illuminant, the matrices are those of D65, with the white of the
-/// illuminant. Throws InputError if it cannot under D65 either, or if a filter has no response to the illuminant.
+/// Colour conversion of a sensor. If the sensor cannot distinguish colours under the illuminant, the matrices are those
+/// of D65, with the white of the illuminant. Throws InputError if it cannot under D65 either, or if a filter has no
+/// response to the illuminant.
 SensorColor sensor_color(const Sensor& sensor, const Illuminant& illuminant);
 
 }  // namespace REALCAM_NAMESPACE

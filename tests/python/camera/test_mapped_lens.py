@@ -72,7 +72,7 @@ def test_what_is_out_of_focus_is_blurred_as_by_a_thin_lens() -> None:
 
 def test_a_film_that_sees_behind_the_lens_has_no_mapped_lens() -> None:
     camera = camera_with("fisheye-6mm-220deg", "mapped")
-    with pytest.raises(rc.InputError, match=r"mapped has no place for lens .* its film sees 90 degrees"):
+    with pytest.raises(rc.InputError, match=r"mapped cannot represent lens .* its film sees 90 degrees"):
         rc.render(scenes.sky(), camera, effects=(), spp=1)
 
 

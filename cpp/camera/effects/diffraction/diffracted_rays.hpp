@@ -11,18 +11,20 @@ namespace REALCAM_NAMESPACE {
 template <int N>
 struct DiffractedPoints {
     Vec2Lanes<float, N> points;  ///< mm
-    Vec2Lanes<float, N> kicks;  ///< offsets from them to the film points of the samples, mm per nm of wavelength
-    Lanes<std::int32_t, N> from_edge;  ///< 1: see DiffractionKick
+    Vec2Lanes<float, N> kicks;  ///< offsets from `points` to the film points of the samples, mm per nm of wavelength
+    Lanes<std::int32_t, N> from_edge;  ///< see DiffractionKick
 
     REALCAM_INLINE Vec2f operator[](int lane) const { return points[lane]; }
+    /// Film point that light of a lane's sample and of the wavelength `nm` reaches if geometrical optics brings it to
+    /// `at`.
     REALCAM_INLINE Vec2f landing(int lane, Vec2f at, float nm) const {
         const Vec2f kick = kicks[lane];
         return {at.x + nm * kick.x, at.y + nm * kick.y};
     }
 };
 
-/// Samples the points. If a point lies beyond the film, the sample's own film point replaces it, so that no light is
-/// lost at the margins.
+/// Samples the points. `nm`: wavelength of each sample. If a point lies beyond the film, the sample's own film point
+/// replaces it, so that no light is lost at the margins.
 template <int N>
 REALCAM_HD inline void diffract(const CameraView& camera, const SampleBlock<N>& block, const float (&nm)[N],
                                 DiffractedPoints<N>& film) {

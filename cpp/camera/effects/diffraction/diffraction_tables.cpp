@@ -18,9 +18,9 @@ DiffractionTables::DiffractionTables(const LensSystem& lens, double film_radius,
     std::vector<std::optional<ApertureDiffraction>> found(static_cast<std::size_t>(radii_ * azimuths_));
     tracer.for_each(radii_ * azimuths_, [&](int node) {
         const int row = node / azimuths_;
-        if (const auto seen = pupil_edges(with_blades, radius_of(row), azimuth_of(node % azimuths_),
-                                          boxes[static_cast<std::size_t>(row)]))
-            found[static_cast<std::size_t>(node)] = diffraction_of(*seen);
+        if (const auto edges = pupil_edges(with_blades, radius_of(row), azimuth_of(node % azimuths_),
+                                           boxes[static_cast<std::size_t>(row)]))
+            found[static_cast<std::size_t>(node)] = diffraction_of(*edges);
     });
     for (int node = 0; node < radii_ * azimuths_; ++node) {
         auto& here = found[static_cast<std::size_t>(node)];
@@ -77,7 +77,7 @@ StarburstTables::StarburstTables(const LensSystem& lens, double film_radius,
                                  std::shared_ptr<const DirectLensPath> direct_path, const PupilTracer& tracer)
     : direct_path_(std::move(direct_path)) {
     const EntrancePupilSearch<FilmRings> search(lens, film_radius, tracer);
-    const std::vector<FoundRay> found = search.along(lens, crossings_of(lens));
+    const std::vector<FoundRay> found = search.find_rays(lens, crossings_of(lens));
     directions_ = FilmRings::directions_of({found});
     entries_ = entries_of<FilmRings>(found, directions_);
 }

@@ -13,7 +13,7 @@ namespace REALCAM_NAMESPACE {
 /// Entrance-pupil bounds of the light that makes starbursts. Owns the memory of its view.
 class StarburstTables {
 public:
-    /// `film_radius`: radius of a circle that contains the film, mm. `direct_path`: of the same lens.
+    /// `film_radius`: radius of a circle that contains the film, mm. `direct_path`: direct path of the same lens.
     StarburstTables(const LensSystem& lens, double film_radius, std::shared_ptr<const DirectLensPath> direct_path,
                     const PupilTracer& tracer);
 
@@ -35,19 +35,23 @@ public:
     DiffractionView view(double film_steradians) const;
 
 private:
+    /// Number of film radii of the table, for a circular stop and for one with blades; and of azimuths with blades.
     static constexpr int kRadii = 12, kRadiiWithBlades = 5, kAzimuths = 8;
 
     static InputError no_light(const LensSystem& lens) {
-        return InputError("diffraction: no light passes lens \"" + lens.name + "\" to the film's middle");
+        return InputError("diffraction: no light passes lens \"" + lens.name + "\" to the film centre");
     }
+    /// True if blades, and not the wide-open rim, form the aperture.
     static bool has_blades(const LensSystem& lens) { return lens.iris.blades > 0 && !lens.is_wide_open(); }
 
     double radius_of(int row) const { return film_radius_ * row / (radii_ - 1); }
     /// Azimuth of a sector, at uniform steps of the view's azimuth parameter, which runs from 0 to 4 along a square.
     double azimuth_of(int sector) const;
 
+    /// Bounds of the pupil as seen from each film radius. Where no light arrives, those of the previous radius.
     std::vector<DirectionBox> boxes_of(const LensSystem& lens, const PupilTracer& tracer) const;
 
+    /// Appends a node with its alias tables and edges.
     void add(const ApertureDiffraction& diffraction);
 
     double film_radius_;

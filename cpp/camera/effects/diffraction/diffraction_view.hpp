@@ -12,6 +12,11 @@ inline constexpr int kDiffractionEdges = 320;
 /// Alias-table entries of a node: first those of the edges, then those of the cells.
 inline constexpr int kDiffractionEntries = kDiffractionEdges + kDiffractionCells;
 
+// Diffraction pattern of a lens's aperture as a density of offsets on the film (kicks), for random sampling. Close to
+// the geometric image, the pattern is tabulated in cells of spatial frequency; farther away, it is sampled from the
+// straight segments of the aperture's edge. Frequencies are in periods over the aperture's width, 1 turn is a full
+// circle.
+
 /// Diffraction by the lens's aperture as seen from one film point.
 struct DiffractionNode {
     float mm_per_nm;  ///< offset on the film for one period over the aperture's width, per nm of wavelength
@@ -22,11 +27,11 @@ struct DiffractionNode {
 /// Without diffraction, `radii` is 0.
 struct DiffractionView {
     const DiffractionNode* nodes;  ///< radii x azimuths
-    const AliasEntry* entries;     ///< kDiffractionEntries of each node
-    const DiffractionEdge* edges;  ///< kDiffractionEdges of each node
-    int radii;
-    int azimuths;  ///< 1: the diffraction pattern rotates with the film point's azimuth
-    float radii_per_mm;
+    const AliasEntry* entries;     ///< kDiffractionEntries for each node
+    const DiffractionEdge* edges;  ///< kDiffractionEdges for each node
+    int radii;  ///< number of film radii
+    int azimuths;  ///< number of azimuths; 1: the diffraction pattern rotates with the film point's azimuth
+    float radii_per_mm;  ///< nodes per mm of film radius
     float largest_radius;  ///< largest film radius, mm
     float splat_density;  ///< density of edge-diffracted pixel samples per splat of a light, for MIS weights, per
                           ///< steradian
@@ -37,7 +42,8 @@ inline constexpr int kSamplesPerSplat = 32;
 
 namespace diffraction_detail {
 
-/// Index of a node for a film point: one of its neighbours, chosen with its interpolation weight as probability.
+/// Index of a node for a film point, mm: one of its neighbours, chosen with its interpolation weight as probability.
+/// `u`, `v`: random numbers in [0, 1) that select the radius and the azimuth.
 REALCAM_INLINE std::int32_t node_at(const DiffractionView& view, Vec2f film, float u, float v) {
     const float radius = sqrt_or_zero(film.x * film.x + film.y * film.y);
     const auto ring = static_cast<std::int32_t>(radius * view.radii_per_mm + u);
@@ -54,24 +60,26 @@ REALCAM_INLINE std::int32_t node_at(const DiffractionView& view, Vec2f film, flo
 /// cumulative distribution, accurate to 3% and exact in the tails. The tails reach across the film and fall only as 1 /
 /// f, so u needs all its bits: its largest values give one frequency, which would show as an image.
 REALCAM_INLINE float frequency_along_edge(float u) {
-    const float share = std::fabs(2.0f * u - 1.0f);
-    const float size = share * (0.5f + share * (-0.34473f + share * (-0.44109f + share * 0.38714f)));
-    const float frequency = quotient(size, select(share < 1.0f, 1.0f - share, 0x1p-24f));
+    const float fraction = std::fabs(2.0f * u - 1.0f);  // of the light within this frequency
+    const float size = fraction * (0.5f + fraction * (-0.34473f + fraction * (-0.44109f + fraction * 0.38714f)));
+    const float frequency = quotient(size, select(fraction < 1.0f, 1.0f - fraction, 0x1p-24f));
     return select(u < 0.5f, -frequency, frequency);
 }
 
 /// Remaining bits of a random number as a number in [0, 1), after the leading log2(scale) bits have been used.
-REALCAM_INLINE float behind_bits(float u, float scale) {
+REALCAM_INLINE float remaining_bits(float u, float scale) {
     const float scaled = scale * u;
     return scaled - static_cast<float>(static_cast<std::int32_t>(scaled));
 }
 
 /// Random number for the frequency along an edge: eight bits that node_at does not use, and lower bits that hardly
 /// affect the position on an edge segment.
-REALCAM_INLINE float along_number(Vec2f u, Vec2f v) {
-    return behind_bits(u.y, 0x1p16f) + 0x1p-8f * behind_bits(v.y, 0x1p9f);
+REALCAM_INLINE float number_along_edge(Vec2f u, Vec2f v) {
+    return remaining_bits(u.y, 0x1p16f) + 0x1p-8f * remaining_bits(v.y, 0x1p9f);
 }
 
+/// Square of the inner frequency of a ring of cells; rings are thin near the centre and kDiffractionThickness times as
+/// wide beyond.
 REALCAM_INLINE float ring_edge_squared(std::int32_t ring) {
     const std::int32_t beyond = ring - kDiffractionThinRings;
     const float f =
@@ -79,7 +87,7 @@ REALCAM_INLINE float ring_edge_squared(std::int32_t ring) {
     return f * f;
 }
 
-/// Random frequency in a cell, in periods over the aperture's width.
+/// Random frequency in a cell, in periods over the aperture's width. `u`: random numbers in [0, 1).
 REALCAM_INLINE Vec2f cell_frequency(std::int32_t cell, Vec2f u) {
     const std::int32_t ring = cell / kDiffractionAzimuths, azimuth = cell - ring * kDiffractionAzimuths;
     const float low = ring_edge_squared(ring), high = ring_edge_squared(ring + 1);
@@ -99,11 +107,11 @@ REALCAM_INLINE Vec2f edge_frequency(const DiffractionEdge& edge, float f, float 
 }
 
 /// Rotates a vector to the film point's azimuth if the nodes have a single azimuth.
-REALCAM_INLINE Vec2f turned_with(Vec2f film, int azimuths, Vec2f v) {
+REALCAM_INLINE Vec2f rotated_to_azimuth(Vec2f film, int azimuths, Vec2f v) {
     const float squared = film.x * film.x + film.y * film.y;
-    const bool turns = (azimuths == 1) & (squared > 0.0f);
-    const float inverse = quotient(1.0f, sqrt_or_zero(select(turns, squared, 1.0f)));
-    const float x = select(turns, film.x * inverse, 1.0f), y = select(turns, film.y * inverse, 0.0f);
+    const bool rotates = (azimuths == 1) & (squared > 0.0f);
+    const float inverse = quotient(1.0f, sqrt_or_zero(select(rotates, squared, 1.0f)));
+    const float x = select(rotates, film.x * inverse, 1.0f), y = select(rotates, film.y * inverse, 0.0f);
     return {x * v.x - y * v.y, y * v.x + x * v.y};
 }
 
@@ -115,25 +123,26 @@ struct DiffractionKick {
     std::int32_t from_edge;  ///< 1: beyond the range of the cells
 };
 
-/// Samples a kick for the light of a film point. The density is the power that the aperture diffracts there.
+/// Samples a kick for the light of a film point, mm. The density is the power that the aperture diffracts there. `u`,
+/// `v`: random numbers in [0, 1), whose bits are used for several choices.
 REALCAM_INLINE DiffractionKick draw_kick(const DiffractionView& view, Vec2f film, Vec2f u, Vec2f v) {
     using namespace diffraction_detail;
-    const std::int32_t at = node_at(view, film, u.y, behind_bits(u.y, 0x1p8f));
+    const std::int32_t at = node_at(view, film, u.y, remaining_bits(u.y, 0x1p8f));
     const DiffractionNode& node = view.nodes[at];
     const bool is_edge = u.x < node.edge_share;
-    const float fresh =
+    const float rescaled =
         select(is_edge, u.x, u.x - node.edge_share) / select(is_edge, node.edge_share, 1.0f - node.edge_share);
     const std::int32_t drawn =
         draw_entry(view.entries, at * kDiffractionEntries + select(is_edge, 0, kDiffractionEdges),
-                   select(is_edge, kDiffractionEdges, kDiffractionCells), fresh);
-    const float side = select(v.y < 0.5f, 1.0f, -1.0f), position = behind_bits(v.y, 2.0f);
+                   select(is_edge, kDiffractionEdges, kDiffractionCells), rescaled);
+    const float side = select(v.y < 0.5f, 1.0f, -1.0f), position = remaining_bits(v.y, 2.0f);
     const Vec2f in_cell = cell_frequency(select(is_edge, 0, drawn), {v.x, position});
     const Vec2f from_edge = edge_frequency(view.edges[at * kDiffractionEdges + select(is_edge, drawn, 0)],
-                                           quotient(kDiffractionReach, 1.0f - v.x), position, along_number(u, v));
+                                           quotient(kDiffractionReach, 1.0f - v.x), position, number_along_edge(u, v));
     const float scale = side * node.mm_per_nm;
     const Vec2f kick = {scale * select(is_edge, from_edge.x, in_cell.x),
                         scale * select(is_edge, from_edge.y, in_cell.y)};
-    return {turned_with(film, view.azimuths, kick), select(is_edge, 1, 0)};
+    return {rotated_to_azimuth(film, view.azimuths, kick), select(is_edge, 1, 0)};
 }
 
 /// Kick from an edge, log-uniformly distributed from the range of the cells to the whole film. It reaches the dark
@@ -144,21 +153,23 @@ struct EdgeKick {
     float weight;  ///< density of the light over the sampling density
 };
 
+/// Samples an EdgeKick for light of the wavelength `nm` at a film point, mm. `u`, `v`: random numbers in [0, 1).
 REALCAM_INLINE EdgeKick draw_edge_kick(const DiffractionView& view, Vec2f film, float nm, Vec2f u, Vec2f v) {
     using namespace diffraction_detail;
-    const std::int32_t at = node_at(view, film, u.y, behind_bits(u.y, 0x1p8f));
+    const std::int32_t at = node_at(view, film, u.y, remaining_bits(u.y, 0x1p8f));
     const DiffractionNode& node = view.nodes[at];
     const std::int32_t edge = draw_entry(view.entries, at * kDiffractionEntries, kDiffractionEdges, u.x);
-    const float most = quotient(2.0f * view.largest_radius, node.mm_per_nm * nm);
-    const float range = std::log(quotient(most > kDiffractionReach ? most : kDiffractionReach, kDiffractionReach));
+    const float largest = quotient(2.0f * view.largest_radius, node.mm_per_nm * nm);
+    const float range =
+        std::log(quotient(largest > kDiffractionReach ? largest : kDiffractionReach, kDiffractionReach));
     const float ratio = std::exp(v.x * range);
     const float side = select(v.y < 0.5f, 1.0f, -1.0f), scale = side * node.mm_per_nm;
     // Squaring the distance to the nearer end makes small distances more frequent; the derivative is the weight.
-    const float along = along_number(u, v), left = 2.0f * select(along < 0.5f, along, 1.0f - along);
+    const float along = number_along_edge(u, v), left = 2.0f * select(along < 0.5f, along, 1.0f - along);
     const float tail = 0.5f * left * left;
     const Vec2f from_edge = edge_frequency(view.edges[at * kDiffractionEdges + edge], kDiffractionReach * ratio,
-                                           behind_bits(v.y, 2.0f), select(along < 0.5f, tail, 1.0f - tail));
-    return {turned_with(film, view.azimuths, {scale * from_edge.x, scale * from_edge.y}),
+                                           remaining_bits(v.y, 2.0f), select(along < 0.5f, tail, 1.0f - tail));
+    return {rotated_to_azimuth(film, view.azimuths, {scale * from_edge.x, scale * from_edge.y}),
             2.0f * left * node.edge_share * range / ratio};
 }
 

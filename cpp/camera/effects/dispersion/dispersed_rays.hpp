@@ -3,8 +3,9 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Traces rays through the lens. `indices`: OneWavelength or ManyWavelengths. `passed`: transmitted fraction of each
-/// ray's power; set only if the lens is `coated`.
+/// Traces rays through the lens. `indices`: OneWavelength or ManyWavelengths. `coatings`, `variable`: transmittances of
+/// the surfaces and the wavelength variable of each ray, for CoatedMedia. `passed`: transmitted fraction of each ray's
+/// power; set only if the lens is `coated`.
 template <LensKind lens_kind, bool coated, class Indices, int terms, int N>
 REALCAM_HD inline void trace_surfaces(const LensView<float>& lens, LensRays<float, N>& rays, const Indices& indices,
                                       const CoatingPolynomials<terms>* coatings, const float* variable,
@@ -36,7 +37,8 @@ struct PixelOffset {
     REALCAM_INLINE bool is_own() const { return is_near & (right == 0) & (down == 0); }
 };
 
-/// Pixel of a film point; not near if it is farther away than the size of a tile.
+/// Offset of the pixel of a film point (mm) from a lane's own pixel; not near if it is farther away than the size of a
+/// tile.
 template <int N>
 REALCAM_INLINE PixelOffset pixel_at(const CameraView& camera, const SampleBlock<N>& block, int lane, Vec2f film) {
     const float columns_per_mm = -0.5f * static_cast<float>(camera.width) / camera.film_half_width;
@@ -49,8 +51,8 @@ REALCAM_INLINE PixelOffset pixel_at(const CameraView& camera, const SampleBlock<
             static_cast<int>(std::floor(select(is_near, row, 0.0f))), is_near};
 }
 
-/// Lets a sample count, at wavelength step `step`, in the pixel of a film point if that is its own pixel or one in the
-/// same tile.
+/// Lets a lane's sample count, at wavelength step `step`, in the pixel of a film point (mm) if `arrives` is true and
+/// the pixel is its own or one in the same tile. Sets the bit in SampleWavelengths::shares, and the offset.
 template <int N>
 REALCAM_INLINE void share(const CameraView& camera, const SampleBlock<N>& block, int lane, int step, bool arrives,
                           Vec2f film, SampleWavelengths<N>& wavelengths) {
@@ -80,7 +82,8 @@ REALCAM_INLINE void draw_wavelengths(const DispersionView& view, const SampleBlo
 }
 
 /// Finds the pixels in which rays that have left the lens count at the further wavelengths, and the lens's
-/// transmittance at these wavelengths if it is `coated`.
+/// transmittance at these wavelengths if it is `coated`. `left`: rays that have left the lens; `film`: see
+/// FilmPointsWith.
 template <LensKind lens_kind, bool coated, int N, class Points>
 REALCAM_HD inline void find_shares(const CameraView& camera, const SampleBlock<N>& block,
                                    const LensRays<float, N>& left, const Points& film,

@@ -10,6 +10,8 @@
 
 namespace REALCAM_NAMESPACE {
 
+// Wavelengths of a picture's samples: the cells of the spectrum, and the pixels in which a sample counts.
+
 /// A rectangle of the film, in pixels from the upper left corner of the picture.
 struct FilmRegion {
     int column = 0, row = 0, width = 0, height = 0;
@@ -57,7 +59,7 @@ struct DispersionView {
     WavelengthVariable variable;
     const IndexCubic *to_scene, *to_film;  ///< for each of the lens's surfaces, in the order in which light meets them
     const SurfaceView<float>* film_surfaces;  ///< the lens's surfaces for light towards the film
-    FreeParts<float> film_free;  ///< their data for LensKind::any
+    FreeParts<float> film_free;  ///< data of film_surfaces for LensKind::any
     SampleSharing sharing{};
     float film[9]{};  ///< mean of the cells' matrices
     float white_scale[3] = {1, 1, 1};  ///< inverse of the film colour of white through the filter; 0 if it is dark
@@ -85,7 +87,8 @@ REALCAM_INLINE float wavelength_at(const DispersionView& view, float cell_positi
     return in.first_nm + share * (in.last_nm - in.first_nm);
 }
 
-/// Position `step` steps further in the list of cells, wrapping around from the last cell to the first.
+/// Position `step` steps of a third of the list further in the list of cells, wrapping around from the last cell to the
+/// first.
 REALCAM_INLINE float shared_cell_position(const DispersionView& view, float cell_position, int step) {
     const auto cells = static_cast<float>(view.cell_count);
     const float at = cell_position + static_cast<float>(step * (view.cell_count / kSharedWavelengths));

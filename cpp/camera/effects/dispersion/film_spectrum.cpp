@@ -39,7 +39,7 @@ std::array<double, 3> basis_at(double wavelength_nm) {
 
 namespace {
 
-/// Film matrix per nm under a spectrum, before white balance.
+/// Film matrix per nm at a wavelength where the illuminant has this power, before white balance.
 Matrix matrix_at(double wavelength_nm, double power) {
     const double x = Illuminant::at(kObserverX, wavelength_nm), y = Illuminant::at(kObserverY, wavelength_nm),
                  z = Illuminant::at(kObserverZ, wavelength_nm);
@@ -99,8 +99,9 @@ Matrix sum_of(const std::vector<Piece>& pieces) {
     return sum;
 }
 
-/// Makes the tables' integral under D65 the identity, from which it differs by a thousandth, and balances the film to
-/// the illuminant without the filter.
+/// Corrects the matrices of the pieces so that their integral under D65 is the identity, from which the tables differ
+/// by a thousandth, and white-balances the film to the illuminant without the filter. Throws InputError if the
+/// illuminant has too little of a colour.
 void balance(std::vector<Piece>& pieces, const Illuminant& illuminant, bool is_filtered) {
     const Matrix to_identity = inverse(sum_of(pieces_of(Illuminant::named("D65"), {})));
     const auto corrected = [&](std::vector<Piece> list) {
@@ -122,10 +123,10 @@ void balance(std::vector<Piece>& pieces, const Illuminant& illuminant, bool is_f
     }
 }
 
-/// A sample that counts for one wavelength shows white in channel c as k_c / p, and one that counts for three as their
-/// mean. The density is the one of the form p = sqrt(sum of a_c k_c^2) for which the latter differs least from 1 under
-/// D65, by 0.28, 0.14 and 0.28; under A and FL2, by at most 0.5 and 0.4. With single wavelengths, the difference is 1.8
-/// to 2.2.
+/// Sets the sampling density of each piece. A sample that counts for one wavelength shows white in channel c as k_c /
+/// p, and one that counts for three as their mean. The density is the one of the form p = sqrt(sum of a_c k_c^2) for
+/// which the latter differs least from 1 under D65, by 0.28, 0.14 and 0.28; under A and FL2, by at most 0.5 and 0.4.
+/// With single wavelengths, the difference is 1.8 to 2.2.
 void set_density(std::vector<Piece>& pieces) {
     constexpr std::array<double, 3> kWeights = {0.7, 1, 0.7};
     double sum = 0;
@@ -142,8 +143,8 @@ void set_density(std::vector<Piece>& pieces) {
     for (Piece& piece : pieces) piece.density /= sum;
 }
 
-/// Cells of equal probability. A cell that spans a gap between two lines spreads its share, one of kCells, over the
-/// gap.
+/// Divides the spectrum into `count` cells of equal probability. A cell that spans a gap between two lines spreads its
+/// light over the gap.
 std::vector<WavelengthCell> cells_of(const std::vector<Piece>& pieces, int count) {
     struct Edge {
         double wavelength;

@@ -24,13 +24,16 @@ using Matrix = std::array<double, 9>;  ///< row by row
 inline constexpr Matrix kSrgbFromXyz = {3.2404542, -1.5371385, -0.4985314, -0.9692660, 1.8760108,
                                         0.0415560, 0.0556434,  -0.2040259, 1.0572252};
 
+/// Matrix product a b.
 Matrix product(const Matrix& a, const Matrix& b);
 
+/// Inverse of an invertible matrix.
 Matrix inverse(const Matrix& m);
 
+/// Red, green and blue basis spectra at a wavelength from 380 to 780 nm; their sum is 1.
 std::array<double, 3> basis_at(double wavelength_nm);
 
-/// Response of a film channel to white.
+/// Sum of the elements of a row: response of a film channel to white.
 inline double row_sum(const Matrix& m, std::size_t row) {
     return m[3 * row] + m[3 * row + 1] + m[3 * row + 2];
 }
@@ -45,7 +48,7 @@ public:
     /// Throws InputError if the illuminant has too little of a colour for white to be balanced, or no light of it
     /// passes the filter.
     explicit FilmSpectrum(const Illuminant& illuminant, const std::optional<LensFilter>& filter = {});
-    /// Uniform over a range of wavelengths, for rays without a colour.
+    /// Uniform over a range of wavelengths, in one cell whose film matrix is the identity; for rays without a colour.
     explicit FilmSpectrum(WavelengthRange range);
 
     const std::vector<WavelengthCell>& cells() const { return cells_; }

@@ -8,8 +8,9 @@
 
 namespace REALCAM_NAMESPACE {
 
+/// Point of a tabulated spectrum.
 struct SpectrumPoint {
-    double wavelength_nm, power;
+    double wavelength_nm, power;  ///< power per nm, in any unit
 
     bool operator==(const SpectrumPoint&) const = default;
 };
@@ -38,21 +39,23 @@ std::string shortest_text(double value);
 /// Spectrum of all light in a picture: a standard illuminant (D65, D50, A, FL2), a single line, or a table.
 class Illuminant {
 public:
+    /// Values that users may give, for messages.
     static constexpr const char* kWanted =
         "D65, D50, A, FL2, a wavelength in nm, or a table of wavelengths and powers (400:0.5,550:1,700:0.2)";
 
     Illuminant() = default;
 
-    /// Throws InputError if the name is unknown.
+    /// Standard illuminant. Throws InputError if the name is unknown.
     static Illuminant named(std::string_view name);
-    /// Throws InputError if the wavelength is not from 380 to 780 nm.
+    /// Line of a single wavelength. Throws InputError if the wavelength is not from 380 to 780 nm.
     static Illuminant line(double wavelength_nm);
-    /// Linear between its points, 0 outside. Throws what check_spectrum throws.
+    /// Tabulated spectrum: linear between its points, 0 outside. Throws what check_spectrum throws.
     static Illuminant table(std::vector<SpectrumPoint> points);
-    /// Parses the one-word form that users write. Throws InputError if it is invalid.
+    /// Parses one of the forms of kWanted. Throws InputError if it is invalid.
     static Illuminant parse(std::string_view text);
 
     bool is_line() const { return points_.size() == 1; }
+    /// Points of a table; one point for a line; empty for a standard illuminant.
     const std::vector<SpectrumPoint>& points() const { return points_; }
 
     /// Relative power at a wavelength from 380 to 780 nm; 0 for a line, which has no density.

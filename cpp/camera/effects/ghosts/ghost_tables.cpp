@@ -25,58 +25,59 @@ std::vector<Crossing> all_crossings(const LensSystem& lens) {
 
 }  // namespace ghost_tables_detail
 
-GhostTables::GhostTables(const LensSystem& of_lens, double film_radius, const GhostChoice& choice,
+GhostTables::GhostTables(const LensSystem& lens, double film_radius, const GhostChoice& choice,
                          const PupilTracer& tracer, const FilmSpectrum* spectrum)
     : effects_{.dispersion = spectrum != nullptr, .coatings = true},
       film_radius_(static_cast<float>(film_radius)),
-      film_index_(static_cast<float>(of_lens.indices(of_lens.wavelength_nm).back())) {
-    const LensSystem lens = with_film_mirror(of_lens, choice.film_reflectance, film_radius);
+      film_index_(static_cast<float>(lens.indices(lens.wavelength_nm).back())) {
+    const LensSystem lens_with_film = with_film_mirror(lens, choice.film_reflectance, film_radius);
     std::vector<AxialPair> pairs;
     // With a spectrum, shares are averaged over it: a coating that suppresses light at the design wavelength reflects
     // at another.
-    std::vector<AxialShares> of_wavelengths;
-    for (const double wavelength : spectrum ? spectrum->even_wavelengths() : std::vector{lens.wavelength_nm})
-        of_wavelengths.emplace_back(lens, wavelength);
+    std::vector<AxialShares> transmittances;
+    for (const double wavelength : spectrum ? spectrum->even_wavelengths() : std::vector{lens_with_film.wavelength_nm})
+        transmittances.emplace_back(lens_with_film, wavelength);
     const auto axial_share = [&](const std::vector<Crossing>& crossings) {
         double sum = 0;
-        for (const AxialShares& share : of_wavelengths) sum += share(crossings);
-        return sum / static_cast<double>(of_wavelengths.size());
+        for (const AxialShares& transmittance : transmittances) sum += transmittance(crossings);
+        return sum / static_cast<double>(transmittances.size());
     };
-    const auto look_at = [&](const std::vector<GhostPair>& wanted) {
-        for (const GhostPair pair : wanted) {
-            // A ghost is not searched if it stays below the limit even with ten times the etendue of the lens itself.
-            const double share = axial_share(crossings_of(of_lens, pair));
+    const auto add_candidates = [&](const std::vector<GhostPair>& candidates) {
+        for (const GhostPair pair : candidates) {
+            // A ghost is not searched if it stays below the limit even with ten times the etendue of the lens's
+            // direct path.
+            const double share = axial_share(crossings_of(lens, pair));
             if (10 * share > choice.least_share) pairs.push_back({pair, share});
         }
     };
-    if (choice.of_lens) look_at(ghost_pairs(of_lens));
-    if (choice.film_reflectance > 0) look_at(film_ghost_pairs(of_lens));
-    make_crossings(lens, spectrum);
-    if (is_round_lens(of_lens))
-        find_lens_paths(EntrancePupilSearch<FilmRings>(of_lens, film_radius, tracer), of_lens, lens, pairs,
+    if (choice.of_lens) add_candidates(ghost_pairs(lens));
+    if (choice.film_reflectance > 0) add_candidates(film_ghost_pairs(lens));
+    make_crossings(lens_with_film, spectrum);
+    if (uses_rotational_code(lens))
+        find_lens_paths(EntrancePupilSearch<FilmRings>(lens, film_radius, tracer), lens, lens_with_film, pairs,
                         choice.least_share, tracer);
     else
-        find_lens_paths(EntrancePupilSearch<FilmCells>(of_lens, film_radius, tracer), of_lens, lens, pairs,
+        find_lens_paths(EntrancePupilSearch<FilmCells>(lens, film_radius, tracer), lens, lens_with_film, pairs,
                         choice.least_share, tracer);
     set_probabilities();
-    const LensPath<float> straight(of_lens, LightDirection::to_film, lens.wavelength_nm);
-    iris_ = straight.view().iris;
-    kind_ = is_round_lens(of_lens) ? straight.view().kind : LensKind::any;
+    const LensPath<float> direct_path(lens, LightDirection::to_film, lens_with_film.wavelength_nm);
+    iris_ = direct_path.view().iris;
+    kind_ = uses_rotational_code(lens) ? direct_path.view().kind : LensKind::any;
 }
 
 template <class Map>
-void GhostTables::find_lens_paths(const EntrancePupilSearch<Map>& search, const LensSystem& of_lens,
-                                  const LensSystem& lens, const std::vector<AxialPair>& pairs, double least_share,
-                                  const PupilTracer& tracer) {
-    FoundRays found(pairs.size() + 1);  // the last element: the lens's direct path
+void GhostTables::find_lens_paths(const EntrancePupilSearch<Map>& search, const LensSystem& lens,
+                                  const LensSystem& lens_with_film, const std::vector<AxialPair>& pairs,
+                                  double least_share, const PupilTracer& tracer) {
+    FoundRays found(pairs.size() + 1);  // the last element: direct path of the lens
     tracer.for_each(static_cast<int>(found.size()), [&](int i) {
         const auto k = static_cast<std::size_t>(i);
-        const auto crossings = k < pairs.size() ? crossings_of(of_lens, pairs[k].pair) : crossings_of(of_lens);
-        found[k] = search.along(lens, crossings);
+        const auto crossings = k < pairs.size() ? crossings_of(lens, pairs[k].pair) : crossings_of(lens);
+        found[k] = search.find_rays(lens_with_film, crossings);
     });
     const auto directions = Map::directions_of(found);
     set_maps(directions, search.map());
-    entry_reach_ = entry_reach(of_lens);
+    entry_reach_ = entry_reach(lens);
     exit_reach_ = static_cast<float>(search.map().rear_reach);
     const auto append = [](std::vector<GhostEntry>& to, const std::vector<GhostEntry>& entries) {
         to.insert(to.end(), entries.begin(), entries.end());
@@ -86,9 +87,10 @@ void GhostTables::find_lens_paths(const EntrancePupilSearch<Map>& search, const 
         if (!(share > least_share)) continue;
         pairs_.push_back(pairs[k].pair);
         shares_.push_back(share);
-        const std::vector<Crossing> crossings = crossings_of(of_lens, pairs[k].pair);
+        const std::vector<Crossing> crossings = crossings_of(lens, pairs[k].pair);
         const auto path = [&](LightDirection direction) {
-            return LensPath<float>(lens, crossings, direction, lens.wavelength_nm, film_path_ends(of_lens, direction));
+            return LensPath<float>(lens_with_film, crossings, direction, lens_with_film.wavelength_nm,
+                                   film_path_ends(lens, direction));
         };
         add(to_film_, path(LightDirection::to_film), crossings);
         add(to_scene_, path(LightDirection::to_scene), reversed(crossings));
@@ -99,26 +101,26 @@ void GhostTables::find_lens_paths(const EntrancePupilSearch<Map>& search, const 
 
 GhostView GhostTables::view_of_objects() const {
     double share = 0;
-    for (const double of_pair : shares_) share += of_pair;
+    for (const double pair_share : shares_) share += pair_share;
     const auto samples = static_cast<std::int32_t>(std::clamp(0.5 / share, 16.0, 256.0));
     return view_of(to_scene_, GhostLight::of_objects, samples, exit_reach_, film_grid_);
 }
 
-GhostView GhostTables::view_of(const LensPaths& of, GhostLight light, std::int32_t pixel_samples, float reach,
+GhostView GhostTables::view_of(const LensPaths& lens_paths, GhostLight light, std::int32_t pixel_samples, float reach,
                                const GhostGrid& grid) const {
     const auto data_of = [](const auto& list) { return list.empty() ? nullptr : list.data(); };
     return {light,
             effects_,
             pixel_samples,
-            of.paths.data(),
-            static_cast<int>(of.paths.size()),
+            lens_paths.paths.data(),
+            static_cast<int>(lens_paths.paths.size()),
             cdf_.data(),
-            data_of(of.entries),
-            static_cast<int>(of.surfaces.size()),
-            of.surfaces.data(),
-            data_of(of.coatings),
-            data_of(of.indices),
-            data_of(of.spectral_coatings),
+            data_of(lens_paths.entries),
+            static_cast<int>(lens_paths.surfaces.size()),
+            lens_paths.surfaces.data(),
+            data_of(lens_paths.coatings),
+            data_of(lens_paths.indices),
+            data_of(lens_paths.spectral_coatings),
             largest_half_tangent_,
             film_radius_,
             film_index_,
@@ -126,7 +128,7 @@ GhostView GhostTables::view_of(const LensPaths& of, GhostLight light, std::int32
             iris_,
             kind_,
             grid,
-            {data_of(of.frames), data_of(of.freeforms), data_of(of.apertures)}};
+            {data_of(lens_paths.frames), data_of(lens_paths.freeforms), data_of(lens_paths.apertures)}};
 }
 
 void GhostTables::make_crossings(const LensSystem& lens, const FilmSpectrum* spectrum) {
@@ -158,11 +160,11 @@ void GhostTables::add(LensPaths& to, const LensPath<float>& path, const std::vec
     append(to.freeforms, view.free.freeforms);
     append(to.apertures, view.free.apertures);
     for (const Crossing& crossing : crossings) {
-        const std::size_t number = ghost_tables_detail::number_of(crossing);
-        if (!all_coatings_.empty()) to.coatings.push_back(all_coatings_[number]);
+        const std::size_t index = ghost_tables_detail::crossing_index(crossing);
+        if (!all_coatings_.empty()) to.coatings.push_back(all_coatings_[index]);
         if (all_indices_.empty()) continue;
-        to.indices.push_back(all_indices_[number]);
-        to.spectral_coatings.push_back(all_spectral_[number]);
+        to.indices.push_back(all_indices_[index]);
+        to.spectral_coatings.push_back(all_spectral_[index]);
     }
 }
 
@@ -173,8 +175,8 @@ void GhostTables::set_probabilities() {
     std::vector<double> weights;
     for (const double share : shares_) weights.push_back(0.9 * share / sum + 0.1 / static_cast<double>(shares_.size()));
     append_cdf(weights, cdf_);
-    for (LensPaths* of : {&to_film_, &to_scene_})
-        for (std::size_t k = 0; k < weights.size(); ++k) of->paths[k].probability = cdf_[k + 1] - cdf_[k];
+    for (LensPaths* lens_paths : {&to_film_, &to_scene_})
+        for (std::size_t k = 0; k < weights.size(); ++k) lens_paths->paths[k].probability = cdf_[k + 1] - cdf_[k];
 }
 
 }  // namespace realcam

@@ -10,10 +10,11 @@ namespace REALCAM_NAMESPACE {
 namespace ghost_tables_detail {
 
 /// Index of a crossing in all_crossings().
-inline std::size_t number_of(const Crossing& crossing) {
+inline std::size_t crossing_index(const Crossing& crossing) {
     return static_cast<std::size_t>(4 * crossing.surface + 2 * crossing.in_order + crossing.is_reflected);
 }
 
+/// Every crossing of a surface that an optical path may have: in both directions, refracted and reflected.
 std::vector<Crossing> all_crossings(const LensSystem& lens);
 
 }  // namespace ghost_tables_detail
@@ -23,17 +24,17 @@ class GhostTables {
 public:
     /// `film_radius`: radius of a circle that contains the film, mm. `spectrum`: for pictures with dispersion, else
     /// null. Throws InputError if a refractive index is unknown.
-    GhostTables(const LensSystem& of_lens, double film_radius, const GhostChoice& choice, const PupilTracer& tracer,
+    GhostTables(const LensSystem& lens, double film_radius, const GhostChoice& choice, const PupilTracer& tracer,
                 const FilmSpectrum* spectrum);
 
     /// Ghosts of lights.
     GhostView view() const { return view_of(to_film_, GhostLight::of_lights, 1, entry_reach_, directions_); }
-    /// Ghosts of light that objects reflect. Their noise scales with their share of the light: with samples in twice
-    /// that share of the pixel samples, they hardly add to the noise of the picture.
+    /// Ghosts of light that objects reflect. Their noise scales with their fraction of the light: if the number of
+    /// their samples is twice that fraction of the pixel samples, they hardly add to the noise of the picture.
     GhostView view_of_objects() const;
 
     const std::vector<GhostPair>& pairs() const { return pairs_; }
-    /// Light of each pair on the film, as a fraction of the lens's own light, for a uniform surround.
+    /// Light of the ghost of each pair on the film, as a fraction of the lens's own light, for a uniform surround.
     const std::vector<double>& shares() const { return shares_; }
 
 private:
@@ -51,7 +52,8 @@ private:
         std::vector<GhostCoating<kGhostSpectrumTerms>> spectral_coatings;
     };
 
-    GhostView view_of(const LensPaths& of, GhostLight light, std::int32_t pixel_samples, float reach,
+    /// View of these paths. `pixel_samples`, `reach`, `grid`: see GhostView.
+    GhostView view_of(const LensPaths& lens_paths, GhostLight light, std::int32_t pixel_samples, float reach,
                       const GhostGrid& grid) const;
 
     /// A pair whose ghost may be bright enough, and the product of its surfaces' axial reflectances and transmittances
@@ -61,12 +63,14 @@ private:
         double share;
     };
 
-    /// Finds the optical paths of these pairs. `lens`: `of_lens` with the film as a mirror surface.
+    /// Finds the optical paths of these pairs, and keeps those with more than `least_share` of the lens's own light.
+    /// `lens_with_film`: `lens` with the film as a mirror surface.
     template <class Map>
-    void find_lens_paths(const EntrancePupilSearch<Map>& search, const LensSystem& of_lens, const LensSystem& lens,
-                         const std::vector<AxialPair>& pairs, double least_share, const PupilTracer& tracer);
+    void find_lens_paths(const EntrancePupilSearch<Map>& search, const LensSystem& lens,
+                         const LensSystem& lens_with_film, const std::vector<AxialPair>& pairs, double least_share,
+                         const PupilTracer& tracer);
 
-    // Store the maps of directions and of the film.
+    // Store the divisions of the directions and of the film into cells.
     void set_maps(const HalfTangentBins& directions, const FilmRings&) { largest_half_tangent_ = directions.largest; }
     void set_maps(const GhostGrid& directions, const FilmCells& film) {
         directions_ = directions;
@@ -79,8 +83,8 @@ private:
     /// Appends a path. `crossings`: in the order in which light along `path` meets them.
     void add(LensPaths& to, const LensPath<float>& path, const std::vector<Crossing>& crossings);
 
-    /// Sampling probabilities: 90% by the paths' shares, 10% uniform, because the actual light is not a uniform
-    /// surround.
+    /// Sets sampling probabilities: 90% in proportion to the paths' shares of the light, 10% uniform, because the
+    /// actual light is not a uniform surround.
     void set_probabilities();
 
     Effects effects_;
@@ -88,8 +92,8 @@ private:
     std::vector<double> shares_;
     LensPaths to_film_, to_scene_;
     std::vector<float> cdf_;
-    std::vector<Crossing> all_;  ///< the next three hold one element for each, indexed by
-                                 ///< ghost_tables_detail::number_of
+    std::vector<Crossing> all_;  ///< all_crossings of the lens; the next three hold one element for each, indexed by
+                                 ///< ghost_tables_detail::crossing_index
     std::vector<GhostCoating<kOneWavelengthTerms>> all_coatings_;
     std::vector<IndexCubic> all_indices_;
     std::vector<GhostCoating<kGhostSpectrumTerms>> all_spectral_;

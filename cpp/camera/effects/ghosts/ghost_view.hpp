@@ -8,6 +8,10 @@
 
 namespace REALCAM_NAMESPACE {
 
+// Data of a lens's ghosts for the render kernels. A ghost is an image by light that two surfaces reflect; its path
+// through the lens is a list of surface crossings. The same structures hold the direct path of lights that are traced
+// separately.
+
 /// Selection of the ghosts of a picture.
 struct GhostChoice {
     bool of_lens = true;  ///< ghosts of two lens surfaces
@@ -70,7 +74,7 @@ REALCAM_INLINE Vec2f half_tangents(Vec3f from) {
 /// Optical path of one ghost through the lens.
 struct GhostLensPath {
     std::int32_t first, count;  ///< range of its crossings in the arrays of GhostView
-    float probability;  ///< of being sampled
+    float probability;  ///< probability of being sampled
 };
 
 /// Light that is traced separately from the pixel samples, and the end that it is traced from.
@@ -91,21 +95,22 @@ struct GhostView {
     std::int32_t pixel_samples;  ///< number of pixel samples for each sample of this light
     const GhostLensPath* paths;
     int path_count;
-    const float* cdf;  ///< cumulative probabilities of the paths, path_count + 1
+    const float* cdf;  ///< cumulative probabilities of the paths: path_count + 1 elements from 0 to 1
     const GhostEntry* entries;  ///< kGhostBins for each path, or kGhostCells without rotational symmetry
-    int crossing_count;
-    const SurfaceView<float>* surfaces;  ///< crossings of all paths, as the next three
-    const GhostCoating<kOneWavelengthTerms>* coatings;
-    const IndexCubic* indices;  ///< only if samples have wavelengths, as the next
-    const GhostCoating<kGhostSpectrumTerms>* spectral_coatings;  ///< only if surfaces do not transmit all light
+    int crossing_count;  ///< number of crossings of all paths; each of the next four arrays has one element for each
+    const SurfaceView<float>* surfaces;
+    const GhostCoating<kOneWavelengthTerms>* coatings;  ///< null if samples have wavelengths or no light is lost
+    const IndexCubic* indices;  ///< null if samples have no wavelengths
+    const GhostCoating<kGhostSpectrumTerms>* spectral_coatings;  ///< null if samples have no wavelengths or no light is
+                                                                 ///< lost
     float largest_half_tangent;  ///< largest tangent of half the angle to the axis of light that causes a ghost
     float film_radius;  ///< radius of a circle that contains the film
     float film_index;  ///< refractive index of the medium in front of the film
     float reach;  ///< radius of a circle that contains all points where samples enter the lens
     Iris<float> iris;
-    LensKind kind;  ///< any: the next replaces largest_half_tangent and film_radius
-    GhostGrid grid;  ///< of half_tangents, or of film points in mm
-    FreeParts<float> free;  ///< crossings of all paths
+    LensKind kind;  ///< LensKind::any: `grid` replaces largest_half_tangent and film_radius
+    GhostGrid grid;  ///< cells of half_tangents, or of film points in mm
+    FreeParts<float> free;  ///< data of lenses without rotational symmetry, by crossing
 };
 
 /// Returns the view with every array replaced by a copy; `copy(pointer, count)` returns the address of the copy.

@@ -70,7 +70,7 @@ struct Crossings {
     template <class Value>
     static std::vector<Value> along(const std::vector<Crossing>& crossings, const std::vector<Value>& of_all) {
         std::vector<Value> met;
-        for (const Crossing& crossing : crossings) met.push_back(of_all[ghost_tables_detail::number_of(crossing)]);
+        for (const Crossing& crossing : crossings) met.push_back(of_all[ghost_tables_detail::crossing_index(crossing)]);
         return met;
     }
 };

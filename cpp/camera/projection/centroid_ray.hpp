@@ -10,17 +10,17 @@ namespace REALCAM_NAMESPACE {
 
 /// Centroid ray of a film point: the mean of the rays that reach it. In each plane across it the film point sees a spot
 /// of light, whose centroid lies on this straight line because each ray is straight.
-struct MeanRay {
+struct CentroidRay {
     SceneRay ray;  ///< origin: where it leaves the lens
-    Vec2<double> shows_at;  ///< film point that is the centroid of the light of the ray's point in focus, mm
+    Vec2<double> light_centroid;  ///< centroid on the film, mm, of the light of the scene point in focus on the ray
     double light;  ///< irradiance of the film point for unit radiance
 };
 
 /// Computes centroid rays of film points.
-class MeanRays {
+class CentroidRays {
 public:
     /// `focus`: distance from the entrance pupil to the plane in focus, mm; may be infinite.
-    MeanRays(const LensSystem& lens, double focus);
+    CentroidRays(const LensSystem& lens, double focus);
 
     /// Ray bundle of a film point on the +y axis, for a centred, rotationally symmetric lens with a circular stop. Must
     /// not outlive this object.
@@ -29,13 +29,15 @@ public:
     FilmBundle bundle(const PupilGridView& pupil, Vec2<double> film) const;
 
     /// Centroid ray of a bundle. Returns std::nullopt if no light reaches the film point.
-    std::optional<MeanRay> of(const FilmBundle& bundle) const;
+    std::optional<CentroidRay> centroid_ray(const FilmBundle& bundle) const;
 
-    /// Irradiance of the film point for unit radiance.
-    static double light_of(const FilmBundle& bundle);
+    /// Irradiance of the bundle's film point for unit radiance; 0 if no light reaches it.
+    static double irradiance_of(const FilmBundle& bundle);
 
 private:
-    struct Part {
+    /// Ray of a bundle that has left the lens, and the area that it represents in the bundle's entrance rectangle,
+    /// which is its contribution to the irradiance.
+    struct WeightedRay {
         SceneRay ray;
         double area;
     };
@@ -43,11 +45,13 @@ private:
     /// rim.
     static constexpr BundleSampling kSampling = {24, 12};
 
-    static std::vector<Part> parts_of(const FilmBundle& bundle);
+    /// Traces a bundle; returns the rays that leave the lens.
+    static std::vector<WeightedRay> trace(const FilmBundle& bundle);
 
-    /// Centroid on the film of the light of the ray's point in focus. `parts` gives the bounds of the search: that
-    /// light enters the lens about where the light of the film point leaves it.
-    Vec2<double> middle_of_light(const SceneRay& ray, const std::vector<Part>& parts, bool mirrored) const;
+    /// Centroid on the film of the light of the scene point in focus on a ray. `rays`: rays of the film point, which
+    /// give the bounds of the search: that light enters the lens about where the light of the film point leaves it.
+    /// `mirrored`: true if the light is symmetric in x.
+    Vec2<double> centroid_on_film(const SceneRay& ray, const std::vector<WeightedRay>& rays, bool mirrored) const;
 
     LensPath<double> to_scene_, to_film_;
     FilmSurface<double> film_;

@@ -1,4 +1,4 @@
-#include "mean_ray.hpp"
+#include "centroid_ray.hpp"
 
 #include <cmath>
 
@@ -12,7 +12,8 @@ namespace {
 constexpr int kLanes = 12;  ///< Gauss nodes of a radial scan line, which the compiler vectorises
 using EntryLanes = Vec2<double>[kLanes];
 
-/// Calls work(entries, their positions) for kLanes entries at a time. The number of entries is a multiple of kLanes.
+/// Calls work(entries, positions) for kLanes entries at a time: a pointer to the first of them, and their
+/// EntryPart::entry. The number of entries is a multiple of kLanes.
 template <class Work>
 void in_lanes(const std::vector<EntryPart>& entries, Work&& work) {
     for (std::size_t first = 0; first + kLanes <= entries.size(); first += kLanes) {
@@ -24,20 +25,20 @@ void in_lanes(const std::vector<EntryPart>& entries, Work&& work) {
 
 }  // namespace
 
-MeanRays::MeanRays(const LensSystem& lens, double focus)
+CentroidRays::CentroidRays(const LensSystem& lens, double focus)
     : to_scene_(lens, LightDirection::to_scene, lens.wavelength_nm, film_path_ends(lens, LightDirection::to_scene)),
       to_film_(lens, LightDirection::to_film, lens.wavelength_nm, film_path_ends(lens, LightDirection::to_film)),
       film_{lens.film_distance, 1 / lens.film_radius_of_curvature},
       focus_(focus) {}
 
-FilmBundle MeanRays::bundle(const PupilView& pupil, double film_radius) const {
+FilmBundle CentroidRays::bundle(const PupilView& pupil, double film_radius) const {
     const PupilRowPosition row = pupil_lookup(pupil, static_cast<float>(film_radius), 0);
     const EntryRectangle in = {{0, static_cast<double>(row.centre)},
                                {static_cast<double>(row.half_height), static_cast<double>(row.half_width)}};
     return FilmBundle(to_scene_, film_, {0, film_radius}, in, true);
 }
 
-FilmBundle MeanRays::bundle(const PupilGridView& pupil, Vec2<double> film) const {
+FilmBundle CentroidRays::bundle(const PupilGridView& pupil, Vec2<double> film) const {
     const PupilGridLookup at = pupil_lookup(pupil, static_cast<float>(film.x), static_cast<float>(film.y));
     const EntryRectangle in = {
         {static_cast<double>(at.sign_l * at.box.centre_l), static_cast<double>(at.sign_m * at.box.centre_m)},
@@ -45,13 +46,13 @@ FilmBundle MeanRays::bundle(const PupilGridView& pupil, Vec2<double> film) const
     return FilmBundle(to_scene_, film_, film, in);
 }
 
-std::optional<MeanRay> MeanRays::of(const FilmBundle& bundle) const {
-    const std::vector<Part> parts = parts_of(bundle);
+std::optional<CentroidRay> CentroidRays::centroid_ray(const FilmBundle& bundle) const {
+    const std::vector<WeightedRay> rays = trace(bundle);
     Vec3d sum = {0, 0, 0};
     double area = 0;
-    for (const Part& part : parts) {
-        sum += part.area * part.ray.direction;
-        area += part.area;
+    for (const WeightedRay& sample : rays) {
+        sum += sample.area * sample.ray.direction;
+        area += sample.area;
     }
     if (!(area > 0)) return std::nullopt;
     if (bundle.mirrored) sum.x = 0;
@@ -59,54 +60,55 @@ std::optional<MeanRay> MeanRays::of(const FilmBundle& bundle) const {
     const AcrossRay across(towards);
     Vec2<double> position = {0, 0}, slope = {0, 0};
     double start = 0;
-    for (const Part& part : parts) {
-        const auto& [origin, direction] = part.ray;
+    for (const WeightedRay& sample : rays) {
+        const auto& [origin, direction] = sample.ray;
         const Vec2<double> at = across.of(origin), lateral = across.of(direction);
-        const double along = dot(origin, towards), ahead = dot(direction, towards), share = part.area / area;
+        const double along = dot(origin, towards), ahead = dot(direction, towards), weight = sample.area / area;
         const Vec2<double> tangent = {lateral.x / ahead, lateral.y / ahead};
-        slope = {slope.x + share * tangent.x, slope.y + share * tangent.y};
-        position = {position.x + share * (at.x - along * tangent.x), position.y + share * (at.y - along * tangent.y)};
-        start += share * along;
+        slope = {slope.x + weight * tangent.x, slope.y + weight * tangent.y};
+        position = {position.x + weight * (at.x - along * tangent.x), position.y + weight * (at.y - along * tangent.y)};
+        start += weight * along;
     }
     if (bundle.mirrored) slope.x = position.x = 0;
     const Vec3d direction = towards + across.at(slope);
     const SceneRay ray = {across.at(position) + start * direction, normalized(direction)};
-    return MeanRay{ray, middle_of_light(ray, parts, bundle.mirrored), area};
+    return CentroidRay{ray, centroid_on_film(ray, rays, bundle.mirrored), area};
 }
 
-double MeanRays::light_of(const FilmBundle& bundle) {
+double CentroidRays::irradiance_of(const FilmBundle& bundle) {
     double area = 0;
     for (const EntryPart& part : entry_parts(bundle, kSampling)) area += part.area;
     return area;
 }
 
-std::vector<MeanRays::Part> MeanRays::parts_of(const FilmBundle& bundle) {
+std::vector<CentroidRays::WeightedRay> CentroidRays::trace(const FilmBundle& bundle) {
     static_assert(kSampling.nodes % kLanes == 0);
-    std::vector<Part> parts;
+    std::vector<WeightedRay> left;
     in_lanes(entry_parts(bundle, kSampling), [&](const EntryPart* entries, const EntryLanes& lanes) {
         LensRays<double, kLanes> rays;
         bundle.trace(lanes, rays);
         for (int i = 0; i < kLanes; ++i)
-            if (rays.status[i] == 0)
-                parts.push_back({{rays.origin[i], normalized(rays.direction[i])}, entries[i].area});
+            if (rays.status[i] == 0) left.push_back({{rays.origin[i], normalized(rays.direction[i])}, entries[i].area});
     });
-    return parts;
+    return left;
 }
 
-Vec2<double> MeanRays::middle_of_light(const SceneRay& ray, const std::vector<Part>& parts, bool mirrored) const {
+Vec2<double> CentroidRays::centroid_on_film(const SceneRay& ray, const std::vector<WeightedRay>& rays,
+                                            bool mirrored) const {
     const AcrossRay across(ray.direction);
     double area = 0;
     Vec2<double> squares = {0, 0};
-    for (const Part& part : parts) {
-        const Vec3d from = part.ray.origin - ray.origin;
-        const double distance = -dot(from, ray.direction) / dot(part.ray.direction, ray.direction);
-        const Vec2<double> at = across.of(from + distance * part.ray.direction);
-        area += part.area;
-        squares = {squares.x + part.area * at.x * at.x, squares.y + part.area * at.y * at.y};
+    for (const WeightedRay& sample : rays) {
+        const Vec3d from = sample.ray.origin - ray.origin;
+        const double distance = -dot(from, ray.direction) / dot(sample.ray.direction, ray.direction);
+        const Vec2<double> at = across.of(from + distance * sample.ray.direction);
+        area += sample.area;
+        squares = {squares.x + sample.area * at.x * at.x, squares.y + sample.area * at.y * at.y};
     }
     // A uniform ellipse extends to twice its root mean square; the radial scan lines extend to 1.7 times this.
-    constexpr double kReach = 2;
-    const EntryRectangle in = {{0, 0}, {kReach * std::sqrt(squares.x / area), kReach * std::sqrt(squares.y / area)}};
+    constexpr double kHalfSizes = 2;
+    const EntryRectangle in = {{0, 0},
+                               {kHalfSizes * std::sqrt(squares.x / area), kHalfSizes * std::sqrt(squares.y / area)}};
     const SceneBundle bundle(to_film_, film_, ray, focus_, in, mirrored);
     Vec2<double> sum = {0, 0};
     double light = 0;
@@ -116,9 +118,9 @@ Vec2<double> MeanRays::middle_of_light(const SceneRay& ray, const std::vector<Pa
         for (int i = 0; i < kLanes; ++i) {
             const Vec2<double> at = landings[i];
             if (!std::isfinite(at.x + at.y)) continue;
-            const double share = entries[i].area * bundle.light(entries[i].entry);
-            sum = {sum.x + share * at.x, sum.y + share * at.y};
-            light += share;
+            const double weight = entries[i].area * bundle.light(entries[i].entry);
+            sum = {sum.x + weight * at.x, sum.y + weight * at.y};
+            light += weight;
         }
     });
     return {mirrored ? 0 : sum.x / light, sum.y / light};
