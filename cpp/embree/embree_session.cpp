@@ -88,7 +88,7 @@ private:
               OwnStop&) override {
         if (camera_view_.pixel_pupils.known) {
             for (const SampleRange& pass : learning_passes(range)) {
-                expose_film(pass, counts.behind(pass.first - range.first), settings(), done);
+                expose_film(pass, counts.after(pass.first - range.first), settings(), done);
                 known_ = found_;
             }
         } else {
@@ -249,7 +249,7 @@ private:
                                                 const PixelCounts& counts, const SampleRange& range) {
         if (!counts.counts) return {};
         const SampleRange visit{tile.seed, tile.first_sample, tile.sample_count};
-        const PixelCounts here = counts.behind(visit.first - range.first);
+        const PixelCounts here = counts.after(visit.first - range.first);
         std::vector<std::uint32_t> wanted(pixels_of(tile));
         for_pixels(tile, region, [&](std::size_t at, std::size_t pixel) { wanted[at] = here.of(pixel, visit); });
         return wanted;

@@ -192,7 +192,7 @@ void render_tile(realcam_tile* tile) {
     const int wanted = number_of(camera.effects);
     [&]<int... number>(std::integer_sequence<int, number...>) {
         (void)((number == wanted &&
-                (render_tile_with<number>(tile, lens_kind_of(camera), kind_of(scene, camera)), true)) ||
+                (render_tile_with<number>(tile, kernel_lens_kind(camera), kernel_scene_kind(scene, camera)), true)) ||
                ...);
     }(std::make_integer_sequence<int, std::size(kCompiledEffects)>());
 }
@@ -277,7 +277,7 @@ void gather_ghosts_with(realcam_ghosts* job) {
 template <bool has_wavelengths>
 void take_splats_with(realcam_ghosts* job) {
     const auto& camera = *static_cast<const CameraView*>(job->camera_view);
-    const bool is_plain = kind_of(*static_cast<const SceneView*>(job->scene_view), camera) == SceneKind::plain;
+    const bool is_plain = kernel_scene_kind(*static_cast<const SceneView*>(job->scene_view), camera) == SceneKind::plain;
     constexpr LensKind round = LensKind::rotational;
     switch (static_cast<const GhostView*>(job->ghost_view)->light) {
         case GhostLight::of_lights:

@@ -20,7 +20,7 @@ __global__ void __launch_bounds__(kGhostBlock, 2) trace_lights_of(const __grid_c
 }  // namespace
 
 void launch_trace_lights(const GhostJob& job, cudaStream_t stream) {
-    const bool plain = kind_of(job.scene, job.camera) == SceneKind::plain && job.scene.instance_count == 0;
+    const bool plain = kernel_scene_kind(job.scene, job.camera) == SceneKind::plain && job.scene.instance_count == 0;
     const bool has_wavelengths = job.ghosts.effects.have_wavelengths();
     constexpr LensKind round = LensKind::rotational, any = LensKind::any;
     auto* kernel = plain ? (has_wavelengths ? trace_lights_of<round, SceneKind::plain, false, true>

@@ -56,9 +56,9 @@ struct CompiledKernel {
     RenderKernel (*of)(bool instanced);
 
     bool serves(const RenderJob& job) const {
-        const SceneKind wanted = kind_of(job.scene, job.camera);
+        const SceneKind wanted = kernel_scene_kind(job.scene, job.camera);
         return halves == job.adds_half && effects == number_of(job.camera.effects) &&
-               lens >= lens_kind_of(job.camera) && (scene == SceneKind::any || scene == wanted);
+               lens >= kernel_lens_kind(job.camera) && (scene == SceneKind::any || scene == wanted);
     }
 };
 

@@ -96,7 +96,7 @@ private:
         const auto exposing = std::chrono::steady_clock::now();
         if (settings().pupil_sampling == PupilSampling::pixel) {
             for (const SampleRange& pass : learning_passes(range)) {
-                expose_bands(pass, counts.behind(pass.first - range.first), stop, done);
+                expose_bands(pass, counts.after(pass.first - range.first), stop, done);
                 for (const auto& renderer : renderers_) renderer->learn_pupils();
             }
         } else {
