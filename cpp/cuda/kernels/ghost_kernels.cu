@@ -7,7 +7,8 @@
 namespace realcam {
 namespace {
 
-/// A thread block takes one block of samples, which share one optical path through the lens.
+/// Traces ghosts and starbursts of lights. A thread block takes one block of samples, which share one optical path
+/// through the lens; a thread takes one sample.
 template <LensKind lens_kind, SceneKind scene_kind, bool instanced, bool has_wavelengths>
 __global__ void __launch_bounds__(kGhostBlock, 2) splat_ghosts_of(const __grid_constant__ GhostJob job) {
     if (is_stopped(job)) return;

@@ -7,7 +7,8 @@
 namespace realcam {
 namespace {
 
-/// Separate from the ghost kernel because of its different register usage.
+/// Traces the images of lights; a thread takes one sample. Separate from the ghost kernel because of its different
+/// register usage.
 template <LensKind lens_kind, SceneKind scene_kind, bool instanced, bool has_wavelengths>
 __global__ void __launch_bounds__(kGhostBlock, 2) trace_lights_of(const __grid_constant__ GhostJob job) {
     if (is_stopped(job)) return;

@@ -11,7 +11,7 @@ namespace REALCAM_NAMESPACE {
 
 namespace splat_ghosts_detail {
 
-/// Dimension pairs of the random sequence, after that of the ghost path.
+/// Indices of the pairs of random numbers of a sample, by their use. Pair 0 chooses the ghost path.
 namespace ghost_dimension {
 inline constexpr std::uint32_t light = 1, entry = 2, time = 3, diffraction = 4;
 }
@@ -32,12 +32,12 @@ struct LensFrame {
     }
 };
 
-/// `time`: fraction of the exposure.
+/// Returns the lens frame at a time, as a fraction of the exposure.
 REALCAM_INLINE LensFrame lens_frame(const CameraView& camera, float time) {
     return {camera_at(camera, time), camera.front_vertex_m};
 }
 
-/// Index of the pixel at a film point; -1 if it lies outside the film.
+/// Returns the index of the pixel at a film point, mm; -1 if the point lies outside the film.
 REALCAM_INLINE std::int32_t pixel_at(const CameraView& camera, float x, float y) {
     const float column =
         0.5f * static_cast<float>(camera.width) * (1.0f - (x - camera.film_middle.x) / camera.film_half_width);
@@ -84,10 +84,10 @@ struct GhostSamples {
 /// Sets the shadow ray from a point to the light that was sampled there.
 template <int N>
 REALCAM_INLINE void set_shadow_ray(Vec3f from, const LightSample& light, int lane, GhostSamples<N>& samples) {
-    const bool is_near = light.distance < kFarAway;
+    const bool is_finite = light.distance < kFarAway;  // see ShadowRays::set in scatter_paths.hpp
     samples.shadow.origin.set(lane, from);
-    samples.shadow.direction.set(lane, is_near ? light.distance * light.direction : light.direction);
-    samples.shadow.far[lane] = is_near ? (light.reach > 0.0f ? light.reach : 0.0f) : kFarAway;
+    samples.shadow.direction.set(lane, is_finite ? light.distance * light.direction : light.direction);
+    samples.shadow.far[lane] = is_finite ? (light.reach > 0.0f ? light.reach : 0.0f) : kFarAway;
 }
 
 /// Chooses a light for each sample by its illuminance at the front vertex. `stream`: of random numbers; `first`: index

@@ -13,7 +13,7 @@ namespace trace_lights_detail {
 
 using splat_ghosts_detail::GhostSamples;
 
-/// Dimension pairs of the random sequence of a light.
+/// Indices of the pairs of random numbers of a sample, by their use.
 namespace traced_dimension {
 inline constexpr std::uint32_t entry = 0, point = 1, time = 2;
 }

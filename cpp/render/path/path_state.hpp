@@ -110,7 +110,7 @@ struct PathState {
             if constexpr (scene_kind == SceneKind::any) {
                 rays.time[to] = rays.time[from];
                 rays.number[to] = rays.number[from];
-                // Needed if the ray continues through a surface that shows only shadows:
+                // Needed if the surface is a shadow catcher, through which the ray continues:
                 pdf[to] = pdf[from];
                 receiver_position.set(to, receiver_position[from]);
                 receiver_normal.set(to, receiver_normal[from]);

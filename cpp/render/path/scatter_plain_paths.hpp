@@ -29,7 +29,7 @@ REALCAM_INLINE void set_direct_light_lambert(const PathSettings& settings, int b
     }
 }
 
-/// Samples the next rays at surfaces with only a Lambertian lobe: scatter_path for all slots.
+/// Samples the next rays at surfaces with only a Lambertian lobe: scatter_path for all slots, if all_lobes_scatter.
 template <int N>
 REALCAM_INLINE void scatter_lambert(const PlainSurfaces<N>& surfaces, const PathNumbers<N>& u, PathState<N>& path) {
     const int count = path.count, slots = whole_vectors<N>(count);
