@@ -13,8 +13,8 @@
 #define REALCAM_HD
 #endif
 
-// Small functions that run once per ray and surface. Inlining is part of their contract: a call inside a lane
-// loop would stop the loop from becoming vector code.
+// Small functions that run once per ray and surface. Inlining is part of their contract: a call inside a lane loop
+// would stop the loop from becoming vector code.
 #if defined(__GNUC__)
 #define REALCAM_INLINE REALCAM_HD inline __attribute__((always_inline))
 #else
@@ -50,9 +50,9 @@
 #define REALCAM_NO_UNROLL
 #endif
 
-// A translation unit that is built for one instruction set defines REALCAM_ISA (v2, v3, v4). The whole core then
-// lives in an inline namespace of that name, so that no inline function compiled with AVX-512 can be the copy that
-// the linker keeps for a machine without it.
+// A translation unit that is built for one instruction set defines REALCAM_ISA (v2, v3, v4). The whole core then lives
+// in an inline namespace of that name, so that no inline function compiled with AVX-512 can be the copy that the linker
+// keeps for a machine without it.
 #if defined(REALCAM_ISA)
 #define REALCAM_NAMESPACE realcam::inline REALCAM_ISA
 #else

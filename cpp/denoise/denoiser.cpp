@@ -15,7 +15,7 @@
 namespace realcam {
 namespace {
 
-constexpr std::size_t kPixelBytes = 3 * sizeof(float);
+constexpr std::size_t kPixelBytes = 3 * sizeof(float);  ///< size of a pixel in the library's images
 
 /// Owning handle of an object of Open Image Denoise.
 template <class Handle>
@@ -89,12 +89,12 @@ struct Denoiser::Parts {
 
     /// Throws Cancelled or DeviceError if the library has reported an error.
     void check() const { check(device); }
-    /// Null: the error of creating a device.
-    void check(oidn::Device of) const {
+    /// check() for a device. Null: throws the error of creating one.
+    void check(oidn::Device device_or_null) const {
         const char* message = nullptr;
-        const int error = library.get_device_error(of, &message);
+        const int error = library.get_device_error(device_or_null, &message);
         if (error == oidn::kCancelled) throw Cancelled();
-        if (error != 0 || !of)
+        if (error != 0 || !device_or_null)
             throw DeviceError(std::string("Open Image Denoise: ") + (message ? message : "no device"));
     }
 
@@ -144,16 +144,18 @@ struct Denoiser::Parts {
         int width, height;
         DenoiseQuality quality;
         Owned<oidn::Buffer> color, albedo, normal, output;
-        std::vector<Owned<oidn::Filter>>
-            layers;  ///< denoise albedo and normal in place; empty for DenoiseQuality::fast
+        /// Filters that denoise albedo and normal in place; empty for DenoiseQuality::fast.
+        std::vector<Owned<oidn::Filter>> layers;
         Owned<oidn::Filter> picture;
     };
 
+    /// Creates a buffer.
     Owned<oidn::Buffer> buffer(std::size_t bytes) const {
         Owned<oidn::Buffer> created(library.new_buffer(device, bytes), library.release_buffer);
         check();
         return created;
     }
+    /// Creates a filter for path-traced pictures ("RT").
     Owned<oidn::Filter> filter() const {
         Owned<oidn::Filter> created(library.new_filter(device, "RT"), library.release_filter);
         check();

@@ -205,8 +205,7 @@ private:
 
     /// Returns an arena with the requested number of threads.
     static tbb::task_arena arena(const RenderSettings& settings) {
-        // For more threads than cores, TBB writes a warning to the console and starts only as many as there are
-        // cores.
+        // For more threads than cores, TBB writes a warning to the console and starts only as many as there are cores.
         const int cores = tbb::info::default_concurrency();
         return tbb::task_arena(settings.threads > 0 ? std::min(settings.threads, cores) : cores);
     }

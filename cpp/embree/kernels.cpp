@@ -36,10 +36,11 @@ double now() {
 
 /// Probe of advance_paths that measures the seconds of each stage.
 struct StageClock {
-    double seconds[3] = {0, 0, 0};
-    double since = now();
+    double seconds[3] = {0, 0, 0};  ///< by RenderStage
+    double since = now();           ///< begin of the current stage
     RenderStage stage = RenderStage::other;
 
+    /// Begins a stage.
     void enter(RenderStage next) {
         const double time = now();
         seconds[static_cast<int>(stage)] += time - since;
@@ -130,6 +131,7 @@ template <Effects effects>
 void add_shared(const PathResultsWith<kLanes, effects>& results, int lanes, const int* pixel_index, PixelSum* sums) {
     for (int step = 0; step < kSharedWavelengths - 1; ++step)
         for (int k = 0; k < lanes; ++k)
+            // An offset in the tile's sums, because SampleSharing was given the tile and its width (render_tile_of).
             if (const int away = results.shared.away[step][k]; away != 0) {
                 sums[pixel_index[k] + away].add(results.shared.irradiance[step][k]);
                 sums[pixel_index[k] + away].add_excess(results.shared.white[step][k]);
@@ -183,7 +185,8 @@ void render_tile_of(realcam_tile* tile) {
 template <int effects_number>
 void render_tile_with(realcam_tile* tile, LensKind lens_kind, SceneKind scene_kind) {
     constexpr Effects effects = kCompiledEffects[effects_number];
-    // Lenses without rotational symmetry are rare, and each variant takes as long to compile.
+    // Lenses without rotational symmetry have one kernel for all scenes: they are rare, and each kernel takes long to
+    // compile.
     if (lens_kind == LensKind::any) return render_tile_of<LensKind::any, SceneKind::any, effects>(tile);
     switch (scene_kind) {
         case SceneKind::plain: return render_tile_of<LensKind::rotational, SceneKind::plain, effects>(tile);
@@ -220,13 +223,13 @@ void trace_layers_of_tile(realcam_tile* tile) {
 void trace_pixel_centres_of_tile(realcam_tile* tile) {
     const SceneView view = *static_cast<const SceneView*>(tile->scene_view);
     const CameraView camera = *static_cast<const CameraView*>(tile->camera_view);
-    PixelCentreSurface seen[kLanes];
+    PixelCentreSurface block_surfaces[kLanes];
     auto* const surfaces = static_cast<PixelCentreSurface*>(tile->sums);
     auto scene = packet_scene_of<SceneKind::any>(*tile, view);
     for_blocks_of(*tile, camera.width, [&](const SampleBlock<kLanes>& block, int lanes, const int* pixel_index) {
         scene.order = RayOrder::coherent;
-        trace_pixel_centres(view, camera, block, scene, seen);
-        for (int k = 0; k < lanes; ++k) surfaces[pixel_index[k]] = seen[k];
+        trace_pixel_centres(view, camera, block, scene, block_surfaces);
+        for (int k = 0; k < lanes; ++k) surfaces[pixel_index[k]] = block_surfaces[k];
     });
 }
 
@@ -257,6 +260,8 @@ void for_ghosts_of(realcam_ghosts* job, Sample&& sample) {
     }
     job->rays += scene.rays_traced;
 }
+
+// Take the samples of a job, for each kind of splatted light.
 
 template <LensKind lens_kind, SceneKind scene_kind, bool has_wavelengths>
 void splat_ghosts_with(realcam_ghosts* job) {

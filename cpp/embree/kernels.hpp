@@ -13,12 +13,12 @@ struct realcam_tile {
     const void* scene_view;  // SceneView
     const void* camera_view;  // CameraView
     void* embree_scene;  // RTCScene
-    int x, y, width, height;  // pixels
+    int x, y, width, height;  // first column and row on the film, and size, in pixels
     std::uint32_t first_sample, sample_count, seed;
     const std::uint32_t* counts;  // samples per pixel, row by row, from first_sample on; null: all samples
     const void* path_settings;  // PathSettings
     int (*stopped)(const void* stop);  // called before each block of samples; if true, the remaining ones are skipped
-    const void* stop;
+    const void* stop;  // argument of `stopped`
     void* sums;  // PixelSum, LayerSum or PixelCentreSurface per pixel, row by row; sums are accumulated
     int adds_squares, adds_half, adds_excess;  // at most one is true: the use of PixelSum::auxiliary
     int shares;  // true if pixels share samples (SampleSharing); all sums are then invalid if the tile was stopped
@@ -35,9 +35,9 @@ struct realcam_ghosts {
     std::uint64_t first_block, block_count;
     std::uint32_t seed;
     const void* path_settings;  // PathSettings
-    double units_per_lux;
+    double units_per_lux;  // unit of GhostSum
     int (*stopped)(const void* stop);  // called before each block; if true, the remaining ones are skipped
-    const void* stop;
+    const void* stop;  // argument of `stopped`
     void* sums;  // GhostSum of all pixels, film by film; accumulated, also by other threads
     int films;  // 1, or 2: one for blocks with even and one for blocks with odd indices
     std::uint64_t blocks_done[2], rays;  // results: blocks per film, and rays traced in the scene; incremented

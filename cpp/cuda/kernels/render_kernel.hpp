@@ -15,7 +15,7 @@ namespace realcam {
 
 /// Counters that all launches since the last clear_counts add to, in the GPU's memory.
 struct RenderCounts {
-    unsigned long long sampled_rays, passed_rays, scene_rays;  ///< as in RenderStats
+    unsigned long long sampled_rays, passed_rays, scene_rays;  ///< see RenderStats
     unsigned long long lens_clocks, scene_clocks, all_clocks;  ///< clock cycles by RenderStage and of all stages,
                                                                ///< summed over a sample of the threads
 

@@ -14,9 +14,9 @@ namespace realcam {
 /// Converts `count` numbers from float32 to float64.
 void launch_widen(const float* from, std::int64_t count, double* to, cudaStream_t stream);
 
-/// Conversion of camera rays (`spp` per pixel) from origins relative to the camera's position and times
-/// as fractions of the exposure to origins in the scene frame, times in seconds and pixel indices. The position is
-/// added in double, as on the CPU: far from the scene's origin, float would not resolve the pupil.
+/// Conversion of camera rays (`spp` per pixel) from origins relative to the camera's position and times as fractions of
+/// the exposure to origins in the scene frame, times in seconds and pixel indices. The position is added in double, as
+/// on the CPU: far from the scene's origin, float would not resolve the pupil.
 struct RaysToScene {
     const float* relative;  ///< range.count x 3, m
     const float* shares;  ///< range.count; times as fractions of the exposure

@@ -16,7 +16,7 @@ namespace {
 
 /// Returns the distance from the entrance pupil to the film along the axis, m. An entrance pupil at infinity is
 /// replaced by the front vertex.
-double film_to_pupil_m(const LensSystem& lens) {
+double pupil_to_film_m(const LensSystem& lens) {
     const double pupil = nominal_first_order(lens).entrance_pupil_position;
     return (lens.film_position() - (std::isfinite(pupil) ? pupil : 0.0)) / 1000;
 }
@@ -84,7 +84,7 @@ const SceneCamera* chosen_camera(const Assembly& assembly, const ViewRequest& re
 /// Returns the pose that puts the entrance pupil of a lens at the position of a scene's camera.
 Pose pose_of(const Affine<double>& scene_from_camera, const LensSystem& lens) {
     const Vec3d backward = normalized(scene_from_camera.z);
-    const Vec3d position = scene_from_camera.origin + film_to_pupil_m(lens) * backward;
+    const Vec3d position = scene_from_camera.origin + pupil_to_film_m(lens) * backward;
     return {position, position - backward, normalized(scene_from_camera.y)};
 }
 
@@ -167,7 +167,7 @@ void choose_view(Camera& camera, const Assembly& assembly, const Subject& subjec
     const auto pose_of_lens = [&](const LensSystem& lens) {
         camera.lens = lens;
         distance = std::max(least, std::min(limit, filling_distance(subject, camera, target, is_open)));
-        return Pose{target + (distance + film_to_pupil_m(lens)) * backward, target, request.up};
+        return Pose{target + (distance + pupil_to_film_m(lens)) * backward, target, request.up};
     };
     for (int i = 0;; ++i) {
         try {

@@ -40,8 +40,8 @@ struct ViewRequest {
 /// - a closed room is seen from the corner, near half of its height, with the longest view towards its content.
 /// - focus: the first surface on the camera's axis, or the depth of the subject's centre if the axis hits nothing. A
 ///   camera whose position was chosen steps back if its lens cannot focus that near.
-/// Returns the scene's camera whose view is used, or null. Throws InputError if the lens cannot focus as requested,
-/// if the scene has no triangles, or if it does not have the requested camera.
+/// Returns the scene's camera whose view is used, or null. Throws InputError if the lens cannot focus as requested, if
+/// the scene has no triangles, or if it does not have the requested camera.
 const SceneCamera* set_view(Camera& camera, const Assembly& assembly, const ViewRequest& request);
 
 }  // namespace REALCAM_NAMESPACE

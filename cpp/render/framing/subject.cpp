@@ -65,6 +65,8 @@ public:
     }
 
 private:
+    /// Visits the triangles of one scene, transformed by `map`. `first`: index of its first part. Returns the index
+    /// after its last part.
     template <class Visit>
     std::size_t for_triangles(const Scene& scene, const Affine<double>& map, std::size_t first, Visit& visit) {
         const Components& components = components_.try_emplace(&scene, scene).first->second;
@@ -90,8 +92,10 @@ struct Part {
     static constexpr double kFlat = 0.05;  ///< largest thickness of a flat part, over its size
 
     BoundingBox box;
-    std::size_t facets = 0;
-    bool emits = false, is_subject = false, must_stay_away = false;
+    std::size_t facets = 0;  ///< number of facets
+    bool emits = false;
+    bool is_subject = false;  ///< true if the part belongs to the subject
+    bool must_stay_away = false;  ///< used by choose_carried: true if the part must not be near the subject
 
     double size() const { return box.diagonal(); }
 
@@ -117,10 +121,12 @@ struct Part {
 /// (first rule of Subject). Returns false if there is no such part. `parts`: all parts, by their indices in `facets`;
 /// `up`: unit.
 bool choose_carried(std::vector<Part*>& chosen, Facets& facets, const std::vector<Part>& parts, Vec3d up) {
-    constexpr std::size_t kMaxCarriers = 64;  // number of large parts that are tested as carriers
-    constexpr std::size_t kOutweighs =
-        4;  // least number of facets of the subject, over that of parts beside the carrier
-    constexpr double kMuchLonger = 3.5, kLonger = 2;  // least size of the scene and of the carrier, over the subject's
+    // Number of large parts that are tested as carriers.
+    constexpr std::size_t kMaxCarriers = 64;
+    // Least number of facets of the subject, over that of the parts beside the carrier.
+    constexpr std::size_t kOutweighs = 4;
+    // Least size of the scene and of the carrier, over that of the subject.
+    constexpr double kMuchLonger = 3.5, kLonger = 2;
     Part whole;
     for (const Part* part : chosen) whole.box.add(part->box);
     for (std::size_t k = 0; k < std::min(kMaxCarriers, chosen.size()); ++k) {
@@ -138,8 +144,8 @@ bool choose_carried(std::vector<Part*>& chosen, Facets& facets, const std::vecto
             const double above = dot(part->box.middle() - carrier.box.middle(), up);
             if (!carrier.spans(*part)) {
                 facets_beside += part->facets;
-            } else if (!is_ground ||
-                       above >= -1e-6 * carrier.size()) {  // parts below it, such as table legs, are omitted
+            } else if (!is_ground || above >= -1e-6 * carrier.size()) {
+                // Parts below the ground, such as the legs of a table, are not carried.
                 carried.push_back(part);
                 subject.box.add(part->box);
                 subject.facets += part->facets;

@@ -26,12 +26,13 @@ struct GhostSum {
 inline double ghost_units_per_lux(const SceneView& scene, const CameraView& camera, const GhostView& ghosts) {
     const LightReceiver middle{front_vertex(camera, camera.front_vertex_m), {0, 0, 0}};
     // Upper bound of the illuminance at the front vertex, lux.
-    double light = scene.has_environment ? 4 * static_cast<double>(environment_importance(scene)) : 0.0;
-    if (scene.light_node_count > 0) light += static_cast<double>(most_illuminance(scene.light_nodes[0], middle));
-    for (int i = 0; i < scene.sun_count; ++i) light += static_cast<double>(luminance(scene.suns[i].illuminance));
+    double incident_lux = scene.has_environment ? 4 * static_cast<double>(environment_importance(scene)) : 0.0;
+    if (scene.light_node_count > 0) incident_lux += static_cast<double>(most_illuminance(scene.light_nodes[0], middle));
+    for (int i = 0; i < scene.sun_count; ++i) incident_lux += static_cast<double>(luminance(scene.suns[i].illuminance));
     const double pixel_mm2 = 4.0 * static_cast<double>(camera.film_half_width) *
                              static_cast<double>(camera.film_half_height) / camera.width / camera.height;
-    const double side_mm = 2 * static_cast<double>(ghosts.reach), max_lux = light * side_mm * side_mm / pixel_mm2;
+    const double side_mm = 2 * static_cast<double>(ghosts.reach),
+                 max_lux = incident_lux * side_mm * side_mm / pixel_mm2;
     const bool is_image = ghosts.light == GhostLight::direct || ghosts.light == GhostLight::starbursts;
     const double units = is_image ? 0x1p28 : 0x1p36;
     return max_lux > 1e-30 ? units / max_lux : units;
@@ -55,8 +56,8 @@ REALCAM_INLINE std::int64_t ghost_units(float lux, double units_per_lux, float d
 struct GhostFilmView {
     GhostLight light = GhostLight::of_lights;
     const GhostSum* sums = nullptr;  ///< values for all pixels, film by film; null: no light
-    int films = 1;
-    double units_per_lux = 1;
+    int films = 1;  ///< number of films: 1 or 2
+    double units_per_lux = 1;  ///< see ghost_units_per_lux
     const unsigned long long* blocks = nullptr;  ///< number of blocks in each film; each has kGhostBlock samples, which
                                                  ///< fall anywhere on the film
     int width = 0, height = 0;  ///< pixels

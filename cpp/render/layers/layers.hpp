@@ -20,13 +20,13 @@ enum class Layer : std::uint32_t {
     albedo,  ///< reflectance, 0 to 1
     circle_of_confusion_mm,  ///< diameter on the film
     sample_count,  ///< number of samples
-    variance,  ///< of the exposure, (lux seconds)^2
-    depth_middle,  ///< as depth
-    normal_middle,  ///< as normal
+    variance,  ///< variance of the exposure, (lux seconds)^2
+    depth_middle,  ///< depth at the pixel's centre, m
+    normal_middle,  ///< normal at the pixel's centre
     object_id,  ///< see SurfaceIds
     material_id,  ///< see SurfaceIds
     motion,  ///< motion vector during the exposure, pixels (motion_vectors)
-    position_middle,  ///< in the scene, m
+    position_middle,  ///< position of the surface in the scene, m
     traced_light,  ///< part of the exposure that was splatted, lux seconds (SplattedLight)
     dual_pixel_left,  ///< exposure through the left half of the exit pupil, lux seconds
     dual_pixel_right,  ///< exposure through the right half of the exit pupil, lux seconds
@@ -34,7 +34,7 @@ enum class Layer : std::uint32_t {
 
 /// Properties of a layer.
 struct LayerInfo {
-    const char* name;  ///< on the command line, in shot files and in Python
+    const char* name;  ///< name on the command line, in shot files and in Python
     int channels;  ///< values per pixel
     bool is_number;  ///< true if the values are uint32 (LayerImage::numbers) instead of float
 };

@@ -71,12 +71,12 @@ LightEntries::Probe LightEntries::probe(const Positions& positions, const Traced
     };
     for (int first = 0; first < count; first += kBlock) {
         PupilTracer::Rays rays;
-        Vec2f at[kBlock];
+        Vec2f entries[kBlock];  // in the plane, mm
         for (int k = 0; k < kBlock; ++k) {
-            const auto number = static_cast<std::uint32_t>(first + k);
-            at[k] = in.at(sample_joint_2d(0, number, 0));
-            const Vec3f entry = at[k].x * plane.along + at[k].y * plane.across,
-                        position = positions[number % positions.size()];
+            const auto index = static_cast<std::uint32_t>(first + k);
+            entries[k] = in.at(sample_joint_2d(0, index, 0));
+            const Vec3f entry = entries[k].x * plane.along + entries[k].y * plane.across,
+                        position = positions[index % positions.size()];
             const Vec3f direction = light.kind == TracedLightKind::sun ? -position : entry - position;
             rays.origin.set(k, entry);
             rays.direction.set(k, normalized(direction));
@@ -87,11 +87,11 @@ LightEntries::Probe LightEntries::probe(const Positions& positions, const Traced
             if (rays.status[k] != 0) continue;
             const Vec2f landing = film_surface(camera_).landing(rays.origin[k], rays.direction[k]);
             const Vec2f film = {landing.x - camera_.film_middle.x, landing.y - camera_.film_middle.y};
-            // One pixel more, for other wavelengths and for diffraction.
+            // A margin of one pixel, for other wavelengths and for diffraction.
             if (!(std::fabs(film.x) <= camera_.film_half_width + 1 / columns_per_mm) ||
                 !(std::fabs(film.y) <= camera_.film_half_height + 1 / columns_per_mm))
                 continue;
-            widen(probe.entries, at[k].x, at[k].y);
+            widen(probe.entries, entries[k].x, entries[k].y);
             widen(probe.film, columns_per_mm * film.x, columns_per_mm * film.y);
             ++probe.hits;
         }

@@ -14,9 +14,8 @@ namespace {
 /// Largest fraction of a pixel's samples that hit a traced lamp. If more hit it, samples of pixels have less noise than
 /// samples from the lamp would.
 constexpr double kMaxFilledFraction = 0.8;
-/// Largest difference in depth, over the radius of a pixel's footprint, at which two emitters count as one. 4 =
-/// tan(76 degrees): surfaces that are tilted by up to this angle are one emitter, and a wall behind a lamp is not part
-/// of it.
+/// Largest difference in depth, over the radius of a pixel's footprint, at which two emitters count as one. 4 = tan(76
+/// degrees): surfaces that are tilted by up to this angle are one emitter, and a wall behind a lamp is not part of it.
 constexpr double kMaxDepth = 4;
 
 /// Region that the samples of one pixel cover at a distance: the blur disc, swept over the pixel. In metres.

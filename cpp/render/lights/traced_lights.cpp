@@ -127,8 +127,9 @@ void TracedLights::add(const SceneView& scene, const LightGroup& group, TracedLi
         }
         triangles_.insert(triangles_.end(), group.lights.begin(), group.lights.end());
     } else {
-        cdfs_.push_back(
-            0);  // one entry per light, so that a light's table begins at its first triangle's index plus its own
+        // One entry for each other light: a light's table then begins at the index of its first triangle plus that of
+        // the light.
+        cdfs_.push_back(0);
     }
     lights_.push_back(light);
 }

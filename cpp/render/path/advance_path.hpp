@@ -108,8 +108,8 @@ REALCAM_INLINE void set_time_and_number(const PathState<N>& path, int slot, int 
     }
 }
 
-/// Scatters the path of a GPU's thread, which has registers for one shadow ray: each ray is traced right after it
-/// is set.
+/// Scatters the path of a GPU's thread, which has registers for one shadow ray: each ray is traced right after it is
+/// set.
 template <SceneKind scene_kind, class SceneT, class Probe>
 REALCAM_INLINE void scatter_one(const SceneView& view, const PathSettings& settings, const SampleBlock<1>& block,
                                 int bounce, const Surfaces<1>& surfaces, SceneT&& scene, Probe&& probe,

@@ -44,7 +44,7 @@ template <int N>
 struct LightSamples {
     Vec3Lanes<float, N> direction;
     ColorLanes<N> irradiance;
-    Lanes<float, N> distance, reach, pdf;
+    Lanes<float, N> distance, reach, pdf;  ///< all members: see LightSample
 
     REALCAM_INLINE LightSample operator[](int lane) const {
         return {direction[lane], distance[lane], reach[lane], irradiance[lane], pdf[lane]};
@@ -60,6 +60,7 @@ struct LightSamples {
 
 namespace light_samples_detail {
 
+/// Returns a if the condition holds, else b, without branches.
 REALCAM_INLINE LightSample select(bool condition, const LightSample& a, const LightSample& b) {
     using realcam::select;
     return {select(condition, a.direction, b.direction), select(condition, a.distance, b.distance),
@@ -158,8 +159,8 @@ public:
     }
 
 private:
-    Lanes<float, N> even_, scale_, local_, environment_;
-    Lanes<std::int32_t, N> is_apart_;
+    Lanes<float, N> even_, scale_, local_, environment_;  ///< numbers of LightKinds
+    Lanes<std::int32_t, N> is_apart_;  ///< LightKinds::environment_is_apart
 };
 
 namespace light_samples_detail {
@@ -275,6 +276,7 @@ REALCAM_INLINE void sample_lights(const SceneView& scene, const LightKindsLanes<
             const DirectionToLight to_light = direction_to_light(light, shines_on_both_sides<scene_kind>(light),
                                                                  surfaces.position[i], points.barycentric[i]);
             const bool is_near = points.is_near[i] != 0;
+            // The inverse of the density.
             const float scale = select(is_near, points.solid_angle[i], 1.0f / to_light.pdf);
             samples.direction.set(i, to_light.direction);
             samples.irradiance.set(i, select(to_light.cosine > 0.0f, scale, 0.0f) * picked.radiance[i]);

@@ -33,8 +33,8 @@ struct PixelCounts {
     }
 };
 
-/// Returns the samples with the indices [taken, end), or as many of them as the same sequence contains. A sequence
-/// has 2^32 samples; an endless rendering continues with the sequence of the next seed. `seed`: that of index 0.
+/// Returns the samples with the indices [taken, end), or as many of them as the same sequence contains. A sequence has
+/// 2^32 samples; an endless rendering continues with the sequence of the next seed. `seed`: that of index 0.
 inline SampleRange next_samples(std::uint32_t seed, std::int64_t taken, std::int64_t end) {
     constexpr std::int64_t kSequenceLength = std::int64_t{1} << 32;
     const std::int64_t first = taken % kSequenceLength, count = std::min(end - taken, kSequenceLength - first);

@@ -18,7 +18,7 @@ template <int N>
 struct PlainSurfaces {
     Vec3Lanes<float, N> position, geometric_normal, normal;
     ColorLanes<N> diffuse, phong;
-    Lanes<float, N> self_offset, shininess;
+    Lanes<float, N> self_offset, shininess;  ///< see SurfacePoint and Material
     bool has_phong = false;  ///< true if any surface has a Phong lobe
 
     REALCAM_INLINE void set(int slot, const SurfacePoint& point) {
@@ -55,7 +55,7 @@ REALCAM_INLINE float depth_at(const CameraView& camera, Vec3f position, float ti
 }
 
 /// Index of the random bits for the footprint; larger than the dimensions of all other random numbers.
-inline constexpr std::uint32_t kFootprintSalt = 0x40000;
+inline constexpr std::uint32_t kFootprintBits = 0x40000;
 
 /// Returns the footprint of a camera ray for texture filtering: the area of a pixel, seen from the lens, divided by the
 /// index of the sample, because the n samples of a pixel together resolve details of 1/n of its area.
@@ -64,7 +64,7 @@ REALCAM_INLINE Footprint film_footprint(const CameraView& camera, const SampleBl
     const float pixel = 2.0f * camera.film_half_width / static_cast<float>(camera.width);
     const auto sample_count = static_cast<float>(block.sample[lane]) + 1.0f;
     const float width = pixel / camera.thin.image_distance;
-    return {width * width / sample_count, unit_float(block.bits(lane, kFootprintSalt))};
+    return {width * width / sample_count, unit_float(block.bits(lane, kFootprintBits))};
 }
 
 /// Adds the radiance of an environment map along rays that have hit no surface, and ends their paths. Two loops, so
